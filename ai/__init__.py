@@ -1,0 +1,1 @@
+"""Everything that decides: the lander's rules, the agent, its training. Never imports pygame."""

@@ -1,0 +1,1 @@
+"""The window, its scenes, drawing and input: the only importer of pygame."""

@@ -1,0 +1,1 @@
+"""One scene to a file."""

@@ -1,0 +1,1 @@
+"""What every screen shares: tokens, type, the canvas, widgets and focus."""

@@ -1,0 +1,33 @@
+"""The look, in one place: colour, type and space for the world, the widgets and the charts alike.
+
+Amber is the person, blue is the network, everywhere. Lengths are points: 1280 x 720 of them fill the view
+at any window size; `game.ui.canvas.Canvas` turns them into pixels.
+"""
+
+from typing import Final
+
+Colour = tuple[int, int, int]
+
+VIEW_SIZE: Final = (1280, 720)
+
+NIGHT0: Final[Colour] = (9, 12, 24)
+NIGHT1: Final[Colour] = (19, 26, 48)
+DUSK: Final[Colour] = (58, 52, 78)
+EMBER: Final[Colour] = (214, 132, 92)
+PANEL: Final[Colour] = (14, 19, 36)
+PANEL_ALPHA: Final = 0.74
+LINE: Final[Colour] = (40, 47, 70)
+FAINT: Final[Colour] = (58, 68, 92)
+INK: Final[Colour] = (232, 236, 244)
+MUTE: Final[Colour] = (138, 149, 173)
+HUMAN: Final[Colour] = (255, 196, 112)
+NET: Final[Colour] = (112, 200, 255)
+
+FIGURE: Final = 34.0
+TITLE: Final = 22.0
+TEXT: Final = 15.0
+SMALL: Final = 12.5
+LABEL: Final = 11.5
+
+STEP: Final = 8
+MARGIN: Final = 64
