@@ -4,6 +4,7 @@ Amber is the person, blue is the network, everywhere. Lengths are points: 1280 x
 at any window size; `game.ui.canvas.Canvas` turns them into pixels.
 """
 
+from dataclasses import dataclass
 from typing import Final
 
 Colour = tuple[int, int, int]
@@ -31,3 +32,15 @@ LABEL: Final = 11.5
 
 STEP: Final = 8
 MARGIN: Final = 64
+
+
+@dataclass(frozen=True)
+class Palette:
+    """Colours for within and beyond limits; always with a shape or a mark as well."""
+
+    good: Colour
+    warn: Colour
+
+
+PALETTE: Final = Palette(good=(126, 217, 174), warn=(255, 138, 108))
+COLOUR_SAFE: Final = Palette(good=(126, 217, 174), warn=(255, 138, 108))

@@ -1,0 +1,262 @@
+"""The window and the loop: events in, steps of 1/60 s, a picture out."""
+
+from __future__ import annotations
+
+import logging
+import os
+import time
+from collections.abc import Callable
+from datetime import datetime
+from logging.handlers import RotatingFileHandler
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from game import texts
+from game.clock import FixedStep
+from game.controls import Command, translate
+from game.scene_manager import SceneManager
+from game.ui.canvas import Canvas
+from game.ui.notes import Notes
+from game.ui.tokens import COLOUR_SAFE, PALETTE, VIEW_SIZE
+
+if TYPE_CHECKING:
+    from game.context import Context
+    from game.scene import Scene
+
+MINIMUM_SIZE: Final = (640, 360)
+LOG_NAME: Final = "tranquility.log"
+_HINTS: Final = {
+    "PYGAME_HIDE_SUPPORT_PROMPT": "1",
+    "SDL_APP_NAME": texts.GAME,
+    "SDL_VIDEO_X11_WMCLASS": "tranquility",
+    "SDL_VIDEO_CENTERED": "1",
+    "SDL_VIDEO_MINIMIZE_ON_FOCUS_LOSS": "0",
+    "SDL_WINDOWS_DPI_AWARENESS": "permonitorv2",
+    "SDL_MOUSE_FOCUS_CLICKTHROUGH": "1",
+}
+_MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
+_log = logging.getLogger("tranquility")
+
+
+class NoDisplayError(Exception):
+    """There is no screen to open a window on."""
+
+
+class App:
+    """The game in its window. `run` plays it to the end; `tick` is one frame.
+
+    Args:
+        context: the shared things; its `note` and `apply_settings` are bound to this window.
+        first: the scene to begin with, the menu if none is given.
+        now: the clock, in seconds.
+        capped: whether a frame waits for its turn, as on a screen, or runs as fast as it can.
+
+    Raises:
+        NoDisplayError: no window can be opened.
+
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        first: Scene | None = None,
+        *,
+        now: Callable[[], float] = time.perf_counter,
+        capped: bool = True,
+    ) -> None:
+        self.context = context
+        self._now, self._capped = now, capped
+        self._clock = pygame.time.Clock()
+        self._steps = FixedStep()
+        self._notes = Notes()
+        self._minimised = False
+        self._windowed_size: tuple[int, int] = VIEW_SIZE
+        self.canvas = Canvas(pygame.Surface(VIEW_SIZE))
+        context.note = self._notes.show
+        context.apply_settings = self.apply_settings
+        self._open_window()
+        self.scenes = SceneManager(context, first or _menu())
+        self._last = now()
+
+    def run(self, max_frames: int | None = None) -> int:
+        """Play until the game is closed, or for so many frames. Returns the process's exit code."""
+        try:
+            frame = 0
+            while (max_frames is None or frame < max_frames) and self.tick():
+                frame += 1
+        finally:
+            self.close()
+        return 0
+
+    def tick(self) -> bool:
+        """Run one frame: events, the steps that are due, the picture. False once the game is over."""
+        for event in pygame.event.get():
+            self._handle(event)
+        time_now = self._now()
+        steps = self._steps.advance(time_now - self._last)
+        self._last = time_now
+        for _ in range(steps):
+            self._notes.update()
+            self._guarded(self.scenes.update)
+        if self.scenes.running and not self._minimised:
+            self._draw()
+        if self._capped:
+            self._clock.tick(20 if self._minimised else self._frame_rate)
+        return self.scenes.running
+
+    def close(self) -> None:
+        """Save the settings and close the window; the scene on top is left first."""
+        try:
+            self.scenes.close()
+        except Exception:
+            _log.exception("leaving the last scene")
+        self._save_settings()
+        pygame.display.quit()
+
+    # The window
+
+    def _open_window(self) -> None:
+        for name, value in _HINTS.items():
+            os.environ.setdefault(name, value)
+        try:
+            pygame.display.init()
+            pygame.font.init()
+            pygame.display.set_caption(texts.GAME)
+            self._set_mode()
+        except pygame.error as error:
+            raise NoDisplayError(str(error)) from error
+        self._start_pads()
+        self._palette()
+
+    def _start_pads(self) -> None:
+        from pygame._sdl2 import controller
+
+        try:
+            controller.init()  # pads already plugged in announce themselves as events
+        except pygame.error:
+            _log.exception("no gamepads")
+
+    def _set_mode(self) -> None:
+        if self.context.settings.full_screen:
+            window = pygame.display.set_mode((0, 0), pygame.FULLSCREEN)
+        else:
+            window = pygame.display.set_mode(self._windowed_size, pygame.RESIZABLE)
+            _keep_above_minimum()
+        self._frame_rate = min(max(pygame.display.get_current_refresh_rate(), 60), 144)
+        self.canvas.attach(window)
+
+    def _palette(self) -> None:
+        self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
+
+    def apply_settings(self) -> None:
+        """Make the window follow the settings, and save them."""
+        is_full_screen = bool(_window().get_flags() & pygame.FULLSCREEN)
+        if self.context.settings.full_screen != is_full_screen:
+            self._set_mode()
+        self._palette()
+        self._save_settings()
+
+    def _save_settings(self) -> None:
+        file = self.context.settings_file
+        if not file.save(self.context.settings):
+            self._notes.show(file.problem)
+
+    # Events
+
+    def _handle(self, event: pygame.event.Event) -> None:
+        self.context.controls.process(event)
+        match event.type:
+            case pygame.QUIT:
+                self.scenes.running = False
+            case pygame.VIDEORESIZE | pygame.WINDOWSIZECHANGED:
+                self._resized()
+            case pygame.WINDOWMINIMIZED:
+                self._minimised = True
+            case pygame.WINDOWRESTORED | pygame.WINDOWSHOWN | pygame.WINDOWMAXIMIZED:
+                self._minimised = False
+        if not self.scenes.running:
+            return
+        match translate(event):
+            case Command.FULLSCREEN:
+                self.context.settings.full_screen = not self.context.settings.full_screen
+                self.apply_settings()
+            case Command.SCREENSHOT:
+                self._save_screenshot()
+            case _:
+                self._guarded(lambda: self.scenes.handle_event(self._in_points(event)))
+
+    def _resized(self) -> None:
+        window = _window()
+        self.canvas.attach(window)
+        if not self.context.settings.full_screen:
+            self._windowed_size = window.get_size()
+
+    def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
+        if event.type not in _MOUSE:
+            return event
+        values = {**event.dict, "pos": self.canvas.to_points(event.pos)}
+        if event.type == pygame.MOUSEMOTION:
+            values["rel"] = (event.rel[0] / self.canvas.scale, event.rel[1] / self.canvas.scale)
+        return pygame.event.Event(event.type, values)
+
+    # The picture
+
+    def _draw(self) -> None:
+        self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
+        self._notes.draw(self.canvas)
+        pygame.display.flip()
+
+    def _save_screenshot(self) -> None:
+        folder = self.context.user_dir / "screenshots"
+        path = folder / f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}.png"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            pygame.image.save(self.canvas.surface, path)
+        except (OSError, pygame.error) as error:
+            self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error))
+        else:
+            self._notes.show(texts.SCREENSHOT_SAVED.format(path=path))
+
+    # Faults
+
+    def _guarded(self, call: Callable[[], None]) -> None:
+        """Run a scene's code; if it fails, the game goes on with a message and the way to the menu."""
+        try:
+            call()
+        except Exception as error:
+            _log.exception("in %s", type(self.scenes.top).__name__)
+            from game.scenes.fault import Fault
+
+            self.canvas.surface.set_clip(None)
+            self.scenes.reset(_menu(), Fault(error, self.context.user_dir / LOG_NAME))
+
+
+def _menu() -> Scene:
+    from game.scenes.menu import Menu
+
+    return Menu()
+
+
+def _window() -> pygame.Surface:
+    window = pygame.display.get_surface()
+    assert window is not None
+    return window
+
+
+def _keep_above_minimum() -> None:
+    if pygame.display.get_driver() != "dummy":
+        pygame.Window.from_display_module().minimum_size = MINIMUM_SIZE
+
+
+def log_to(folder: Path) -> None:
+    """Keep what goes wrong in a file of the player's; if that cannot be written, go without."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handler = RotatingFileHandler(folder / LOG_NAME, maxBytes=500_000, backupCount=1, delay=True)
+    except OSError:
+        return
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    _log.addHandler(handler)
+    _log.propagate = False

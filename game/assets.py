@@ -1,0 +1,17 @@
+"""Where the shipped data lies: beside the packages, in a checkout and in an installed wheel alike."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import platformdirs
+
+_ROOT: Final = Path(__file__).resolve().parent.parent
+ASSETS_DIR: Final = _ROOT / "assets"
+MODELS_DIR: Final = _ROOT / "models"
+
+
+def user_dir() -> Path:
+    """Return the player's own folder for settings, scores, networks and screenshots."""
+    return Path(platformdirs.user_data_dir("tranquility", appauthor=False))

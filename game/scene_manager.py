@@ -1,0 +1,80 @@
+"""The stack of scenes, and the one place that changes it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from game.scene import Pop, Push, Quit, Replace, Scene, Transition
+
+if TYPE_CHECKING:
+    import pygame
+
+    from game.context import Context
+    from game.ui.canvas import Canvas
+
+
+class SceneManager:
+    """Passes events and steps to the scene on top and applies what it returns.
+
+    `running` turns false when a scene asks to quit or the last one is popped.
+    """
+
+    def __init__(self, context: Context, first: Scene) -> None:
+        self._context = context
+        self._stack: list[Scene] = []
+        self.running = True
+        self.apply(Push(first))
+
+    @property
+    def top(self) -> Scene:
+        """The scene that is seen and heard."""
+        return self._stack[-1]
+
+    def handle_event(self, event: pygame.event.Event) -> None:
+        """Give one event to the top scene."""
+        self.apply(self.top.handle_event(event))
+
+    def update(self) -> None:
+        """Advance the top scene by one step."""
+        self.apply(self.top.update())
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the top scene."""
+        self.top.draw(canvas, alpha)
+
+    def apply(self, transition: Transition | None) -> None:
+        """Do what a scene asked for."""
+        match transition:
+            case Push(scene):
+                if self._stack:
+                    self.top.exit()
+                self._enter(scene)
+            case Replace(scene):
+                self._stack.pop().exit()
+                self._enter(scene)
+            case Pop(levels):
+                self._pop(levels)
+            case Quit():
+                self.running = False
+
+    def reset(self, *scenes: Scene) -> None:
+        """Leave every scene without a word to them, for their state is in doubt, and put these in place."""
+        self._stack = list(scenes[:-1])
+        self._enter(scenes[-1])
+
+    def close(self) -> None:
+        """Leave the top scene, for good."""
+        if self._stack:
+            self._stack.pop().exit()
+
+    def _enter(self, scene: Scene) -> None:
+        self._stack.append(scene)
+        scene.enter(self._context)
+
+    def _pop(self, levels: int) -> None:
+        self.top.exit()
+        del self._stack[max(0, len(self._stack) - levels) :]
+        if self._stack:
+            self.top.enter(self._context)
+        else:
+            self.running = False

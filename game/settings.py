@@ -1,0 +1,106 @@
+"""What the player chose, kept in one small file that survives crashes, full disks and bad edits."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any, Final
+
+FILE_NAME: Final = "settings.json"
+DAMAGED_NAME: Final = "settings.damaged.json"
+
+
+@dataclass
+class Settings:
+    """The player's choices. A new one is one more line with its default."""
+
+    full_screen: bool = False
+    reduced_motion: bool = False
+    colour_safe: bool = False
+    show_hints: bool = True
+    model: str = ""  # the network last chosen to fly; empty for the game's own
+    unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what the file holds."""
+        values = asdict(self)
+        return {**values.pop("unknown"), **values}
+
+    @classmethod
+    def from_dict(cls, values: dict[str, Any]) -> Settings:
+        """Take every value of the right type; the others keep their defaults."""
+        settings = cls()
+        known = {each.name for each in fields(cls)} - {"unknown"}
+        for name in known & values.keys():
+            if type(values[name]) is type(getattr(settings, name)):
+                setattr(settings, name, values[name])
+        settings.unknown = {name: value for name, value in values.items() if name not in known}
+        return settings
+
+
+class SettingsFile:
+    """The settings file in a folder of the player's.
+
+    Neither `load` nor `save` raises: each returns whether all went well, and `problem` says what did not.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / FILE_NAME
+        self.problem = ""
+
+    def load(self) -> Settings:
+        """Read the settings. A damaged file is kept aside under another name, never overwritten."""
+        try:
+            values = json.loads(self.path.read_text(encoding="utf-8"))
+            if not isinstance(values, dict):
+                raise ValueError("not a table of settings")
+        except FileNotFoundError:
+            return Settings()
+        except (ValueError, RecursionError):
+            self._set_aside()
+            return Settings()
+        except OSError as error:
+            self.problem = f"The settings could not be read: {error.strerror}. These are the defaults."
+            return Settings()
+        return Settings.from_dict(values)
+
+    def save(self, settings: Settings) -> bool:
+        """Write the settings whole or not at all."""
+        try:
+            write_atomically(self.path, json.dumps(settings.to_dict(), indent=2) + "\n")
+        except OSError as error:
+            self.problem = f"The settings could not be saved: {error.strerror}."
+            return False
+        return True
+
+    def _set_aside(self) -> None:
+        aside = self.path.with_name(DAMAGED_NAME)
+        try:
+            self.path.replace(aside)
+            self.problem = f"The settings file was damaged and is kept as {aside.name}. These are the defaults."
+        except OSError:
+            self.problem = "The settings file is damaged. These are the defaults."
+
+
+def write_atomically(path: Path, text: str) -> None:
+    """Write a file whole: a temporary one beside it, flushed to the disk, then renamed.
+
+    Raises:
+        OSError: the folder cannot be written, or the disk is full; an older file is still whole.
+
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise

@@ -1,0 +1,37 @@
+"""Short messages at the foot of the window."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, SMALL, VIEW_SIZE
+
+_STEPS_SHOWN: Final = 60 * 5
+_STEPS_FADING: Final = 20
+
+
+class Notes:
+    """One message at a time, gone after five seconds."""
+
+    def __init__(self) -> None:
+        self._text = ""
+        self._left = 0
+
+    def show(self, text: str) -> None:
+        """Show a message in place of the last one."""
+        self._text, self._left = text, _STEPS_SHOWN
+
+    def update(self) -> None:
+        """Let 1/60 s pass."""
+        self._left = max(0, self._left - 1)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the message, if there is one."""
+        if not self._left:
+            return
+        alpha = min(1.0, self._left / _STEPS_FADING)
+        width = canvas.text_width(self._text, size=SMALL)
+        middle = VIEW_SIZE[0] / 2
+        canvas.panel((middle - width / 2 - 16, 664, width + 32, 32))
+        canvas.text(self._text, (middle, 684), size=SMALL, colour=INK, align="centre", alpha=alpha)
