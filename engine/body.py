@@ -1,0 +1,121 @@
+"""A handle on one body's slot in every world of a batch."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from engine.vector import Array, Bools, cross
+
+if TYPE_CHECKING:
+    from engine.world import World
+
+
+class Body:
+    """One body, `world.batch` of it. Arrays read through a handle are views: later steps change them."""
+
+    def __init__(self, world: World, index: int) -> None:
+        self.world = world
+        self.index = index
+
+    @property
+    def position(self) -> Array:
+        """Centre of mass in metres, (batch, 2)."""
+        return self.world.state.pose[:, self.index, :2]
+
+    @position.setter
+    def position(self, value: object) -> None:
+        self.set(position=value)
+
+    @property
+    def angle(self) -> Array:
+        """Radians, counter-clockwise, unwrapped, (batch,)."""
+        return self.world.state.pose[:, self.index, 2]
+
+    @angle.setter
+    def angle(self, value: object) -> None:
+        self.set(angle=value)
+
+    @property
+    def velocity(self) -> Array:
+        """Metres a second, (batch, 2)."""
+        return self.world.state.velocity[:, self.index, :2]
+
+    @velocity.setter
+    def velocity(self, value: object) -> None:
+        self.set(velocity=value)
+
+    @property
+    def angular_velocity(self) -> Array:
+        """Radians a second, (batch,)."""
+        return self.world.state.velocity[:, self.index, 2]
+
+    @angular_velocity.setter
+    def angular_velocity(self, value: object) -> None:
+        self.set(angular_velocity=value)
+
+    @property
+    def active(self) -> Bools:
+        """Whether it takes part, (batch,); an inactive body neither moves nor touches."""
+        return self.world.state.active[:, self.index]
+
+    @active.setter
+    def active(self, value: object) -> None:
+        self.world.state.active[:, self.index] = value
+
+    @property
+    def static(self) -> bool:
+        """Whether no force can move it. A static body with a velocity still goes along it, like a lift."""
+        return not self.world.params.dynamic[self.index]
+
+    @property
+    def mass(self) -> float:
+        """Kilograms; infinite for a static body."""
+        return self._inverse(0)
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia about the centre of mass, kg·m²; infinite for a static body."""
+        return self._inverse(2)
+
+    def apply_force(self, force: object, point: object = None) -> None:
+        """Add a force (2,) or (batch, 2) in newtons for the next step, at a world `point` or the centre."""
+        push = np.broadcast_to(np.asarray(force, dtype=float), (self.world.batch, 2))
+        self.world.state.force[:, self.index, :2] += push
+        if point is not None:
+            self.apply_torque(cross(np.asarray(point, dtype=float) - self.position, push))
+
+    def apply_torque(self, torque: object) -> None:
+        """Add a torque, one or (batch,), in newton metres for the next step."""
+        self.world.state.force[:, self.index, 2] += np.asarray(torque, dtype=float)
+
+    def set(
+        self,
+        *,
+        position: object = None,
+        angle: object = None,
+        velocity: object = None,
+        angular_velocity: object = None,
+        mask: Bools | None = None,
+    ) -> None:
+        """Put the body somewhere, in the worlds of `mask` (batch,) or in all; what is left out stays.
+
+        Values are one for all worlds or have a row for each world that is set.
+        """
+        rows = slice(None) if mask is None else np.asarray(mask, dtype=bool)
+        state = self.world.state
+        if position is not None:
+            state.pose[rows, self.index, :2] = np.asarray(position, dtype=float)
+        if angle is not None:
+            state.pose[rows, self.index, 2] = np.asarray(angle, dtype=float)
+        if velocity is not None:
+            state.velocity[rows, self.index, :2] = np.asarray(velocity, dtype=float)
+        if angular_velocity is not None:
+            state.velocity[rows, self.index, 2] = np.asarray(angular_velocity, dtype=float)
+        if position is not None or angle is not None:
+            self.world.moved(self)
+
+    def _inverse(self, row: int) -> float:
+        value = float(self.world.params.inverse_mass[self.index, row])
+        return 1.0 / value if value else float("inf")

@@ -1,0 +1,166 @@
+"""From poses to contacts: a broad phase over bounding boxes, then the exact test for pairs that are near."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from engine.collide import Manifold, Placed, collide_circles, collide_polygon_circle, collide_polygons
+from engine.solver import Contacts, colour
+from engine.state import BodyParams, BodyState, ShapeTable
+from engine.vector import Array, Bools, Ints, rotate
+
+_DEFAULT_FRICTION = 0.5
+
+
+class Detector:
+    """Finds what touches in every world, and remembers the impulses, so that a resting stack starts solved.
+
+    Which pairs of shapes may meet at all follows from the bodies and is laid down once. For up to some
+    hundreds of shapes, testing all those pairs in one go is faster in NumPy than any tree.
+    """
+
+    def __init__(self, batch: int, params: BodyParams, shapes: ShapeTable) -> None:
+        self.shapes = shapes
+        self.dynamic = params.dynamic
+        self.pairs = _meeting_pairs(params, shapes)  # (pairs, 2) of shapes, a polygon before a circle
+        self.body_pairs = shapes.body[self.pairs]
+        self.friction = _mix(params.friction[self.body_pairs], _geometric_mean, _DEFAULT_FRICTION)
+        self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
+        self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
+        self._fixed = np.flatnonzero(~self.dynamic[shapes.body])
+        self._fixed_bounds: tuple[Array, Array] | None = None
+        self._impulse = np.zeros((3, batch, len(self.pairs)))
+        self._feature = np.zeros((batch, len(self.pairs), 2), dtype=np.int32)
+        self._last = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp))
+
+    def find(self, state: BodyState) -> Contacts | None:
+        """Return every touching pair of active bodies, in the solver's order; None if nothing touches."""
+        world, pair = self._near(state)
+        if not len(world):
+            return None
+        manifold = self._touch(state, world, pair)
+        touching = np.flatnonzero(manifold.valid.any(axis=1))
+        if not len(touching):
+            return None
+        body = self.body_pairs[pair[touching]]
+        slots = world[touching, None] * state.pose.shape[1] + body
+        order, ends = colour(slots, self.dynamic[body], pair[touching])
+        kept = touching[order]
+        world, pair, manifold = world[kept], pair[kept], manifold.rows(kept)
+        return Contacts(
+            world=world,
+            pair=pair,
+            body=body[order],
+            manifold=manifold,
+            friction=self.friction[pair],
+            restitution=self.restitution[pair],
+            impulse=self._recall(world, pair, manifold),
+            approach=np.zeros((3, len(kept))),
+            colour_ends=ends,
+        )
+
+    def remember(self, contacts: Contacts) -> None:
+        """Keep the impulses of a step for the next."""
+        self._feature[self._last] = 0
+        self._last = (contacts.world, contacts.pair)
+        self._impulse[:, contacts.world, contacts.pair] = contacts.impulse
+        self._feature[contacts.world, contacts.pair] = contacts.manifold.feature * contacts.manifold.valid
+
+    def forget_bounds(self) -> None:
+        """A static body was put elsewhere."""
+        self._fixed_bounds = None
+
+    def _near(self, state: BodyState) -> tuple[Ints, Ints]:
+        """Broad phase: world and pair (n,) of shapes whose bounding boxes overlap, worlds in order."""
+        centre = self.shapes.world_centres(state)
+        half = np.empty_like(centre)
+        half[:] = self.shapes.reach[:, None]
+        if len(self._fixed):
+            if self._fixed_bounds is None or state.velocity[:, ~self.dynamic].any():
+                self._fixed_bounds = self.shapes.bounds(state, self._fixed)
+            centre[:, self._fixed], half[:, self._fixed] = self._fixed_bounds
+        low, high = centre - half, centre + half
+        a, b = self.pairs.T
+        near: Bools = low[:, a, 1] <= high[:, b, 1]
+        near &= low[:, b, 1] <= high[:, a, 1]
+        near &= low[:, a, 0] <= high[:, b, 0]
+        near &= low[:, b, 0] <= high[:, a, 0]
+        if not state.active.all():
+            near &= state.active[:, self.body_pairs[:, 0]] & state.active[:, self.body_pairs[:, 1]]
+        world, pair = near.nonzero()
+        return world, pair
+
+    def _touch(self, state: BodyState, world: Ints, pair: Ints) -> Manifold:
+        """Narrow phase: the manifolds of n pairs, whatever kinds of shape they are."""
+        kinds = self._kinds[pair]
+        if not kinds.any():
+            return self._touch_kind(0, state, world, pair)
+        manifold = Manifold.empty(len(pair))
+        for kind in (0, 1, 2):
+            rows = np.flatnonzero(kinds == kind)
+            if len(rows):
+                manifold.put(rows, self._touch_kind(kind, state, world[rows], pair[rows]))
+        return manifold
+
+    def _touch_kind(self, circles: int, state: BodyState, world: Ints, pair: Ints) -> Manifold:
+        a, b = self.pairs[pair].T
+        if circles == 0:
+            return collide_polygons(self._place(state, world, a), self._place(state, world, b))
+        radius = self.shapes.radius
+        if circles == 1:
+            disc = self._centre(state, world, b)
+            return collide_polygon_circle(self._place(state, world, a), disc, radius[b])
+        return collide_circles(
+            self._centre(state, world, a), radius[a], self._centre(state, world, b), radius[b]
+        )
+
+    def _place(self, state: BodyState, world: Ints, shape: Ints) -> Placed:
+        """Return polygons in their worlds, from their bodies' poses."""
+        body = self.shapes.body[shape]
+        cos, sin = state.cos[world, body, None], state.sin[world, body, None]
+        position = state.pose[world, body, None, :2]
+        start = rotate(self.shapes.start[shape], cos, sin)
+        start += position
+        end = rotate(self.shapes.end[shape], cos, sin)
+        end += position
+        return Placed(start, end, rotate(self.shapes.normal[shape], cos, sin))
+
+    def _centre(self, state: BodyState, world: Ints, shape: Ints) -> Array:
+        body = self.shapes.body[shape]
+        centre = rotate(self.shapes.centre[shape], state.cos[world, body], state.sin[world, body])
+        centre += state.pose[world, body, :2]
+        return centre
+
+    def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> Array:
+        """Impulses (3, m) of the step before, at points that are made by the same faces as then."""
+        same = (self._feature[world, pair] == manifold.feature) & manifold.valid
+        impulse = self._impulse[:, world, pair]
+        impulse[:2] *= same.T
+        impulse[2] *= same.all(axis=1) | (same.any(axis=1) & (manifold.valid.sum(axis=1) == 1))
+        return impulse
+
+
+def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> Ints:
+    """Every two shapes of different bodies, one of which can move, whose groups let them touch."""
+    first, second = np.triu_indices(len(shapes), k=1)
+    a, b = shapes.body[first], shapes.body[second]
+    apart = (params.group[a] != 0) & (params.group[a] == params.group[b])
+    meet = (a != b) & (params.dynamic[a] | params.dynamic[b]) & ~apart
+    pairs = np.stack([first[meet], second[meet]], axis=1)
+    turned = shapes.is_circle[pairs[:, 0]] & ~shapes.is_circle[pairs[:, 1]]
+    pairs[turned] = pairs[turned, ::-1]
+    return pairs
+
+
+def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float) -> Array:
+    """One value per pair (pairs, 2): combined if both bodies name one, else the one named, else `default`."""
+    a, b = values.T
+    either = np.where(np.isnan(a), b, a)
+    both = ~np.isnan(a) & ~np.isnan(b)
+    return np.where(both, combine(a, b), np.where(np.isnan(either), default, either))
+
+
+def _geometric_mean(a: Array, b: Array) -> Array:
+    return np.sqrt(a * b)

@@ -1,0 +1,118 @@
+"""Where everything is, and what it is made of, as arrays: state changes each step, parameters do not.
+
+Position and angle share an array, and so do velocity and spin, because everything that is integrated, solved
+or reset treats the three components alike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from engine.shapes import Circle, Polygon, Shape
+from engine.vector import Array, Bools, Ints, rotate
+
+
+@dataclass
+class BodyState:
+    """What a step changes. All arrays lead with (batch, bodies)."""
+
+    pose: Array  # (..., 3): x, y in metres, angle in radians
+    velocity: Array  # (..., 3): m/s, m/s, rad/s
+    force: Array  # (..., 3): N, N, N·m, cleared by each step
+    active: Bools  # (...): an inactive body neither moves nor touches
+    cos: Array  # (...) of the angle, kept beside it because every phase needs them
+    sin: Array
+
+    @classmethod
+    def empty(cls, batch: int) -> BodyState:
+        """No bodies yet."""
+        triple, single = (batch, 0, 3), (batch, 0)
+        return cls(np.zeros(triple), np.zeros(triple), np.zeros(triple),
+                   np.zeros(single, dtype=bool), np.zeros(single), np.zeros(single))  # fmt: skip
+
+    def append(self, pose: Array) -> None:
+        """Add a body at rest in every world, at `pose` (batch, 3)."""
+        batch = len(self.pose)
+        zeros = np.zeros((batch, 1, 3))
+        self.pose = np.concatenate([self.pose, pose[:, None, :]], axis=1)
+        self.velocity = np.concatenate([self.velocity, zeros], axis=1)
+        self.force = np.concatenate([self.force, zeros], axis=1)
+        self.active = np.concatenate([self.active, np.ones((batch, 1), dtype=bool)], axis=1)
+        self.refresh_rotation()
+
+    def refresh_rotation(self) -> None:
+        """Bring `cos` and `sin` up to date after a pose has changed."""
+        # A strided array may take another code path than a contiguous one, and differ in the last bit.
+        angle = np.ascontiguousarray(self.pose[..., 2])
+        self.cos, self.sin = np.cos(angle), np.sin(angle)
+
+
+@dataclass
+class BodyParams:
+    """What bodies are made of. Rows are bodies, the same in every world of the batch."""
+
+    inverse_mass: Array = field(default_factory=lambda: np.zeros((0, 3)))  # 1/kg twice, 1/(kg·m²); 0: static
+    linear_drag: Array = field(default_factory=lambda: np.zeros((0, 3)))  # kg/s, kg/s, kg·m²/s
+    quadratic_drag: Array = field(default_factory=lambda: np.zeros((0, 3)))  # kg/m, kg/m, kg·m²
+    restitution: Array = field(default_factory=lambda: np.zeros(0))  # NaN: takes the other body's
+    friction: Array = field(default_factory=lambda: np.zeros(0))
+    group: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+
+    def append(self, **row: object) -> None:
+        """Add one body's row to every table."""
+        for name, value in row.items():
+            table = getattr(self, name)
+            setattr(self, name, np.concatenate([table, np.asarray(value, dtype=table.dtype)[None]]))
+
+    @property
+    def dynamic(self) -> Bools:
+        """(bodies,): which ones forces can move."""
+        return self.inverse_mass[:, 0] > 0
+
+
+class ShapeTable:
+    """Every shape of a world, padded to one number of corners so that one kernel serves them all.
+
+    Padding repeats the last edge, which is harmless: a repeated face can't separate what the first did not.
+    """
+
+    def __init__(self, shapes: list[Shape], bodies: list[int]) -> None:
+        count = max([len(s.vertices) for s in shapes if isinstance(s, Polygon)], default=3)
+        self.body = np.array(bodies, dtype=np.intp)
+        self.is_circle = np.array([isinstance(s, Circle) for s in shapes])
+        self.radius = np.array([s.radius if isinstance(s, Circle) else 0.0 for s in shapes])
+        self.centre = np.array([s.centroid for s in shapes]).reshape(-1, 2)
+        self.reach = np.array([s.bounding_radius for s in shapes])
+        self.start = np.zeros((len(shapes), count, 2))  # where each edge begins
+        self.end = np.zeros_like(self.start)
+        self.normal = np.zeros_like(self.start)
+        for row, shape in enumerate(shapes):
+            if isinstance(shape, Polygon):
+                rows = np.minimum(np.arange(count), len(shape.vertices) - 1)
+                self.start[row] = shape.vertices[rows]
+                self.end[row] = np.roll(shape.vertices, -1, axis=0)[rows]
+                self.normal[row] = shape.normals[rows]
+
+    def __len__(self) -> int:
+        return len(self.body)
+
+    def world_centres(self, state: BodyState) -> Array:
+        """Centroids in the world, (batch, shapes, 2)."""
+        turned = rotate(self.centre, state.cos[:, self.body], state.sin[:, self.body])
+        turned += state.pose[:, self.body, :2]
+        return turned
+
+    def bounds(self, state: BodyState, shapes: Ints) -> tuple[Array, Array]:
+        """Middle and half size (batch, n, 2) of the axis-aligned boxes around `shapes`, corner by corner."""
+        body = self.body[shapes]
+        cos, sin = state.cos[:, body, None], state.sin[:, body, None]
+        corners = rotate(self.start[shapes], cos, sin) + state.pose[:, body, None, :2]
+        low, high = corners.min(axis=2), corners.max(axis=2)
+        round_ = self.is_circle[shapes]
+        centre = self.world_centres(state)[:, shapes]
+        radius = self.radius[shapes, None]
+        low = np.where(round_[:, None], centre - radius, low)
+        high = np.where(round_[:, None], centre + radius, high)
+        return (low + high) / 2, (high - low) / 2

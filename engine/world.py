@@ -1,0 +1,134 @@
+"""A batch of worlds with the same bodies in each: every array leads with the batch axis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from engine.body import Body
+from engine.detect import Detector
+from engine.integrate import integrate_position, integrate_velocity
+from engine.shapes import Point, Shape, mass_properties
+from engine.solver import Contacts, Solver
+from engine.state import BodyParams, BodyState, ShapeTable
+from engine.vector import Array
+
+DT = 1.0 / 60.0
+
+
+class World:
+    """`batch` independent worlds under `gravity` (m/s²), advanced together by `step`.
+
+    Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out.
+    `gravity` may be reassigned at any time to an array (2,) or (batch, 2). After a step, `contacts` holds
+    what touched in it, with closing speeds and impulses.
+    """
+
+    def __init__(
+        self,
+        gravity: Sequence[float] = (0.0, -1.62),
+        batch: int = 1,
+        *,
+        iterations: int = 10,
+        restitution_threshold: float = 0.25,
+    ) -> None:
+        if batch < 1:
+            raise ValueError(f"a world needs a batch of at least 1, not {batch}")
+        self.gravity: Array = np.asarray(gravity, dtype=float)
+        self.batch = batch
+        self.iterations = iterations
+        self.restitution_threshold = restitution_threshold
+        self.state = BodyState.empty(batch)
+        self.params = BodyParams()
+        self.bodies: list[Body] = []
+        self.shapes: list[Shape] = []
+        self.contacts: Contacts | None = None
+        self._shape_bodies: list[int] = []
+        self._detector: Detector | None = None
+
+    def add(
+        self,
+        shape: Shape | Sequence[Shape],
+        position: Point,
+        angle: float = 0.0,
+        *,
+        mass: float = 1.0,
+        static: bool = False,
+        restitution: float | None = None,
+        friction: float | None = None,
+        linear_drag: float = 0.0,
+        quadratic_drag: float = 0.0,
+        angular_drag: float = 0.0,
+        angular_quadratic_drag: float = 0.0,
+        group: int = 0,
+        inertia: float | None = None,
+        centre_of_mass: Point | None = None,
+    ) -> Body:
+        """Put a body of one or several shapes into every world, and return its handle.
+
+        `position` (2,) or (batch, 2) is where the centre of mass goes. Unless `centre_of_mass` says where it
+        is in the shapes' frame, it is their common centroid, and the shapes are shifted to have it at the
+        origin; a static body's shapes stay as given. Inertia (kg·m²) follows from shapes and mass unless
+        given. Drag coefficients: kg/s and kg/m, kg·m²/s and kg·m². Restitution or friction left out take the
+        other body's; if both are given, the larger restitution and the geometric mean of the frictions hold.
+        Bodies of the same non-zero group pass through each other. Raises ValueError for a mass that is not
+        positive and finite.
+        """
+        shapes = list(shape) if isinstance(shape, Sequence) else [shape]
+        if not shapes:
+            raise ValueError("a body needs at least one shape")
+        if not static and not (np.isfinite(mass) and mass > 0):
+            raise ValueError(f"a body that can move needs a positive, finite mass, not {mass}")
+        centroid, spread = mass_properties(shapes)
+        origin = centroid if centre_of_mass is None else np.asarray(centre_of_mass, dtype=float)
+        if static:
+            inverse_mass = np.zeros(3)
+        else:
+            shapes = [part.moved(-origin) for part in shapes] if origin.any() else shapes
+            offset = centroid - origin
+            turning = mass * (spread + float(offset @ offset)) if inertia is None else inertia
+            inverse_mass = 1.0 / np.array([mass, mass, turning])
+        pose = np.empty((self.batch, 3))
+        pose[:, :2], pose[:, 2] = position, angle
+        self.state.append(pose)
+        self.params.append(
+            inverse_mass=inverse_mass,
+            linear_drag=(linear_drag, linear_drag, angular_drag),
+            quadratic_drag=(quadratic_drag, quadratic_drag, angular_quadratic_drag),
+            restitution=np.nan if restitution is None else restitution,
+            friction=np.nan if friction is None else friction,
+            group=group,
+        )
+        self.shapes += shapes
+        self._shape_bodies += [len(self.bodies)] * len(shapes)
+        self.bodies.append(Body(self, len(self.bodies)))
+        self._detector = None
+        return self.bodies[-1]
+
+    def step(self) -> None:
+        """Advance every world by exactly 1/60 s."""
+        contacts = self.detector.find(self.state)
+        solver = Solver(self.state, self.params, contacts) if contacts else None
+        integrate_velocity(self.state, self.params, self.gravity, DT)
+        if solver:
+            solver.solve_velocities(self.state, self.iterations, self.restitution_threshold)
+        integrate_position(self.state, DT)
+        if solver:
+            solver.solve_overlaps(self.state, max(2, self.iterations // 3))
+            self.detector.remember(solver.contacts)
+        self.state.force[:] = 0.0
+        self.contacts = contacts
+
+    @property
+    def detector(self) -> Detector:
+        """What finds the contacts; made anew when a body has been added."""
+        if self._detector is None:
+            self._detector = Detector(self.batch, self.params, ShapeTable(self.shapes, self._shape_bodies))
+        return self._detector
+
+    def moved(self, body: Body) -> None:
+        """A body was put elsewhere by hand: bring up to date what is kept about poses."""
+        self.state.refresh_rotation()
+        if self._detector is not None and body.static:
+            self._detector.forget_bounds()
