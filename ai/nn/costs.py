@@ -1,0 +1,99 @@
+"""Cost functions, summed over the outputs of an example and averaged over the batch.
+
+The sum is the point: a network with ten outputs learns each of them as fast as a network with one would,
+whatever the learning rate (docs/adr/0003-cost-is-summed-over-outputs.md).
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, Self
+
+import numpy as np
+
+from ai.nn.parameter import Array
+
+# The cost itself is one number; its derivative has the shape of the prediction.
+CostFunction = Callable[[Array, Array], Any]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """A function of (prediction, target) and its derivative with respect to the prediction.
+
+    Both arrays are (batch, outputs), or (outputs,) for a single example. Unpacks as the pair (function,
+    derivative) of which the first is the cost itself: it can be called, and takes its name and options along
+    to `config.json`.
+    """
+
+    function: CostFunction
+    derivative: CostFunction
+    name: str | None = None
+    options: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}), hash=False)
+
+    @classmethod
+    def of(cls, function: CostFunction, derivative: CostFunction | None = None) -> Self:
+        """Return `function` if it is a cost, or make one of a plain pair, which then has no name."""
+        if isinstance(function, cls):
+            return function
+        if derivative is None:
+            raise TypeError("a cost is a function and its derivative; the derivative is missing")
+        return cls(function, derivative)
+
+    def __call__(self, prediction: Array, target: Array) -> float:
+        """Return the cost of a batch."""
+        return float(self.function(prediction, target))
+
+    def __iter__(self) -> Iterator[CostFunction]:
+        yield self
+        yield self.derivative
+
+
+class CostFunctions:
+    """The costs that can be saved by name; each `use_` method returns one."""
+
+    @staticmethod
+    def use_mse() -> Cost:
+        """Squared error: Σ (prediction - target)², averaged over the batch."""
+
+        def function(prediction: Array, target: Array) -> float:
+            difference = np.subtract(prediction, target).ravel()
+            return float(difference @ difference) / _batch(prediction)
+
+        def derivative(prediction: Array, target: Array) -> Array:
+            difference = np.subtract(prediction, target)
+            difference *= 2 / _batch(prediction)
+            return difference
+
+        return Cost(function, derivative, "mse")
+
+    @staticmethod
+    def use_huber(delta: float = 1.0) -> Cost:
+        """Huber 1964: ½e² while |e| ≤ delta, then the straight line delta·(|e| - ½delta).
+
+        Beyond delta an outlier pulls no harder, which keeps a surprising reward from upsetting a Q-network.
+        """
+        if not 0 < delta < np.inf:
+            raise ValueError(f"delta of the Huber cost is a positive number, not {delta}")
+
+        def function(prediction: Array, target: Array) -> float:
+            error = np.abs(np.subtract(prediction, target))
+            curved = np.minimum(error, delta)
+            return float(np.sum(curved * (error - 0.5 * curved))) / _batch(prediction)
+
+        def derivative(prediction: Array, target: Array) -> Array:
+            error = np.clip(np.subtract(prediction, target), -delta, delta)
+            error /= _batch(prediction)
+            return error
+
+        return Cost(function, derivative, "huber", MappingProxyType({"delta": delta}))
+
+
+COSTS: dict[str, Callable[..., Cost]] = {
+    "mse": CostFunctions.use_mse,
+    "huber": CostFunctions.use_huber,
+}
+
+
+def _batch(prediction: Array) -> int:
+    return len(prediction) if prediction.ndim > 1 else 1

@@ -1,0 +1,329 @@
+"""Layers. Each turns a batch into another on the way forward, and an error into another on the way back.
+
+An *error* is the derivative of the cost with respect to what it stands for: one number per element.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.nn.activations import Activation, Function
+from ai.nn.parameter import INITIALISATIONS, Array, Parameter
+
+MAX_SIZE = 1 << 20  # a config.json that asks for more outputs than this is damaged
+
+
+class Layer(ABC):
+    """One step of a network, on arrays of shape (batch, values).
+
+    `forward_propagate` and `backward_propagate` write into arrays that are kept while the batch size stays
+    the same, so what they return lasts until their next call. `predict` returns a new array, and also takes
+    one example without the batch axis.
+    """
+
+    settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
+    inputs: int | None = None  # values per example; None: any number, and as many come out
+    outputs: int | None = None
+    shapes: Mapping[str, tuple[int, ...]] = {}  # of the parameters
+    initialisation: str | None = "constant"  # None: as suits the activation that follows
+    rng: np.random.Generator | None = None
+    dtype: npt.DTypeLike = np.float32
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """What the layer learns, drawn when first asked for: by then its network and neighbours are known."""
+        values = {name: self._start(name).astype(self.dtype) for name in self.shapes}
+        return tuple(Parameter(name, value, np.zeros_like(value)) for name, value in values.items())
+
+    def arguments(self) -> dict[str, Any]:
+        """Return what the constructor needs to make such a layer again."""
+        return {name: getattr(self, name) for name in self.settings}
+
+    @abstractmethod
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return the output and keep what the way back needs; `input_data` is to stay as it is until then."""
+
+    @abstractmethod
+    def predict(self, input_data: Array) -> Array:
+        """Return the output and keep nothing."""
+
+    def backward_propagate(self, output_error: Array) -> Array:
+        """Fill the parameters' gradients and return the input error, both of the last forward pass."""
+        self.fill_gradients(output_error)
+        return self.input_error(output_error)
+
+    def fill_gradients(self, output_error: Array) -> None:  # noqa: B027 - most layers have no parameters
+        """Do the first half of `backward_propagate`, which is all that the lowest layer is asked for."""
+
+    @abstractmethod
+    def input_error(self, output_error: Array) -> Array:
+        """Do the second half of `backward_propagate`."""
+
+    def _start(self, name: str) -> Array:
+        """Return the first value of a parameter."""
+        raise NotImplementedError(name)
+
+    @cached_property
+    def _arrays(self) -> dict[str, Array]:
+        return {}
+
+    def _array(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> Array:
+        """Return the array kept under a name, a new one if the batch size has changed."""
+        kept = self._arrays.get(name)
+        if kept is None or kept.shape != shape or kept.dtype != dtype:
+            kept = self._arrays[name] = np.empty(shape, dtype)
+        return kept
+
+
+class FullyConnectedLayer(Layer):
+    """Each output is a weighted sum of all inputs, plus a bias: y = x W + b.
+
+    `initialisation` is "glorot" or "he"; by default it suits the activation that follows in the network.
+    `scale` multiplies the first weights: a small one keeps first outputs near zero. The weights come from
+    `rng`, or else from the network's.
+    """
+
+    settings = ("inputs", "outputs")
+
+    def __init__(
+        self,
+        inputs: int,
+        outputs: int,
+        *,
+        initialisation: str | None = None,
+        scale: float = 1.0,
+        rng: np.random.Generator | None = None,
+        dtype: npt.DTypeLike = np.float32,
+    ) -> None:
+        if initialisation not in (None, *INITIALISATIONS):
+            raise ValueError(f"initialisation is one of {', '.join(INITIALISATIONS)}, not {initialisation!r}")
+        self.inputs = _checked_size("inputs", inputs)
+        self.outputs = _checked_size("outputs", outputs)
+        self.shapes = {"weights": (inputs, outputs), "bias": (outputs,)}
+        self.initialisation = initialisation
+        self.scale = scale
+        self.rng = rng
+        self.dtype = dtype
+
+    @property
+    def weights(self) -> Array:
+        """Weights, (inputs, outputs)."""
+        return self.parameters[0].value
+
+    @property
+    def bias(self) -> Array:
+        """Biases, (outputs,)."""
+        return self.parameters[1].value
+
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return x W + b, (batch, outputs)."""
+        weights, bias = self.parameters
+        self.input = np.asarray(input_data, self.dtype)
+        self.output = self._array("output", (len(input_data), bias.value.size), self.dtype)
+        np.dot(self.input, weights.value, out=self.output)
+        self.output += bias.value
+        return self.output
+
+    def predict(self, input_data: Array) -> Array:
+        """Return x W + b as a new array, (batch, outputs) or (outputs,)."""
+        weights, bias = self.parameters
+        output: Array = input_data.dot(weights.value)
+        output += bias.value
+        return output
+
+    def fill_gradients(self, output_error: Array) -> None:
+        """Set the gradients of weights, xᵀ E, and bias, Σ E over the batch."""
+        weights, bias = self.parameters
+        np.dot(self.input.T, output_error, out=weights.gradient)
+        np.dot(_ones(len(output_error), self.dtype), output_error, out=bias.gradient)
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return E Wᵀ, (batch, inputs)."""
+        return np.dot(output_error, self.weights.T, out=self._array("error", self.input.shape, self.dtype))
+
+    def _start(self, name: str) -> Array:
+        if name == "bias":
+            return np.zeros(self.shapes[name])
+        draw = INITIALISATIONS[self.initialisation or "glorot"]
+        return self.scale * draw(self.rng or np.random.default_rng(0), *self.shapes[name])
+
+
+class DuelingLayer(FullyConnectedLayer):
+    """A fully connected layer in which Q-values share one estimate of the state: Q = V + A - mean A.
+
+    Wang et al. 2016, eq. 9, with both streams linear. The weights' first column makes the value V, the others
+    the advantages A.
+    """
+
+    def __init__(self, inputs: int, outputs: int, **options: Any) -> None:
+        super().__init__(inputs, outputs, **options)
+        self.shapes = {"weights": (inputs, outputs + 1), "bias": (outputs + 1,)}
+
+    @cached_property
+    def mixture(self) -> Array:
+        """What makes Q-values of the streams, (1 + outputs, outputs)."""
+        identity = np.eye(self.shapes["bias"][0] - 1)
+        return np.vstack([np.ones(len(identity)), identity - 1 / len(identity)]).astype(self.dtype)
+
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return Q, (batch, outputs)."""
+        streams = super().forward_propagate(input_data)
+        q = self._array("q", (len(streams), len(self.mixture) - 1), self.dtype)
+        return np.dot(streams, self.mixture, out=q)
+
+    def predict(self, input_data: Array) -> Array:
+        """Return Q as a new array, (batch, outputs) or (outputs,)."""
+        q: Array = super().predict(input_data).dot(self.mixture)
+        return q
+
+    def fill_gradients(self, output_error: Array) -> None:
+        """Set the gradients of both streams' weights and biases."""
+        super().fill_gradients(np.dot(output_error, self.mixture.T))
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return the sum of what both streams send back, (batch, inputs)."""
+        return super().input_error(np.dot(output_error, self.mixture.T))
+
+
+class ActivationLayer(Layer):
+    """An elementwise function: `ActivationLayer(*ActivationFunctions.use_tanh())`, or a pair of your own.
+
+    A plain pair (function, derivative), both of the input, works too, but cannot be saved.
+    """
+
+    settings = ("activation",)
+
+    def __init__(self, activation: Activation | Function, derivative: Function | None = None) -> None:
+        self.activation = Activation.of(activation, derivative)
+
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return f(x), of the shape of x."""
+        self.input = input_data
+        self.output = self._array("output", input_data.shape, input_data.dtype)
+        self.activation.write(input_data, self.output)
+        return self.output
+
+    def predict(self, input_data: Array) -> Array:
+        """Return f(x) as a new array."""
+        return self.activation.function(input_data)
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return f'(x) · E."""
+        error = self._array("error", self.input.shape, self.input.dtype)
+        self.activation.write_slope(self.input, self.output, error)
+        error *= output_error
+        return error
+
+
+class LayerNormalisation(Layer):
+    """Each example to mean 0 and variance 1 over its values, then a learned gain and bias (Ba et al. 2016).
+
+    Means are products with a constant vector, because BLAS sums rows several times faster than `mean` does.
+    """
+
+    settings = ("size", "epsilon")
+
+    def __init__(self, size: int, *, epsilon: float = 1e-5, dtype: npt.DTypeLike = np.float32) -> None:
+        if not 0 < epsilon < 1:
+            raise ValueError(f"epsilon is a small positive number, not {epsilon}")
+        self.size = self.inputs = self.outputs = _checked_size("size", size)
+        self.shapes = {"gain": (size,), "bias": (size,)}
+        self.epsilon = epsilon
+        self.dtype = dtype
+
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return the normalised batch, (batch, size)."""
+        gain, bias = self.parameters
+        input_data = np.asarray(input_data, self.dtype)
+        self.normalised = self._array("normalised", input_data.shape, self.dtype)
+        self.inverse_deviation = self._normalise(input_data, self.normalised)
+        output = self._array("output", input_data.shape, self.dtype)
+        np.multiply(self.normalised, gain.value, out=output)
+        output += bias.value
+        return output
+
+    def predict(self, input_data: Array) -> Array:
+        """Return the normalised batch as a new array."""
+        gain, bias = self.parameters
+        output = np.empty_like(input_data)
+        self._normalise(input_data, output)
+        output *= gain.value
+        output += bias.value
+        return output
+
+    def fill_gradients(self, output_error: Array) -> None:
+        """Set the gradients of gain, Σ n E, and bias, Σ E over the batch, with n the normalised input."""
+        gain, bias = self.parameters
+        ones = _ones(len(output_error), self.dtype)
+        product = np.multiply(self.normalised, output_error, out=self._scratch)
+        np.dot(ones, product, out=gain.gradient)
+        np.dot(ones, output_error, out=bias.gradient)
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return (D - mean D - n · mean(n D)) / deviation, with D = gain · E and means over the values."""
+        error = self._array("error", self.normalised.shape, self.dtype)
+        np.multiply(output_error, self.parameters[0].value, out=error)
+        along = np.vecdot(self.normalised, error)[:, None] / self.normalised.shape[1]
+        error -= np.dot(error, self._average)[:, None]
+        error -= np.multiply(self.normalised, along, out=self._scratch)
+        error *= self.inverse_deviation
+        return error
+
+    def _normalise(self, input_data: Array, out: Array) -> Array:
+        """Fill `out` with the input at mean 0 and variance 1, and return what it was divided by, inverted."""
+        np.subtract(input_data, np.dot(input_data, self._average)[..., None], out=out)
+        variance = np.vecdot(out, out)[..., None]
+        variance /= out.shape[-1]
+        variance += self.epsilon
+        inverse_deviation: Array = np.divide(1, np.sqrt(variance, out=variance), out=variance)
+        out *= inverse_deviation
+        return inverse_deviation
+
+    @property
+    def _average(self) -> Array:
+        return _constant(self.size, 1 / self.size, np.dtype(self.dtype))
+
+    @property
+    def _scratch(self) -> Array:
+        return self._array("scratch", self.normalised.shape, self.dtype)
+
+    def _start(self, name: str) -> Array:
+        return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
+
+
+LAYERS: dict[str, type[Layer]] = {
+    "FullyConnectedLayer": FullyConnectedLayer,
+    "DuelingLayer": DuelingLayer,
+    "ActivationLayer": ActivationLayer,
+    "LayerNormalisation": LayerNormalisation,
+}
+
+
+def check_fit(before: list[Layer], layer: Layer) -> None:
+    """Raise ValueError if a layer does not take as many values as the layers before it give."""
+    given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
+    if None not in (given, layer.inputs) and given != layer.inputs:
+        raise ValueError(
+            f"{type(layer).__name__} takes {layer.inputs} values, the layer before gives {given}"
+        )
+
+
+def _checked_size(name: str, size: int) -> int:
+    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MAX_SIZE:
+        raise ValueError(f"{name} is a whole number from 1 to {MAX_SIZE}, not {size!r}")
+    return int(size)
+
+
+@lru_cache(maxsize=64)
+def _constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
+    constant: Array = np.full(size, value, dtype)
+    constant.setflags(write=False)
+    return constant
+
+
+def _ones(size: int, dtype: npt.DTypeLike) -> Array:
+    return _constant(size, 1.0, np.dtype(dtype))

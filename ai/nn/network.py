@@ -1,0 +1,177 @@
+"""The network: a list of layers, the cost they are to lower, and one flat vector of all they learn."""
+
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Literal, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.nn.costs import Cost, CostFunction
+from ai.nn.layers import ActivationLayer, Layer, check_fit
+from ai.nn.optimizers import SGD, Optimizer
+from ai.nn.parameter import Array, pack
+from ai.nn.storage import atomic_folder, read_network, write_network
+
+
+class NeuralNetwork:
+    """Layers in a row, trained by gradient descent.
+
+    `function` and `derivative` are a cost: `NeuralNetwork(*CostFunctions.use_mse())`, or a plain pair of your
+    own, both of (prediction, target). First weights come from `rng`, by default one seeded with 0: the same
+    program makes the same network. Float32 is fast; float64 is for checking gradients.
+    """
+
+    def __init__(
+        self,
+        function: Cost | CostFunction,
+        derivative: CostFunction | None = None,
+        *,
+        rng: np.random.Generator | None = None,
+        dtype: npt.DTypeLike = np.float32,
+    ) -> None:
+        self.cost = Cost.of(function, derivative)
+        self.layers: list[Layer] = []
+        self.rng = rng or np.random.default_rng(0)
+        self.dtype = np.dtype(dtype)
+
+    def add_layer(self, layer: Layer) -> Self:
+        """Append a layer; raises ValueError if it does not fit the one before."""
+        check_fit(self.layers, layer)
+        if isinstance(layer, ActivationLayer):
+            for before in self.layers:
+                before.initialisation = before.initialisation or layer.activation.initialisation
+        layer.rng = layer.rng or self.rng.spawn(1)[0]
+        layer.dtype = self.dtype
+        self.layers.append(layer)
+        self.__dict__.pop("_flat", None)
+        return self
+
+    @property
+    def values(self) -> Array:
+        """All parameters in one flat vector; the layers' arrays are views of it, so writing changes them."""
+        return self._flat[0]
+
+    @values.setter
+    def values(self, values: Array) -> None:
+        self._flat[0][...] = values
+
+    @property
+    def gradients(self) -> Array:
+        """The gradients that the last backward pass left, in the order of `values`."""
+        return self._flat[1]
+
+    @cached_property
+    def _flat(self) -> tuple[Array, Array]:
+        return pack((parameter for layer in self.layers for parameter in layer.parameters), self.dtype)
+
+    def predict(self, input_data: npt.ArrayLike) -> Array:
+        """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
+
+        Leaves no trace: a backward pass may still follow the last `forward_propagate`.
+        """
+        data: Array = np.asarray(input_data, self.dtype)
+        for layer in self.layers:
+            data = layer.predict(data)
+        return data
+
+    def forward_propagate(self, input_data: npt.ArrayLike) -> Array:
+        """Return the output for a batch, and let every layer keep what the way back needs.
+
+        The array is kept for reuse: the next call overwrites it.
+        """
+        data: Array = np.asarray(input_data, self.dtype)
+        for layer in self.layers:
+            data = layer.forward_propagate(data)
+        return data
+
+    def backward_propagate(self, output_error: Array) -> None:
+        """Fill `gradients`, given the cost's derivative by the output of the last forward pass."""
+        first, *others = self.layers
+        error: Array = np.asarray(output_error, self.dtype)
+        for layer in reversed(others):
+            error = layer.backward_propagate(error)
+        first.fill_gradients(error)
+
+    def train(
+        self,
+        x: npt.ArrayLike,
+        y: npt.ArrayLike,
+        epochs: int = 1,
+        batch_size: int = 500,
+        learning_rate: float = 0.2,
+        *,
+        sampling: Literal["sequential", "random"] = "sequential",
+        optimizer: Optimizer | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> list[float]:
+        """Fit outputs to targets `y` (examples, outputs) on inputs `x` (examples, inputs).
+
+        "sequential" takes the examples in order, "random" in an order that `rng` (by default one seeded with
+        0) draws anew each epoch. Without an `optimizer`, plain gradient descent at `learning_rate`; with one,
+        its own rate holds. Returns the mean cost of each epoch, batches counted as they were met.
+        """
+        examples, targets = np.asarray(x, self.dtype), np.asarray(y, self.dtype)
+        if len(examples) != len(targets) or not len(examples):
+            raise ValueError(f"{len(examples)} inputs need as many targets, at least one; not {len(targets)}")
+        optimizer = optimizer or SGD(learning_rate)
+        rng = rng or np.random.default_rng(0)
+        history = []
+        for _ in range(epochs):
+            total = 0.0
+            for batch in _batches(len(examples), batch_size, sampling, rng):
+                total += self.train_batch(examples[batch], targets[batch], optimizer) * len(targets[batch])
+            history.append(total / len(examples))
+        return history
+
+    def train_batch(self, x: npt.ArrayLike, y: npt.ArrayLike, optimizer: Optimizer) -> float:
+        """Take one step on one batch, and return what it cost before the step."""
+        target: Array = np.asarray(y, self.dtype)
+        prediction = self.forward_propagate(x)
+        if prediction.shape != target.shape:
+            raise ValueError(f"the targets have shape {target.shape}, the predictions {prediction.shape}")
+        cost = self.cost(prediction, target)
+        self.backward_propagate(self.cost.derivative(prediction, target))
+        optimizer.step(self.values, self.gradients)
+        return cost
+
+    def copy(self) -> Self:
+        """Return an independent network with equal parameters."""
+        twin = type(self)(self.cost, dtype=self.dtype)
+        for layer in self.layers:
+            twin.add_layer(type(layer)(**layer.arguments()))
+        twin.values = self.values
+        return twin
+
+    def save(self, folder: str | Path) -> None:
+        """Write the network to a folder, whole or not at all (docs/adr/0004-models-are-folders.md).
+
+        Raises ValueError if it has functions without a name or parameters that are not finite,
+        FileExistsError if the folder holds something else, OSError if the disk does not take it.
+        """
+        with atomic_folder(folder) as temporary:
+            write_network(temporary, self.cost, self.layers, self.dtype)
+
+    @classmethod
+    def load(cls, folder: str | Path) -> Self:
+        """Read a network from its folder; raises ModelFormatError, which names all that is wrong with it."""
+        cost, layers, dtype = read_network(folder)
+        network = cls(cost, dtype=dtype)
+        for layer in layers:
+            network.add_layer(layer)
+        return network
+
+
+def _batches(
+    examples: int, batch_size: int, sampling: str, rng: np.random.Generator
+) -> Iterator[slice | npt.NDArray[np.intp]]:
+    """Yield what picks each batch of one epoch; the last may be smaller."""
+    if sampling not in ("sequential", "random"):
+        raise ValueError(f"sampling is 'sequential' or 'random', not {sampling!r}")
+    if batch_size < 1:
+        raise ValueError(f"batch_size is at least 1, not {batch_size}")
+    order = rng.permutation(examples) if sampling == "random" else None
+    for start in range(0, examples, batch_size):
+        batch = slice(start, start + batch_size)
+        yield batch if order is None else order[batch]
