@@ -188,9 +188,7 @@ class Canvas:
         """Draw a small sign, `size` points across, so that meaning never hangs on colour alone."""
         self._shape(shape, centre, size / 2, colour, alpha)
 
-    def _shape(
-        self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour, alpha: float
-    ) -> None:
+    def _shape(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour, alpha: float) -> None:
         x, y = centre[0] * self.scale, centre[1] * self.scale
         column, row = math.floor(x), math.floor(y)
         quarters = (int(4 * (x - column)), int(4 * (y - row)))

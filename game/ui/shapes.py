@@ -29,9 +29,7 @@ _STROKES: Final[dict[str, list[list[tuple[float, float]]]]] = {
 
 
 @lru_cache(maxsize=2048)
-def shape(
-    name: Shape, radius: float, colour: Colour, quarters: tuple[int, int] = (0, 0)
-) -> pygame.Surface:
+def shape(name: Shape, radius: float, colour: Colour, quarters: tuple[int, int] = (0, 0)) -> pygame.Surface:
     """Return a shape of that radius in pixels, its middle `quarters` of a pixel past the middle one."""
     half = math.ceil(radius) + 2
     side = 2 * half
