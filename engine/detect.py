@@ -68,6 +68,15 @@ class Detector:
         self._impulse[:, contacts.world, contacts.pair] = contacts.impulse
         self._feature[contacts.world, contacts.pair] = contacts.manifold.feature * contacts.manifold.valid
 
+    def memory(self) -> tuple[Array, Ints, tuple[Ints, Ints]]:
+        """What `remember` has kept, to be put back by `recall_memory`."""
+        return self._impulse.copy(), self._feature.copy(), self._last
+
+    def recall_memory(self, memory: tuple[Array, Ints, tuple[Ints, Ints]]) -> None:
+        """Return to what was kept at the time of a call of `memory`."""
+        impulse, feature, self._last = memory
+        self._impulse, self._feature = impulse.copy(), feature.copy()
+
     def forget_bounds(self) -> None:
         """A static body was put elsewhere."""
         self._fixed_bounds = None

@@ -1,0 +1,51 @@
+"""What an agent needs of an environment, whatever is simulated in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float32]
+Doubles = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Ints = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class StepResult:
+    """What one decision led to, for every slot. Unpacks as its first five fields.
+
+    A slot that has ended stays ended, with the observation it ended in and no further reward, until it is
+    reset. `components` are the parts of `reward` by name.
+    """
+
+    observation: Floats  # (num_envs, features)
+    reward: Floats  # (num_envs,)
+    terminated: Bools  # (num_envs,) ended by what happened in it
+    truncated: Bools  # (num_envs,) ended by the clock: what comes next still has a value
+    outcome: Ints  # (num_envs,)
+    components: Mapping[str, Floats] = field(default_factory=dict)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.observation, self.reward, self.terminated, self.truncated, self.outcome))
+
+    @property
+    def ended(self) -> Bools:
+        """Terminated or truncated, (num_envs,)."""
+        return self.terminated | self.truncated
+
+
+class Env(Protocol):
+    """Many slots of one environment, stepped together; ended slots wait for `reset(mask)`."""
+
+    num_envs: int
+
+    def reset(self, mask: Bools | None = None) -> Floats:
+        """Begin a new episode in the slots of `mask`, or in all; return every slot's observation."""
+
+    def step(self, actions: Ints) -> StepResult:
+        """Take one action in every slot that has not ended."""

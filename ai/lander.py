@@ -1,0 +1,387 @@
+"""The lunar lander: its rules on the engine, for any number of landers at once.
+
+Actions are `3 * main + steer`; `steer` is 0 for none, 1 for left, 2 for right. Observations are
+[rel_x, rel_y, vx, vy, sin θ, cos θ, ω, left contact, right contact], relative to standing on the middle of
+the pad and scaled by `OBSERVATION_SCALE`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from enum import IntEnum
+from typing import Any, Final
+
+import numpy as np
+
+from ai.env import Bools, Doubles, Floats, Ints, StepResult
+from ai.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, Change, RewardWeights, Situation
+from ai.spawns import SPAWNS, Curriculum
+from engine import DT, Polygon, World
+
+NUM_ACTIONS: Final = 6
+NUM_FEATURES: Final = 9
+ACTION_NAMES: Final = ("coast", "left", "right", "main", "main + left", "main + right")
+FEATURE_NAMES: Final = ("x", "y", "vx", "vy", "sin θ", "cos θ", "ω", "left foot", "right foot")
+# A pad six metres wide spans about two units: near it, small differences must look large to a network.
+OBSERVATION_SCALE: Final = np.array([0.3, 0.3, 0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0])
+# Swaps left and right: multiply an observation by this, and swap its two contacts.
+MIRROR_SIGNS: Final = np.array([-1, 1, -1, 1, -1, 1, -1, 1, 1], dtype=np.float32)
+MIRROR_FEATURES: Final = np.array([0, 1, 2, 3, 4, 5, 6, 8, 7])
+MIRROR_ACTIONS: Final = np.array([0, 2, 1, 3, 5, 4])
+
+
+class Outcome(IntEnum):
+    """How a flight stands."""
+
+    FLYING = 0
+    LANDED = 1
+    CRASHED = 2
+    OUT_OF_BOUNDS = 3
+    TIMED_OUT = 4
+
+
+class Cause(IntEnum):
+    """What made a flight a crash."""
+
+    NONE = 0
+    HULL = 1  # something other than a foot touched
+    TERRAIN = 2  # touched beside the pad
+    HARD = 3  # came down too fast
+    SLIDING = 4  # moved sideways too fast while touching
+    TILTED = 5  # touched while leaning too far
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a touchdown may be, and what a landing must be."""
+
+    touch_speed: float = 2.0  # m/s into the surface
+    slide_speed: float = 2.0  # m/s along it
+    touch_tilt: float = 0.5  # rad
+    rest_speed: float = 0.5  # m/s
+    rest_tilt: float = 0.15  # rad
+    rest_spin: float = 0.3  # rad/s
+    rest_steps: int = 30  # physics steps with both feet down and all of the above
+    half_width: float = 22.0  # metres from the pad
+    ceiling: float = 26.0  # metres
+    time: float = 25.0  # seconds
+
+
+@dataclass(frozen=True)
+class LanderParams:
+    """The craft and its moon, in SI units."""
+
+    gravity: float = 1.62
+    mass: float = 1.0
+    inertia: float = 0.5
+    main_thrust: float = 4.2
+    side_thrust: float = 0.9
+    side_arm: float = 0.7  # metres above the centre of mass
+    linear_drag: float = 0.02
+    quadratic_drag: float = 0.005
+    angular_drag: float = 0.25
+    angular_quadratic_drag: float = 0.1
+    restitution: float = 0.15
+    friction: float = 0.6
+    ground: float = 1.0
+    pad_top: float = 1.6
+    pad_width: float = 6.0
+    stand: float = 0.96  # height of the centre of mass above what the feet stand on
+    jet_fuel: float = 0.1  # a second of jet, in seconds of main engine
+
+
+HULL: Final = ((-0.62, -0.45), (0.62, -0.45), (0.72, 0.05), (0.42, 0.75), (-0.42, 0.75), (-0.72, 0.05))
+FOOT_SIZE: Final = (0.40, 0.12)
+FOOT_CENTRE: Final = (0.85, -0.90)
+_COUNTERS: Final = ("outcome", "cause", "actions", "contacts", "impact", "steps", "main_steps", "side_steps",
+                    "_still", "_feet_steps")  # fmt: skip
+LIMITS: Final = Limits()
+PARAMS: Final = LanderParams()
+
+
+class LanderEnv:
+    """`num_envs` landers, each in a world of its own, flown together.
+
+    `spawn` names a distribution of `ai.spawns` or is a Curriculum, then followed by this environment's own
+    landings. `seed` is an int, a Generator or None; slot k draws from its own stream, so that a flight does
+    not depend on how many fly beside it. A `step` is `frame_skip` physics steps of 1/60 s with one action.
+    """
+
+    num_actions = NUM_ACTIONS
+    num_features = NUM_FEATURES
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        seed: int | np.random.Generator | None = None,
+        spawn: str | Curriculum = "random",
+        frame_skip: int = 4,
+        *,
+        params: LanderParams = PARAMS,
+        limits: Limits = LIMITS,
+        weights: RewardWeights | None = None,
+    ) -> None:
+        if num_envs < 1 or frame_skip < 1:
+            raise ValueError(f"num_envs and frame_skip start from 1, not {num_envs} and {frame_skip}")
+        self.num_envs, self.frame_skip = num_envs, frame_skip
+        self.params, self.limits, self.weights = params, limits, weights or RewardWeights()
+        self.spawn = spawn
+        self.landings = 0
+        self._rngs = np.random.default_rng(seed).spawn(num_envs)
+        self._build_world()
+        self.outcome: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.cause: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.actions: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.contacts: Bools = np.zeros((num_envs, 2), dtype=bool)
+        self.impact: Doubles = np.zeros((num_envs, 3))
+        self.steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.main_steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.side_steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self._still: Ints = np.zeros(num_envs, dtype=np.intp)
+        self._feet_steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self._started = False
+
+    def _build_world(self) -> None:
+        params = self.params
+        surface = {"restitution": params.restitution, "friction": params.friction}
+        self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5)
+        foot_x, foot_y = FOOT_CENTRE
+        self.lander = self.world.add(
+            [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-foot_x, foot_y)), Polygon.box(*FOOT_SIZE, (foot_x, foot_y))],
+            (0.0, params.pad_top + params.stand),
+            mass=params.mass, inertia=params.inertia, centre_of_mass=(0.0, 0.0),
+            linear_drag=params.linear_drag, quadratic_drag=params.quadratic_drag,
+            angular_drag=params.angular_drag, angular_quadratic_drag=params.angular_quadratic_drag, **surface,
+        )  # fmt: skip
+        thickness = params.pad_top - params.ground
+        self._pad = self.world.add(
+            Polygon.box(params.pad_width, thickness, (0.0, -thickness / 2)), (0.0, params.pad_top),
+            static=True, **surface,
+        )  # fmt: skip
+        self.world.add(Polygon.box(80.0, 10.0), (0.0, params.ground - 5.0), static=True, **surface)
+        # Rows of the detector's pairs: which part of the craft touches, and whether it is the pad it touches.
+        pairs = self.world.detector.pairs
+        self._pair_part = pairs.min(axis=1)  # 0 hull, 1 left foot, 2 right foot
+        self._pair_on_pad = pairs.max(axis=1) == 3
+
+    @property
+    def position(self) -> Doubles:
+        """Centre of mass, metres, (n, 2)."""
+        return self.lander.position
+
+    @property
+    def angle(self) -> Doubles:
+        """Radians counter-clockwise from upright, unwrapped, (n,)."""
+        return self.lander.angle
+
+    @property
+    def velocity(self) -> Doubles:
+        """Metres a second, (n, 2)."""
+        return self.lander.velocity
+
+    @property
+    def angular_velocity(self) -> Doubles:
+        """Radians a second, (n,)."""
+        return self.lander.angular_velocity
+
+    @property
+    def pad(self) -> Doubles:
+        """Middle of the pad's top, (n, 2)."""
+        return self._pad.position
+
+    @property
+    def pad_width(self) -> Doubles:
+        """Metres, (n,)."""
+        return np.full(self.num_envs, self.params.pad_width)
+
+    @property
+    def time(self) -> Doubles:
+        """Seconds flown, (n,)."""
+        return self.steps * DT
+
+    @property
+    def fuel(self) -> Doubles:
+        """Fuel burnt, in seconds of main engine, (n,)."""
+        return (self.main_steps + self.params.jet_fuel * self.side_steps) * DT
+
+    @property
+    def tilt(self) -> Doubles:
+        """Radians from upright either way, 0 to pi, (n,)."""
+        return np.abs(np.mod(self.angle + np.pi, 2 * np.pi) - np.pi)
+
+    @property
+    def altitude(self) -> Doubles:
+        """Metres between the level feet and the pad's top, (n,)."""
+        return self.position[:, 1] - self.pad[:, 1] - self.params.stand
+
+    @property
+    def stage(self) -> int:
+        """Stage of the curriculum, 0 without one."""
+        return self.spawn.stage(self.landings) if isinstance(self.spawn, Curriculum) else 0
+
+    def reset(self, mask: Bools | None = None) -> Floats:
+        """Begin a new flight in the slots of `mask` (n,), or in all; return every slot's observation."""
+        mask = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)
+        if mask.shape != (self.num_envs,):
+            raise ValueError(f"the mask must have one entry for each of {self.num_envs} slots, not {mask.shape}")
+        draw = SPAWNS[self.spawn.spawn(self.landings) if isinstance(self.spawn, Curriculum) else self.spawn]
+        slots = np.flatnonzero(mask)
+        start = np.array([draw(self._rngs[slot]) for slot in slots]).reshape(-1, 6)
+        start[:, 0] += self.pad[mask, 0]
+        self.place(mask, start)
+        return self.observe()
+
+    def place(self, mask: Bools, start: Doubles) -> None:
+        """Begin a flight in the slots of `mask` at rows x, y, vx, vy, angle, spin of `start`, in the world's frame."""
+        self.lander.set(position=start[:, :2], velocity=start[:, 2:4], angle=start[:, 4],
+                        angular_velocity=start[:, 5], mask=mask)  # fmt: skip
+        for name in _COUNTERS:
+            getattr(self, name)[mask] = 0
+        self.outcome[mask] = Outcome.FLYING
+        self.lander.active = self.outcome == Outcome.FLYING
+        self._started = True
+
+    def step(self, actions: Any) -> StepResult:
+        """Fly one decision; `actions` (n,) are 0 to 5. Raises ValueError for others, RuntimeError before a reset."""
+        actions = np.asarray(actions)
+        if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
+            raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
+        if ((actions < 0) | (actions >= NUM_ACTIONS)).any():
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
+        if not self._started:
+            raise RuntimeError("reset() must come before the first step()")
+        self.actions = actions.astype(np.intp)
+        flying = self.outcome == Outcome.FLYING
+        before = self._situation()
+        flown, tilted, feet = self.steps.copy(), np.zeros_like(self.steps), self._feet_steps.copy()
+        for _ in range(self.frame_skip):
+            still_flying = self.outcome == Outcome.FLYING
+            if not still_flying.any():
+                break
+            self._fly(still_flying)
+            tilted += still_flying & (self.tilt > TILT_ALLOWED)
+        ended = flying & (self.outcome != Outcome.FLYING)
+        self.landings += int((ended & (self.outcome == Outcome.LANDED)).sum())
+        flown = self.steps - flown
+        change = Change(
+            before, self._situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
+            feet_down=np.minimum(self._feet_steps, FEET_STEPS_PAID) - np.minimum(feet, FEET_STEPS_PAID),
+            landed=ended & (self.outcome == Outcome.LANDED),
+            lost=ended & ((self.outcome == Outcome.CRASHED) | (self.outcome == Outcome.OUT_OF_BOUNDS)),
+        )  # fmt: skip
+        components = {name: part(change, self.weights).astype(np.float32) for name, part in REWARDS.items()}
+        return StepResult(
+            observation=self.observe(),
+            reward=sum(components.values(), start=np.zeros(self.num_envs, dtype=np.float32)),
+            terminated=(self.outcome != Outcome.FLYING) & (self.outcome != Outcome.TIMED_OUT),
+            truncated=self.outcome == Outcome.TIMED_OUT,
+            outcome=self.outcome.copy(),
+            components=components,
+        )
+
+    def observe(self) -> Floats:
+        """What every lander senses now, (n, 9)."""
+        stand = self.pad + (0.0, self.params.stand)
+        state, body = self.world.state, self.lander.index
+        sensed = np.empty((self.num_envs, NUM_FEATURES))
+        sensed[:, 0:2] = self.position - stand
+        sensed[:, 2:4] = self.velocity
+        sensed[:, 4] = state.sin[:, body]
+        sensed[:, 5] = state.cos[:, body]
+        sensed[:, 6] = self.angular_velocity
+        sensed[:, 7:9] = self.contacts
+        sensed *= OBSERVATION_SCALE
+        return sensed.astype(np.float32)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Everything a flight depends on but its random streams, to be put back by `restore`."""
+        state = self.world.state
+        arrays = {name: getattr(self, name).copy() for name in _COUNTERS}
+        bodies = {field.name: getattr(state, field.name).copy() for field in fields(state)}
+        return {"counters": arrays, "bodies": bodies, "contacts": self.world.detector.memory()}
+
+    def restore(self, snapshot: dict[str, Any]) -> None:
+        """Go back to a snapshot of this environment, or of one with as many slots."""
+        for name, value in snapshot["counters"].items():
+            setattr(self, name, value.copy())
+        for name, value in snapshot["bodies"].items():
+            setattr(self.world.state, name, value.copy())
+        self.world.detector.recall_memory(snapshot["contacts"])
+        self._started = True
+
+    def _situation(self) -> Situation:
+        offset = self.position - self.pad
+        across, above = offset[:, 0], offset[:, 1] - self.params.stand
+        velocity = self.velocity
+        return Situation(
+            distance=np.sqrt(across**2 + above**2),
+            offset=np.abs(across),
+            speed=np.sqrt(velocity[:, 0] ** 2 + velocity[:, 1] ** 2),
+            tilt=self.tilt,
+        )
+
+    def _fly(self, flying: Bools) -> None:
+        """One physics step of the slots that fly: push, move, judge."""
+        params, state, body = self.params, self.world.state, self.lander.index
+        main, steer = self.actions >= 3, self.actions % 3
+        up = params.main_thrust * main
+        aside = params.side_thrust * ((steer == 2) * 1.0 - (steer == 1))  # along the craft's right
+        cos, sin = state.cos[:, body], state.sin[:, body]
+        state.force[:, body, 0] = aside * cos - up * sin
+        state.force[:, body, 1] = aside * sin + up * cos
+        state.force[:, body, 2] = -aside * params.side_arm
+        self.world.step()
+        self.steps += flying
+        self.main_steps += flying & main
+        self.side_steps += flying & (steer > 0)
+        self._judge(flying)
+
+    def _judge(self, flying: Bools) -> None:
+        """Decide which flights have ended, and how."""
+        limits, position, velocity = self.limits, self.position, self.velocity
+        crashed = self._touch(flying)
+        calm = self.contacts.all(axis=1)
+        if calm.any():
+            calm &= velocity[:, 0] ** 2 + velocity[:, 1] ** 2 < limits.rest_speed**2
+            self._feet_steps += flying & self.contacts.all(axis=1)
+            calm &= (self.tilt < limits.rest_tilt) & (np.abs(self.angular_velocity) < limits.rest_spin)
+        self._still = np.where(flying & calm, self._still + 1, np.where(flying, 0, self._still))
+        gone = np.abs(position[:, 0] - self.pad[:, 0]) > limits.half_width
+        gone |= position[:, 1] > limits.ceiling
+        late = self.steps * DT >= limits.time - 1e-9
+        landed = self._still >= limits.rest_steps
+        verdict = np.where(late, Outcome.TIMED_OUT, Outcome.FLYING)
+        for happened, outcome in ((gone, Outcome.OUT_OF_BOUNDS), (landed, Outcome.LANDED), (crashed, Outcome.CRASHED)):
+            verdict[happened] = outcome
+        self.outcome = np.where(flying, verdict, self.outcome)
+        self.lander.active = self.outcome == Outcome.FLYING
+
+    def _touch(self, flying: Bools) -> Bools:
+        """Read the step's contacts: which feet are down, how hard the touch was, and which slots it wrecked."""
+        self.contacts = self.contacts & ~flying[:, None]
+        touches = self.world.contacts
+        if touches is None:
+            return np.zeros(self.num_envs, dtype=bool)
+        world, part, on_pad = touches.world, self._pair_part[touches.pair], self._pair_on_pad[touches.pair]
+        foot = (part > 0) & on_pad
+        self.contacts[world[foot], part[foot] - 1] = True
+        felt = np.zeros((self.num_envs, 3))
+        np.maximum.at(felt[:, 0], world, touches.approach[:2].max(axis=0))
+        np.maximum.at(felt[:, 1], world, np.abs(touches.approach[2]))
+        felt[world, 2] = self.tilt[world]
+        self.impact = np.maximum(self.impact, felt)
+        wrong_part, wrong_place = np.zeros((2, self.num_envs), dtype=bool)
+        wrong_part[world[part == 0]] = True
+        wrong_place[world[~on_pad]] = True
+        limits = self.limits
+        faults = {
+            Cause.TILTED: felt[:, 2] > limits.touch_tilt,
+            Cause.SLIDING: felt[:, 1] > limits.slide_speed,
+            Cause.HARD: felt[:, 0] > limits.touch_speed,
+            Cause.HULL: wrong_part,
+            Cause.TERRAIN: wrong_place,
+        }
+        for cause, fault in faults.items():
+            self.cause[fault] = cause
+        crashed: Bools = self.cause != Cause.NONE
+        return crashed
