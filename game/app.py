@@ -166,7 +166,7 @@ class App:
     # Events
 
     def _handle(self, event: pygame.event.Event) -> None:
-        self.context.controls.process(event)
+        self._follow(event)
         match event.type:
             case pygame.QUIT:
                 self.scenes.running = False
@@ -186,6 +186,13 @@ class App:
                 self._save_screenshot()
             case _:
                 self._guarded(lambda: self.scenes.handle_event(self._in_points(event)))
+
+    def _follow(self, event: pygame.event.Event) -> None:
+        controls = self.context.controls
+        used_mouse = controls.mouse_in_use
+        controls.process(event)
+        if controls.mouse_in_use != used_mouse:
+            pygame.mouse.set_visible(controls.mouse_in_use)
 
     def _resized(self) -> None:
         window = _window()

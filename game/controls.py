@@ -145,12 +145,19 @@ class _Pad:
 
 
 class Controls:
-    """What is held down at the moment, on the keyboard and on every pad together."""
+    """What is held down at the moment, on the keyboard and on every pad together.
+
+    Attributes:
+        pad_in_use: whether a pad was touched last, rather than the keyboard; hints name its buttons then.
+        mouse_in_use: whether the mouse was touched last; no ring is drawn around what is in focus then.
+
+    """
 
     def __init__(self) -> None:
         self._keys: set[int] = set()
         self._pads: dict[int, _Pad] = {}
         self.pad_in_use = False
+        self.mouse_in_use = False
 
     @property
     def main(self) -> bool:
@@ -185,7 +192,9 @@ class Controls:
         match event.type:
             case pygame.KEYDOWN:
                 self._keys.add(event.key)
-                self.pad_in_use = False
+                self.pad_in_use = self.mouse_in_use = False
+            case pygame.MOUSEMOTION | pygame.MOUSEBUTTONDOWN:
+                self.mouse_in_use = True
             case pygame.KEYUP:
                 self._keys.discard(event.key)
             case pygame.WINDOWFOCUSLOST:
@@ -196,7 +205,7 @@ class Controls:
                 self._pads.pop(event.instance_id, None)
             case pygame.CONTROLLERBUTTONDOWN:
                 self._pad(event).buttons.add(event.button)
-                self.pad_in_use = True
+                self._use_pad()
             case pygame.CONTROLLERBUTTONUP:
                 self._pad(event).buttons.discard(event.button)
             case pygame.CONTROLLERAXISMOTION:
@@ -210,6 +219,9 @@ class Controls:
             not pad.buttons.isdisjoint(BUTTONS[held]) or direction * pad.axes.get(axis, 0) > threshold
             for pad in self._pads.values()
         )
+
+    def _use_pad(self) -> None:
+        self.pad_in_use, self.mouse_in_use = True, False
 
     def _pad(self, event: pygame.event.Event) -> _Pad:
         return self._pads.setdefault(event.instance_id, _Pad())
@@ -234,6 +246,6 @@ class Controls:
             if push > STICK_PUSHED and command not in pad.pushed:
                 pad.pushed.add(command)
                 event.command = command
-                self.pad_in_use = True
+                self._use_pad()
             elif push < STICK_RELEASED:
                 pad.pushed.discard(command)

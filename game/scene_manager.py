@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class SceneManager:
     """Passes events and steps to the scene on top and applies what it returns.
 
-    `running` turns false when a scene asks to quit or the last one is popped.
+    `running` turns false when a scene asks to quit or to pop the last one.
     """
 
     def __init__(self, context: Context, first: Scene) -> None:
@@ -32,11 +32,13 @@ class SceneManager:
 
     def handle_event(self, event: pygame.event.Event) -> None:
         """Give one event to the top scene."""
-        self.apply(self.top.handle_event(event))
+        if self.running:
+            self.apply(self.top.handle_event(event))
 
     def update(self) -> None:
         """Advance the top scene by one step."""
-        self.apply(self.top.update())
+        if self.running:
+            self.apply(self.top.update())
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the top scene."""
@@ -72,9 +74,9 @@ class SceneManager:
         scene.enter(self._context)
 
     def _pop(self, levels: int) -> None:
+        if levels >= len(self._stack):
+            self.running = False  # `close` leaves the top scene
+            return
         self.top.exit()
-        del self._stack[max(0, len(self._stack) - levels) :]
-        if self._stack:
-            self.top.enter(self._context)
-        else:
-            self.running = False
+        del self._stack[-levels:]
+        self.top.enter(self._context)

@@ -1,34 +1,126 @@
-"""The menu."""
+"""The menu: a title, a column of words, the night behind them."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
 
 import pygame
 
 from game import texts
+from game.clock import STEP
 from game.context import Context
-from game.scene import Transition
+from game.controls import Command
+from game.scene import Push, Quit, Scene, Transition
 from game.ui.canvas import Canvas
-from game.ui.tokens import NIGHT0
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.sky import NightSky
+from game.ui.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
+from game.ui.widgets import Word
+
+_TITLE_SIZE: Final = 88.0
+_WORD_SIZE: Final = 24.0
+_FIRST_WORD: Final = 336
+_LINE: Final = 48
+
+
+def _play() -> Scene:
+    from game.scenes.play import Play
+
+    return Play()
+
+
+def _watch() -> Scene:
+    from game.scenes.watch import Watch
+
+    return Watch()
+
+
+def _settings() -> Scene:
+    from game.scenes.settings import SettingsScene
+
+    return SettingsScene()
+
+
+# One row a screen: its name in `texts.MENU`, and what opens it. None closes the game.
+ROWS: Final[tuple[tuple[str, Callable[[], Scene] | None], ...]] = (
+    ("play", _play),
+    ("watch", _watch),
+    ("settings", _settings),
+    ("quit", None),
+)
 
 
 class Menu:
     """The first screen."""
 
+    def __init__(self) -> None:
+        self._form: Form | None = None
+
     def enter(self, context: Context) -> None:
-        """Become the top scene."""
+        """Build the column once; the focus stays where it was when coming back."""
+        if self._form is not None:
+            return
+        self._controls = context.controls
+        self._settings = context.settings
+        self._backdrop = NightSky(context.rng)
+        self._time = 0.0
+        self._form = Form(context, on_back=self._back)
+        self._lines: list[tuple[Word, str]] = []
+        for number, (name, open_scene) in enumerate(ROWS):
+            label, line = texts.MENU[name]
+            box = (MARGIN, _FIRST_WORD + number * _LINE, 160, _LINE)
+            word = Word(self._form.manager, box, label, _press(open_scene), size=_WORD_SIZE, weight="light")
+            self._lines.append((self._form.add(word), line))
 
     def exit(self) -> None:
-        """Stop being the top scene."""
+        """Keep everything for the way back."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Take one event."""
-        return None
+        """Leave it to the column."""
+        return self._column.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Advance by a step."""
-        return None
+        """Let the column ease and the backdrop move."""
+        if not self._settings.reduced_motion:
+            self._time += STEP
+        return self._column.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the title."""
-        canvas.surface.fill(NIGHT0)
-        canvas.text(texts.GAME, (64, 200), size=72, weight="extralight")
+        """Draw night, title, column, hints."""
+        self._backdrop.draw(canvas, self._time + alpha * STEP)
+        canvas.text(texts.GAME, (MARGIN - 2, 208), size=_TITLE_SIZE, weight="extralight")
+        canvas.text(texts.MENU_LINE, (MARGIN, 248), size=TEXT, colour=MUTE)
+        self._column.draw(canvas)
+        for word, line in self._lines:
+            if word.warmth > 0.02:
+                place = (MARGIN + 176, word.baseline)
+                canvas.text(line, place, size=TEXT, colour=MUTE, alpha=word.warmth)
+        self._draw_hints(canvas)
+
+    @property
+    def _column(self) -> Form:
+        assert self._form is not None, "the menu was never entered"
+        return self._form
+
+    def _draw_hints(self, canvas: Canvas) -> None:
+        arrows = texts.DPAD if self._controls.pad_in_use else texts.ARROWS
+        hints = [
+            (arrows, texts.HINT_MOVE),
+            (self._controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
+            (self._controls.word(Command.FULLSCREEN), texts.HINT_FULL_SCREEN),
+        ]
+        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+
+    def _back(self) -> Transition | None:
+        """Escape goes to Quit first, and only from there out of the game."""
+        last = self._column.widgets[-1]
+        if self._column.focused is last:
+            return Quit()
+        self._column.focus(last)
+        return None
+
+
+def _press(open_scene: Callable[[], Scene] | None) -> Callable[[], Transition | None]:
+    return lambda: Push(open_scene()) if open_scene else Quit()

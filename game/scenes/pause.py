@@ -1,0 +1,89 @@
+"""Pause: the scene below stands still, out of focus, with a few words over it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import pygame
+
+from game import texts
+from game.context import Context
+from game.controls import Command
+from game.scene import Pop, Push, Scene, Transition
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.tokens import MARGIN, NIGHT0, VIEW_SIZE
+from game.ui.widgets import Word
+
+_FIRST_WORD: Final = 304
+_LINE: Final = 44
+
+
+class Pause:
+    """Stands over a scene until the player resumes it or leaves it.
+
+    Args:
+        below: the scene to show; it is not advanced.
+        retry: begins the scene below anew; without it there is no such word.
+
+    """
+
+    def __init__(self, below: Scene, retry: Callable[[], None] | None = None) -> None:
+        self._below, self._retry = below, retry
+        self._picture: pygame.Surface | None = None
+
+    def enter(self, context: Context) -> None:
+        """Build the column of words."""
+        self._controls = context.controls
+        self._form = Form(context, on_back=Pop)
+        self._picture = None
+        rows: list[tuple[str, Callable[[], Transition | None]]] = [(texts.PAUSE_RESUME, Pop)]
+        if self._retry:
+            rows.append((texts.PAUSE_RETRY, self._begin_anew))
+        rows += [(texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
+        for number, (label, press) in enumerate(rows):
+            box = (MARGIN, _FIRST_WORD + number * _LINE, 200, _LINE)
+            self._form.add(Word(self._form.manager, box, label, press, size=22, weight="light"))
+
+    def exit(self) -> None:
+        """Nothing is held."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Leave it to the column."""
+        return self._form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Let the column ease."""
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the scene below, out of focus, and the column."""
+        if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
+            self._picture = self._blur_below(canvas)
+        canvas.surface.blit(self._picture, (0, 0))
+        canvas.text(texts.PAUSE_TITLE, (MARGIN, 256), size=44, weight="extralight")
+        self._form.draw(canvas)
+        word = self._controls.word
+        hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.PAUSE), texts.HINT_RESUME)]
+        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+
+    def _blur_below(self, canvas: Canvas) -> pygame.Surface:
+        self._below.draw(canvas, 1.0)
+        width, height = canvas.surface.get_size()
+        small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 20), max(1, height // 20)))
+        canvas.surface.blit(pygame.transform.smoothscale(small, (width, height)), (0, 0))
+        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.5)
+        return canvas.surface.copy()
+
+    def _begin_anew(self) -> Transition:
+        assert self._retry is not None
+        self._retry()
+        return Pop()
+
+
+def _open_settings() -> Transition:
+    from game.scenes.settings import SettingsScene
+
+    return Push(SettingsScene())

@@ -1,0 +1,111 @@
+"""Settings: each takes effect, and is saved, the moment it is changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import pygame
+
+from game import texts
+from game.context import Context
+from game.controls import BUTTON_WORDS, KEYS, Command, Held
+from game.scene import Pop, Transition
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.sky import NightSky
+from game.ui.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
+from game.ui.widgets import Toggle, Word
+
+ROWS: Final = ("full_screen", "reduced_motion", "colour_safe", "show_hints")
+_WIDTH: Final = 416
+_FIRST_ROW: Final = 152
+_ROW: Final = 72
+_KEYS_LEFT: Final = 704
+_KEYS: Final[tuple[tuple[Command | Held, ...], ...]] = (
+    (Held.MAIN,),
+    (Held.LEFT,),
+    (Held.RIGHT,),
+    (Command.HANDOVER,),
+    (Command.RETRY,),
+    (Command.PAUSE,),
+    (Command.FULLSCREEN,),
+    (Command.SCREENSHOT,),
+)
+
+
+class SettingsScene:
+    """Toggles on the left, the keys on the right."""
+
+    def enter(self, context: Context) -> None:
+        """Build a toggle for every row."""
+        self._context = context
+        self._sky = NightSky(context.rng, ember=0.5, stars=70)
+        self._form = Form(context, on_back=Pop)
+        for number, name in enumerate(ROWS):
+            box = (MARGIN, _FIRST_ROW + number * _ROW, _WIDTH, 56)
+            label, hint = texts.SETTINGS[name]
+            value = getattr(context.settings, name)
+            self._form.add(Toggle(self._form.manager, box, label, value, self._changes(name), hint=hint))
+        back = (MARGIN, _FIRST_ROW + len(ROWS) * _ROW + 24, 96, 32)
+        self._form.add(Word(self._form.manager, back, texts.BACK, Pop, size=18))
+
+    def exit(self) -> None:
+        """Nothing is held: every change was saved as it was made."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Leave it to the widgets."""
+        return self._form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Let the widgets ease, and follow what F11 changed."""
+        for name, toggle in zip(ROWS, self._form.widgets, strict=False):
+            assert isinstance(toggle, Toggle)
+            toggle.value = getattr(self._context.settings, name)
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the toggles, what the colours look like, and the keys."""
+        self._sky.draw(canvas)
+        canvas.text(texts.SETTINGS_TITLE, (MARGIN, 88), size=34, weight="light")
+        self._form.draw(canvas)
+        self._draw_swatches(canvas, _FIRST_ROW + ROWS.index("colour_safe") * _ROW + 28)
+        self._draw_keys(canvas)
+        word = self._context.controls.word
+        hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.BACK), texts.HINT_BACK)]
+        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+
+    def _changes(self, name: str) -> Callable[[bool], None]:
+        def change(value: bool) -> None:
+            setattr(self._context.settings, name, value)
+            self._context.apply_settings()
+
+        return change
+
+    def _draw_swatches(self, canvas: Canvas, middle: float) -> None:
+        left = MARGIN + _WIDTH + 40
+        good, warn = canvas.palette.good, canvas.palette.warn
+        canvas.marker("check", (left + 5, middle - 13), 10, good)
+        canvas.text(texts.SWATCH_GOOD, (left + 20, middle - 8), size=SMALL, colour=good)
+        canvas.marker("triangle", (left + 5, middle + 12), 10, warn)
+        canvas.text(texts.SWATCH_WARN, (left + 20, middle + 17), size=SMALL, colour=warn)
+
+    def _draw_keys(self, canvas: Canvas) -> None:
+        y = float(_FIRST_ROW + 12)
+        pad_left = VIEW_SIZE[0] - MARGIN
+        canvas.text(texts.KEYS_TITLE, (_KEYS_LEFT, y), size=LABEL, weight="medium", colour=MUTE)
+        canvas.text(texts.KEYS_KEYBOARD, (_KEYS_LEFT + 192, y), size=LABEL, weight="medium", colour=MUTE)
+        canvas.text(texts.KEYS_PAD, (pad_left, y), size=LABEL, weight="medium", colour=MUTE, align="right")
+        for (command, *_), (meaning, pad) in zip(_KEYS, texts.KEYS, strict=True):
+            canvas.line((_KEYS_LEFT, y + 12), (pad_left, y + 12), LINE, 1)
+            y += 36
+            canvas.text(meaning, (_KEYS_LEFT, y), size=TEXT - 1, colour=INK)
+            canvas.text(_key_names(command), (_KEYS_LEFT + 192, y), size=TEXT - 1, colour=MUTE)
+            button = pad or (BUTTON_WORDS.get(command, "") if isinstance(command, Command) else "")
+            canvas.text(button, (pad_left, y), size=TEXT - 1, colour=MUTE, align="right")
+
+
+def _key_names(command: Command | Held) -> str:
+    names = [pygame.key.name(key) for key in KEYS[command]]
+    return "  ".join(texts.KEY_NAMES.get(name, name.capitalize()) for name in names)

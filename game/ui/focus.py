@@ -1,0 +1,39 @@
+"""Which widget an arrow key leads to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pygame
+
+Direction = tuple[int, int]
+UP: Direction = (0, -1)
+DOWN: Direction = (0, 1)
+LEFT: Direction = (-1, 0)
+RIGHT: Direction = (1, 0)
+
+
+def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
+    """Return the index of the nearest box in a direction; up and down go round at the ends.
+
+    A step aside counts double, so that a column is followed to its end before another is entered.
+    """
+    here = boxes[current]
+
+    def ahead(box: pygame.Rect) -> float:
+        return direction[0] * (box.centerx - here.centerx) + direction[1] * (box.centery - here.centery)
+
+    def aside(box: pygame.Rect) -> float:
+        if direction[0]:
+            return max(box.top - here.bottom, here.top - box.bottom, 0)
+        return max(box.left - here.right, here.left - box.right, 0)
+
+    others = [index for index in range(len(boxes)) if index != current]
+    forward = [index for index in others if ahead(boxes[index]) > 0]
+    if direction[0]:
+        forward = [index for index in forward if aside(boxes[index]) == 0]
+    if forward:
+        return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
+    if direction[1] and others:
+        return min([current, *others], key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
+    return current

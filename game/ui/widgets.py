@@ -1,0 +1,330 @@
+"""Words, toggles, sliders and choices: pygame_gui elements, laid out in points and drawn by our canvas.
+
+pygame_gui settles which element the mouse meets; a `Form` adds the keyboard and the gamepad. A widget
+draws itself in the window's own pixels, so nothing is laid out again when the window changes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import pygame
+from pygame_gui import UIManager
+from pygame_gui.core import UIElement
+
+from game.scene import Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
+from game.ui.typeface import Weight
+
+OnPress = Callable[[], Transition | None]
+_EASE: Final = 0.22
+
+
+class PointsManager(UIManager):
+    """pygame_gui's manager, living in points: it is told where the mouse is instead of asking the window."""
+
+    def __init__(self) -> None:
+        super().__init__(VIEW_SIZE, enable_live_theme_updates=False)
+        self.mouse_position = (-1, -1)
+
+    def process_events(self, event: pygame.event.Event) -> bool:
+        """Give a mouse event, in points, to the elements."""
+        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
+            self.mouse_position = (int(event.pos[0]), int(event.pos[1]))
+        return bool(super().process_events(event))
+
+    def calculate_scaled_mouse_position(self, position: tuple[float, float]) -> tuple[int, int]:
+        """Return a position in points as it is."""
+        return int(position[0]), int(position[1])
+
+    def _update_mouse_position(self) -> None:
+        """Keep what the last event said."""
+
+
+class Widget(UIElement):
+    """What all widgets share: a box, a label, being pressed, being in focus.
+
+    Attributes:
+        focused: whether the form's focus is here.
+        warmth: 0 to 1, follows `focused` gently.
+        ringed: whether a ring is drawn around the widget in focus; not while a mouse is in use.
+
+    """
+
+    def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
+        super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)
+        self.label = label
+        self.focused = self.ringed = self.held = False
+        self.warmth = 0.0
+        self.outcome: Transition | None = None
+
+    @property
+    def box(self) -> pygame.Rect:
+        """Where it is, in points."""
+        return pygame.Rect(self.rect)
+
+    def press(self) -> Transition | None:
+        """Do what the widget is for."""
+        return None
+
+    def shift(self, direction: int) -> bool:  # noqa: ARG002
+        """Go one step left (-1) or right (1); false if the widget has no such steps."""
+        return False
+
+    def drag(self, x: float) -> None:
+        """Follow the mouse while its button is held."""
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Be pressed by the mouse: down and up again on the widget."""
+        if event.type == pygame.MOUSEMOTION and self.held:
+            self.drag(event.pos[0])
+            return True
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.hover_point(*event.pos):
+            self.held = True
+            self.drag(event.pos[0])
+            return True
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.held:
+            self.held = False
+            if self.hover_point(*event.pos):
+                self.outcome = self.press()
+            return True
+        return False
+
+    def ease(self, at_once: bool) -> None:
+        """Let 1/60 s pass."""
+        target = float(self.focused)
+        self.warmth = target if at_once else self.warmth + (target - self.warmth) * _EASE
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the widget."""
+        if self.ringed and self.warmth > 0.02:
+            canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
+
+    def tint(self) -> Colour:
+        """Return the label's colour: muted, and ink as it comes into focus."""
+        return mix(MUTE, INK, self.warmth)
+
+
+class Word(Widget):
+    """A button that is a word; a short line under it shows the focus."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        label: str,
+        on_press: OnPress,
+        *,
+        size: float = TEXT,
+        weight: Weight = "regular",
+    ) -> None:
+        super().__init__(manager, box, label)
+        self._on_press, self._size, self._weight = on_press, size, weight
+
+    @property
+    def baseline(self) -> float:
+        """Where the word stands."""
+        return self.box.centery + 0.36 * self._size
+
+    def press(self) -> Transition | None:
+        """Do it."""
+        return self._on_press()
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the word, and the line under it as far as it has grown."""
+        left, baseline = self.box.left, self.baseline
+        canvas.text(self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint())
+        length = canvas.text_width(self.label, size=self._size, weight=self._weight) * self.warmth
+        if length > 1:
+            y = baseline + 0.42 * self._size
+            canvas.line((left, y), (left + length, y), NET, 2, self.warmth)
+
+
+class Toggle(Widget):
+    """On or off: a label on the left, a switch at the right end of the box."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        label: str,
+        value: bool,
+        on_change: Callable[[bool], None],
+        *,
+        hint: str = "",
+    ) -> None:
+        super().__init__(manager, box, label)
+        self.value, self._on_change, self._hint = value, on_change, hint
+        self._slid = float(value)
+
+    def press(self) -> None:
+        """Change to the other state."""
+        self.value = not self.value
+        self._on_change(self.value)
+
+    def shift(self, direction: int) -> bool:
+        """Left is off, right is on."""
+        if self.value != (direction > 0):
+            self.press()
+        return True
+
+    def ease(self, at_once: bool) -> None:
+        """Let the knob slide."""
+        super().ease(at_once)
+        target = float(self.value)
+        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * _EASE
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the label, the hint under it and the switch."""
+        super().paint(canvas)
+        box = self.box
+        middle = box.centery
+        baseline = middle + 5 if not self._hint else middle - 4
+        canvas.text(self.label, (box.left, baseline), colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
+        if self._hint:
+            canvas.text(self._hint, (box.left, baseline + 21), size=SMALL, colour=MUTE)
+        canvas.pill((box.right - 32, middle - 8, 32, 16), mix(FAINT, NET, self._slid))
+        canvas.dot((box.right - 24 + 16 * self._slid, middle), 5.5, INK)
+
+
+class Slider(Widget):
+    """A number on a thin track with a round handle; label on the left, figure on the right."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        label: str,
+        value: float,
+        limits: tuple[float, float],
+        on_change: Callable[[float], None],
+        *,
+        step: float = 0.0,
+        logarithmic: bool = False,
+        label_width: float = 142,
+        figure_width: float = 62,
+        figure: Callable[[float], str] = "{:.2f}".format,
+        colour: Colour = NET,
+    ) -> None:
+        super().__init__(manager, box, label)
+        self.value, self._limits, self._on_change = value, limits, on_change
+        self._step, self._logarithmic = step, logarithmic
+        self._figure, self._colour = figure, colour
+        self._track = (self.box.left + label_width, self.box.right - figure_width)
+
+    @property
+    def fraction(self) -> float:
+        """Where the handle stands on its track, 0 to 1."""
+        low, high, value = map(self._scale, (*self._limits, self.value))
+        return min(max((value - low) / (high - low), 0.0), 1.0)
+
+    def set(self, value: float) -> None:
+        """Take a value, kept within the limits and on a step."""
+        low, high = self._limits
+        if self._step:
+            value = low + round((value - low) / self._step) * self._step
+        value = min(max(value, low), high)
+        if value != self.value:
+            self.value = value
+            self._on_change(value)
+
+    def shift(self, direction: int) -> bool:
+        """Move by one step, or by a twentieth of the track."""
+        if self._step:
+            self.set(self.value + direction * self._step)
+        else:
+            self._set_fraction(self.fraction + direction / 20)
+        return True
+
+    def drag(self, x: float) -> None:
+        """Bring the handle to the mouse."""
+        left, right = self._track
+        self._set_fraction((x - left) / (right - left))
+
+    def _set_fraction(self, fraction: float) -> None:
+        low, high = map(self._scale, self._limits)
+        value = low + min(max(fraction, 0.0), 1.0) * (high - low)
+        self.set(math.exp(value) if self._logarithmic else value)
+
+    def _scale(self, value: float) -> float:
+        return math.log(value) if self._logarithmic else value
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw label, track, handle and figure."""
+        super().paint(canvas)
+        box, (left, right) = self.box, self._track
+        baseline, middle = box.centery + 5, box.centery
+        canvas.text(self.label, (box.left, baseline), size=SMALL + 1, colour=self.tint())
+        canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
+        handle = (left + self.fraction * (right - left), middle)
+        canvas.dot(handle, 5 + self.warmth, INK)
+        canvas.text(
+            self._figure(self.value), (box.right, baseline),
+            size=SMALL + 1, colour=self._colour, align="right", tabular=True,
+        )  # fmt: skip
+
+
+class Choice(Widget):
+    """One of a few words in a row; a line under the chosen one."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        label: str,
+        options: Sequence[str],
+        index: int,
+        on_change: Callable[[int], None],
+        *,
+        label_width: float = 0,
+        size: float = TEXT,
+    ) -> None:
+        super().__init__(manager, box, label)
+        self.options, self.index, self._on_change, self._size = options, index, on_change, size
+        self._lefts = [self.box.left + label_width]
+        for option in options:
+            self._lefts.append(self._lefts[-1] + typeface.width(option, size, "regular") + 24)
+
+    def choose(self, index: int) -> None:
+        """Take an option by its number."""
+        index = min(max(index, 0), len(self.options) - 1)
+        if index != self.index:
+            self.index = index
+            self._on_change(index)
+
+    def press(self) -> None:
+        """Take the option under the mouse; without one, the next."""
+        x = self.ui_manager.get_mouse_position()[0]
+        if self.ringed or not self.box.collidepoint(x, self.box.centery):
+            self.choose((self.index + 1) % len(self.options))
+            return
+        starts = [number for number, left in enumerate(self._lefts[:-1]) if left - 12 <= x]
+        self.choose(starts[-1] if starts else self.index)
+
+    def shift(self, direction: int) -> bool:
+        """Take the option to the left or right."""
+        self.choose(self.index + direction)
+        return True
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the label and the options."""
+        super().paint(canvas)
+        baseline = self.box.centery + 0.36 * self._size
+        canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint())
+        for number, option in enumerate(self.options):
+            chosen = number == self.index
+            left, colour = self._lefts[number], INK if chosen else MUTE
+            box = canvas.text(option, (left, baseline), size=self._size, colour=colour)
+            if chosen:
+                canvas.line((left, baseline + 8), (left + box.width, baseline + 8), NET, 2)
+
+
+def mix(a: Colour, b: Colour, fraction: float) -> Colour:
+    """Return the colour that lies between two; in steps, so that few are ever rendered."""
+    part = round(8 * min(max(fraction, 0.0), 1.0)) / 8
+    red, green, blue = (round(x + (y - x) * part) for x, y in zip(a, b, strict=True))
+    return red, green, blue

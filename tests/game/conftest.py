@@ -1,0 +1,47 @@
+"""The game without a window: SDL draws into memory, and a clock of our own ticks 1/60 s a frame."""
+
+import os
+
+os.environ["SDL_VIDEODRIVER"] = "dummy"
+os.environ["SDL_AUDIODRIVER"] = "dummy"
+
+from collections.abc import Callable, Iterator
+from itertools import count
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from game.app import App
+from game.context import Context
+from game.scene import Scene
+from game.settings import Settings, SettingsFile
+from tests.game.driver import Driver
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> Context:
+    return Context(tmp_path / "user", Settings(), rng=np.random.default_rng(1))
+
+
+@pytest.fixture
+def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
+    opened: list[Driver] = []
+
+    def open_it(first: Scene | None = None) -> Driver:
+        context.settings = SettingsFile(context.user_dir).load()
+        frames = count()
+        opened.append(Driver(App(context, first, now=lambda: next(frames) / 60, capped=False)))
+        return opened[-1]
+
+    yield open_it
+    for driver in opened:
+        if pygame.display.get_init():
+            driver.app.close()
+    pygame.event.get() if pygame.display.get_init() else None
+
+
+@pytest.fixture
+def game(open_game: Callable[..., Driver]) -> Driver:
+    return open_game()

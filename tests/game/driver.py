@@ -1,0 +1,60 @@
+"""Plays the game in a test: real pygame events in, frames on."""
+
+from typing import Any
+
+import pygame
+
+from game.app import App
+from game.scene import Scene
+
+
+class Driver:
+    def __init__(self, app: App) -> None:
+        self.app = app
+
+    @property
+    def top(self) -> Scene:
+        return self.app.scenes.top
+
+    @property
+    def top_name(self) -> str:
+        return type(self.top).__name__
+
+    def frames(self, number: int = 1) -> bool:
+        return all([self.app.tick() for _ in range(number)])
+
+    def post(self, event_type: int, **values: Any) -> bool:
+        pygame.event.post(pygame.event.Event(event_type, values))
+        return self.frames(1)
+
+    def key(self, key: int, mod: int = 0) -> bool:
+        self.post(pygame.KEYDOWN, key=key, mod=mod, unicode="", scancode=0)
+        return self.post(pygame.KEYUP, key=key, mod=mod, unicode="", scancode=0)
+
+    def keys(self, *keys: int) -> None:
+        for key in keys:
+            self.key(key)
+
+    def button(self, button: int, pad: int = 0) -> None:
+        self.post(pygame.CONTROLLERBUTTONDOWN, instance_id=pad, button=button)
+        self.post(pygame.CONTROLLERBUTTONUP, instance_id=pad, button=button)
+
+    def axis(self, axis: int, value: int, pad: int = 0) -> None:
+        self.post(pygame.CONTROLLERAXISMOTION, instance_id=pad, axis=axis, value=value)
+
+    def to_window(self, points: tuple[float, float]) -> tuple[int, int]:
+        canvas = self.app.canvas
+        x, y = (round(p * canvas.scale + o) for p, o in zip(points, canvas.offset, strict=True))
+        return x, y
+
+    def move(self, points: tuple[float, float]) -> None:
+        self.post(pygame.MOUSEMOTION, pos=self.to_window(points), rel=(0, 0), buttons=(0, 0, 0))
+
+    def click(self, points: tuple[float, float]) -> None:
+        self.move(points)
+        self.post(pygame.MOUSEBUTTONDOWN, pos=self.to_window(points), button=1)
+        self.post(pygame.MOUSEBUTTONUP, pos=self.to_window(points), button=1)
+
+    def resize(self, size: tuple[int, int]) -> None:
+        pygame.display.set_mode(size, pygame.RESIZABLE)
+        self.post(pygame.VIDEORESIZE, size=size, w=size[0], h=size[1])

@@ -1,0 +1,282 @@
+import signal
+from pathlib import Path
+
+import pygame
+import pytest
+
+from game.app import LOG_NAME, App, NoDisplayError, log_to
+from game.context import Context
+from game.scene import Pop, Push, Quit
+from game.scenes.menu import Menu
+from game.scenes.pause import Pause
+from game.scenes.settings import SettingsScene
+from game.settings import Settings, SettingsFile
+from tests.game.driver import Driver
+
+SIZES = [(1280, 720), (1920, 1080), (1000, 800), (640, 360), (2000, 500)]
+
+
+class Probe:
+    """A scene that records what it is given and does as it is told."""
+
+    def __init__(self) -> None:
+        self.events: list[pygame.event.Event] = []
+        self.updates = self.draws = self.entered = self.left = 0
+        self.alphas: list[float] = []
+        self.next = None
+        self.fails_in = ""
+
+    def _fail(self, where: str) -> None:
+        if self.fails_in == where:
+            raise ZeroDivisionError("a fault on purpose")
+
+    def enter(self, context: Context) -> None:
+        self.entered += 1
+        self._fail("enter")
+
+    def exit(self) -> None:
+        self.left += 1
+        self._fail("exit")
+
+    def handle_event(self, event: pygame.event.Event):
+        self._fail("handle_event")
+        self.events.append(event)
+        return self.next
+
+    def update(self):
+        self._fail("update")
+        self.updates += 1
+
+    def draw(self, canvas, alpha: float) -> None:
+        self._fail("draw")
+        self.draws += 1
+        self.alphas.append(alpha)
+
+
+def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
+    game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    assert game.top_name == "SettingsScene"
+    game.key(pygame.K_ESCAPE)
+    assert game.top_name == "Menu"
+
+
+def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
+    game.click((90, 456))
+    assert game.top_name == "SettingsScene"
+    game.button(pygame.CONTROLLER_BUTTON_B)
+    assert game.top_name == "Menu"
+    game.axis(pygame.CONTROLLER_AXIS_LEFTY, -30000)  # from Settings up to Watch
+    game.axis(pygame.CONTROLLER_AXIS_LEFTY, 0)
+    game.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    game.button(pygame.CONTROLLER_BUTTON_A)
+    assert game.top_name == "SettingsScene"
+
+
+def test_escape_in_the_menu_asks_twice(game: Driver):
+    assert game.key(pygame.K_ESCAPE)
+    assert not game.key(pygame.K_ESCAPE)
+
+
+@pytest.mark.parametrize("name", ["full_screen", "reduced_motion", "colour_safe", "show_hints"])
+def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context: Context, name: str):
+    rows = ["full_screen", "reduced_motion", "colour_safe", "show_hints"]
+    before = getattr(Settings(), name)
+    game = open_game(SettingsScene())
+    game.keys(*[pygame.K_DOWN] * rows.index(name), pygame.K_RETURN)
+    assert getattr(SettingsFile(context.user_dir).load(), name) is not before
+    game.app.close()
+    again = open_game()
+    assert getattr(again.app.context.settings, name) is not before
+    is_full = bool(pygame.display.get_surface().get_flags() & pygame.FULLSCREEN)
+    assert is_full == again.app.context.settings.full_screen
+
+
+def test_colours_change_with_the_setting(open_game):
+    game = open_game(SettingsScene())
+    usual = game.app.canvas.palette
+    game.click((460, 152 + 2 * 72 + 28))
+    assert game.app.canvas.palette != usual
+    game.click((460, 152 + 2 * 72 + 28))
+    assert game.app.canvas.palette == usual
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_view_is_16_to_9_in_any_window_and_the_mouse_is_in_points(open_game, size: tuple[int, int]):
+    probe = Probe()
+    game = open_game(probe)
+    game.resize(size)
+    canvas = game.app.canvas
+    assert canvas.size[0] <= size[0]
+    assert canvas.size[1] <= size[1]
+    assert canvas.size[0] / canvas.size[1] == pytest.approx(16 / 9, rel=0.01)
+    assert size[0] - canvas.size[0] <= 1 or size[1] - canvas.size[1] <= 1
+    for corner in [(0, 0), (1280, 720), (640, 360)]:
+        game.move(corner)
+        assert probe.events[-1].pos == pytest.approx(corner, abs=1.2 / canvas.scale)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
+    game.resize(size)
+    game.click((90, 456))
+    assert game.top_name == "SettingsScene"
+    game.frames(3)
+    game.click((80, 480))
+    assert game.top_name == "Menu"
+
+
+def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
+    size = pygame.display.get_surface().get_size()
+    for _ in range(5):
+        game.key(pygame.K_F11)
+        assert context.settings.full_screen
+        game.key(pygame.K_RETURN, pygame.KMOD_LALT)
+        assert not context.settings.full_screen
+    assert pygame.display.get_surface().get_size() == size
+    assert game.top_name == "Menu"
+
+
+def test_sixty_updates_a_second_and_no_spiral(open_game, context: Context):
+    probe = Probe()
+    app = App(
+        context,
+        probe,
+        now=iter([0.0, *(n / 144 for n in range(1, 145)), 100.0, 100.01]).__next__,
+        capped=False,
+    )
+    for _ in range(144):
+        app.tick()
+    assert probe.updates == 60
+    assert all(0 <= alpha <= 1 for alpha in probe.alphas)
+    app.tick()
+    assert probe.updates == 65
+    app.tick()
+    assert probe.updates <= 66
+    app.close()
+
+
+@pytest.mark.parametrize("where", ["enter", "handle_event", "update", "draw"])
+def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Context, where: str):
+    log_to(context.user_dir)
+    broken = Probe()
+    broken.fails_in = where
+    game.app._guarded(lambda: game.app.scenes.apply(Push(broken)))
+    game.key(pygame.K_x)
+    game.frames(2)
+    assert game.top_name == "Fault"
+    assert "a fault on purpose" in (context.user_dir / LOG_NAME).read_text()
+    game.key(pygame.K_RETURN)
+    assert game.top_name == "Menu"
+    assert game.frames(2)
+
+
+@pytest.mark.parametrize("scene", [Menu, SettingsScene, lambda: Pause(Probe()), Probe])
+def test_closing_the_window_anywhere_saves_the_settings(open_game, context: Context, scene):
+    game = open_game(scene())
+    context.settings.model = "mine"
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    assert game.app.run() == 0
+    assert SettingsFile(context.user_dir).load().model == "mine"
+
+
+def test_settings_are_saved_even_if_the_last_scene_fails_to_leave(open_game, context: Context):
+    probe = Probe()
+    game = open_game(probe)
+    context.settings.model = "mine"
+    probe.fails_in = "exit"
+    game.app.close()
+    assert SettingsFile(context.user_dir).load().model == "mine"
+
+
+def test_pause_stops_the_scene_below_and_resumes_it(open_game):
+    probe = Probe()
+    game = open_game(probe)
+    game.app.scenes.apply(Push(Pause(probe)))
+    assert probe.left == 1
+    updates = probe.updates
+    game.frames(5)
+    assert (probe.updates, probe.draws) == (updates, 1)
+    game.key(pygame.K_ESCAPE)
+    assert game.top is probe
+    assert probe.entered == 2
+
+
+def test_pause_offers_retry_settings_and_the_way_out(open_game):
+    retried = []
+    game = open_game()
+    game.app.scenes.apply(Push(probe := Probe()))
+    game.app.scenes.apply(Push(Pause(probe, lambda: retried.append(True))))
+    game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    assert game.top_name == "SettingsScene"
+    game.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_SPACE)
+    assert retried == [True]
+    assert game.top is probe
+    game.app.scenes.apply(Push(Pause(probe)))
+    game.keys(pygame.K_UP, pygame.K_RETURN)
+    assert game.top_name == "Menu"
+
+
+def test_stack_pops_several_levels_and_ends_empty(game: Driver):
+    probes = [Probe(), Probe()]
+    for probe in probes:
+        game.app.scenes.apply(Push(probe))
+    game.app.scenes.apply(Pop(2))
+    assert game.top_name == "Menu"
+    game.app.scenes.apply(Pop())
+    assert not game.frames(1)
+
+
+def test_quit_from_a_scene(open_game):
+    probe = Probe()
+    game = open_game(probe)
+    probe.next = Quit()
+    assert not game.key(pygame.K_x)
+
+
+def test_minimised_draws_nothing_and_comes_back(open_game):
+    probe = Probe()
+    game = open_game(probe)
+    game.post(pygame.WINDOWMINIMIZED)
+    draws = probe.draws
+    game.frames(3)
+    assert probe.draws == draws
+    game.post(pygame.WINDOWRESTORED)
+    assert probe.draws > draws
+
+
+def test_screenshot_is_a_picture_of_the_view(game: Driver, context: Context):
+    game.frames(2)
+    game.key(pygame.K_F12)
+    (path,) = (context.user_dir / "screenshots").iterdir()
+    assert pygame.image.load(path).get_size() == (1280, 720)
+
+
+def test_screenshot_into_a_folder_that_cannot_be(game: Driver, context: Context):
+    context.user_dir.mkdir(parents=True, exist_ok=True)
+    (context.user_dir / "screenshots").write_text("in the way")
+    assert game.key(pygame.K_F12)
+
+
+def test_no_display_is_a_clear_error(context: Context, monkeypatch):
+    monkeypatch.setenv("SDL_VIDEODRIVER", "nonesuch")
+    pygame.display.quit()
+    with pytest.raises(NoDisplayError, match="nonesuch"):
+        App(context)
+
+
+def test_user_folder_that_cannot_be_written_does_not_stop_the_game(
+    open_game, context: Context, tmp_path: Path
+):
+    context.user_dir = tmp_path / "file" / "inside"
+    (tmp_path / "file").write_text("in the way")
+    game = open_game(SettingsScene())
+    game.keys(pygame.K_DOWN, pygame.K_RETURN)
+    assert game.app.context.settings.reduced_motion
+    assert game.frames(3)
+
+
+def test_interrupt_reaches_the_caller(game: Driver, monkeypatch):
+    monkeypatch.setattr(game.app.scenes, "update", lambda: signal.raise_signal(signal.SIGINT))
+    with pytest.raises(KeyboardInterrupt):
+        game.app.run()
+    assert not pygame.display.get_init()
