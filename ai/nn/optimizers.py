@@ -84,7 +84,7 @@ class SGD(Optimizer):
 
 
 class Momentum(Optimizer):
-    """Heavy ball (Polyak 1964): velocity = momentum · velocity + gradient; values -= learning_rate · velocity."""
+    """Steps along v = momentum · v + gradient, the heavy ball of Polyak 1964: values -= learning_rate · v."""
 
     remembers = ("velocity",)
 

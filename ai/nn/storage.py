@@ -143,7 +143,7 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
         _attempt(problems, where, check_fit, layers, layer)
         layers.append(layer)
         arrays = {
-            name: _attempt(problems, where, _read_array, folder, description, name, (list(shape), dtype))
+            name: _attempt(problems, where, _read_array, folder, description, name, f"{dtype} {list(shape)}")
             for name, shape in layer.shapes.items()
         }
         layer.parameters = tuple(
@@ -203,8 +203,8 @@ def _required(description: Any, name: str) -> Any:
     return description[name]
 
 
-def _read_array(folder: Path, description: Any, name: str, wanted: tuple[list[int], str]) -> Array:
-    """Return a parameter whose shape and dtype are as wanted, in its file as in `config.json`."""
+def _read_array(folder: Path, description: Any, name: str, wanted: str) -> Array:
+    """Return a parameter whose dtype and shape, as in "float32 [9, 128]", are as wanted."""
     entry = _required(_required(description, "arrays"), name)
     file = _required(entry, "file")
     if Path(file).name != file:
@@ -214,10 +214,10 @@ def _read_array(folder: Path, description: Any, name: str, wanted: tuple[list[in
         array = np.lib.format.open_memmap(folder / file, mode="r")
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from error
-    said, held = (entry.get("shape"), entry.get("dtype")), (list(array.shape), array.dtype.name)
-    for source, found in ((CONFIG, said), (file, held)):
-        if found != wanted:
-            raise ValueError(f"{name}: shape and dtype are {found} in {source}, the layer's are {wanted}")
+    said = f"{entry.get('dtype')} {entry.get('shape')}"
+    held = f"{array.dtype.name} {list(array.shape)}"
+    if not said == held == wanted:
+        raise ValueError(f"{file} holds {held}, is said to hold {said}, and should hold {wanted}")
     if not np.isfinite(array).all():
         raise ValueError(f"{file} holds numbers that are not finite")
     return np.array(array, order="C")

@@ -1,0 +1,268 @@
+"""Every layer, activation and cost through one contract: a new one joins by one row."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    CostFunctions,
+    DuelingLayer,
+    FullyConnectedLayer,
+    LayerNormalisation,
+    NeuralNetwork,
+)
+from ai.nn.activations import ACTIVATIONS
+from ai.nn.costs import COSTS
+from ai.nn.layers import LAYERS
+
+INPUTS, OUTPUTS, BATCH = 5, 4, 6
+
+ACTIVATION_ROWS = {
+    "tanh": ActivationFunctions.use_tanh(),
+    "sigmoid": ActivationFunctions.use_sigmoid(),
+    "relu": ActivationFunctions.use_relu(),
+    "leaky_relu": ActivationFunctions.use_leaky_relu(0.2),
+    "plain pair": (np.sin, np.cos),
+}
+COST_ROWS = {
+    "mse": CostFunctions.use_mse(),
+    "huber": CostFunctions.use_huber(0.7),
+    "plain pair": (lambda p, t: np.sum((p - t) ** 4), lambda p, t: 4 * (p - t) ** 3),
+}
+# Each makes a layer that takes INPUTS values.
+LAYER_ROWS = {
+    "FullyConnectedLayer": lambda: FullyConnectedLayer(INPUTS, OUTPUTS),
+    "DuelingLayer": lambda: DuelingLayer(INPUTS, OUTPUTS),
+    "LayerNormalisation": lambda: LayerNormalisation(INPUTS),
+    "ActivationLayer": lambda: ActivationLayer(*ActivationFunctions.use_sigmoid()),
+}
+
+
+def network_with(layer, activation=None, cost=None, dtype=np.float64):
+    """Put the layer between two others, so that its input error matters too."""
+    rng = np.random.default_rng(3)
+    network = NeuralNetwork(*(cost or CostFunctions.use_mse()), rng=rng, dtype=dtype)
+    network.add_layer(FullyConnectedLayer(3, INPUTS, scale=3.0)).add_layer(layer)
+    network.add_layer(ActivationLayer(*(activation or ActivationFunctions.use_tanh())))
+    network.add_layer(FullyConnectedLayer(layer.outputs or INPUTS, 2))
+    network.values += 0.1 * rng.normal(size=network.values.shape)  # biases and gains that are not 0 or 1
+    return network
+
+
+def numerical_gradient(function, values, step=1e-6):
+    gradient = np.empty_like(values)
+    for index in range(values.size):
+        kept = values[index]
+        values[index] = kept + step
+        above = function()
+        values[index] = kept - step
+        gradient[index] = (above - function()) / (2 * step)
+        values[index] = kept
+    return gradient
+
+
+def test_the_tables_are_complete():
+    assert set(LAYER_ROWS) == set(LAYERS)
+    assert set(ACTIVATION_ROWS) == {*ACTIVATIONS, "plain pair"}
+    assert set(COST_ROWS) == {*COSTS, "plain pair"}
+
+
+@pytest.mark.parametrize(
+    ("layer", "activation", "cost"), list(itertools.product(LAYER_ROWS, ACTIVATION_ROWS, COST_ROWS))
+)
+def test_gradients_are_exact(layer, activation, cost):
+    network = network_with(LAYER_ROWS[layer](), ACTIVATION_ROWS[activation], COST_ROWS[cost])
+    rng = np.random.default_rng(5)
+    x, y = rng.normal(size=(BATCH, 3)), rng.normal(size=(BATCH, 2))
+    prediction = network.forward_propagate(x)
+    network.backward_propagate(network.cost.derivative(prediction, y))
+    expected = numerical_gradient(lambda: network.cost(network.predict(x), y), network.values)
+    np.testing.assert_allclose(network.gradients, expected, rtol=1e-6, atol=1e-8)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
+def test_a_layer_alone_returns_its_input_error(name):
+    layer = LAYER_ROWS[name]()
+    layer.dtype = np.float64
+    rng = np.random.default_rng(7)
+    x = rng.normal(size=(BATCH, INPUTS))
+    error = rng.normal(size=layer.predict(x).shape)
+    layer.forward_propagate(x)
+    input_error = layer.backward_propagate(error).copy()
+    expected = numerical_gradient(lambda: np.sum(layer.predict(x) * error), x.reshape(-1))
+    np.testing.assert_allclose(input_error.ravel(), expected, rtol=1e-6, atol=1e-8)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
+def test_a_batch_equals_its_examples(name):
+    network = network_with(LAYER_ROWS[name](), dtype=np.float32)
+    x = np.random.default_rng(1).normal(size=(BATCH, 3)).astype(np.float32)
+    batch = network.predict(x)
+    assert batch.dtype == np.float32
+    for one, expected in zip(x, batch, strict=True):
+        np.testing.assert_allclose(network.predict(one), expected, rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(network.predict(one[None])[0], expected, rtol=1e-5, atol=1e-6)
+    np.testing.assert_allclose(network.forward_propagate(x), batch, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
+def test_predict_leaves_no_trace(name):
+    network, undisturbed = network_with(LAYER_ROWS[name]()), network_with(LAYER_ROWS[name]())
+    rng = np.random.default_rng(2)
+    x, error = rng.normal(size=(BATCH, 3)), rng.normal(size=(BATCH, 2))
+    for one in (network, undisturbed):
+        one.forward_propagate(x)
+    before = network.values.copy()
+    network.predict(rng.normal(size=(BATCH, 3)))
+    network.predict(rng.normal(size=(2, 3)))
+    for one in (network, undisturbed):
+        one.backward_propagate(error)
+    np.testing.assert_array_equal(network.gradients, undisturbed.gradients)
+    np.testing.assert_array_equal(network.values, before)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
+def test_batch_sizes_may_alternate(name):
+    network = network_with(LAYER_ROWS[name]())
+    rng = np.random.default_rng(4)
+    kept = network.predict(rng.normal(size=(BATCH, 3)))
+    copied = kept.copy()
+    for size in (BATCH, 1, 9, BATCH):
+        x, error = rng.normal(size=(size, 3)), rng.normal(size=(size, 2))
+        fresh = network_with(LAYER_ROWS[name]())
+        for one in (network, fresh):
+            one.forward_propagate(x)
+            one.backward_propagate(error)
+        np.testing.assert_array_equal(network.gradients, fresh.gradients)
+    np.testing.assert_array_equal(kept, copied)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
+def test_neither_pass_changes_what_it_is_given(name):
+    layer = LAYER_ROWS[name]()
+    x = np.random.default_rng(6).normal(size=(BATCH, INPUTS)).astype(np.float32)
+    error = layer.predict(x)
+    given_x, given_error = x.copy(), error.copy()
+    layer.forward_propagate(x)
+    layer.backward_propagate(error)
+    np.testing.assert_array_equal(x, given_x)
+    np.testing.assert_array_equal(error, given_error)
+
+
+@pytest.mark.parametrize("name", ACTIVATIONS)
+def test_an_activation_unpacks_as_function_and_derivative(name):
+    function, derivative = ACTIVATION_ROWS[name]
+    x = np.linspace(-3, 3, 12)
+    expected = [(function(x + 1e-6) - function(x - 1e-6)) / 2e-6]
+    np.testing.assert_allclose([derivative(x)], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("name", COSTS)
+def test_costs_are_summed_over_outputs_and_averaged_over_the_batch(name):
+    function, derivative = COST_ROWS[name]
+    p, t = np.array([[0.3, -2.0], [1.0, 0.5]]), np.array([[0.0, 0.0], [1.5, 0.1]])
+    examples = [function(p[[i]], t[[i]]) for i in (0, 1)]
+    assert function(p, t) == pytest.approx(np.mean(examples))
+    assert examples[0] == pytest.approx(function(p[[0], :1], t[[0], :1]) + function(p[[0], 1:], t[[0], 1:]))
+    np.testing.assert_allclose(derivative(p, t)[0], derivative(p[[0]], t[[0]])[0] / 2)
+    np.testing.assert_allclose(derivative(p[0], t[0]), derivative(p[[0]], t[[0]])[0])
+
+
+def test_costs_have_the_textbook_values():
+    p, t = np.array([[1.0, 3.0]]), np.array([[0.5, 0.0]])
+    assert CostFunctions.use_mse()(p, t) == pytest.approx(0.25 + 9.0)
+    assert CostFunctions.use_huber(1.0)(p, t) == pytest.approx(0.125 + 2.5)
+
+
+def test_dueling_streams_are_told_apart():
+    layer = DuelingLayer(INPUTS, OUTPUTS)
+    x = np.random.default_rng(8).normal(size=(BATCH, INPUTS)).astype(np.float32)
+    streams = x @ layer.weights + layer.bias
+    value, advantage = streams[:, :1], streams[:, 1:]
+    expected = value + advantage - advantage.mean(axis=1, keepdims=True)
+    np.testing.assert_allclose(layer.predict(x), expected, rtol=1e-5, atol=1e-6)
+
+
+@settings(max_examples=50, deadline=None)
+@given(arrays(np.float64, (3, 8), elements=st.floats(-1e3, 1e3)), st.floats(-1e3, 1e3))
+def test_layer_normalisation_is_blind_to_shift(x, shift):
+    layer = LayerNormalisation(8, dtype=np.float64)
+    normalised = layer.predict(x)
+    np.testing.assert_allclose(normalised, layer.predict(x + shift), atol=1e-5)
+    np.testing.assert_allclose(normalised.mean(axis=1), 0, atol=1e-6)
+    assert np.all(normalised.var(axis=1) <= 1 + 1e-9)
+
+
+@settings(max_examples=50, deadline=None)
+@given(arrays(np.float32, (7,), elements=st.floats(-(2.0**100), 2.0**100, width=32)))
+def test_activations_stay_finite(x):
+    for name in ACTIVATIONS:
+        activation = ACTIVATION_ROWS[name]
+        assert np.isfinite(activation(x)).all()
+        assert np.isfinite(activation.derivative(x)).all()
+
+
+def test_glorot_bound():
+    weights = FullyConnectedLayer(784, 100).weights
+    bound = 1 / np.sqrt(884)
+    assert np.abs(weights).max() <= bound
+    assert np.abs(weights).max() > 0.99 * bound
+    assert weights.std() == pytest.approx(bound / np.sqrt(3), rel=0.02)
+
+
+@pytest.mark.parametrize("between", [[], [LayerNormalisation(200)]])
+@pytest.mark.parametrize("activation", ["relu", "leaky_relu"])
+def test_rectifiers_get_he_weights(activation, between):
+    network = NeuralNetwork(*CostFunctions.use_mse())
+    for layer in (FullyConnectedLayer(300, 200), *between, ActivationLayer(*ACTIVATION_ROWS[activation])):
+        network.add_layer(layer)
+    network.add_layer(FullyConnectedLayer(200, 100)).add_layer(ActivationLayer(*ACTIVATION_ROWS["tanh"]))
+    network.add_layer(ActivationLayer(*ACTIVATION_ROWS["relu"]))
+    dense = [layer for layer in network.layers if isinstance(layer, FullyConnectedLayer)]
+    assert dense[0].weights.std() == pytest.approx(np.sqrt(2 / 300), rel=0.02)
+    assert np.abs(dense[1].weights).max() <= 1 / np.sqrt(300)
+
+
+def test_initialisation_and_scale_can_be_chosen():
+    rng = np.random.default_rng
+    he = FullyConnectedLayer(300, 200, initialisation="he", rng=rng(1))
+    small = FullyConnectedLayer(300, 200, initialisation="he", scale=0.01, rng=rng(1))
+    np.testing.assert_allclose(small.weights, 0.01 * he.weights, rtol=1e-6)
+    with pytest.raises(ValueError, match="glorot, he"):
+        FullyConnectedLayer(3, 2, initialisation="zeros")
+
+
+def test_weights_somebody_looked_at_are_not_drawn_again():
+    layer = FullyConnectedLayer(3, 2)
+    layer.weights[...] = 7
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(layer)
+    network.add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
+    np.testing.assert_array_equal(network.predict(np.ones(3)), [21, 21])
+
+
+@pytest.mark.parametrize("size", [0, -1, 2.5, "9", None, True, 1 << 40])
+def test_sizes_are_checked(size):
+    for make, sizes in (
+        (FullyConnectedLayer, (size, 2)),
+        (DuelingLayer, (2, size)),
+        (LayerNormalisation, (size,)),
+    ):
+        with pytest.raises(ValueError, match="whole number"):
+            make(*sizes)
+
+
+def test_options_are_checked():
+    with pytest.raises(ValueError, match="slope"):
+        ActivationFunctions.use_leaky_relu(1.5)
+    with pytest.raises(ValueError, match="delta"):
+        CostFunctions.use_huber(0)
+    with pytest.raises(TypeError, match="derivative is missing"):
+        ActivationLayer(np.sin)
+    with pytest.raises(TypeError, match="derivative is missing"):
+        NeuralNetwork(lambda p, t: 0.0)

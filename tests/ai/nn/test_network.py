@@ -1,0 +1,172 @@
+"""The network as a whole: building, training, copying."""
+
+import numpy as np
+import pytest
+
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    Adam,
+    CostFunctions,
+    FullyConnectedLayer,
+    LayerNormalisation,
+    NeuralNetwork,
+)
+
+XOR_X = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
+XOR_Y = np.array([[0], [1], [1], [0]])
+
+
+def small_network(seed=0, hidden=16, cost=None):
+    return (
+        NeuralNetwork(*(cost or CostFunctions.use_mse()), rng=np.random.default_rng(seed))
+        .add_layer(FullyConnectedLayer(2, hidden))
+        .add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+        .add_layer(FullyConnectedLayer(hidden, 1))
+    )
+
+
+def test_learns_xor_by_plain_steps():
+    network = small_network()
+    history = network.train(XOR_X, XOR_Y, epochs=2000, batch_size=4, learning_rate=0.1)
+    assert len(history) == 2000
+    assert history[-1] < 1e-3
+    np.testing.assert_array_equal(network.predict(XOR_X).round(), XOR_Y)
+
+
+@pytest.mark.parametrize("cost", [CostFunctions.use_mse(), CostFunctions.use_huber()])
+def test_learns_a_curve_with_adam(cost):
+    x = np.random.default_rng(1).uniform(-1, 1, size=(256, 2))
+    y = np.sin(3 * x[:, :1]) * x[:, 1:]
+    network = small_network(hidden=32, cost=cost)
+    history = network.train(x, y, epochs=150, batch_size=64, sampling="random", optimizer=Adam(0.01))
+    assert history[-1] < 0.05 * history[0]
+
+
+def test_training_is_reproducible():
+    def trained(seed):
+        network = small_network()
+        options = {"epochs": 3, "batch_size": 3, "sampling": "random"}
+        history = network.train(XOR_X, XOR_Y, rng=np.random.default_rng(seed), **options)
+        return network.values.copy(), history
+
+    (values, history), (again, history_again) = trained(1), trained(1)
+    np.testing.assert_array_equal(values, again)
+    assert history == history_again
+    assert not np.array_equal(values, trained(2)[0])
+
+
+def test_an_epoch_meets_every_example_once():
+    seen = []
+    network = small_network(cost=(lambda _p, t: seen.extend(t[:, 0]) or 0.0, lambda p, _t: np.zeros_like(p)))
+    x, y = np.zeros((10, 2)), np.arange(10.0)[:, None]
+    network.train(x, y, epochs=1, batch_size=4)
+    assert seen == list(range(10))
+    seen.clear()
+    network.train(x, y, epochs=2, batch_size=4, sampling="random")
+    assert sorted(seen[:10]) == sorted(seen[10:]) == list(range(10))
+    assert seen[:10] != seen[10:]
+
+
+def test_history_weighs_examples_alike():
+    network = small_network()
+    expected = network.cost(network.predict(XOR_X), XOR_Y)
+    assert network.train(XOR_X, XOR_Y, batch_size=3, learning_rate=0.0) == [pytest.approx(expected)]
+
+
+def test_training_prints_nothing(capsys):
+    small_network().train(XOR_X, XOR_Y)
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"y": XOR_Y[:2]}, "4 inputs"),
+        ({"x": XOR_X[:0], "y": XOR_Y[:0]}, "at least one"),
+        ({"y": XOR_Y[:, 0]}, "shape"),
+        ({"sampling": "shuffled"}, "shuffled"),
+        ({"batch_size": 0}, "batch_size"),
+        ({"x": np.zeros((4, 3))}, "3"),
+    ],
+)
+def test_wrong_arguments_are_named(change, message):
+    with pytest.raises(ValueError, match=message):
+        small_network().train(**({"x": XOR_X, "y": XOR_Y} | change))
+
+
+def test_layers_have_to_fit():
+    network = small_network()
+    with pytest.raises(ValueError, match="takes 2 values, the layer before gives 1"):
+        network.add_layer(FullyConnectedLayer(2, 2))
+    network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+    with pytest.raises(ValueError, match="LayerNormalisation takes 4"):
+        network.add_layer(LayerNormalisation(4))
+
+
+def test_same_seed_same_weights():
+    np.testing.assert_array_equal(small_network(5).values, small_network(5).values)
+    assert not np.array_equal(small_network(5).values, small_network(6).values)
+    np.testing.assert_array_equal(small_network(0).values, small_network(0).values)
+
+
+def test_weights_do_not_depend_on_who_looks_first():
+    network, other = small_network(5), small_network(5)
+    assert network.layers[2].weights.shape == (16, 1)
+    np.testing.assert_array_equal(network.values, other.values)
+
+
+def test_the_flat_vector_is_the_layers():
+    network = small_network()
+    assert network.values.size == 2 * 16 + 16 + 16 + 1
+    network.values[:] = np.arange(network.values.size)
+    np.testing.assert_array_equal(network.layers[0].weights.ravel(), np.arange(32))
+    network.layers[0].bias[...] = -1
+    np.testing.assert_array_equal(network.values[32:48], -1)
+    with pytest.raises(ValueError, match="broadcast"):
+        network.values = np.zeros(3)
+
+
+def test_a_layer_added_later_joins_the_vector():
+    network = small_network()
+    before = network.values.copy()
+    network.add_layer(FullyConnectedLayer(1, 2))
+    np.testing.assert_array_equal(network.values[: before.size], before)
+    assert network.values.size == before.size + 4
+    assert np.shares_memory(network.layers[-1].weights, network.values)
+
+
+def test_gradients_survive_the_packing():
+    network = small_network()
+    network.forward_propagate(XOR_X)
+    network.backward_propagate(np.ones((4, 1)))
+    assert network.gradients[-1] == 4
+
+
+def test_a_copy_is_independent():
+    network = small_network()
+    twin = network.copy()
+    np.testing.assert_array_equal(twin.values, network.values)
+    expected = twin.predict(XOR_X)
+    network.train(XOR_X, XOR_Y)
+    np.testing.assert_array_equal(twin.predict(XOR_X), expected)
+    assert not np.array_equal(network.predict(XOR_X), expected)
+
+
+def test_a_soft_update_is_one_line():
+    online, target = small_network(1), small_network(2)
+    expected = 0.9 * target.values + 0.1 * online.values
+    target.values += 0.1 * (online.values - target.values)
+    np.testing.assert_allclose(target.values, expected, rtol=1e-5)
+    target.values = online.values
+    np.testing.assert_array_equal(target.predict(XOR_X), online.predict(XOR_X))
+    assert not np.shares_memory(target.values, online.values)
+
+
+def test_what_predict_returned_stays():
+    network = small_network()
+    first = network.predict(XOR_X)
+    kept = first.copy()
+    network.train(XOR_X, XOR_Y)
+    network.predict(XOR_X[::-1])
+    np.testing.assert_array_equal(first, kept)

@@ -1,0 +1,267 @@
+"""Saving whole or not at all, and naming what is wrong on the way back."""
+
+import json
+
+import numpy as np
+import pytest
+
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    CostFunctions,
+    DuelingLayer,
+    FullyConnectedLayer,
+    LayerNormalisation,
+    ModelFormatError,
+    NeuralNetwork,
+    atomic_folder,
+)
+from ai.nn.layers import LAYERS
+
+X = np.random.default_rng(0).normal(size=(7, 3))
+
+
+def every_layer(seed=0, dtype=np.float32):
+    network = (
+        NeuralNetwork(*CostFunctions.use_huber(2.5), rng=np.random.default_rng(seed), dtype=dtype)
+        .add_layer(FullyConnectedLayer(3, 4))
+        .add_layer(LayerNormalisation(4, epsilon=1e-3))
+        .add_layer(ActivationLayer(*ActivationFunctions.use_leaky_relu(0.3)))
+        .add_layer(FullyConnectedLayer(4, 4))
+        .add_layer(ActivationLayer(*ActivationFunctions.use_sigmoid()))
+        .add_layer(DuelingLayer(4, 2))
+    )
+    assert {type(layer).__name__ for layer in network.layers} == set(LAYERS)
+    return network
+
+
+@pytest.fixture
+def saved(tmp_path):
+    every_layer().save(tmp_path / "model")
+    return tmp_path / "model"
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_a_network_comes_back(tmp_path, dtype):
+    network = every_layer(dtype=dtype)
+    network.values += 0.5
+    network.save(tmp_path / "deep" / "model")
+    loaded = NeuralNetwork.load(tmp_path / "deep" / "model")
+    np.testing.assert_array_equal(loaded.values, network.values)
+    np.testing.assert_array_equal(loaded.predict(X), network.predict(X))
+    assert loaded.predict(X).dtype == dtype
+    assert (loaded.cost.name, dict(loaded.cost.options)) == ("huber", {"delta": 2.5})
+    assert loaded.layers[1].epsilon == 1e-3
+    assert loaded.layers[2].activation.options == {"slope": 0.3}
+    history = [one.train(X, np.ones((7, 2)), epochs=2) for one in (network, loaded)]
+    assert history[0] == history[1]
+
+
+def test_the_folder_can_be_read_by_a_person(saved):
+    config = json.loads((saved / "config.json").read_text())
+    assert config["format"] == "tranquility network"
+    assert config["version"] == 1
+    assert config["cost"] == {"name": "huber", "delta": 2.5}
+    assert config["layers"][0] == {
+        "type": "FullyConnectedLayer",
+        "inputs": 3,
+        "outputs": 4,
+        "arrays": {
+            "weights": {"file": "layer-0-weights.npy", "shape": [3, 4], "dtype": "float32"},
+            "bias": {"file": "layer-0-bias.npy", "shape": [4], "dtype": "float32"},
+        },
+    }
+    assert config["layers"][2]["activation"] == {"name": "leaky_relu", "slope": 0.3}
+    arrays = {entry["file"] for layer in config["layers"] for entry in layer["arrays"].values()}
+    assert {path.name for path in saved.iterdir()} == arrays | {"config.json"}
+
+
+def test_a_save_replaces_the_old_folder(saved):
+    (saved / "layer-9-weights.npy").write_bytes(b"left over")
+    network = every_layer(seed=1)
+    network.save(saved)
+    np.testing.assert_array_equal(NeuralNetwork.load(saved).values, network.values)
+    assert not (saved / "layer-9-weights.npy").exists()
+    assert [path.name for path in saved.parent.iterdir()] == ["model"]
+
+
+def test_keys_of_other_programs_are_left_alone(saved):
+    path = saved / "config.json"
+    config = json.loads(path.read_text())
+    config["comment"] = "the good one"
+    config["cost"]["note"] = config["layers"][0]["note"] = "?"
+    path.write_text(json.dumps(config))
+    NeuralNetwork.load(saved)
+
+
+def edit(change):
+    """Make a damage of a change to the parsed config.json."""
+
+    def damage(folder):
+        path = folder / "config.json"
+        config = json.loads(path.read_text())
+        change(config)
+        path.write_text(json.dumps(config))
+
+    return damage
+
+
+def truncate(folder):
+    path = folder / "layer-3-weights.npy"
+    path.write_bytes(path.read_bytes()[:-5])
+
+
+def put(array):
+    return lambda folder: np.save(folder / "layer-0-weights.npy", array, allow_pickle=True)
+
+
+DAMAGES = {
+    "no config": (lambda folder: (folder / "config.json").unlink(), "config.json"),
+    "not JSON": (lambda folder: (folder / "config.json").write_text("{"), "config.json"),
+    "not text": (lambda folder: (folder / "config.json").write_bytes(b"\xff\xfe\x00"), "config.json"),
+    "a list": (lambda folder: (folder / "config.json").write_text("[]"), "tranquility network"),
+    "deep JSON": (lambda folder: (folder / "config.json").write_text("[" * 100_000), "config.json"),
+    "another format": (edit(lambda c: c.update(format="onnx")), "tranquility network"),
+    "a later version": (edit(lambda c: c.update(version=2)), "version 2"),
+    "odd dtype": (edit(lambda c: c.update(dtype="complex64")), "complex64"),
+    "no cost": (edit(lambda c: c.pop("cost")), "cost"),
+    "unknown cost": (edit(lambda c: c["cost"].update(name="hinge")), "hinge"),
+    "bad delta": (edit(lambda c: c["cost"].update(delta=-1)), "delta"),
+    "no delta": (edit(lambda c: c["cost"].pop("delta")), "delta"),
+    "no layers": (edit(lambda c: c.update(layers=None)), "layers"),
+    "layer no object": (edit(lambda c: c["layers"].insert(0, 3)), "layer 0"),
+    "unknown layer": (edit(lambda c: c["layers"][3].update(type="Attention")), "Attention"),
+    "unhashable layer": (edit(lambda c: c["layers"][3].update(type=[])), "layer 3"),
+    "unknown activation": (edit(lambda c: c["layers"][4].update(activation={"name": "swish"})), "swish"),
+    "bad slope": (edit(lambda c: c["layers"][2]["activation"].update(slope="steep")), "layer 2"),
+    "no inputs": (edit(lambda c: c["layers"][0].pop("inputs")), "inputs"),
+    "negative size": (edit(lambda c: c["layers"][0].update(outputs=-4)), "-4"),
+    "huge size": (edit(lambda c: c["layers"][0].update(outputs=10**12)), "1000000000000"),
+    "large size": (edit(lambda c: c["layers"][0].update(inputs=2**20, outputs=2**20)), "1048576"),
+    "size as text": (edit(lambda c: c["layers"][0].update(outputs="4")), "'4'"),
+    "layers that do not fit": (edit(lambda c: c["layers"][3].update(inputs=5)), "takes 5"),
+    "no arrays": (edit(lambda c: c["layers"][0].pop("arrays")), "arrays"),
+    "shape belied": (edit(lambda c: c["layers"][0]["arrays"]["bias"].update(shape=[5])), "layer-0-bias"),
+    "another folder's file": (
+        edit(lambda c: c["layers"][0]["arrays"]["bias"].update(file="../model/layer-0-bias.npy")),
+        "not a file of this folder",
+    ),
+    "missing array": (lambda folder: (folder / "layer-5-bias.npy").unlink(), "layer-5-bias.npy"),
+    "truncated array": (truncate, "layer-3-weights.npy"),
+    "empty array": (lambda folder: (folder / "layer-3-weights.npy").write_bytes(b""), "layer-3-weights.npy"),
+    "no array": (lambda folder: (folder / "layer-3-weights.npy").write_text("hello"), "layer-3-weights.npy"),
+    "wrong shape": (put(np.zeros((4, 3), np.float32)), "layer-0-weights.npy"),
+    "wrong dtype": (put(np.zeros((3, 4), np.int32)), "layer-0-weights.npy"),
+    "objects": (put(np.array([[None] * 4] * 3)), "layer-0-weights.npy"),
+    "not finite": (put(np.full((3, 4), np.nan, np.float32)), "layer-0-weights.npy"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGES)
+def test_damage_is_named(saved, name):
+    damage, message = DAMAGES[name]
+    damage(saved)
+    with pytest.raises(ModelFormatError) as caught:
+        NeuralNetwork.load(saved)
+    assert message in str(caught.value)
+    assert str(saved) in str(caught.value)
+    assert len(caught.value.problems) >= 1
+
+
+def test_all_damage_is_named_at_once(saved):
+    truncate(saved)
+    (saved / "layer-5-bias.npy").unlink()
+    edit(lambda c: c["cost"].update(name="hinge"))(saved)
+    with pytest.raises(ModelFormatError) as caught:
+        NeuralNetwork.load(saved)
+    for problem in ("hinge", "layer-3-weights.npy", "layer-5-bias.npy"):
+        assert problem in str(caught.value)
+    assert len(caught.value.problems) == 3
+
+
+def test_a_path_that_is_no_folder_is_named(tmp_path):
+    with pytest.raises(ModelFormatError, match="no such folder"):
+        NeuralNetwork.load(tmp_path / "nowhere")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ModelFormatError, match="a file"):
+        NeuralNetwork.load(tmp_path / "file")
+
+
+def fail_at(monkeypatch, where, name, call, error):
+    """Let the given call of a function raise an error."""
+    original, calls = getattr(where, name), []
+
+    def failing(*args, **kwargs):
+        calls.append(args)
+        if len(calls) == call:
+            raise error
+        return original(*args, **kwargs)
+
+    monkeypatch.setattr(where, name, failing)
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize(("where", "name", "call"), [(np, "save", 3), (json, "dumps", 1)])
+def test_an_interrupted_save_leaves_the_old_network_whole(saved, monkeypatch, where, name, call, error):
+    expected = NeuralNetwork.load(saved).values
+    with monkeypatch.context() as patch:
+        fail_at(patch, where, name, call, error)
+        with pytest.raises(type(error)):
+            every_layer(seed=1).save(saved)
+    np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
+    assert [path.name for path in saved.parent.iterdir()] == ["model"]
+
+
+@pytest.mark.parametrize("call", [1, 2])
+def test_a_rename_that_fails_leaves_the_old_network_whole(saved, monkeypatch, call):
+    expected = NeuralNetwork.load(saved).values
+    with monkeypatch.context() as patch:
+        fail_at(patch, type(saved), "rename", call, PermissionError(13, "Permission denied"))
+        with pytest.raises(PermissionError):
+            every_layer(seed=1).save(saved)
+    np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
+    assert [path.name for path in saved.parent.iterdir()] == ["model"]
+
+
+def test_a_stop_between_the_renames_is_recovered(saved):
+    expected = NeuralNetwork.load(saved).values
+    saved.rename(saved.with_name(".model.old"))
+    np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
+    assert [path.name for path in saved.parent.iterdir()] == ["model"]
+
+
+def test_leavings_of_a_stopped_save_are_cleared(saved):
+    saved.with_name(".model.new").mkdir()
+    saved.with_name(".model.old").mkdir()
+    every_layer().save(saved)
+    assert [path.name for path in saved.parent.iterdir()] == ["model"]
+
+
+def test_a_network_that_cannot_come_back_is_not_saved(saved):
+    expected = NeuralNetwork.load(saved).values
+    unnamed = every_layer().add_layer(ActivationLayer(np.sin, np.cos))
+    with pytest.raises(ValueError, match="no name"):
+        unnamed.save(saved)
+    broken = every_layer()
+    broken.values[3] = np.nan
+    with pytest.raises(ValueError, match="layer 0 has weights that are not finite"):
+        broken.save(saved)
+    np.testing.assert_array_equal(NeuralNetwork.load(saved).values, expected)
+
+
+def test_somebodys_files_are_never_replaced(tmp_path):
+    (tmp_path / "thesis.txt").write_text("three years")
+    with pytest.raises(FileExistsError, match="something else"):
+        every_layer().save(tmp_path)
+    with pytest.raises(FileExistsError, match="something else"):
+        every_layer().save(tmp_path / "thesis.txt")
+    assert (tmp_path / "thesis.txt").read_text() == "three years"
+
+
+def test_a_folder_may_hold_networks_in_folders(tmp_path):
+    for seed in (1, 2):
+        with atomic_folder(tmp_path / "agent") as folder:
+            every_layer(seed).save(folder / "network")
+            (folder / "config.json").write_text("{}")
+    loaded = NeuralNetwork.load(tmp_path / "agent" / "network")
+    np.testing.assert_array_equal(loaded.values, every_layer(2).values)
