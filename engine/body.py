@@ -103,7 +103,8 @@ class Body:
 
         Values are one for all worlds or have a row for each world that is set.
         """
-        rows = slice(None) if mask is None else np.asarray(mask, dtype=bool)
+        worlds = None if mask is None else np.asarray(mask, dtype=bool)
+        rows = slice(None) if worlds is None else worlds
         state = self.world.state
         if position is not None:
             state.pose[rows, self.index, :2] = np.asarray(position, dtype=float)
@@ -114,7 +115,7 @@ class Body:
         if angular_velocity is not None:
             state.velocity[rows, self.index, 2] = np.asarray(angular_velocity, dtype=float)
         if position is not None or angle is not None:
-            self.world.moved(self)
+            self.world.moved(self, worlds)
 
     def _inverse(self, row: int) -> float:
         value = float(self.world.params.inverse_mass[self.index, row])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +15,32 @@ from engine.vector import Array, Bools, Ints, rotate
 _DEFAULT_FRICTION = 0.5
 
 
+@dataclass(frozen=True)
+class Memory:
+    """The k manifolds of the last step, in the order of their worlds and pairs."""
+
+    key: Ints  # (k,) world · pairs + pair, rising
+    feature: Ints  # (k, 2), 0 for a point that was not there
+    impulse: Array  # (3, k)
+
+    @classmethod
+    def empty(cls) -> Memory:
+        """Nothing touched."""
+        return cls(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), np.zeros((3, 0)))
+
+    @classmethod
+    def of(cls, contacts: Contacts, pairs: int) -> Memory:
+        """What is worth remembering of a solved step."""
+        key = contacts.world * pairs + contacts.pair
+        rising = np.argsort(key)
+        feature = contacts.manifold.feature * contacts.manifold.valid
+        return cls(key[rising], feature[rising], contacts.impulse[:, rising])
+
+    def where(self, kept: Bools) -> Memory:
+        """Only these manifolds."""
+        return Memory(self.key[kept], self.feature[kept], self.impulse[:, kept])
+
+
 class Detector:
     """Finds what touches in every world, and remembers the impulses, so that a resting stack starts solved.
 
@@ -21,7 +48,7 @@ class Detector:
     hundreds of shapes, testing all those pairs in one go is faster in NumPy than any tree.
     """
 
-    def __init__(self, batch: int, params: BodyParams, shapes: ShapeTable) -> None:
+    def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
         self.shapes = shapes
         self.dynamic = params.dynamic
         self.pairs = _meeting_pairs(params, shapes)  # (pairs, 2) of shapes, a polygon before a circle
@@ -31,9 +58,7 @@ class Detector:
         self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
         self._fixed = np.flatnonzero(~self.dynamic[shapes.body])
         self._fixed_bounds: tuple[Array, Array] | None = None
-        self._impulse = np.zeros((3, batch, len(self.pairs)))
-        self._feature = np.zeros((batch, len(self.pairs), 2), dtype=np.int32)
-        self._last = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp))
+        self._memory = Memory.empty()
 
     def find(self, state: BodyState) -> Contacts | None:
         """Return every touching pair of active bodies, in the solver's order; None if nothing touches."""
@@ -61,21 +86,27 @@ class Detector:
             colour_ends=ends,
         )
 
-    def remember(self, contacts: Contacts) -> None:
-        """Keep the impulses of a step for the next."""
-        self._feature[self._last] = 0
-        self._last = (contacts.world, contacts.pair)
-        self._impulse[:, contacts.world, contacts.pair] = contacts.impulse
-        self._feature[contacts.world, contacts.pair] = contacts.manifold.feature * contacts.manifold.valid
+    def remember(self, contacts: Contacts | None) -> None:
+        """Keep the impulses of a step for the next one, and only for that."""
+        self._memory = Memory.of(contacts, len(self.pairs)) if contacts else Memory.empty()
 
-    def memory(self) -> tuple[Array, Ints, tuple[Ints, Ints]]:
+    def memory(self) -> Memory:
         """What `remember` has kept, to be put back by `recall_memory`."""
-        return self._impulse.copy(), self._feature.copy(), self._last
+        return self._memory
 
-    def recall_memory(self, memory: tuple[Array, Ints, tuple[Ints, Ints]]) -> None:
+    def recall_memory(self, memory: Memory) -> None:
         """Return to what was kept at the time of a call of `memory`."""
-        impulse, feature, self._last = memory
-        self._impulse, self._feature = impulse.copy(), feature.copy()
+        self._memory = memory
+        self.forget_bounds()
+
+    def forget(self, body: int, worlds: Bools | None) -> None:
+        """A body was put elsewhere: what it touched before has no bearing on what it touches next."""
+        if len(self._memory.key):
+            world, pair = np.divmod(self._memory.key, len(self.pairs))
+            gone = (self.body_pairs[pair] == body).any(axis=1)
+            if worlds is not None:
+                gone &= worlds[world]
+            self._memory = self._memory.where(~gone)
 
     def forget_bounds(self) -> None:
         """A static body was put elsewhere."""
@@ -144,10 +175,16 @@ class Detector:
 
     def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> Array:
         """Impulses (3, m) of the step before, at points that are made by the same faces as then."""
-        same = (self._feature[world, pair] == manifold.feature) & manifold.valid
-        impulse = self._impulse[:, world, pair]
-        impulse[:2] *= same.T
-        impulse[2] *= same.all(axis=1) | (same.any(axis=1) & (manifold.valid.sum(axis=1) == 1))
+        impulse = np.zeros((3, len(world)))
+        last = self._memory
+        if not len(last.key):
+            return impulse
+        key = world * len(self.pairs) + pair
+        row = np.minimum(last.key.searchsorted(key), len(last.key) - 1)
+        same = (last.key[row] == key)[:, None] & (last.feature[row] == manifold.feature) & manifold.valid
+        np.multiply(last.impulse[:2, row], same.T, out=impulse[:2])
+        rubs = same.all(axis=1) | (same.any(axis=1) & (manifold.valid.sum(axis=1) == 1))
+        np.multiply(last.impulse[2, row], rubs, out=impulse[2])
         return impulse
 
 

@@ -177,7 +177,7 @@ def colour(slots: Ints, free: Bools, pair: Ints) -> tuple[Ints, list[int]]:
         for side in (0, 1):
             moving = left[free[left, side]]
             np.minimum.at(lowest, slots[moving, side], rank[moving])
-        taken = np.all((lowest[slots[left]] == rank[left, None]) | ~free[left], axis=1)
+        taken: Bools = ((lowest[slots[left]] == rank[left, None]) | ~free[left]).all(axis=1)
         order.append(left[taken])
         ends.append(len(order[-1]) + (ends[-1] if ends else 0))
         left = left[~taken]

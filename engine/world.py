@@ -12,7 +12,7 @@ from engine.integrate import integrate_position, integrate_velocity
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Contacts, Solver
 from engine.state import BodyParams, BodyState, ShapeTable
-from engine.vector import Array
+from engine.vector import Array, Bools
 
 DT = 1.0 / 60.0
 
@@ -116,7 +116,7 @@ class World:
         integrate_position(self.state, DT)
         if solver:
             solver.solve_overlaps(self.state, max(2, self.iterations // 3))
-            self.detector.remember(solver.contacts)
+        self.detector.remember(contacts)
         self.state.force[:] = 0.0
         self.contacts = contacts
 
@@ -124,11 +124,13 @@ class World:
     def detector(self) -> Detector:
         """What finds the contacts; made anew when a body has been added."""
         if self._detector is None:
-            self._detector = Detector(self.batch, self.params, ShapeTable(self.shapes, self._shape_bodies))
+            self._detector = Detector(self.params, ShapeTable(self.shapes, self._shape_bodies))
         return self._detector
 
-    def moved(self, body: Body) -> None:
-        """A body was put elsewhere by hand: bring up to date what is kept about poses."""
+    def moved(self, body: Body, worlds: Bools | None) -> None:
+        """A body was put elsewhere by hand, in these worlds or in all: bring up to date what is kept."""
         self.state.refresh_rotation()
-        if self._detector is not None and body.static:
-            self._detector.forget_bounds()
+        if self._detector is not None:
+            self._detector.forget(body.index, worlds)
+            if body.static:
+                self._detector.forget_bounds()

@@ -1,0 +1,156 @@
+"""A world is the same, bit for bit, alone and among a thousand."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from engine import Circle, Polygon, World
+
+STATE = ("pose", "velocity", "cos", "sin")
+
+
+def landers(batch):
+    """A craft of three shapes above a pad between ragged ground segments: mostly air, sometimes a touch."""
+    world = World(batch=batch)
+    heights = [1.0, 0.4, 1.3, 1.0, 0.7, 1.6]
+    for i, (left, right) in enumerate(pairwise(heights)):
+        x = 4.0 * i - 10
+        world.add(Polygon([(x, -1), (x + 4, -1), (x + 4, right), (x, left)]), (0, 0), static=True)
+    world.add(Polygon.box(6.0, 0.6), (0.0, 1.3), static=True)
+    hull = Polygon([(-0.62, -0.45), (0.62, -0.45), (0.72, 0.05), (0.42, 0.75), (-0.42, 0.75), (-0.72, 0.05)])
+    feet = [Polygon.box(0.4, 0.12, (side * 0.85, -0.9)) for side in (-1, 1)]
+    world.add([hull, *feet], (0.0, 4.0), mass=1000.0, restitution=0.4, friction=0.5, linear_drag=3.0)
+    return world
+
+
+def toys(batch):
+    """Circles and polygons of all sorts in a walled box."""
+    world = World(gravity=(0.3, -9.81), batch=batch)
+    world.add(Polygon.box(8.0, 1.0), (0.0, -0.5), static=True, friction=0.4)
+    for side in (-1, 1):
+        world.add(Polygon.box(1.0, 12.0), (side * 4.0, 5.0), static=True)
+    for i in range(4):
+        world.add(Circle(0.3 + 0.05 * i), (i - 1.5, 1.0), mass=1.0 + i, restitution=0.6, angular_drag=0.1)
+        world.add(Polygon.box(0.5 + 0.1 * i, 0.4), (i - 1.5, 2.2), mass=1, friction=0.3, quadratic_drag=0.02)
+    world.add(Polygon([(-0.4, -0.3), (0.5, -0.3), (0.0, 0.6)]), (0.0, 4.0), mass=2.0, restitution=0.2)
+    world.add([Circle(0.3, (-0.4, 0.0)), Circle(0.3, (0.4, 0.0)), Polygon.box(0.8, 0.2)], (1.5, 4), mass=1.5)
+    return world
+
+
+def throw(world, seed):
+    """Put every moving body somewhere of its own in each world."""
+    random = np.random.default_rng(seed)
+    for body in world.bodies:
+        if not body.static:
+            body.set(
+                position=body.position + random.uniform(-0.3, 0.3, (world.batch, 2)),
+                angle=random.uniform(-3, 3, world.batch),
+                velocity=random.uniform(-4, 4, (world.batch, 2)),
+                angular_velocity=random.uniform(-3, 3, world.batch),
+            )
+
+
+def like(world, make, rows):
+    """The same start as some rows of `world`, in a world of their own."""
+    alone = make(len(rows))
+    for mine, theirs in zip(alone.bodies, world.bodies, strict=True):
+        mine.set(
+            position=theirs.position[rows],
+            angle=theirs.angle[rows],
+            velocity=theirs.velocity[rows],
+            angular_velocity=theirs.angular_velocity[rows],
+        )
+    return alone
+
+
+def assert_same(world, alone, rows):
+    for name in STATE:
+        ours, theirs = getattr(world.state, name)[rows], getattr(alone.state, name)
+        assert ours.tobytes() == theirs.tobytes(), name
+
+
+@pytest.mark.parametrize(("make", "steps"), [(landers, 400), (toys, 150)])
+def test_step_in_a_batch_of_1000_equals_the_same_step_alone(make, steps):
+    many = make(1000)
+    throw(many, seed=3)
+    chosen = [[0], [17], [421], [999]]
+    few = [like(many, make, rows) for rows in chosen]
+    touched = 0
+    for _ in range(steps):
+        many.step()
+        for alone in few:
+            alone.step()
+            touched += alone.contacts is not None
+    for alone, rows in zip(few, chosen, strict=True):
+        assert_same(many, alone, rows)
+    assert touched > steps / 4
+
+
+@pytest.mark.parametrize("batch", [2, 3, 7, 17])
+@pytest.mark.parametrize("make", [landers, toys])
+def test_every_world_of_a_small_batch_equals_itself_alone_at_each_step(make, batch):
+    many = make(batch)
+    throw(many, seed=batch)
+    few = [like(many, make, [row]) for row in range(batch)]
+    for _ in range(120):
+        many.step()
+        for row, alone in enumerate(few):
+            alone.step()
+            assert_same(many, alone, [row])
+
+
+def test_contacts_of_a_batch_are_those_of_its_worlds():
+    many = toys(5)
+    throw(many, seed=8)
+    few = [like(many, toys, [row]) for row in range(5)]
+    for _ in range(60):
+        many.step()
+        for alone in few:
+            alone.step()
+    for row, alone in enumerate(few):
+        rows = np.flatnonzero(many.contacts.world == row)
+        assert np.array_equal(many.contacts.pair[rows], alone.contacts.pair)
+        assert np.array_equal(many.contacts.impulse[:, rows], alone.contacts.impulse)
+        assert np.array_equal(many.contacts.approach[:, rows], alone.contacts.approach)
+
+
+def test_a_second_landing_owes_nothing_to_the_first():
+    # A box that hops alone must not meet the impulses of its last landing again.
+    def hopper(batch):
+        world = World(gravity=(0, -9.81), batch=batch)
+        world.add(Polygon.box(20, 1), (0, -0.5), static=True)
+        world.add(Polygon.box(1, 1), (0, 1.5), mass=2.0, friction=0.5, restitution=0.7)
+        return world
+
+    alone, pair = hopper(1), hopper(2)
+    alone.bodies[1].velocity = (1.0, 0.0)
+    pair.bodies[1].set(velocity=[[1.0, 0.0], [0.0, 0.0]], position=[[0, 1.5], [0, 0.499]])
+    for _ in range(300):
+        alone.step()
+        pair.step()
+        assert_same(pair, alone, [0])
+
+
+def test_same_start_same_flight():
+    twins = [toys(3), toys(3)]
+    for world in twins:
+        throw(world, seed=5)
+        for _ in range(200):
+            world.step()
+    assert twins[0].state.pose.tobytes() == twins[1].state.pose.tobytes()
+
+
+def test_a_reset_leaves_no_residue():
+    used, fresh = toys(2), toys(2)
+    throw(used, seed=1)
+    start = {name: getattr(fresh.state, name).copy() for name in STATE}
+    for _ in range(100):
+        used.step()
+    for body in used.bodies:
+        body.set(position=start["pose"][:, body.index, :2], angle=start["pose"][:, body.index, 2],
+                 velocity=(0, 0), angular_velocity=0.0)  # fmt: skip
+    for _ in range(100):
+        used.step()
+        fresh.step()
+    assert used.state.pose.tobytes() == fresh.state.pose.tobytes()
