@@ -1,0 +1,285 @@
+"""The deep Q-learning agent (Mnih et al. 2015), for any environment with numbers in and a few actions out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from ai.config import Config
+from ai.env import Bools, Floats, Ints, StepResult
+from ai.memory import Episodes, NStep
+from ai.nn import (
+    OPTIMIZERS,
+    ActivationLayer,
+    DuelingLayer,
+    FullyConnectedLayer,
+    LayerNormalisation,
+    ModelFormatError,
+    NeuralNetwork,
+    atomic_folder,
+)
+from ai.nn.activations import ACTIVATIONS
+from ai.nn.costs import COSTS
+from ai.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+from ai.schedule import linear
+
+FORMAT: Final = "tranquility agent"
+VERSION: Final = 1
+AGENT_FILE: Final = "config.json"
+OPTIMIZER_FILE: Final = "optimizer.npz"
+
+
+@dataclass(frozen=True)
+class Symmetry:
+    """How a transition looks in a mirror: a free second experience for each one made."""
+
+    signs: Floats  # (features,) to multiply a state by
+    features: Ints  # (features,) which feature stands in each place
+    actions: Ints  # (actions,) which action each becomes
+
+    def apply(self, cell: MemoryCell, count: int) -> None:
+        """Mirror the first `count` transitions of a batch, in place."""
+        for states in (cell.state, cell.next_state):
+            states[:count] = states[:count, self.features] * self.signs
+        cell.action[:count] = self.actions[cell.action[:count]]
+
+
+class Policy(Protocol):
+    """Whatever can judge actions."""
+
+    def q_values(self, observation: Floats) -> Floats:
+        """Values (n, actions) for observations (n, features)."""
+
+
+class DeepQAgent:
+    """Learns what each action is worth in each state, from its own flights.
+
+    `action_chances` (actions,) are the odds of random actions, uniform by default. All randomness comes from
+    `rng`.
+    """
+
+    def __init__(
+        self,
+        num_features: int,
+        num_actions: int,
+        config: Config | None = None,
+        rng: np.random.Generator | None = None,
+        *,
+        symmetry: Symmetry | None = None,
+        action_chances: Floats | None = None,
+    ) -> None:
+        self.num_features, self.num_actions = num_features, num_actions
+        self.config = config or Config()
+        self.rng = rng or np.random.default_rng(0)
+        self.symmetry = symmetry
+        self.action_chances = action_chances
+        self.online = build_network(num_features, num_actions, self.config, self.rng)
+        self.target = self.online.copy()
+        self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
+        self.decisions = 0
+        self.train_count = 0
+        self.loss = self.mean_q = 0.0
+        self._start_memory()
+
+    def _start_memory(self) -> None:
+        config = self.config
+        buffer = PrioritisedReplayBuffer if config.prioritised else ReplayBuffer
+        self.replay = buffer(config.replay_size, self.num_features, config.replay_prune)
+        if isinstance(self.replay, PrioritisedReplayBuffer):
+            self.replay.exponent = config.priority_exponent
+        self.successes = ReplayBuffer(max(1500, config.replay_size // 10), self.num_features)
+        self._n_step = NStep(config.n_step, config.discount)
+        self._episodes = Episodes()
+
+    @property
+    def network(self) -> NeuralNetwork:
+        """The network that flies."""
+        return self.target if self.config.fly_target else self.online
+
+    def q_values(self, observation: Floats) -> Floats:
+        """Value of every action, (n, actions), for observations (n, features)."""
+        values: Floats = self.network.predict(np.atleast_2d(observation))
+        return values
+
+    def act(self, observation: Floats, epsilon: float = 0.0) -> Ints:
+        """Actions (n,) for observations (n, features): the best, or with chance `epsilon` a random one."""
+        actions: Ints = self.q_values(observation).argmax(axis=1)
+        if epsilon > 0.0:
+            explore = self.rng.random(len(actions)) < epsilon
+            chances = self.action_chances
+            actions[explore] = self.rng.choice(self.num_actions, int(explore.sum()), p=chances)
+        return actions
+
+    def remember(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
+        """Store what `actions` (n,) at `observation` (n, features) led to; `success` marks good endings."""
+        cells, slots = self._n_step.add(
+            observation, actions, result.reward * np.float32(self.config.reward_scale),
+            result.observation, result.terminated, result.ended,
+        )  # fmt: skip
+        self.decisions += len(actions)
+        if not len(slots):
+            return
+        self.replay.add(cells)
+        if self.config.success_pass and success is not None:
+            for episode in self._episodes.add(cells, slots, result.ended, success):
+                self.successes.add(episode)
+
+    def learn(self) -> float | None:
+        """Take `config.updates` steps, and a second pass over successes if asked for; return the mean loss.
+
+        None before the warm-up is over. The targets of all these steps are computed in one go beforehand.
+        """
+        config = self.config
+        if len(self.replay) < min(config.warm_up, config.replay_size):
+            return None
+        self.optimizer.learning_rate = linear(
+            config.learning_rate, config.final_learning_rate, self.decisions, config.horizon
+        )
+        self.optimizer.clip = config.gradient_clip
+        losses = self._learn_from(self.replay, config.batch_size, config.updates)
+        if config.success_pass and len(self.successes) >= config.success_batch_size:
+            self._learn_from(self.successes, config.success_batch_size, config.updates)
+        self.loss = float(np.mean(losses))
+        return self.loss
+
+    def _learn_from(self, memory: ReplayBuffer, batch_size: int, updates: int) -> list[float]:
+        if isinstance(memory, PrioritisedReplayBuffer):
+            memory.importance = linear(
+                self.config.importance_exponent, 1.0, self.decisions, self.config.horizon
+            )
+        cells, rows, weights = memory.sample(batch_size * updates, self.rng)
+        if self.config.mirror and self.symmetry is not None:
+            _mirror_half_of_each(cells, self.symmetry, batch_size)
+        targets = self._targets(cells)
+        errors = np.empty_like(targets)
+        losses = []
+        for first in range(0, len(targets), batch_size):
+            batch = slice(first, first + batch_size)
+            errors[batch] = self._update(cells.state[batch], cells.action[batch], targets[batch], weights[batch])
+            losses.append(float(np.mean(np.abs(errors[batch]))))
+        memory.surprise(rows, errors)
+        return losses
+
+    def _targets(self, cells: MemoryCell) -> Floats:
+        """Bellman targets (n,): reward + γ^steps · value of the best next action, by the target network."""
+        values = self.target.predict(cells.next_state)
+        if self.config.double:  # van Hasselt et al. 2016: the online network picks, the target judges
+            best = self.online.predict(cells.next_state).argmax(axis=1)
+            value = values[np.arange(len(best)), best]
+        else:
+            value = values.max(axis=1)
+        self.mean_q = float(value.mean())
+        discount = np.float32(self.config.discount) ** cells.steps.astype(np.float32)
+        targets: Floats = cells.reward + discount * value * ~cells.terminal
+        return targets
+
+    def _update(self, states: Floats, actions: Ints, targets: Floats, weights: Floats) -> Floats:
+        """One step of the optimizer; returns the errors (n,) it was taken on."""
+        predicted = self.online.forward_propagate(states)
+        rows = np.arange(len(actions))
+        wanted = predicted.copy()
+        wanted[rows, actions] = targets
+        errors: Floats = predicted[rows, actions] - targets
+        slope = self.online.cost.derivative(predicted, wanted)
+        slope *= weights[:, None]
+        self.online.backward_propagate(slope)
+        length = self.optimizer.step(self.online.values, self.online.gradients)
+        if not np.isfinite(length):
+            raise FloatingPointError(
+                f"the gradient was not finite at learning step {self.train_count + 1}; "
+                f"most likely the learning rate of {self.optimizer.learning_rate:g} is too high"
+            )
+        self.train_count += 1
+        if self.train_count % self.config.target_every == 0:
+            self._follow()
+        return errors
+
+    def _follow(self) -> None:
+        """Move the target network towards the online one."""
+        rate = self.config.target_rate
+        if rate >= 1.0:
+            self.target.values = self.online.values
+        else:
+            self.target.values += rate * (self.online.values - self.target.values)
+
+    def save(self, folder: str | Path, extra: dict[str, Any] | None = None) -> None:
+        """Write the agent to a folder, whole or not at all; `extra` JSON files go beside it, by name.
+
+        Memories are not kept. Raises OSError if the disk does not take it.
+        """
+        described = {
+            "format": FORMAT, "version": VERSION, "features": self.num_features, "actions": self.num_actions,
+            "decisions": self.decisions, "train_count": self.train_count, "config": self.config.to_json(),
+        }  # fmt: skip
+        with atomic_folder(folder) as temporary:
+            self.online.save(temporary / "online")
+            self.target.save(temporary / "target")
+            np.savez(temporary / OPTIMIZER_FILE, allow_pickle=False, **self.optimizer.state())
+            for name, content in {AGENT_FILE: described, **(extra or {})}.items():
+                (temporary / name).write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+
+    @classmethod
+    def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> DeepQAgent:
+        """Read what `save` wrote. Raises ModelFormatError, which names everything that is wrong."""
+        folder = Path(folder)
+        described = _read_description(folder)
+        try:
+            config = Config.from_json(described["config"])
+            agent = cls(int(described["features"]), int(described["actions"]), config, rng)
+            agent.decisions, agent.train_count = int(described["decisions"]), int(described["train_count"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise ModelFormatError(folder, [f"{AGENT_FILE}: {error!r}"]) from error
+        problems = []
+        for name in ("online", "target"):
+            try:
+                network = NeuralNetwork.load(folder / name)
+                if network.values.shape != agent.online.values.shape:
+                    raise ModelFormatError(folder / name, ["its sizes are not those of the agent's settings"])
+                setattr(agent, name, network)
+            except ModelFormatError as error:
+                problems += [f"{name}: {problem}" for problem in error.problems]
+        try:
+            with np.load(folder / OPTIMIZER_FILE, allow_pickle=False) as state:
+                agent.optimizer.load_state(dict(state))
+        except (OSError, ValueError, KeyError, EOFError) as error:
+            problems.append(f"{OPTIMIZER_FILE}: {error}")
+        if problems:
+            raise ModelFormatError(folder, problems)
+        return agent
+
+
+def build_network(num_features: int, num_actions: int, config: Config, rng: np.random.Generator) -> NeuralNetwork:
+    """Build the Q-network of a configuration: one value per action, no activation at the end."""
+    network = NeuralNetwork(*COSTS[config.cost](), rng=rng)
+    inputs = num_features
+    for units in config.hidden:
+        network.add_layer(FullyConnectedLayer(inputs, units))
+        if config.layer_normalisation:
+            network.add_layer(LayerNormalisation(units))
+        network.add_layer(ActivationLayer(*ACTIVATIONS[config.activation]()))
+        inputs = units
+    head = DuelingLayer if config.dueling else FullyConnectedLayer
+    return network.add_layer(head(inputs, num_actions, scale=config.output_scale))
+
+
+def _mirror_half_of_each(cells: MemoryCell, symmetry: Symmetry, batch_size: int) -> None:
+    for first in range(0, len(cells.action), batch_size):
+        part = MemoryCell(*(array[first : first + batch_size] for array in cells))
+        symmetry.apply(part, batch_size // 2)
+
+
+def _read_description(folder: Path) -> dict[str, Any]:
+    try:
+        described = json.loads((folder / AGENT_FILE).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
+    if not isinstance(described, dict) or described.get("format") != FORMAT:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: this is no {FORMAT}"])
+    if described.get("version") != VERSION:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: version {described.get('version')!r}, not {VERSION}"])
+    return described

@@ -1,0 +1,164 @@
+"""Every choice in a training run, as one dataclass; the presets; and what a screen needs to show them.
+
+A field's metadata hold a sentence of help, its group, its range, and whether it may change while a run goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import Field, asdict, dataclass, field, fields, replace
+from typing import Any, Final
+
+import numpy as np
+
+from ai.nn import OPTIMIZERS
+from ai.nn.activations import ACTIVATIONS
+from ai.nn.costs import COSTS
+from ai.rewards import RewardWeights
+from ai.spawns import SPAWNS
+
+CURRICULUM: Final = "curriculum"
+
+
+def knob(
+    default: Any,
+    help: str,  # noqa: A002 - what it is called wherever options are described
+    group: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    choices: tuple[str, ...] = (),
+    log: bool = False,
+    live: bool = False,
+) -> Any:
+    """Describe a field: its help, group, range or choices, scale, and whether it may change during a run."""
+    described = {"help": help, "group": group, "low": low, "high": high, "choices": choices, "log": log, "live": live}
+    if isinstance(default, RewardWeights):
+        return field(default_factory=RewardWeights, metadata=described)
+    return field(default=default, metadata=described)
+
+
+@dataclass(frozen=True)
+class Config:
+    """One training run. The defaults are the `modern` preset."""
+
+    # fmt: off
+    learning_rate: float = knob(2e-3, "How far each step moves the weights.",
+                                "learning", low=1e-5, high=1e-1, log=True, live=True)
+    final_learning_rate: float = knob(3e-4, "What the learning rate falls to, in a straight line over the horizon.",
+                                      "learning", low=1e-6, high=1e-1, log=True, live=True)
+    discount: float = knob(0.985, "How much a reward one decision later is worth: γ.",
+                           "learning", low=0.8, high=0.9999, live=True)
+    n_step: int = knob(10, "How many rewards are summed before the network's own estimate takes over.",
+                       "learning", low=1, high=20)
+    batch_size: int = knob(256, "How many memories each step learns from.", "learning", low=8, high=1024, live=True)
+    updates: int = knob(8, "Learning steps after each decision of all landers.", "learning", low=1, high=32, live=True)
+    optimizer: str = knob("adam", "How a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
+    cost: str = knob("huber", "How a wrong estimate is measured.", "learning", choices=tuple(COSTS))
+    gradient_clip: float = knob(10.0, "A longer gradient is shortened to this.",
+                                "learning", low=0.1, high=100.0, log=True, live=True)
+    horizon: int = knob(300_000, "Decisions over which the learning rate falls.",
+                        "learning", low=1_000, high=10_000_000, log=True)
+
+    hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024)
+    activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
+    layer_normalisation: bool = knob(True, "Keep each layer's inputs in range: steadier learning.", "network")
+    dueling: bool = knob(False, "Estimate the state and the advantage of each action apart.", "network")
+    output_scale: float = knob(0.1, "Shrinks the last layer's first weights, so that early guesses are near 0.",
+                               "network", low=0.01, high=1.0, log=True)
+
+    replay_size: int = knob(300_000, "How many memories are kept.", "memory", low=100, high=1_000_000, log=True)
+    replay_prune: int = knob(1, "How many of the oldest go when memory is full.", "memory", low=1, high=100_000)
+    warm_up: int = knob(5_000, "Memories before learning begins.", "memory", low=1, high=50_000)
+    prioritised: bool = knob(False, "Replay surprising memories more often.", "memory")
+    priority_exponent: float = knob(0.6, "0 replays all alike, 1 in proportion to the surprise.",
+                                    "memory", low=0.0, high=1.0)
+    importance_exponent: float = knob(0.4, "How far the bias of prioritised replay is corrected, rising to 1.",
+                                      "memory", low=0.0, high=1.0)
+    mirror: bool = knob(True, "Show half of each batch as in a mirror: free experience.", "memory", live=True)
+    success_pass: bool = knob(False, "A second pass over memories of successful landings.", "memory", live=True)
+    success_batch_size: int = knob(32, "How many memories the second pass learns from.",
+                                   "memory", low=4, high=512, live=True)
+
+    double: bool = knob(True, "One network chooses the next action, the other judges it.", "target", live=True)
+    target_every: int = knob(1, "Learning steps between two updates of the target network.",
+                             "target", low=1, high=10_000, log=True, live=True)
+    target_rate: float = knob(0.005, "How far each update moves the target network: 1 copies, less follows softly.",
+                              "target", low=0.0001, high=1.0, log=True, live=True)
+    fly_target: bool = knob(True, "Fly with the target network, which is steadier.", "target", live=True)
+
+    epsilon_start: float = knob(1.0, "Share of random actions at first: ε.", "exploration", low=0.0, high=1.0)
+    epsilon_end: float = knob(0.05, "Share of random actions that remains.",
+                              "exploration", low=0.0, high=1.0, live=True)
+    epsilon_decay: float = knob(1.0, "Factor on ε after each episode; 1 leaves it to the next knob.",
+                                "exploration", low=0.9, high=1.0, live=True)
+    epsilon_decisions: int = knob(40_000, "Decisions over which ε falls in a straight line; 0 for none.",
+                                  "exploration", low=0, high=10_000_000, live=True)
+    random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
+                              "exploration", low=0.0, high=1.0, live=True)
+
+    num_envs: int = knob(256, "Landers at once.", "lander", low=1, high=1024)
+    frame_skip: int = knob(4, "Physics steps to a decision.", "lander", low=1, high=12)
+    spawn: str = knob("practice", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
+    reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
+                               "lander", low=0.0001, high=1.0, log=True)
+    weights: RewardWeights = knob(RewardWeights(), "What each part of the reward pays.", "lander")
+    # fmt: on
+
+    def __post_init__(self) -> None:
+        problems = [problem for item in fields(self) if (problem := _problem(item, getattr(self, item.name)))]
+        if problems:
+            raise ValueError("; ".join(problems))
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values, for a file."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, values: Mapping[str, Any]) -> Config:
+        """Read what `to_json` wrote; unknown names and values out of range raise ValueError."""
+        known = {item.name for item in fields(cls)}
+        unknown = sorted(set(values) - known)
+        if unknown:
+            raise ValueError(f"unknown settings: {', '.join(unknown)}")
+        given = dict(values)
+        try:
+            if "hidden" in given:
+                given["hidden"] = tuple(given["hidden"])
+            if "weights" in given:
+                given["weights"] = RewardWeights(**given["weights"])
+            return cls(**given)
+        except TypeError as error:
+            raise ValueError(f"settings cannot be read: {error}") from error
+
+    def changed(self, **values: Any) -> Config:
+        """Return a copy with some fields changed, checked like any other."""
+        return replace(self, **values)
+
+
+def _problem(item: Field[Any], value: Any) -> str | None:
+    """Say what is wrong with a field's value, if anything."""
+    described = item.metadata
+    if described["choices"] and value not in described["choices"]:
+        return f"{item.name} is one of {', '.join(described['choices'])}, not {value!r}"
+    if isinstance(value, bool) != (item.type == "bool"):
+        return f"{item.name} is {'' if item.type == 'bool' else 'not '}a yes or no, and was {value!r}"
+    if item.type == "int" and not isinstance(value, int | np.integer):
+        return f"{item.name} is a whole number, not {value!r}"
+    if described["low"] is not None:
+        numbers = value if isinstance(value, tuple) else (value,)
+        if not numbers or not all(isinstance(n, int | float) and described["low"] <= n <= described["high"] for n in numbers):
+            return f"{item.name} lies between {described['low']:g} and {described['high']:g}, not {value!r}"
+    return None
+
+
+PRESETS: Final[dict[str, Config]] = {
+    "modern": Config(),
+    "classic": Config(
+        learning_rate=1e-3, final_learning_rate=1e-3, discount=0.99, n_step=1, batch_size=64, updates=1,
+        optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh", layer_normalisation=False,
+        output_scale=1.0, replay_size=1500, replay_prune=1000, warm_up=64, mirror=False, success_pass=True,
+        double=False, target_every=50, target_rate=1.0, fly_target=False, epsilon_decay=0.999,
+        epsilon_decisions=0, random_main=0.5, num_envs=1, spawn=CURRICULUM,
+    ),
+}  # fmt: skip
