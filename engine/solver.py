@@ -25,6 +25,8 @@ from engine.vector import Array, Bools, Ints, cross, right_of
 SLOP = 0.005
 # Share of the overlap beyond it that one step takes back.
 CORRECTION = 0.25
+# An excess so small is not worth a correction: a stack at rest needs none; metres.
+TOLERANCE = 1e-4
 
 
 @dataclass
@@ -50,138 +52,162 @@ class Solver:
 
     def __init__(self, state: BodyState, params: BodyParams, contacts: Contacts) -> None:
         self.contacts = contacts
-        rows = _Rows.build(state, params, contacts)
-        contacts.approach = rows.speeds(state.velocity.reshape(-1, 3))
+        self._rows = _Rows.build(state, params, contacts)
+        contacts.approach = self._rows.speeds(state.velocity.reshape(-1))
         contacts.approach[:2] *= -1
         starts = [0, *contacts.colour_ends[:-1]]
-        self._slices = [slice(a, b) for a, b in zip(starts, contacts.colour_ends, strict=True)]
-        self._colours = [rows.part(span) for span in self._slices]
+        self._spans = [slice(a, b) for a, b in zip(starts, contacts.colour_ends, strict=True)]
+        self._colours = [self._rows.part(span) for span in self._spans]
 
     def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float) -> None:
         """Change velocities in place until contacts stop closing, bounce and rub; fills contacts.impulse."""
         contacts = self.contacts
         closing = contacts.approach[:2]
         rebound = np.where(closing > restitution_threshold, contacts.restitution * closing, 0.0)
-        velocity = state.velocity.reshape(-1, 3)
-        for rows, span in zip(self._colours, self._slices, strict=True):
-            rows.apply(velocity, contacts.impulse[:, span])
+        velocity = state.velocity.reshape(-1)
+        for rows, span in zip(self._colours, self._spans, strict=True):
+            velocity[rows.index] += rows.effect(contacts.impulse[:, span])
         self._sweep(velocity, contacts.impulse, rebound, contacts.friction, iterations)
 
-    def solve_overlaps(self, state: BodyState, iterations: int) -> None:
+    def solve_overlaps(self, state: BodyState, iterations: int, dt: float) -> None:
         """Move bodies out of overlaps by a velocity that lasts for this step alone, and so adds no energy."""
         manifold = self.contacts.manifold
-        excess = np.where(manifold.valid, manifold.depth - SLOP, 0.0).T
-        if not (excess > 0).any():
+        # What a rebound undoes by itself is left to it; taken back twice, it would lift a ball at each bounce.
+        depth = manifold.depth.T - dt * self._rows.speeds(state.velocity.reshape(-1))[:2]
+        excess = np.where(manifold.valid.T, depth - SLOP, 0.0)
+        excess[excess < TOLERANCE] = 0.0
+        if not excess.any():
             return
-        shift = np.zeros((state.velocity.size // 3, 3))
-        wanted = CORRECTION * np.maximum(excess, 0.0)
-        self._sweep(shift, np.zeros((3, len(self.contacts))), wanted, None, iterations)
+        shift = np.zeros(state.velocity.size)
+        frictionless = np.zeros(len(self.contacts))
+        push = np.zeros((3, len(self.contacts)))
+        self._sweep(shift, push, CORRECTION * excess, frictionless, iterations)
         state.pose += shift.reshape(state.pose.shape)
-        state.refresh_rotation()
 
     def _sweep(
-        self, velocity: Array, impulse: Array, target: Array, friction: Array | None, iterations: int
+        self, velocity: Array, impulse: Array, target: Array, friction: Array, iterations: int
     ) -> None:
         """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only."""
         parts = [
-            (rows, impulse[:, span], target[:, span], None if friction is None else friction[span])
-            for rows, span in zip(self._colours, self._slices, strict=True)
+            (rows, impulse[:, span], target[:, span], friction[span])
+            for rows, span in zip(self._colours, self._spans, strict=True)
         ]
         for _ in range(iterations):
             for rows, total, wanted, coefficient in parts:
-                speed = rows.speeds(velocity)
-                change = np.zeros_like(total)
-                if coefficient is not None:
-                    cone = coefficient * (total[0] + total[1])
-                    rub = np.minimum(np.maximum(total[2] - rows.mass[2] * speed[2], -cone), cone)
-                    change[2] = rub - total[2]
-                    speed[:2] += rows.rub_coupling * change[2]
-                # The speeds there would be without any normal impulse at all.
-                speed[:2] -= wanted + rows.mass_inverse * total[:2] + rows.push_coupling * total[1::-1]
-                change[:2] = rows.push(speed[:2]) - total[:2]
-                np.add(total, change, out=total)
-                rows.apply(velocity, change)
+                rows.relax(velocity, total, wanted, coefficient)
 
 
 @dataclass
 class _Rows:
     """Constraint rows. First axis: normal, normal, friction; last axis: A's x, y, turn, then B's."""
 
-    slots: Ints  # (m, 2) A and B in the flattened (batch, bodies) axis
+    index: Ints  # (m, 6): where A's and B's velocities stand among all of them, laid flat
     jacobian: Array  # (3, m, 6): row · velocities is the speed along it
     response: Array  # (3, m, 6): velocity change per unit of impulse
     mass: Array  # (3, m): impulse per unit of speed; 0 for a point that is not there
-    mass_inverse: Array  # (2, m) of the normal rows
-    push_coupling: Array  # (m,): how a push at one point moves the other
+    stiffness: Array  # (2, m): speed per unit of impulse, of the normal rows
+    coupling: Array  # (m,): how a push at one point moves the other
     rub_coupling: Array  # (2, m): how friction moves both points
-    pair_inverse: Array  # (3, m): other and own entries of the 2 × 2 inverse of a pair; NaN if singular
+    inverse: Array  # (2, m): of the 2 × 2 matrix of both pushes, the diagonal; NaN if singular
+    cross_inverse: Array  # (m,): and what stands beside it
 
     @classmethod
     def build(cls, state: BodyState, params: BodyParams, contacts: Contacts) -> _Rows:
         slots = contacts.world[:, None] * state.pose.shape[1] + contacts.body
+        index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6)
         jacobian = _jacobian(state.pose.reshape(-1, 3)[slots, :2], contacts.manifold)
         response = jacobian * params.inverse_mass[contacts.body].reshape(-1, 6)
         stiffness = np.vecdot(jacobian[[0, 1, 2, 0, 0, 1]], response[[0, 1, 2, 1, 2, 2]])
         mass = np.divide(1.0, stiffness[:3], out=np.zeros_like(stiffness[:3]), where=stiffness[:3] > 0)
         first, second, coupling = stiffness[0], stiffness[1], stiffness[3]
-        determinant = first * second - coupling**2
+        product = first * second
+        determinant = product - coupling**2
         # Points that nearly coincide can't share a push sensibly; NaN makes `push` take one of them.
-        determinant[determinant <= 1e-3 * first * second] = np.nan
-        pair_inverse = np.stack([coupling, second, first]) / determinant
-        return cls(slots, jacobian, response, mass, stiffness[:2], coupling, stiffness[4:], pair_inverse)
+        determinant[determinant <= 1e-3 * product] = np.nan
+        single = product == 0
+        inverse = np.where(single, mass[:2], stiffness[1::-1] / determinant)
+        cross_inverse = np.where(single, 0.0, -coupling / determinant)
+        return cls(
+            index, jacobian, response, mass, stiffness[:2], coupling, stiffness[4:], inverse, cross_inverse
+        )
 
     def part(self, span: slice) -> _Rows:
         """Only the manifolds of `span`."""
         return _Rows(
-            self.slots[span], self.jacobian[:, span], self.response[:, span], self.mass[:, span],
-            self.mass_inverse[:, span], self.push_coupling[span], self.rub_coupling[:, span],
-            self.pair_inverse[:, span],
+            self.index[span], self.jacobian[:, span], self.response[:, span], self.mass[:, span],
+            self.stiffness[:, span], self.coupling[span], self.rub_coupling[:, span],
+            self.inverse[:, span], self.cross_inverse[span],
         )  # fmt: skip
 
     def speeds(self, velocity: Array) -> Array:
-        """Speed along each row, (3, m), given flattened velocities (batch · bodies, 3)."""
-        speed: Array = np.vecdot(self.jacobian, velocity[self.slots].reshape(-1, 6))
+        """Speed along each row, (3, m), given all velocities laid flat."""
+        speed: Array = np.vecdot(self.jacobian, velocity.take(self.index))
         return speed
 
-    def apply(self, velocity: Array, impulse: Array) -> None:
-        """Add the effect of `impulse` (3, m) to the flattened velocities, in place."""
+    def effect(self, impulse: Array) -> Array:
+        """Velocity change (m, 6) of A and B by impulses (3, m)."""
         change = self.response * impulse[:, :, None]
-        total = change[0] + change[1] + change[2]
-        # A static body may stand in many rows at once; its response is zero, so any one of them may win.
-        velocity[self.slots] += total.reshape(-1, 2, 3)
+        total: Array = change[0] + change[1] + change[2]
+        return total
 
-    def push(self, speed: Array) -> Array:
-        """Solve for both points at once: impulses (2, m) and resulting speeds >= 0, one of the two 0."""
-        both = self.pair_inverse[0] * speed[::-1] - self.pair_inverse[1:] * speed
+    def relax(self, velocity: Array, total: Array, wanted: Array, friction: Array) -> None:
+        """Bring these manifolds to rest, friction first: changes velocities and their `total` (3, m)."""
+        motion = velocity.take(self.index)
+        speed = np.vecdot(self.jacobian, motion)
+        change = np.empty_like(total)
+        cone = friction * (total[0] + total[1])
+        rub = np.minimum(np.maximum(total[2] - self.mass[2] * speed[2], -cone), cone)
+        np.subtract(rub, total[2], out=change[2])
+        lacking = wanted - speed[:2] - self.rub_coupling * change[2]
+        np.subtract(self.push(lacking, total[:2]), total[:2], out=change[:2])
+        total += change
+        # A static body may stand in many rows at once; its response is zero, so any one of them may win.
+        velocity[self.index] = motion + self.effect(change)
+
+    def push(self, lacking: Array, total: Array) -> Array:
+        """Impulses (2, m) >= 0 after which both points have the speed they are `lacking`, or more by no push."""
+        both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
+        fits = both >= 0
+        if fits.all():
+            return both
+        # One point at a time, from the speeds there would be without any push at all.
+        speed = -lacking - self.stiffness * total - self.coupling * total[::-1]
         alone = np.maximum(-self.mass[:2] * speed, 0.0)
-        first_will_do = speed[1] + self.push_coupling * alone[0] >= 0
+        first_will_do = speed[1] + self.coupling * alone[0] >= 0
         alone[0] *= first_will_do
         alone[1] *= ~first_will_do
-        return np.where((both >= 0).all(axis=0), both, alone)
+        return np.where(fits.all(axis=0), both, alone)
 
 
 def colour(slots: Ints, free: Bools, pair: Ints) -> tuple[Ints, list[int]]:
     """Order m manifolds so that within each colour no two share a body that can move; and the colours' ends.
 
-    slots (m, 2) name the bodies and `free` (m, 2) says which can move. Each round takes the manifolds that
-    have the lowest number among the neighbours left (Luby 1986); the numbers are a scrambled `pair`, the
-    same in every batch, so that a world is solved in the same order alone and among others.
+    slots (m, 2) name the bodies and `free` (m, 2) says which can move. Manifolds choose in the order of a
+    scrambled `pair`, each the first colour that its bodies have not used; those with the lowest number among
+    their neighbours choose at once (Jones and Plassmann 1993). The numbers are the same in every batch, so
+    that a world is solved in the same order alone and among others.
     """
     rank = (pair * 0x9E3779B1) & 0xFFFFFFFF
+    nobody = int(slots.max(initial=-1)) + 1
+    slots = np.where(free, slots, nobody)
+    used = np.zeros(nobody + 1, dtype=np.int64)  # one bit for each colour
+    lowest = np.empty(nobody + 1, dtype=np.intp)
+    bits = np.zeros(len(slots), dtype=np.int64)
     left = np.arange(len(slots))
-    order: list[Ints] = []
-    ends: list[int] = []
-    lowest = np.empty(int(slots.max(initial=-1)) + 1, dtype=np.intp)
     while len(left):
         lowest[slots[left]] = np.iinfo(np.intp).max
-        for side in (0, 1):
-            moving = left[free[left, side]]
-            np.minimum.at(lowest, slots[moving, side], rank[moving])
-        taken: Bools = ((lowest[slots[left]] == rank[left, None]) | ~free[left]).all(axis=1)
-        order.append(left[taken])
-        ends.append(len(order[-1]) + (ends[-1] if ends else 0))
-        left = left[~taken]
-    return (np.concatenate(order) if order else left), ends
+        np.minimum.at(lowest, slots[left].ravel(), rank[left].repeat(2))
+        lowest[nobody] = -1
+        first: Bools = (lowest[slots[left]] >= rank[left, None]) | (slots[left] == nobody)
+        chosen = left[first.all(axis=1)]
+        busy = used[slots[chosen, 0]] | used[slots[chosen, 1]]
+        bits[chosen] = ~busy & (busy + 1)
+        used[slots[chosen]] |= bits[chosen, None]
+        used[nobody] = 0
+        left = left[~first.all(axis=1)]
+    order = np.argsort(bits, kind="stable")
+    ends = np.flatnonzero(np.diff(bits[order])) + 1
+    return order, [*ends.tolist(), len(order)]
 
 
 def _jacobian(positions: Array, manifold: Manifold) -> Array:

@@ -115,7 +115,8 @@ class World:
             solver.solve_velocities(self.state, self.iterations, self.restitution_threshold)
         integrate_position(self.state, DT)
         if solver:
-            solver.solve_overlaps(self.state, max(2, self.iterations // 3))
+            solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT)
+            self.state.refresh_rotation()
         self.detector.remember(contacts)
         self.state.force[:] = 0.0
         self.contacts = contacts
