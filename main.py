@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
@@ -11,6 +12,9 @@ from pathlib import Path
 
 def main(argv: list[str] | None = None) -> int:
     """Run `tranquility` with these arguments and return the exit code."""
+    # Small matrices: a second thread of linear algebra only gets in the way, of the window most of all.
+    for library in ("OPENBLAS", "OMP", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     arguments = _parser().parse_args(argv)
     try:
         if arguments.run is not None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -149,9 +148,7 @@ class DeepQAgent:
 
     def _learn_from(self, memory: ReplayBuffer, batch_size: int, updates: int) -> list[float]:
         if isinstance(memory, PrioritisedReplayBuffer):
-            memory.importance = linear(
-                self.config.importance_exponent, 1.0, self.decisions, self.config.horizon
-            )
+            memory.importance = linear(self.config.importance_exponent, 1.0, self.decisions, self.config.horizon)
         cells, rows, weights = memory.sample(batch_size * updates, self.rng)
         if self.config.mirror and self.symmetry is not None:
             _mirror_half_of_each(cells, self.symmetry, batch_size)
@@ -207,21 +204,31 @@ class DeepQAgent:
         else:
             self.target.values += rate * (self.online.values - self.target.values)
 
-    def save(self, folder: str | Path, extra: dict[str, Any] | None = None) -> None:
-        """Write the agent to a folder, whole or not at all; `extra` JSON files go beside it, by name.
+    def take_over(self, other: DeepQAgent) -> None:
+        """Go on as `other`: its networks, optimizer and counts, but not its memories."""
+        self.online.values, self.target.values = other.online.values, other.target.values
+        self.optimizer.load_state(other.optimizer.state())
+        self.decisions, self.train_count = other.decisions, other.train_count
 
-        Memories are not kept. Raises OSError if the disk does not take it.
+    def save(self, folder: str | Path) -> None:
+        """Write the agent to a folder, whole or not at all. Memories are not kept.
+
+        Raises OSError if the disk does not take it, FileExistsError if the folder holds something else.
         """
+        with atomic_folder(folder) as temporary:
+            self.write(temporary)
+
+    def write(self, folder: Path) -> None:
+        """Write the agent's files into a new folder; `save` does so safely."""
         described = {
             "format": FORMAT, "version": VERSION, "features": self.num_features, "actions": self.num_actions,
             "decisions": self.decisions, "train_count": self.train_count, "config": self.config.to_json(),
         }  # fmt: skip
-        with atomic_folder(folder) as temporary:
-            self.online.save(temporary / "online")
-            self.target.save(temporary / "target")
-            np.savez(temporary / OPTIMIZER_FILE, allow_pickle=False, **self.optimizer.state())
-            for name, content in {AGENT_FILE: described, **(extra or {})}.items():
-                (temporary / name).write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+        folder.mkdir(parents=True, exist_ok=True)
+        self.online.save(folder / "online")
+        self.target.save(folder / "target")
+        np.savez(folder / OPTIMIZER_FILE, allow_pickle=False, **self.optimizer.state())
+        (folder / AGENT_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
     @classmethod
     def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> DeepQAgent:

@@ -18,6 +18,7 @@ from ai.rewards import RewardWeights
 from ai.spawns import SPAWNS
 
 CURRICULUM: Final = "curriculum"
+_DEFAULT_WEIGHTS: Final = RewardWeights()
 
 
 def knob(
@@ -32,7 +33,15 @@ def knob(
     live: bool = False,
 ) -> Any:
     """Describe a field: its help, group, range or choices, scale, and whether it may change during a run."""
-    described = {"help": help, "group": group, "low": low, "high": high, "choices": choices, "log": log, "live": live}
+    described = {
+        "help": help,
+        "group": group,
+        "low": low,
+        "high": high,
+        "choices": choices,
+        "log": log,
+        "live": live,
+    }
     if isinstance(default, RewardWeights):
         return field(default_factory=RewardWeights, metadata=described)
     return field(default=default, metadata=described)
@@ -102,7 +111,7 @@ class Config:
     spawn: str = knob("practice", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
-    weights: RewardWeights = knob(RewardWeights(), "What each part of the reward pays.", "lander")
+    weights: RewardWeights = knob(_DEFAULT_WEIGHTS, "What each part of the reward pays.", "lander")
     # fmt: on
 
     def __post_init__(self) -> None:
@@ -147,7 +156,9 @@ def _problem(item: Field[Any], value: Any) -> str | None:
         return f"{item.name} is a whole number, not {value!r}"
     if described["low"] is not None:
         numbers = value if isinstance(value, tuple) else (value,)
-        if not numbers or not all(isinstance(n, int | float) and described["low"] <= n <= described["high"] for n in numbers):
+        if not numbers or not all(
+            isinstance(n, int | float) and described["low"] <= n <= described["high"] for n in numbers
+        ):
             return f"{item.name} lies between {described['low']:g} and {described['high']:g}, not {value!r}"
     return None
 

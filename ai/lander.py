@@ -143,7 +143,7 @@ class LanderEnv:
 
     def _build_world(self) -> None:
         params = self.params
-        surface = {"restitution": params.restitution, "friction": params.friction}
+        surface: dict[str, Any] = {"restitution": params.restitution, "friction": params.friction}
         self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5)
         foot_x, foot_y = FOOT_CENTRE
         self.lander = self.world.add(
@@ -207,7 +207,8 @@ class LanderEnv:
     @property
     def tilt(self) -> Doubles:
         """Radians from upright either way, 0 to pi, (n,)."""
-        return np.abs(np.mod(self.angle + np.pi, 2 * np.pi) - np.pi)
+        tilt: Doubles = np.abs(np.mod(self.angle + np.pi, 2 * np.pi) - np.pi)
+        return tilt
 
     @property
     def altitude(self) -> Doubles:
@@ -281,7 +282,7 @@ class LanderEnv:
 
     def observe(self) -> Floats:
         """What every lander senses now, (n, 9)."""
-        stand = self.pad + (0.0, self.params.stand)
+        stand = self.pad + np.array([0.0, self.params.stand])
         state, body = self.world.state, self.lander.index
         sensed = np.empty((self.num_envs, NUM_FEATURES))
         sensed[:, 0:2] = self.position - stand
@@ -351,7 +352,11 @@ class LanderEnv:
         late = self.steps * DT >= limits.time - 1e-9
         landed = self._still >= limits.rest_steps
         verdict = np.where(late, Outcome.TIMED_OUT, Outcome.FLYING)
-        for happened, outcome in ((gone, Outcome.OUT_OF_BOUNDS), (landed, Outcome.LANDED), (crashed, Outcome.CRASHED)):
+        for happened, outcome in (
+            (gone, Outcome.OUT_OF_BOUNDS),
+            (landed, Outcome.LANDED),
+            (crashed, Outcome.CRASHED),
+        ):
             verdict[happened] = outcome
         self.outcome = np.where(flying, verdict, self.outcome)
         self.lander.active = self.outcome == Outcome.FLYING

@@ -59,7 +59,8 @@ FEET_STEPS_PAID: Final = 30
 
 def _aligned(situation: Situation) -> Doubles:
     near = np.maximum(0.0, 1.0 - situation.offset / 3.0)
-    return near * np.maximum(0.0, 1.0 - situation.tilt / 0.5)
+    aligned: Doubles = near * np.maximum(0.0, 1.0 - situation.tilt / 0.5)
+    return aligned
 
 
 REWARDS: Final[dict[str, Callable[[Change, RewardWeights], Doubles]]] = {

@@ -106,6 +106,7 @@ class Training:
     env: LanderEnv = field(init=False)
     best: Evaluation | None = None
     best_values: Floats | None = None
+    seconds: float = 0.0  # spent, as whoever runs it counts them
 
     def __post_init__(self) -> None:
         config = self.config

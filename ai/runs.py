@@ -1,0 +1,82 @@
+"""Training runs on disk: the best network, the last one to go on from, and how they were made."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+from ai.agent import DeepQAgent
+from ai.nn import ModelFormatError, atomic_folder
+from ai.training import Evaluation, Progress, Training
+
+TRAINING_FILE: Final = "training.json"
+LAST: Final = "last"
+CHECKPOINT_SECONDS: Final = 20.0
+
+
+class TrainingClock:
+    """Ends a run after so many seconds or decisions, and says when a checkpoint is due."""
+
+    def __init__(self, seconds: float | None = None, decisions: int | None = None) -> None:
+        self.seconds, self.decisions = seconds, decisions
+        self.share = 0.0
+        self._started = self._saved = time.monotonic()
+
+    def run(self, training: Training) -> Iterator[Progress]:
+        """Advance until the time or the decisions are used up."""
+        while self.share < 1.0:
+            before = time.monotonic()
+            progress = training.advance()
+            now = time.monotonic()
+            training.seconds += now - before
+            elapsed = (now - self._started) / self.seconds if self.seconds else 0.0
+            taken = progress.decisions / self.decisions if self.decisions else 0.0
+            self.share = min(1.0, max(elapsed, taken))
+            yield progress
+
+    def checkpoint_due(self) -> bool:
+        """Whether it is time to save; asking counts as having saved."""
+        due = time.monotonic() - self._saved > CHECKPOINT_SECONDS
+        if due:
+            self._saved = time.monotonic()
+        return due
+
+
+def save_run(training: Training, folder: str | Path) -> None:
+    """Keep the best network of a run, and what is needed to go on with it, whole or not at all.
+
+    A run that has not yet been evaluated is evaluated first. Raises OSError if the disk does not take it.
+    """
+    if training.best is None:
+        training.evaluate()
+    assert training.best is not None
+    agent = training.agent
+    described = {
+        "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
+        "episodes": training.episodes, "landings": training.env.landings,
+        "seconds": round(training.seconds, 1), "best": training.best.to_json(),
+    }  # fmt: skip
+    with atomic_folder(folder) as temporary:
+        training.best_agent().write(temporary)
+        agent.write(temporary / LAST)
+        (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+
+
+def resume_run(folder: str | Path) -> Training:
+    """Go on from what `save_run` kept, with an empty memory; raises ModelFormatError for anything else."""
+    folder = Path(folder)
+    best, last = DeepQAgent.load(folder), DeepQAgent.load(folder / LAST)
+    try:
+        described = json.loads((folder / TRAINING_FILE).read_text(encoding="utf-8"))
+        training = Training(last.config, int(described["seed"]))
+        training.best = Evaluation(**described["best"])
+        training.episodes, training.env.landings = int(described["episodes"]), int(described["landings"])
+        training.seconds = float(described["seconds"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error!r}"]) from error
+    training.best_values = best.network.values.copy()
+    training.agent.take_over(last)
+    return training
