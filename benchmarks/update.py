@@ -4,7 +4,8 @@
 
 An update is the whole of it: next states through the target network, the largest Q of each, states through
 the online network, squared error at the chosen actions only, the way back, one step of Adam. A decision is
-one observation through the network. Both sides take turns, so that a busy machine slows both.
+one observation through the network. Both sides take turns, ten updates or a hundred decisions each, so that a
+busy machine slows both.
 """
 
 import os
@@ -34,7 +35,7 @@ except ImportError:
     torch = None
 
 GAMMA = 0.99
-ROUNDS = 600
+ROUNDS = 100
 
 
 def tanh_network() -> NeuralNetwork:
@@ -132,8 +133,8 @@ def torch_decision() -> Callable[[], object]:
     return decide
 
 
-def medians(*tasks: Callable[[], object], calls: int = 1) -> list[float]:
-    """Return the median time of each task in microseconds; the tasks take turns."""
+def medians(*tasks: Callable[[], object], calls: int) -> list[float]:
+    """Return the median time of each task in microseconds; the tasks take turns of so many calls."""
     times: list[list[float]] = [[] for _ in tasks]
     for measured in [False] * (ROUNDS // 10) + [True] * ROUNDS:
         for task, record in zip(tasks, times, strict=True):
@@ -150,24 +151,28 @@ def main() -> None:
     if torch is not None:
         torch.set_num_threads(1)
         versions += f", PyTorch {torch.__version__}"
-    print(f"{versions}, one thread; medians of {ROUNDS} in µs\n")
-    print(f"{'':42}{'ours':>8}{'PyTorch':>10}{'ratio':>8}")
+    print(f"{versions}, one thread; medians of {ROUNDS} turns in µs\n")
+    print(f"{'':44}{'ours':>8}{'PyTorch':>10}{'ratio':>8}")
 
-    deep = [("9-128-128-6 tanh", tanh_network, False, size) for size in (64, 256)]
-    normal = [("9-64-64-6 normalised ReLU", normalised_network, True, 256)]
-    rows = [
-        (f"update {name}, batch {size}", 1, our_update(make(), size), lambda n=n, s=size: torch_update(n, s))
-        for name, make, n, size in deep + normal
-    ]
-    rows.append(("decision 9-128-128-6 tanh", 20, our_decision(), torch_decision))
-    for name, calls, ours, theirs in rows:
-        times = medians(ours, *([theirs()] if torch is not None else []), calls=calls)
-        compared = (
-            f"{times[1]:10.1f}{times[0] / times[1]:8.2f}" if torch is not None else f"{'-':>10}{'-':>8}"
-        )
-        print(f"{name:42}{times[0]:8.1f}{compared}")
+    for size in (64, 256):
+        theirs = torch_update(False, size) if torch is not None else None
+        report(f"update 9-128-128-6 tanh, batch {size}", our_update(tanh_network(), size), theirs, 10)
+    theirs = torch_update(True, 256) if torch is not None else None
+    report("update 9-64-64-6 normalised ReLU, batch 256", our_update(normalised_network(), 256), theirs, 10)
+    theirs = torch_decision() if torch is not None else None
+    report("decision 9-128-128-6 tanh", our_decision(), theirs, 100)
+
     if torch is None:
         print('\nPyTorch is not installed; to compare with it: pip install "tranquility[bench]"')
+
+
+def report(name: str, ours: Callable[[], object], theirs: Callable[[], object] | None, calls: int) -> None:
+    if theirs is None:
+        (time_of_ours,) = medians(ours, calls=calls)
+        print(f"{name:44}{time_of_ours:8.1f}{'-':>10}{'-':>8}")
+    else:
+        time_of_ours, time_of_theirs = medians(ours, theirs, calls=calls)
+        print(f"{name:44}{time_of_ours:8.1f}{time_of_theirs:10.1f}{time_of_ours / time_of_theirs:8.2f}")
 
 
 if __name__ == "__main__":

@@ -14,18 +14,18 @@ Function = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Activation:
-    """An elementwise function with its derivative, written as two kernels that fill an array they are given.
+    """An elementwise function with its derivative.
 
-    `write(input, out)` fills `out` with f(input), and may be asked to do so in place;
-    `write_slope(input, output, out)` fills it with f'(input). Most slopes come cheaper from the output: that
-    of tanh is 1 - y².
+    `function(x)` returns f(x) as a new array, `function(x, out=...)` in the one given. `slope(x, y, out)`
+    fills `out` with f'(x), given also y = f(x): most slopes come cheaper from the output, as 1 - y² does for
+    tanh.
 
     Unpacks as the pair (function, derivative) of which the first is the activation itself: it can be called,
     and takes its name and options along to `config.json`.
     """
 
-    write: Callable[[Array, Array], object]
-    write_slope: Callable[[Array, Array, Array], object]
+    function: Callable[..., Array]
+    slope: Callable[[Array, Array, Array], object]
     name: str | None = None
     options: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}), hash=False)
     initialisation: str = "glorot"  # how weights that feed this activation had better start
@@ -37,23 +37,25 @@ class Activation:
             return function
         if derivative is None:
             raise TypeError("an activation is a function and its derivative; the derivative is missing")
-        return cls(
-            write=lambda x, out: np.copyto(out, function(x)),
-            write_slope=lambda x, _output, out: np.copyto(out, derivative(x)),
-        )
 
-    def function(self, input_data: Array) -> Array:
+        def with_out(x: Array, out: Array | None = None) -> Array:
+            y = function(x)
+            if out is None:
+                return y
+            out[...] = y
+            return out
+
+        return cls(with_out, lambda x, _y, out: np.copyto(out, derivative(x)))
+
+    def __call__(self, x: Array) -> Array:
         """Return f of each element, as a new array."""
-        output = np.empty_like(input_data)
-        self.write(input_data, output)
-        return output
+        return self.function(x)
 
-    __call__ = function
-
-    def derivative(self, input_data: Array) -> Array:
+    def derivative(self, x: Array) -> Array:
         """Return f' of each element, as a new array."""
-        slope = np.empty_like(input_data)
-        self.write_slope(input_data, self.function(input_data), slope)
+        y = self.function(x)
+        slope = np.empty_like(y)
+        self.slope(x, y, slope)
         return slope
 
     def __iter__(self) -> Iterator[Function]:
@@ -78,8 +80,8 @@ class ActivationFunctions:
     def use_relu() -> Activation:
         """Rectified linear unit max(0, x) (Nair & Hinton 2010); its derivative at 0 counts as 0."""
         return Activation(
-            write=lambda x, out: np.maximum(x, 0, out=out),
-            write_slope=lambda _input, y, out: np.greater(y, 0, out=out),
+            lambda x, out=None: np.maximum(x, 0, out=out),
+            lambda _x, y, out: np.greater(y, 0, out=out),
             name="relu",
             initialisation="he",
         )
@@ -90,8 +92,8 @@ class ActivationFunctions:
         if not 0 < slope < 1:
             raise ValueError(f"the slope of a leaky ReLU lies between 0 and 1, not {slope}")
         return Activation(
-            write=lambda x, out: np.maximum(x, slope * x, out=out),
-            write_slope=lambda x, _output, out: np.maximum(np.greater(x, 0, out=out), slope, out=out),
+            lambda x, out=None: np.maximum(x, slope * x, out=out),
+            lambda x, _y, out: np.maximum(np.greater(x, 0, out=out), slope, out=out),
             name="leaky_relu",
             options=MappingProxyType({"slope": slope}),
             initialisation="he",
@@ -106,19 +108,20 @@ ACTIVATIONS: dict[str, Callable[..., Activation]] = {
 }
 
 
-def _tanh_slope(_input: Array, output: Array, out: Array) -> None:
-    np.multiply(output, output, out=out)
+def _tanh_slope(_x: Array, y: Array, out: Array) -> None:
+    np.multiply(y, y, out=out)
     np.subtract(1, out, out=out)
 
 
-def _sigmoid(input_data: Array, out: Array) -> None:
+def _sigmoid(x: Array, out: Array | None = None) -> Array:
     # (1 + tanh(x/2)) / 2 is the same function, and cannot overflow.
-    np.multiply(input_data, 0.5, out=out)
-    np.tanh(out, out=out)
-    out += 1
-    out *= 0.5
+    y: Array = np.multiply(x, 0.5, out=out)
+    np.tanh(y, out=y)
+    y += 1
+    y *= 0.5
+    return y
 
 
-def _sigmoid_slope(_input: Array, output: Array, out: Array) -> None:
-    np.subtract(1, output, out=out)
-    out *= output
+def _sigmoid_slope(_x: Array, y: Array, out: Array) -> None:
+    np.subtract(1, y, out=out)
+    out *= y

@@ -67,17 +67,6 @@ class Layer(ABC):
         """Return the first value of a parameter."""
         raise NotImplementedError(name)
 
-    @cached_property
-    def _arrays(self) -> dict[str, Array]:
-        return {}
-
-    def _array(self, name: str, shape: tuple[int, ...], dtype: npt.DTypeLike) -> Array:
-        """Return the array kept under a name, a new one if the batch size has changed."""
-        kept = self._arrays.get(name)
-        if kept is None or kept.shape != shape or kept.dtype != dtype:
-            kept = self._arrays[name] = np.empty(shape, dtype)
-        return kept
-
 
 class FullyConnectedLayer(Layer):
     """Each output is a weighted sum of all inputs, plus a bias: y = x W + b.
@@ -108,6 +97,7 @@ class FullyConnectedLayer(Layer):
         self.scale = scale
         self.rng = rng
         self.dtype = dtype
+        self.output = np.empty((0, 0), dtype)
 
     @property
     def weights(self) -> Array:
@@ -123,8 +113,10 @@ class FullyConnectedLayer(Layer):
         """Return x W + b, (batch, outputs)."""
         weights, bias = self.parameters
         self.input = np.asarray(input_data, self.dtype)
-        self.output = self._array("output", (len(input_data), bias.value.size), self.dtype)
-        np.dot(self.input, weights.value, out=self.output)
+        if len(self.output) != len(input_data):
+            self.output = np.empty((len(input_data), bias.value.size), self.dtype)
+            self.error = np.empty(self.input.shape, self.dtype)
+        self.input.dot(weights.value, self.output)
         self.output += bias.value
         return self.output
 
@@ -138,12 +130,13 @@ class FullyConnectedLayer(Layer):
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of weights, xᵀ E, and bias, Σ E over the batch."""
         weights, bias = self.parameters
-        np.dot(self.input.T, output_error, out=weights.gradient)
-        np.dot(_ones(len(output_error), self.dtype), output_error, out=bias.gradient)
+        self.input.T.dot(output_error, weights.gradient)
+        _ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
         """Return E Wᵀ, (batch, inputs)."""
-        return np.dot(output_error, self.weights.T, out=self._array("error", self.input.shape, self.dtype))
+        output_error.dot(self.parameters[0].value.T, self.error)
+        return self.error
 
     def _start(self, name: str) -> Array:
         if name == "bias":
@@ -171,9 +164,8 @@ class DuelingLayer(FullyConnectedLayer):
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return Q, (batch, outputs)."""
-        streams = super().forward_propagate(input_data)
-        q = self._array("q", (len(streams), len(self.mixture) - 1), self.dtype)
-        return np.dot(streams, self.mixture, out=q)
+        q: Array = super().forward_propagate(input_data).dot(self.mixture)
+        return q
 
     def predict(self, input_data: Array) -> Array:
         """Return Q as a new array, (batch, outputs) or (outputs,)."""
@@ -182,11 +174,11 @@ class DuelingLayer(FullyConnectedLayer):
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of both streams' weights and biases."""
-        super().fill_gradients(np.dot(output_error, self.mixture.T))
+        super().fill_gradients(output_error.dot(self.mixture.T))
 
     def input_error(self, output_error: Array) -> Array:
         """Return the sum of what both streams send back, (batch, inputs)."""
-        return super().input_error(np.dot(output_error, self.mixture.T))
+        return super().input_error(output_error.dot(self.mixture.T))
 
 
 class ActivationLayer(Layer):
@@ -199,13 +191,14 @@ class ActivationLayer(Layer):
 
     def __init__(self, activation: Activation | Function, derivative: Function | None = None) -> None:
         self.activation = Activation.of(activation, derivative)
+        self.output: Array = np.empty((0, 0))
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return f(x), of the shape of x."""
         self.input = input_data
-        self.output = self._array("output", input_data.shape, input_data.dtype)
-        self.activation.write(input_data, self.output)
-        return self.output
+        if self.output.shape != input_data.shape or self.output.dtype != input_data.dtype:
+            self.output, self.error = np.empty_like(input_data), np.empty_like(input_data)
+        return self.activation.function(input_data, out=self.output)
 
     def predict(self, input_data: Array) -> Array:
         """Return f(x) as a new array."""
@@ -213,10 +206,9 @@ class ActivationLayer(Layer):
 
     def input_error(self, output_error: Array) -> Array:
         """Return f'(x) · E."""
-        error = self._array("error", self.input.shape, self.input.dtype)
-        self.activation.write_slope(self.input, self.output, error)
-        error *= output_error
-        return error
+        self.activation.slope(self.input, self.output, self.error)
+        self.error *= output_error
+        return self.error
 
 
 class LayerNormalisation(Layer):
@@ -234,17 +226,17 @@ class LayerNormalisation(Layer):
         self.shapes = {"gain": (size,), "bias": (size,)}
         self.epsilon = epsilon
         self.dtype = dtype
+        self.output = np.empty((0, 0), dtype)
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the normalised batch, (batch, size)."""
         gain, bias = self.parameters
-        input_data = np.asarray(input_data, self.dtype)
-        self.normalised = self._array("normalised", input_data.shape, self.dtype)
-        self.inverse_deviation = self._normalise(input_data, self.normalised)
-        output = self._array("output", input_data.shape, self.dtype)
-        np.multiply(self.normalised, gain.value, out=output)
-        output += bias.value
-        return output
+        if len(self.output) != len(input_data):
+            self.output, self.normalised, self.error, self.scratch = np.empty((4, *input_data.shape), self.dtype)
+        self.inverse_deviation = self._normalise(np.asarray(input_data, self.dtype), self.normalised)
+        np.multiply(self.normalised, gain.value, out=self.output)
+        self.output += bias.value
+        return self.output
 
     def predict(self, input_data: Array) -> Array:
         """Return the normalised batch as a new array."""
@@ -259,25 +251,23 @@ class LayerNormalisation(Layer):
         """Set the gradients of gain, Σ n E, and bias, Σ E over the batch, with n the normalised input."""
         gain, bias = self.parameters
         ones = _ones(len(output_error), self.dtype)
-        product = np.multiply(self.normalised, output_error, out=self._scratch)
-        np.dot(ones, product, out=gain.gradient)
-        np.dot(ones, output_error, out=bias.gradient)
+        ones.dot(np.multiply(self.normalised, output_error, out=self.scratch), gain.gradient)
+        ones.dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
         """Return (D - mean D - n · mean(n D)) / deviation, with D = gain · E and means over the values."""
-        error = self._array("error", self.normalised.shape, self.dtype)
-        np.multiply(output_error, self.parameters[0].value, out=error)
-        along = np.vecdot(self.normalised, error)[:, None] / self.normalised.shape[1]
-        error -= np.dot(error, self._average)[:, None]
-        error -= np.multiply(self.normalised, along, out=self._scratch)
+        error: Array = np.multiply(output_error, self.parameters[0].value, out=self.error)
+        along = np.vecdot(self.normalised, error)[:, None] / self.size
+        error -= error.dot(self._average)[:, None]
+        error -= np.multiply(self.normalised, along, out=self.scratch)
         error *= self.inverse_deviation
         return error
 
     def _normalise(self, input_data: Array, out: Array) -> Array:
         """Fill `out` with the input at mean 0 and variance 1, and return what it was divided by, inverted."""
-        np.subtract(input_data, np.dot(input_data, self._average)[..., None], out=out)
+        np.subtract(input_data, input_data.dot(self._average)[..., None], out=out)
         variance = np.vecdot(out, out)[..., None]
-        variance /= out.shape[-1]
+        variance /= self.size
         variance += self.epsilon
         inverse_deviation: Array = np.divide(1, np.sqrt(variance, out=variance), out=variance)
         out *= inverse_deviation
@@ -286,10 +276,6 @@ class LayerNormalisation(Layer):
     @property
     def _average(self) -> Array:
         return _constant(self.size, 1 / self.size, np.dtype(self.dtype))
-
-    @property
-    def _scratch(self) -> Array:
-        return self._array("scratch", self.normalised.shape, self.dtype)
 
     def _start(self, name: str) -> Array:
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
@@ -307,9 +293,8 @@ def check_fit(before: list[Layer], layer: Layer) -> None:
     """Raise ValueError if a layer does not take as many values as the layers before it give."""
     given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
     if None not in (given, layer.inputs) and given != layer.inputs:
-        raise ValueError(
-            f"{type(layer).__name__} takes {layer.inputs} values, the layer before gives {given}"
-        )
+        kind = type(layer).__name__
+        raise ValueError(f"{kind} takes {layer.inputs} values, the layer before gives {given}")
 
 
 def _checked_size(name: str, size: int) -> int:

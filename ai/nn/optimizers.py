@@ -88,9 +88,7 @@ class Momentum(Optimizer):
 
     remembers = ("velocity",)
 
-    def __init__(
-        self, learning_rate: float = 0.01, *, momentum: float = 0.9, clip: float | None = None
-    ) -> None:
+    def __init__(self, learning_rate: float = 0.01, *, momentum: float = 0.9, clip: float | None = None) -> None:
         super().__init__(learning_rate, clip=clip)
         self.momentum = momentum
 

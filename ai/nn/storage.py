@@ -147,9 +147,7 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
             for name, shape in layer.shapes.items()
         }
         layer.parameters = tuple(
-            Parameter(name, array, np.zeros_like(array))
-            for name, array in arrays.items()
-            if array is not None
+            Parameter(name, array, np.zeros_like(array)) for name, array in arrays.items() if array is not None
         )
     if problems or cost is None:
         raise ModelFormatError(folder, problems)
