@@ -51,10 +51,8 @@ def _train(arguments: argparse.Namespace) -> int:
         return _fail("say when to stop: --seconds S or --decisions N")
     output = arguments.output or arguments.resume
     try:
-        if arguments.resume:
-            training = resume_run(arguments.resume)
-        else:
-            training = Training(_config(arguments), arguments.seed)
+        resumed = resume_run(arguments.resume) if arguments.resume else None
+        training = resumed or Training(_config(arguments), arguments.seed)
     except ValueError as error:
         return _fail(str(error))
     clock = TrainingClock(arguments.seconds, arguments.decisions)

@@ -111,7 +111,7 @@ class Config:
     spawn: str = knob("practice", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
-    weights: RewardWeights = knob(_DEFAULT_WEIGHTS, "What each part of the reward pays.", "lander")
+    weights: RewardWeights = knob(_DEFAULT_WEIGHTS, "What each part of the reward pays.", "lander")  # noqa: RUF009
     # fmt: on
 
     def __post_init__(self) -> None:

@@ -1,0 +1,202 @@
+import json
+
+import numpy as np
+import pytest
+
+from ai.agent import DeepQAgent
+from ai.config import PRESETS, Config
+from ai.env import StepResult
+from ai.lander import NUM_ACTIONS, NUM_FEATURES
+from ai.nn import ModelFormatError
+from ai.replay import MemoryCell
+from ai.training import LANDER_SYMMETRY
+
+SMALL = Config(hidden=(16,), batch_size=8, updates=2, warm_up=8, replay_size=200, n_step=1, num_envs=4, mirror=False)
+
+
+def result(observation, reward, terminated, truncated=None):
+    terminated = np.asarray(terminated)
+    truncated = np.zeros_like(terminated) if truncated is None else np.asarray(truncated)
+    return StepResult(observation, np.asarray(reward, dtype=np.float32), terminated, truncated, terminated.astype(int))
+
+
+def fed(config, count=40, seed=0):
+    """An agent that remembers `count` random decisions."""
+    agent, rng = DeepQAgent(3, 2, config, np.random.default_rng(seed)), np.random.default_rng(seed)
+    for _ in range(count // 4):
+        states = rng.normal(size=(4, 3)).astype(np.float32)
+        after = rng.normal(size=(4, 3)).astype(np.float32)
+        agent.remember(states, rng.integers(0, 2, 4), result(after, rng.normal(size=4), rng.random(4) < 0.3))
+    return agent
+
+
+def test_bellman_targets_by_hand():
+    agent = DeepQAgent(3, 2, SMALL.changed(double=False, discount=0.9))
+    states = np.eye(3, dtype=np.float32)
+    cell = MemoryCell(states, states, np.zeros(3, dtype=int), np.ones(3, dtype=np.float32),
+                      np.array([False, True, False]), np.array([1, 1, 4]))  # fmt: skip
+    values = agent.target.predict(states).max(axis=1)
+    assert agent._targets(cell) == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
+
+
+def test_double_q_lets_the_online_network_pick():
+    agent = DeepQAgent(3, 2, SMALL.changed(double=True, discount=0.9))
+    agent.online.values = np.random.default_rng(1).normal(size=agent.online.values.shape)
+    states = np.random.default_rng(2).normal(size=(20, 3)).astype(np.float32)
+    cell = MemoryCell(states, states, np.zeros(20, dtype=int), np.zeros(20, dtype=np.float32),
+                      np.zeros(20, dtype=bool), np.ones(20, dtype=int))  # fmt: skip
+    best = agent.online.predict(states).argmax(axis=1)
+    assert agent._targets(cell) == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
+
+
+def test_an_update_moves_only_the_chosen_action_towards_its_target():
+    agent = DeepQAgent(3, 2, SMALL.changed(optimizer="sgd", learning_rate=0.01, cost="mse"))
+    states = np.ones((1, 3), dtype=np.float32)
+    before = agent.online.predict(states)[0]
+    target = before[:1] + 1
+    slope = []
+    original = agent.online.backward_propagate
+    agent.online.backward_propagate = lambda error: (slope.append(error.copy()), original(error))
+    agent._update(states, np.array([0]), target, np.ones(1, dtype=np.float32))
+    assert slope[0] == pytest.approx(np.array([[-2.0, 0.0]]))
+    assert abs(agent.online.predict(states)[0, 0] - target[0]) < 1
+
+
+def test_the_target_network_is_copied_every_so_many_steps():
+    agent = fed(SMALL.changed(target_every=4, target_rate=1.0, updates=3))
+    first = agent.target.values.copy()
+    agent.learn()
+    assert np.array_equal(agent.target.values, first)
+    agent.learn()
+    assert agent.train_count == 6
+    assert not np.array_equal(agent.target.values, first)
+
+
+def test_a_soft_target_follows_by_its_rate():
+    agent = fed(SMALL.changed(target_every=1, target_rate=0.25, updates=1))
+    before = agent.target.values.copy()
+    agent.learn()
+    assert agent.target.values == pytest.approx(0.75 * before + 0.25 * agent.online.values, abs=1e-6)
+
+
+def test_nothing_is_learned_before_the_warm_up():
+    agent = fed(SMALL.changed(warm_up=41))
+    assert agent.learn() is None
+    assert agent.train_count == 0
+
+
+def test_greedy_actions_and_random_ones():
+    agent = DeepQAgent(3, 2, SMALL, action_chances=np.array([0.9, 0.1]))
+    states = np.random.default_rng(0).normal(size=(5000, 3)).astype(np.float32)
+    assert np.array_equal(agent.act(states), agent.q_values(states).argmax(axis=1))
+    assert (agent.act(states, epsilon=1.0) == 0).mean() == pytest.approx(0.9, abs=0.02)
+    assert agent.act(states[0]).shape == (1,)
+
+
+@pytest.mark.parametrize("changes", [{}, {"prioritised": True}, {"dueling": True}, {"success_pass": True},
+                                     {"n_step": 5}, {"optimizer": "momentum"}, {"activation": "tanh"}])  # fmt: skip
+def test_the_same_seed_gives_the_same_network_bit_for_bit(changes):
+    def trained():
+        agent = fed(SMALL.changed(**changes))
+        for _ in range(5):
+            agent.learn()
+        return agent.online.values.copy()
+
+    first = trained()
+    assert np.isfinite(first).all()
+    assert np.array_equal(first, trained())
+
+
+def test_it_learns_a_problem_whose_answer_is_known():
+    """Two actions, one paid: Q must come out as the reward, and the policy as the paid action."""
+    agent = DeepQAgent(3, 2, SMALL.changed(learning_rate=5e-3, final_learning_rate=5e-3, reward_scale=1.0,
+                                           batch_size=32, updates=10, fly_target=False))  # fmt: skip
+    rng = np.random.default_rng(0)
+    for _ in range(60):
+        states = rng.normal(size=(4, 3)).astype(np.float32)
+        actions = rng.integers(0, 2, 4)
+        paid = (actions == (states[:, 0] > 0)).astype(np.float32)
+        agent.remember(states, actions, result(states, paid, np.ones(4, dtype=bool)))
+        agent.learn()
+    states = rng.normal(size=(500, 3)).astype(np.float32)
+    assert (agent.act(states) == (states[:, 0] > 0)).mean() > 0.93
+
+
+def test_the_success_pass_learns_from_good_endings_only():
+    agent, rng = DeepQAgent(3, 2, SMALL.changed(success_pass=True, success_batch_size=4)), np.random.default_rng(0)
+    states = rng.normal(size=(2, 3)).astype(np.float32)
+    for step in range(6):
+        ended = np.array([step == 5] * 2)
+        agent.remember(states, np.array([0, 1]), result(states, [step, 100 + step], ended), np.array([True, False]))
+    assert len(agent.successes) == 6
+    assert agent.successes.cells.action[:6].tolist() == [0] * 6
+
+
+def test_a_mirrored_memory_is_its_own_mirror_image_twice():
+    rng = np.random.default_rng(0)
+    states = rng.normal(size=(6, NUM_FEATURES)).astype(np.float32)
+    cell = MemoryCell(states.copy(), states[::-1].copy(), np.arange(NUM_ACTIONS), np.zeros(6), np.zeros(6, bool))
+    LANDER_SYMMETRY.apply(cell, 6)
+    assert cell.action.tolist() == [0, 2, 1, 3, 5, 4]
+    assert np.array_equal(cell.state[:, 7], states[:, 8])
+    assert np.array_equal(cell.state[:, 0], -states[:, 0])
+    LANDER_SYMMETRY.apply(cell, 6)
+    assert np.array_equal(cell.state, states)
+    assert cell.action.tolist() == list(range(6))
+
+
+def test_a_gradient_that_is_not_finite_stops_with_the_step_and_a_cause():
+    agent = fed(SMALL)
+    agent.online.values = np.full_like(agent.online.values, 1e30)
+    with np.errstate(all="ignore"), pytest.raises(FloatingPointError, match=r"learning step 1.*learning rate"):
+        agent.learn()
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_save_and_load(tmp_path, preset):
+    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, PRESETS[preset].changed(warm_up=1))
+    agent.save(tmp_path / "agent")
+    loaded = DeepQAgent.load(tmp_path / "agent")
+    states = np.random.default_rng(0).normal(size=(10, NUM_FEATURES)).astype(np.float32)
+    assert np.array_equal(loaded.q_values(states), agent.q_values(states))
+    assert loaded.config == agent.config
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_loading_goes_on_exactly_where_saving_stopped(tmp_path):
+    agent = fed(SMALL)
+    agent.learn()
+    agent.save(tmp_path / "agent")
+    loaded = DeepQAgent.load(tmp_path / "agent", np.random.default_rng(5))
+    loaded.replay = agent.replay
+    agent.rng = np.random.default_rng(5)
+    agent.learn()
+    loaded.learn()
+    assert np.array_equal(agent.online.values, loaded.online.values)
+    assert loaded.train_count == agent.train_count
+
+
+def damaged(config):
+    return {
+        "missing": lambda f: (f / "config.json").unlink(),
+        "no json": lambda f: (f / "config.json").write_text("{"),
+        "other format": lambda f: (f / "config.json").write_text('{"format": "x"}'),
+        "newer": lambda f: (f / "config.json").write_text(json.dumps(config | {"version": 99})),
+        "unknown setting": lambda f: (f / "config.json").write_text(json.dumps(config | {"config": {"x": 1}})),
+        "bad setting": lambda f: (f / "config.json").write_text(json.dumps(config | {"config": {"n_step": -1}})),
+        "other sizes": lambda f: (f / "config.json").write_text(json.dumps(config | {"features": 4})),
+        "no network": lambda f: (f / "online" / "config.json").unlink(),
+        "no target": lambda f: next((f / "target").glob("*.npy")).write_bytes(b"x"),
+        "optimizer": lambda f: (f / "optimizer.npz").write_bytes(b"PK"),
+    }
+
+
+@pytest.mark.parametrize("damage", damaged({}))
+def test_a_damaged_folder_is_named_and_refused(tmp_path, damage):
+    folder = tmp_path / "agent"
+    fed(SMALL).save(folder)
+    damaged(json.loads((folder / "config.json").read_text()))[damage](folder)
+    with pytest.raises(ModelFormatError) as caught:
+        DeepQAgent.load(folder)
+    assert str(folder) in str(caught.value)
+    assert caught.value.problems

@@ -1,0 +1,57 @@
+from dataclasses import fields
+
+import pytest
+
+from ai.config import PRESETS, Config
+from ai.rewards import RewardWeights
+
+
+def test_every_setting_tells_a_screen_how_to_show_it():
+    for item in fields(Config):
+        described = item.metadata
+        assert described["help"].endswith(".")
+        assert described["group"] in {"learning", "network", "memory", "target", "exploration", "lander"}
+        if item.type in ("int", "float"):
+            assert described["low"] < described["high"]
+
+
+def test_presets_survive_a_file():
+    for preset in PRESETS.values():
+        assert Config.from_json(preset.to_json()) == preset
+    changed = PRESETS["classic"].changed(weights=RewardWeights(time=0.0), hidden=(8,))
+    assert Config.from_json(changed.to_json()) == changed
+
+
+def test_classic_is_the_agent_first_described():
+    classic = PRESETS["classic"]
+    assert classic.hidden == (128, 128)
+    assert (classic.activation, classic.cost, classic.optimizer) == ("tanh", "mse", "sgd")
+    assert (classic.replay_size, classic.replay_prune, classic.target_every) == (1500, 1000, 50)
+    assert (classic.epsilon_start, classic.epsilon_decay, classic.epsilon_end) == (1.0, 0.999, 0.05)
+    assert classic.success_pass
+    assert classic.success_batch_size < classic.batch_size
+    assert not (classic.double or classic.dueling or classic.prioritised or classic.mirror)
+    assert classic.spawn == "curriculum"
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"learning_rate": -1.0}, "learning_rate lies between"),
+        ({"learning_rate": float("nan")}, "learning_rate lies between"),
+        ({"optimizer": "magic"}, "optimizer is one of"),
+        ({"n_step": 2.5}, "n_step is a whole number"),
+        ({"double": 1}, "double is a yes or no"),
+        ({"n_step": True}, "n_step is not a yes or no"),
+        ({"hidden": ()}, "hidden lies between"),
+        ({"spawn": "mars"}, "spawn is one of"),
+    ],
+)
+def test_a_setting_out_of_range_is_named(changes, message):
+    with pytest.raises(ValueError, match=message):
+        Config().changed(**changes)
+
+
+def test_unknown_settings_are_named():
+    with pytest.raises(ValueError, match="unknown settings: warp"):
+        Config.from_json({"warp": 9})

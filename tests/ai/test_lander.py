@@ -1,0 +1,252 @@
+import numpy as np
+import pytest
+
+from ai.lander import (
+    LIMITS,
+    MIRROR_ACTIONS,
+    MIRROR_FEATURES,
+    MIRROR_SIGNS,
+    NUM_ACTIONS,
+    PARAMS,
+    Cause,
+    LanderEnv,
+    Outcome,
+)
+from ai.rewards import RewardWeights
+from ai.spawns import SPAWNS, Curriculum
+from engine import DT
+
+STAND = PARAMS.pad_top + PARAMS.stand
+
+
+def placed(*starts, frame_skip=1, **options):
+    """Landers that begin at rows x, y, vx, vy, angle, spin."""
+    env = LanderEnv(len(starts), 0, frame_skip=frame_skip, **options)
+    env.place(np.ones(len(starts), dtype=bool), np.array(starts, dtype=float))
+    return env
+
+
+def fly(env, action=0, steps=600):
+    for _ in range(steps):
+        result = env.step(np.full(env.num_envs, action))
+        if result.ended.all():
+            break
+    return result
+
+
+def test_free_fall_follows_gravity_and_drag():
+    env = placed((0, 20, 0, 0, 0, 0))
+    fly(env, steps=30)
+    expected = 0.0
+    for _ in range(30):
+        speed = abs(expected)
+        drag = (PARAMS.linear_drag + PARAMS.quadratic_drag * speed) * DT
+        expected = (expected - PARAMS.gravity * DT) / (1 + drag)
+    assert env.velocity[0, 1] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("action", "x", "y", "spin"),
+    [(1, -1, 0, 1), (2, 1, 0, -1), (3, 0, 1, 0), (4, -1, 1, 1), (5, 1, 1, -1)],
+)
+def test_actions_push_and_turn_as_documented(action, x, y, spin):
+    env = placed((0, 15, 0, 0, 0, 0))
+    coasting = placed((0, 15, 0, 0, 0, 0))
+    env.step(np.array([action]))
+    coasting.step(np.array([0]))
+    gained = env.velocity[0] - coasting.velocity[0]
+    assert np.sign(np.round(gained, 6)).tolist() == [x, y]
+    assert np.sign(np.round(env.angular_velocity[0], 6)) == spin
+    if y:
+        assert gained[1] == pytest.approx(PARAMS.main_thrust / PARAMS.mass * DT, rel=1e-2)
+
+
+def test_standing_still_on_the_pad_for_half_a_second_is_a_landing():
+    env = placed((1.0, STAND, 0, 0, 0, 0))
+    result = fly(env)
+    assert env.outcome[0] == Outcome.LANDED
+    assert result.terminated[0]
+    assert not result.truncated[0]
+    assert LIMITS.rest_steps <= env.steps[0] <= LIMITS.rest_steps + 10
+    assert env.contacts.all()
+    assert env.altitude[0] == pytest.approx(0.0, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("start", "cause"),
+    [
+        ((0, STAND + 0.02, 0, -2.3, 0, 0), Cause.HARD),
+        ((0, STAND + 0.02, 2.4, -0.5, 0, 0), Cause.SLIDING),
+        ((0, STAND + 0.3, 0, -0.5, 0.6, 0), Cause.TILTED),
+        ((0, STAND, 0, -0.3, np.pi, 0), Cause.HULL),
+        ((10, STAND - 0.5, 0, -0.3, 0, 0), Cause.TERRAIN),
+    ],
+)
+def test_each_way_to_crash_is_named(start, cause):
+    env = placed(start)
+    result = fly(env)
+    assert env.outcome[0] == Outcome.CRASHED
+    assert env.cause[0] == cause
+    assert result.components["terminal"][0] == -RewardWeights().terminal
+    if cause == Cause.HARD:
+        assert env.impact[0, 0] == pytest.approx(2.3, abs=0.1)
+
+
+def test_a_touch_just_within_the_limits_is_no_crash():
+    env = placed((0, STAND + 0.01, 0, -1.9, 0, 0))
+    fly(env)
+    assert env.outcome[0] == Outcome.LANDED
+    assert 1.8 < env.impact[0, 0] < LIMITS.touch_speed
+
+
+def test_leaving_the_area_and_running_out_of_time():
+    env = placed((21.9, 15, 6, 0, 0, 0), (0, 25.9, 0, 6, 0, 0))
+    result = fly(env)
+    assert (env.outcome == Outcome.OUT_OF_BOUNDS).all()
+    assert result.terminated.all()
+    hover = LanderEnv(1, 0, frame_skip=1)
+    hover.reset()
+    hover.steps[:] = round(LIMITS.time / DT) - 1
+    result = hover.step(np.array([0]))
+    assert hover.outcome[0] == Outcome.TIMED_OUT
+    assert result.truncated[0]
+    assert not result.terminated[0]
+
+
+def test_a_flight_is_the_same_alone_and_in_a_batch():
+    rng = np.random.default_rng(3)
+    actions = rng.integers(0, NUM_ACTIONS, (300, 40))
+    alone, many = LanderEnv(1, 7, "practice"), LanderEnv(40, 7, "practice")
+    assert np.array_equal(alone.reset()[0], many.reset()[0])
+    for row in actions:
+        one, all_ = alone.step(row[:1]), many.step(row)
+        assert np.array_equal(one.observation[0], all_.observation[0])
+        assert one.reward[0] == all_.reward[0]
+        assert one.outcome[0] == all_.outcome[0]
+        if one.ended[0]:
+            alone.reset(np.array([True]))
+            many.reset(all_.ended)
+
+
+def test_the_same_seed_and_actions_make_the_same_flight():
+    def flight():
+        env = LanderEnv(8, 11, "random")
+        observations = [env.reset()]
+        rng = np.random.default_rng(0)
+        for _ in range(100):
+            result = env.step(rng.integers(0, NUM_ACTIONS, 8))
+            observations.append(result.observation)
+            if result.ended.any():
+                observations.append(env.reset(result.ended))
+        return np.stack(observations)
+
+    assert np.array_equal(flight(), flight())
+
+
+def test_frame_skip_only_holds_the_action():
+    fine, coarse = placed((3, 12, 1, -1, 0.2, 0.1)), placed((3, 12, 1, -1, 0.2, 0.1), frame_skip=4)
+    for action in (0, 3, 4, 5, 2):
+        rewards = [fine.step(np.array([action])).reward[0] for _ in range(4)]
+        result = coarse.step(np.array([action]))
+        assert np.array_equal(fine.observe(), result.observation)
+        assert result.reward[0] == pytest.approx(sum(rewards), abs=1e-4)
+
+
+def test_ended_slots_stay_as_they_ended_until_reset():
+    env = placed((0, STAND + 0.02, 0, -3, 0, 0), (0, 15, 0, 0, 0, 0))
+    ended = fly(env, steps=10)
+    later = env.step(np.array([3, 3]))
+    assert np.array_equal(later.observation[0], ended.observation[0])
+    assert later.reward[0] == 0
+    assert later.terminated[0]
+    assert not later.terminated[1]
+    assert not np.array_equal(later.observation[1], ended.observation[1])
+    env.reset(np.array([True, False]))
+    assert env.outcome.tolist() == [Outcome.FLYING, Outcome.FLYING]
+    assert env.time[0] == 0
+    assert env.time[1] > 0
+
+
+def test_reward_is_the_sum_of_its_parts_and_potentials_telescope():
+    env = LanderEnv(16, 5, "random")
+    env.reset()
+    rng = np.random.default_rng(1)
+    start = env._situation()
+    totals = dict.fromkeys(("distance", "speed"), 0.0)
+    for _ in range(400):
+        result = env.step(rng.integers(0, NUM_ACTIONS, 16))
+        assert result.reward == pytest.approx(sum(result.components.values()), abs=1e-4)
+        for name in totals:
+            totals[name] = totals[name] + result.components[name]
+    end = env._situation()
+    weights = RewardWeights()
+    assert totals["distance"] == pytest.approx(10 * weights.distance * (start.distance - end.distance), abs=1e-3)
+    assert totals["speed"] == pytest.approx(10 * weights.speed * (start.speed - end.speed), abs=1e-3)
+
+
+def test_a_mirrored_flight_is_the_mirror_image():
+    start = np.array([3, 12, 1, -1, 0.2, 0.1])
+    env, mirror = placed(start, frame_skip=4), placed(start * [-1, 1, -1, 1, -1, -1], frame_skip=4)
+    rng = np.random.default_rng(2)
+    for action in rng.integers(0, NUM_ACTIONS, 60):
+        ours = env.step(np.array([action]))
+        theirs = mirror.step(MIRROR_ACTIONS[[action]])
+        reflected = theirs.observation[:, MIRROR_FEATURES] * MIRROR_SIGNS
+        assert ours.observation == pytest.approx(reflected, abs=1e-5)
+        assert ours.reward == pytest.approx(theirs.reward, abs=1e-3)
+
+
+def test_a_snapshot_brings_back_everything_but_the_dice():
+    env = LanderEnv(4, 0, "near")
+    env.reset()
+    rng = np.random.default_rng(0)
+    actions = rng.integers(0, NUM_ACTIONS, (60, 4))
+    for row in actions[:20]:
+        env.step(row)
+    snapshot = env.snapshot()
+    first = [env.step(row).observation for row in actions[20:]]
+    env.restore(snapshot)
+    again = [env.step(row).observation for row in actions[20:]]
+    assert np.array_equal(first, again)
+
+
+def test_spawns_lie_where_they_should():
+    rng = np.random.default_rng(0)
+    for name, draw in SPAWNS.items():
+        drawn = np.array([draw(rng) for _ in range(500)])
+        assert np.abs(drawn[:, 0]).max() <= 15
+        assert drawn[:, 1].min() >= STAND
+        assert drawn[:, 1].max() <= 20
+        limit = 90 if name == "hard" else 35
+        assert np.degrees(np.abs(drawn[:, 4])).max() <= limit + 1e-9
+
+
+def test_the_curriculum_follows_landings():
+    curriculum = Curriculum()
+    assert [curriculum.spawn(n) for n in (0, 99, 100, 200, 299, 300)] == [
+        "fixed", "fixed", "higher", "highest", "highest", "random",
+    ]  # fmt: skip
+    env = LanderEnv(1, 0, curriculum)
+    env.reset()
+    assert env.position[0].tolist() == [0.0, 8.0]
+    env.landings = 150
+    env.reset()
+    assert env.position[0].tolist() == [0.0, 12.0]
+    assert env.stage == 1
+    with pytest.raises(ValueError, match="rising thresholds"):
+        Curriculum(((0, "fixed"), (0, "random")))
+
+
+@pytest.mark.parametrize(
+    "actions", [[6, 0], [-1, 0], [0], [0, 0, 0], [[0, 0]], [0.5, 1.0], [np.nan, 0.0], ["a", "b"]]
+)
+def test_wrong_actions_are_refused(actions):
+    env = LanderEnv(2, 0)
+    env.reset()
+    with pytest.raises(ValueError, match="actions"):
+        env.step(actions)
+
+
+def test_stepping_before_a_reset_says_so():
+    with pytest.raises(RuntimeError, match="reset"):
+        LanderEnv(1).step(np.array([0]))
