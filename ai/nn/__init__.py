@@ -1,15 +1,16 @@
 """A neural network library on NumPy: layers, costs, optimizers and a folder format, every gradient by hand.
 
-To read it in building order: parameter, activations, costs, layers, optimizers, network, storage.
+To read it in building order: parameter, activations, costs, layers, optimizers, storage, network.
 """
 
 from ai.nn.activations import Activation, ActivationFunctions
 from ai.nn.costs import Cost, CostFunctions
+from ai.nn.folder import atomic_folder, recover_folder
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation
 from ai.nn.network import NeuralNetwork
 from ai.nn.optimizers import OPTIMIZERS, SGD, Adam, Momentum, Optimizer
 from ai.nn.parameter import Array, Parameter
-from ai.nn.storage import ModelFormatError, atomic_folder, recover_folder
+from ai.nn.storage import ModelFormatError
 
 __all__ = [
     "OPTIMIZERS",

@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Self
 
 import numpy as np
+import numpy.typing as npt
 
 from ai.nn.parameter import Array
 
@@ -47,15 +48,16 @@ class Activation:
 
         return cls(with_out, lambda x, _y, out: np.copyto(out, derivative(x)))
 
-    def __call__(self, x: Array) -> Array:
+    def __call__(self, x: npt.ArrayLike) -> Array:
         """Return f of each element, as a new array."""
-        return self.function(x)
+        x = _floating(x)
+        return self.function(x, out=np.empty_like(x))
 
-    def derivative(self, x: Array) -> Array:
+    def derivative(self, x: npt.ArrayLike) -> Array:
         """Return f' of each element, as a new array."""
-        y = self.function(x)
-        slope = np.empty_like(y)
-        self.slope(x, y, slope)
+        x = _floating(x)
+        slope = np.empty_like(x)
+        self.slope(x, self(x), slope)
         return slope
 
     def __iter__(self) -> Iterator[Function]:
@@ -108,6 +110,11 @@ ACTIVATIONS: dict[str, Callable[..., Activation]] = {
 }
 
 
+def _floating(x: npt.ArrayLike) -> Array:
+    x = np.asarray(x)
+    return x if np.issubdtype(x.dtype, np.floating) else x.astype(np.float64)
+
+
 def _tanh_slope(_x: Array, y: Array, out: Array) -> None:
     np.multiply(y, y, out=out)
     np.subtract(1, out, out=out)
@@ -115,8 +122,7 @@ def _tanh_slope(_x: Array, y: Array, out: Array) -> None:
 
 def _sigmoid(x: Array, out: Array | None = None) -> Array:
     # (1 + tanh(x/2)) / 2 is the same function, and cannot overflow.
-    y: Array = np.multiply(x, 0.5, out=out)
-    np.tanh(y, out=y)
+    y: Array = np.tanh(x * 0.5, out=out)
     y += 1
     y *= 0.5
     return y

@@ -57,13 +57,12 @@ class CostFunctions:
         """Squared error: Σ (prediction - target)², averaged over the batch."""
 
         def function(prediction: Array, target: Array) -> float:
-            difference = np.subtract(prediction, target).ravel()
-            return float(difference @ difference) / _batch(prediction)
+            difference = np.subtract(prediction, target)
+            return float(np.vdot(difference, difference)) / _batch(difference)
 
         def derivative(prediction: Array, target: Array) -> Array:
-            difference = np.subtract(prediction, target)
-            difference *= 2 / _batch(prediction)
-            return difference
+            difference: Array = np.subtract(prediction, target)
+            return difference * (2 / _batch(difference))
 
         return Cost(function, derivative, "mse")
 
@@ -79,12 +78,11 @@ class CostFunctions:
         def function(prediction: Array, target: Array) -> float:
             error = np.abs(np.subtract(prediction, target))
             curved = np.minimum(error, delta)
-            return float(np.sum(curved * (error - 0.5 * curved))) / _batch(prediction)
+            return float(np.sum(curved * (error - 0.5 * curved))) / _batch(error)
 
         def derivative(prediction: Array, target: Array) -> Array:
-            error = np.clip(np.subtract(prediction, target), -delta, delta)
-            error /= _batch(prediction)
-            return error
+            error: Array = np.clip(np.subtract(prediction, target), -delta, delta)
+            return error / _batch(error)
 
         return Cost(function, derivative, "huber", MappingProxyType({"delta": delta}))
 
@@ -95,5 +93,5 @@ COSTS: dict[str, Callable[..., Cost]] = {
 }
 
 
-def _batch(prediction: Array) -> int:
-    return len(prediction) if prediction.ndim > 1 else 1
+def _batch(outputs: Array) -> int:
+    return len(outputs) if outputs.ndim > 1 else 1

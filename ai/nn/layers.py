@@ -92,7 +92,7 @@ class FullyConnectedLayer(Layer):
             raise ValueError(f"initialisation is one of {', '.join(INITIALISATIONS)}, not {initialisation!r}")
         self.inputs = _checked_size("inputs", inputs)
         self.outputs = _checked_size("outputs", outputs)
-        self.shapes = {"weights": (inputs, outputs), "bias": (outputs,)}
+        self.shapes = {"weights": (self.inputs, self.outputs), "bias": (self.outputs,)}
         self.initialisation = initialisation
         self.scale = scale
         self.rng = rng

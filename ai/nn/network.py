@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.nn.costs import Cost, CostFunction
+from ai.nn.folder import atomic_folder
 from ai.nn.layers import ActivationLayer, Layer, check_fit
 from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack
-from ai.nn.storage import atomic_folder, read_network, write_network
+from ai.nn.storage import read_network, write_network
 
 
 class NeuralNetwork:

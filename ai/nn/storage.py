@@ -1,13 +1,10 @@
 """Networks on disk: a folder of `.npy` files and a `config.json` that a person can read. Never pickle.
 
-The reasons, and how a save survives an interruption, are in docs/adr/0004-models-are-folders.md.
+The reasons are in docs/adr/0004-models-are-folders.md.
 """
 
 import json
-import os
-import shutil
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping
 from inspect import signature
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,12 +14,12 @@ import numpy.typing as npt
 
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.costs import COSTS, Cost
+from ai.nn.folder import CONFIG, recover_folder
 from ai.nn.layers import LAYERS, Layer, check_fit
 from ai.nn.parameter import Array, Parameter
 
 T = TypeVar("T")
 
-CONFIG = "config.json"
 FORMAT = "tranquility network"
 VERSION = 1
 DTYPES = ("float32", "float64")
@@ -35,50 +32,6 @@ class ModelFormatError(ValueError):
         super().__init__("\n  - ".join([f"no readable model in {folder}:", *problems]))
         self.folder = Path(folder)
         self.problems = problems
-
-
-@contextmanager
-def atomic_folder(target: str | Path) -> Iterator[Path]:
-    """Yield a new empty folder that takes the place of `target` if the block succeeds.
-
-    Until then, and if the block fails, `target` stays as it is and nothing is left beside it. A folder that
-    is replaced has to hold a `config.json`: anything else raises FileExistsError, so that no slip of a path
-    can delete what somebody keeps there. One writer at a time for each target.
-    """
-    target = Path(target).resolve()
-    new, old = _beside(target, "new"), _beside(target, "old")
-    target.parent.mkdir(parents=True, exist_ok=True)
-    recover_folder(target)
-    if target.exists() and not _replaceable(target):
-        raise FileExistsError(f"{target} holds something else than a model, and is left as it is")
-    shutil.rmtree(new, ignore_errors=True)
-    new.mkdir()
-    try:
-        yield new
-        for path in [*new.rglob("*"), new]:
-            _synchronise(path)
-        shutil.rmtree(old, ignore_errors=True)
-        if target.exists():
-            target.rename(old)
-        try:
-            new.rename(target)
-        except BaseException:
-            recover_folder(target)
-            raise
-        _synchronise(target.parent)
-    except BaseException:
-        shutil.rmtree(new, ignore_errors=True)
-        raise
-    shutil.rmtree(old, ignore_errors=True)
-
-
-def recover_folder(target: str | Path) -> None:
-    """Put the last whole folder back, should the machine have stopped between the two renames of a save."""
-    target = Path(target).resolve()
-    old = _beside(target, "old")
-    if not target.exists() and old.is_dir():
-        with suppress(OSError):
-            old.rename(target)
 
 
 def write_network(folder: Path, cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> None:
@@ -219,28 +172,3 @@ def _read_array(folder: Path, description: Any, name: str, wanted: str) -> Array
     if not np.isfinite(array).all():
         raise ValueError(f"{file} holds numbers that are not finite")
     return np.array(array, order="C")
-
-
-def _beside(target: Path, suffix: str) -> Path:
-    return target.with_name(f".{target.name}.{suffix}")
-
-
-def _replaceable(target: Path) -> bool:
-    return target.is_dir() and ((target / CONFIG).exists() or not any(target.iterdir()))
-
-
-def _synchronise(path: Path) -> None:
-    """Wait until a file or folder has reached the disk; not every system can promise that of a folder."""
-    if path.is_dir():
-        with suppress(OSError):
-            _flush(path, os.O_RDONLY)
-    else:
-        _flush(path, os.O_RDWR)
-
-
-def _flush(path: Path, flags: int) -> None:
-    descriptor = os.open(path, flags)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

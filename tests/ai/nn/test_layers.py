@@ -163,6 +163,23 @@ def test_an_activation_unpacks_as_function_and_derivative(name):
     np.testing.assert_allclose([derivative(x)], expected, rtol=1e-5)
 
 
+@pytest.mark.parametrize("name", ACTIVATIONS)
+def test_an_activation_takes_plain_numbers(name):
+    activation = ACTIVATION_ROWS[name]
+    for x in (1, -0.5, [1, -2], np.array([[3]])):
+        expected = np.asarray(x, float)
+        np.testing.assert_array_equal(activation(x), activation(expected))
+        np.testing.assert_array_equal(activation.derivative(x), activation.derivative(expected))
+        assert activation(x).shape == activation.derivative(x).shape == expected.shape
+
+
+@pytest.mark.parametrize("name", COSTS)
+def test_costs_take_plain_numbers(name):
+    cost = COST_ROWS[name]
+    assert cost([[1, 2]], [[0, 0]]) == cost(np.array([[1.0, 2.0]]), np.zeros((1, 2)))
+    assert cost.derivative([[1, 2]], [[0, 0]]).shape == (1, 2)
+
+
 @pytest.mark.parametrize("name", COSTS)
 def test_costs_are_summed_over_outputs_and_averaged_over_the_batch(name):
     function, derivative = COST_ROWS[name]
