@@ -7,6 +7,7 @@ GAME: Final = "Tranquility"
 # The window
 SCREENSHOT_SAVED: Final = "Picture saved: {path}"
 SCREENSHOT_FAILED: Final = "The picture could not be saved: {reason}"
+NO_VIDEO_DEVICE: Final = "no video device"
 NO_DISPLAY: Final = (
     "Tranquility needs a screen, and found none ({reason}).\n"
     "Start it from a desktop session. Training needs no screen: see `tranquility train --help`."
@@ -79,3 +80,47 @@ PAUSE_RESUME: Final = "Resume"
 PAUSE_RETRY: Final = "Retry"
 PAUSE_SETTINGS: Final = "Settings"
 PAUSE_LEAVE: Final = "Leave"
+
+# Read-outs of a flight
+ALTITUDE: Final = "ALTITUDE"
+DESCENT: Final = "DESCENT"
+DRIFT: Final = "DRIFT"
+TILT: Final = "TILT"
+FUEL_USED: Final = "FUEL USED"
+TIME_LEFT: Final = "TIME LEFT"
+
+# How a flight ended
+OUTCOMES: Final = {
+    "LANDED": ("Landed", "Both feet down, and at rest."),
+    "CRASHED": ("Crashed", ""),
+    "OUT_OF_BOUNDS": ("Lost", "Left the area."),
+    "TIMED_OUT": ("Out of time", "Time ran out: {limit} s is all there is."),
+}
+CAUSES: Final = {
+    "NONE": "Broke up.",
+    "HULL": "The hull struck the ground.",
+    "TERRAIN": "Missed the pad: came down on the regolith.",
+    "HARD": "Touched down at {value} m/s; {limit} is the limit.",
+    "SLIDING": "Slid across the ground at {value} m/s; {limit} is the limit.",
+    "TILTED": "Tilted {value}° at contact; {limit}° is the limit.",
+}
+TIME: Final = "TIME"
+FUEL: Final = "FUEL"
+TOUCHDOWN: Final = "TOUCHDOWN"
+FROM_MIDDLE: Final = "OFF CENTRE"
+SHARE_YOU: Final = "you {percent} %"
+SHARE_NETWORK: Final = "network {percent} %"
+
+# Play
+YOU_FLY: Final = "You fly"
+NETWORK_FLIES: Final = "The network flies"
+FREE_FLIGHT: Final = "Free flight"
+WITH_NETWORK: Final = "with the {name} network"
+ALONE: Final = "on your own"
+NO_NETWORK: Final = "No network to hand over to: {problem}"
+HINT_HAND_OVER: Final = "hand over"
+HINT_TAKE_BACK: Final = "take back"
+HINT_PAUSE: Final = "pause"
+HINT_AGAIN: Final = "same start"
+HINT_NEW: Final = "new start"
+CARD_FIRST: Final = {True: "fly on", False: "try again"}

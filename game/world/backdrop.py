@@ -54,9 +54,7 @@ class Backdrop:
         x = round(EARTH[0] * unit + across * _EARTH_DEPTH)
         y = round(EARTH[1] * unit + down * _EARTH_DEPTH)
         for sprite, flags in ((self._air, pygame.BLEND_RGB_ADD), (self._disc, 0)):
-            surface.blit(
-                sprite, (x - sprite.get_width() // 2, y - sprite.get_height() // 2), special_flags=flags
-            )
+            surface.blit(sprite, (x - sprite.get_width() // 2, y - sprite.get_height() // 2), special_flags=flags)
 
 
 @lru_cache(maxsize=2)

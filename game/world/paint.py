@@ -67,9 +67,7 @@ def light(colour: Picture) -> pygame.Surface:
     return pygame.surfarray.make_surface(np.clip(colour, 0, 255).astype(np.uint8).swapaxes(0, 1))
 
 
-def profile(
-    length: int, rng: np.random.Generator, cells: float, octaves: int = 5, gain: float = 0.5
-) -> Picture:
+def profile(length: int, rng: np.random.Generator, cells: float, octaves: int = 5, gain: float = 0.5) -> Picture:
     """Return smooth fractal noise in about -1 to 1 along a line; `cells` humps in the coarsest octave."""
     at = np.linspace(0, 1, length, dtype=np.float32)
     total = np.zeros(length, np.float32)
@@ -116,7 +114,5 @@ def _quantise(colour: Picture, rng: np.random.Generator) -> npt.NDArray[np.uint8
     grain = rng.random((_GRAIN_SIDE, _GRAIN_SIDE, 1), dtype=np.float32)
     height, width = colour.shape[:2]
     tiles = (-(-height // _GRAIN_SIDE), -(-width // _GRAIN_SIDE), 1)
-    levels: npt.NDArray[np.uint8] = np.clip(colour + np.tile(grain, tiles)[:height, :width], 0, 255).astype(
-        np.uint8
-    )
+    levels: npt.NDArray[np.uint8] = np.clip(colour + np.tile(grain, tiles)[:height, :width], 0, 255).astype(np.uint8)
     return levels

@@ -12,7 +12,7 @@ from game.world.paint import Picture, bell, clouds, light, mix, opaque, ramp
 
 # Where things stand, as shares of the view.
 HORIZON: Final = 0.80
-SUN: Final = (0.77, 0.845)
+SUN: Final = (0.77, 0.835)
 _BAND: Final = (0.30, -0.42, 0.085)  # the Milky Way: height at the left edge, slope, half width
 _GLOW: Final = (232, 142, 90)
 _CORE: Final = (255, 204, 138)
@@ -35,7 +35,7 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface
     for colour, strength, across, up in (
         (mix(DUSK, EMBER, 0.45), 0.34, 0.50, 0.28),
         (_GLOW, 0.50, 0.25, 0.155),
-        (_CORE, 0.36, 0.13, 0.085),
+        (_CORE, 0.32, 0.12, 0.075),
     ):
         glow = np.outer(bell(height, y, up * height), bell(width, x, across * width))
         picture += (strength * glow)[..., None] * np.array(colour, np.float32)
@@ -65,9 +65,7 @@ def _far_stars(picture: Picture, rng: np.random.Generator) -> Picture:
     spread = rng.uniform(-1, 1, count) * HORIZON
     start, slope, half = _BAND
     in_band = rng.random(count) < 0.4
-    down = np.where(
-        in_band, start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count), np.abs(spread)
-    )
+    down = np.where(in_band, start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count), np.abs(spread))
     seen = (down > 0) & (down < HORIZON)
     rows, columns = (down[seen] * (height - 1)).astype(int), (across[seen] * (width - 1)).astype(int)
     brightness = 95 * rng.random(seen.sum()) ** 3.5 * np.clip((HORIZON - 0.06 - down[seen]) / 0.3, 0, 1) + 3
@@ -95,8 +93,7 @@ class NearStars:
         unit = height / 720
         kinds = np.round(size_of * 5).astype(int)
         self._sprites = [
-            [_star(kind, level / self.LEVELS, unit) for level in range(1, self.LEVELS + 1)]
-            for kind in range(6)
+            [_star(kind, level / self.LEVELS, unit) for level in range(1, self.LEVELS + 1)] for kind in range(6)
         ]
         self._kind = kinds
 

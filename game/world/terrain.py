@@ -16,7 +16,7 @@ from game.world.sky import SUN
 # The surface of the moon in metres, and the row it is drawn at, as a share of the view's height.
 SURFACE: Final = 1.0
 _METRES_HIGH: Final = WORLD_WIDTH * 9 / 16
-PLAIN_HORIZON: Final = 0.872
+PLAIN_HORIZON: Final = 0.856
 # How much wider than the view the land is, so that it can move sideways.
 MARGIN: Final = 0.04
 _WARM: Final = np.array((255, 150, 96), np.float32)
@@ -38,9 +38,9 @@ class Ridge:
 
 
 RIDGES: Final = (
-    Ridge(0.745, 0.105, 3.3, (47, 43, 68), (84, 64, 82), 0.22, 0.62, 0.75),
-    Ridge(0.805, 0.075, 4.4, (33, 33, 55), (54, 47, 70), 0.40, 0.46, 0.55),
-    Ridge(0.850, 0.040, 6.3, (21, 23, 42), (34, 34, 55), 0.62, 0.34, 0.30),
+    Ridge(0.740, 0.105, 3.3, (47, 43, 68), (84, 64, 82), 0.22, 0.62, 0.75),
+    Ridge(0.797, 0.075, 4.4, (33, 33, 55), (54, 47, 70), 0.40, 0.46, 0.55),
+    Ridge(0.838, 0.038, 6.3, (21, 23, 42), (34, 34, 55), 0.62, 0.34, 0.30),
 )
 
 
@@ -74,9 +74,7 @@ def paint_ridge(size: tuple[int, int], ridge: Ridge, rng: np.random.Generator) -
 def _sunlight(width: int, view_width: int) -> tuple[Picture, Picture]:
     """Return for each column the sun's side, -1 left to 1 right, and how near its glow is, 0 to 1."""
     away = np.arange(width, dtype=np.float32) - (SUN[0] + MARGIN) * view_width
-    return -np.tanh(away / (0.08 * view_width)), bell(
-        width, (SUN[0] + MARGIN) * view_width, 0.30 * view_width
-    )
+    return -np.tanh(away / (0.08 * view_width)), bell(width, (SUN[0] + MARGIN) * view_width, 0.30 * view_width)
 
 
 def _smooth(line: Picture) -> Picture:
@@ -133,9 +131,7 @@ def _plain_noise(near: Picture, width: int, rng: np.random.Generator) -> Picture
     side = 512
     field = clouds((side, side), rng, (30, 30), octaves=5, gain=0.62) * 2.2
     scale = 0.16 + near
-    across = (
-        (np.arange(width) - width / 2)[None, :] * (0.62 * 1280 / width / scale[:, None]) + side / 2
-    ) % side
+    across = ((np.arange(width) - width / 2)[None, :] * (0.62 * 1280 / width / scale[:, None]) + side / 2) % side
     down = (210 * np.log(scale) + 500) % side
     seen: Picture = field[down.astype(np.intp)[:, None], across.astype(np.intp)]
     return seen * (0.35 + 0.65 * near)[:, None]
@@ -155,15 +151,11 @@ def _sink_crater(bumps: Picture, near: Picture, view_width: int, rng: np.random.
     across = (np.arange(left, right) - x)[None, :] / radius
     down = (np.arange(above, below) - row)[:, None] / (radius * aspect)
     distance = np.hypot(across, down)
-    bowl = np.where(distance < 1, distance**2 - 1, 0) * 0.55 + 0.24 * np.exp(
-        -(((distance - 1.02) / 0.24) ** 2)
-    )
+    bowl = np.where(distance < 1, distance**2 - 1, 0) * 0.55 + 0.24 * np.exp(-(((distance - 1.02) / 0.24) ** 2))
     bumps[above:below, left:right] += (bowl * radius * 0.85).astype(np.float32)
 
 
-def _scatter_stones(
-    picture: Picture, near: Picture, sunward: Picture, glow: Picture, rng: np.random.Generator
-) -> None:
+def _scatter_stones(picture: Picture, near: Picture, sunward: Picture, glow: Picture, rng: np.random.Generator) -> None:
     rows, columns = picture.shape[:2]
     unit = columns / 1280 / (1 + 2 * MARGIN)
     for _ in range(150):

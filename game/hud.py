@@ -1,0 +1,204 @@
+"""Read-outs, bars and cards over the world: thin figures, hairlines, one panel at most."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import pygame
+
+from ai.lander import LanderEnv
+from game import texts
+from game.ui.canvas import Canvas, Point
+from game.ui.tokens import (
+    FAINT,
+    FIGURE,
+    HUMAN,
+    INK,
+    LABEL,
+    LINE,
+    MARGIN,
+    MUTE,
+    NET,
+    SMALL,
+    TEXT,
+    TITLE,
+    VIEW_SIZE,
+    Colour,
+)
+from game.world.paint import mix
+
+# Four columns on the left, two on the right: the pad stands in the middle.
+_COLUMNS: Final = (64.0, 186.0, 308.0, 430.0, 1002.0, 1124.0)
+_LABEL_LINE: Final = 663.0
+_FIGURE_LINE: Final = 697.0
+_BAR: Final = (92.0, 2.0)
+_BAR_TOP: Final = 708.0
+_LITTLE_TIME: Final = 5.0
+
+
+@dataclass(frozen=True)
+class Readout:
+    """One figure on the ground line.
+
+    Attributes:
+        fill: how much of the bar is full, 0 to 1; None for no bar.
+        limit: where on the bar the limit's tick stands; None for no limit.
+        within: whether the limit is kept; None where nothing is to be kept.
+
+    """
+
+    label: str
+    figure: str
+    unit: str
+    fill: float | None = None
+    limit: float | None = None
+    within: bool | None = None
+
+
+def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
+    """What a pilot needs to know."""
+    limits = env.limits
+    across, up = env.velocity[slot].tolist()
+    tilt = float(env.tilt[slot])
+    left = max(0.0, limits.time - float(env.time[slot]))
+
+    def against(label: str, figure: str, unit: str, value: float, limit: float) -> Readout:
+        return Readout(label, figure, unit, abs(value) / (1.8 * limit), 1 / 1.8, abs(value) <= limit)
+
+    descent = -up if abs(up) >= 0.05 else 0.0
+    return [
+        Readout(texts.ALTITUDE, f"{max(0.0, float(env.altitude[slot])):.1f}", "m"),
+        against(texts.DESCENT, _signed(descent), "m/s", max(0.0, descent), limits.touch_speed),
+        against(texts.DRIFT, f"{abs(across):.1f}", "m/s", across, limits.slide_speed),
+        against(texts.TILT, f"{math.degrees(tilt):.0f}", "°", tilt, limits.touch_tilt),
+        Readout(texts.FUEL_USED, f"{float(env.fuel[slot]):.1f}", "s"),
+        Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limits.time, within=None if left > _LITTLE_TIME else False),
+    ]
+
+
+def draw_readouts(canvas: Canvas, readouts: list[Readout]) -> None:
+    """Draw figures side by side; a bar says how far from the limit, a mark beside the label on which side."""
+    for x, readout in zip(_COLUMNS, readouts, strict=True):
+        colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
+        label = canvas.text(readout.label, (x, _LABEL_LINE), size=LABEL, colour=MUTE, weight="medium")
+        if readout.within is not None:
+            _draw_mark(canvas, (label.right + 9, _LABEL_LINE - 4), readout.within)
+        figure = canvas.text(
+            readout.figure, (x - 1, _FIGURE_LINE), size=FIGURE, colour=colour, weight="light", tabular=True
+        )
+        gap = 3 if readout.unit == "°" else 6
+        canvas.text(readout.unit, (figure.right + gap, _FIGURE_LINE), size=SMALL, colour=MUTE)
+        if readout.fill is not None:
+            canvas.bar((x, _BAR_TOP, *_BAR), readout.fill, colour)
+        if readout.limit is not None:
+            canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
+
+
+def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> None:
+    """Say at the top who flies; a line along the edge of the view sweeps out from the middle in their colour."""
+    middle = VIEW_SIZE[0] / 2
+    width = canvas.text_width(text, size=TEXT)
+    canvas.text(text, (middle + 9, 41), size=TEXT, align="centre")
+    canvas.glow((middle - width / 2 - 8, 36), 14, colour, 0.8)
+    canvas.dot((middle - width / 2 - 8, 36), 4, colour)
+    reach = 90 * sweep
+    canvas.pill((middle - 90, 54, 180, 2), FAINT, 0.5)
+    canvas.pill((middle - reach, 54, max(2.0, 2 * reach), 2), colour)
+
+
+def draw_corner(canvas: Canvas, small: str, large: str) -> None:
+    """Name, top left, what is being flown."""
+    canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
+    canvas.text(large, (MARGIN, 58), size=TEXT)
+
+
+def draw_bars(canvas: Canvas, rows: list[tuple[str, float]], top: float, left: float, width: float, best: int) -> None:
+    """Draw named values 0 to 1 as bars, the best one in the network's colour and marked."""
+    for number, (name, value) in enumerate(rows):
+        y = top + 24 * number
+        chosen = number == best
+        canvas.text(name, (left, y + 4), size=SMALL, colour=INK if chosen else MUTE)
+        track = width - 96
+        canvas.bar((left + 96, y - 1.5, track, 3), value, NET if chosen else mix(FAINT, NET, 0.42))
+        if chosen:
+            canvas.marker("triangle", (left + 88, y), 6, NET)
+
+
+def draw_centred_bars(
+    canvas: Canvas, rows: list[tuple[str, float]], top: float, left: float, width: float, step: float = 19
+) -> None:
+    """Draw named values -1 to 1 as bars that grow from the middle."""
+    track = width - 96
+    middle = left + 96 + track / 2
+    for number, (name, value) in enumerate(rows):
+        y = top + step * number
+        canvas.text(name, (left, y + 4), size=LABEL, colour=MUTE)
+        canvas.pill((left + 96, y - 1, track, 2), FAINT, 0.5)
+        reach = min(max(value, -1.0), 1.0) * track / 2
+        if abs(reach) >= 1:
+            canvas.pill((min(middle, middle + reach), y - 1.5, abs(reach), 3), NET)
+        canvas.line((middle, y - 4), (middle, y + 4), MUTE)
+
+
+def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
+    """Say how much of a flight the person flew and how much the network."""
+    you = round(100 * human)
+    canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
+    network = texts.SHARE_NETWORK.format(percent=100 - you)
+    canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right")
+    edge = width * human
+    if human > 0:
+        canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)
+    if human < 1:
+        canvas.pill((left + edge + 1, top + 9, width - edge - 1, 3), NET)
+
+
+@dataclass(frozen=True)
+class Card:
+    """How a flight ended: good or not, why, and its figures as label, value, unit."""
+
+    good: bool
+    title: str
+    reason: str
+    figures: tuple[tuple[str, str, str], ...]
+    human: float
+
+
+CARD: Final = pygame.Rect(400, 136, 480, 264)
+
+
+def draw_card(canvas: Canvas, card: Card, keys: list[tuple[str, str]], shown: float) -> None:
+    """Draw the outcome card, `shown` 0 to 1 of the way in."""
+    drop = 10 * (1 - shown)
+    left, top, width = CARD.left + 32, CARD.top - drop, CARD.width - 64
+    canvas.panel((CARD.left, top, CARD.width, CARD.height))
+    colour = canvas.palette.good if card.good else canvas.palette.warn
+    canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
+    canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
+    canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
+    canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK)
+    column = width / len(card.figures)
+    for number, (label, value, unit) in enumerate(card.figures):
+        x = left + number * column
+        canvas.text(label, (x, top + 122), size=LABEL, colour=MUTE, weight="medium")
+        figure = canvas.text(value, (x, top + 149), size=TITLE, weight="light", tabular=True)
+        canvas.text(unit, (figure.right + 4, top + 149), size=LABEL, colour=MUTE)
+    draw_share(canvas, left, top + 188, width, card.human)
+    canvas.line((left, top + 218), (left + width, top + 218), LINE)
+    x = left
+    for key, meaning in keys:
+        x = canvas.text(key, (x, top + 244), size=SMALL, weight="medium").right + 8
+        x = canvas.text(meaning, (x, top + 244), size=SMALL, colour=MUTE).right + 24
+
+
+def _draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
+    if within:
+        canvas.dot(place, 2.0, canvas.palette.good, 0.9)
+    else:
+        canvas.marker("triangle", place, 9, canvas.palette.warn)
+
+
+def _signed(value: float) -> str:
+    return f"{value:.1f}".replace("-", "−")

@@ -1,0 +1,44 @@
+"""Why a flight ended, in words: quoted from the lander's own limits."""
+
+from __future__ import annotations
+
+import math
+
+from ai.lander import Cause, LanderEnv, Outcome
+from game import texts
+from game.hud import Card
+
+
+def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
+    """Return the card of a flight that has ended; `human` is the person's share of it."""
+    outcome = Outcome(int(env.outcome[slot]))
+    speed, _, _ = env.impact[slot].tolist()
+    figures = [(texts.TIME, f"{float(env.time[slot]):.1f}", "s"), (texts.FUEL, f"{float(env.fuel[slot]):.1f}", "s")]
+    if outcome in (Outcome.LANDED, Outcome.CRASHED):
+        figures.append((texts.TOUCHDOWN, f"{speed:.1f}", "m/s"))
+    away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))
+    figures.append((texts.FROM_MIDDLE, f"{away:.1f}", "m"))
+    title, reason = texts.OUTCOMES[outcome.name]
+    if outcome is Outcome.CRASHED:
+        reason = crash_reason(env, slot)
+    elif outcome is Outcome.TIMED_OUT:
+        reason = reason.format(limit=f"{env.limits.time:.0f}")
+    return Card(outcome is Outcome.LANDED, title, reason, tuple(figures), human)
+
+
+def crash_reason(env: LanderEnv, slot: int = 0) -> str:
+    """Name what broke the lander, and by how much."""
+    cause = Cause(int(env.cause[slot]))
+    speed, slide, tilt = env.impact[slot].tolist()
+    limits = env.limits
+    value, limit = {
+        Cause.HARD: (_one_more(speed, limits.touch_speed), f"{limits.touch_speed:.1f}"),
+        Cause.SLIDING: (_one_more(slide, limits.slide_speed), f"{limits.slide_speed:.1f}"),
+        Cause.TILTED: (f"{math.degrees(tilt):.0f}", f"{math.degrees(limits.touch_tilt):.0f}"),
+    }.get(cause, ("", ""))
+    return texts.CAUSES[cause.name].format(value=value, limit=limit)
+
+
+def _one_more(value: float, limit: float) -> str:
+    """Write a value beyond its limit so that it does not read as the limit itself."""
+    return f"{value:.1f}" if f"{value:.1f}" != f"{limit:.1f}" else f"{value:.2f}"

@@ -1,0 +1,191 @@
+"""Play: fly, hand the stick to the network, take it back."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Doubles
+from game import hud, networks, texts
+from game.clock import STEP
+from game.context import Context
+from game.controls import Command, translate
+from game.flight import Flight, Hand, coast_path
+from game.outcomes import outcome_card
+from game.render import Camera
+from game.scene import Push, Transition
+from game.ui.canvas import Canvas
+from game.ui.hints import draw_hints
+from game.ui.tokens import HUMAN, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.world.backdrop import landscape
+from game.world.pad import draw_pad
+from game.world.paths import draw_dotted
+from game.world.stage import Stage
+
+_PATH_EVERY: Final = 6  # steps between predictions
+_CARD_AFTER: Final = 45  # steps from the end of a flight to its card
+_CARD_RISE: Final = 16
+_SWEEP: Final = 0.16
+_SPAWN: Final = "graded"  # from easy to as hard as any: a person is still learning
+
+
+class Play:
+    """One flight after another. `seed` fixes the first; the others are drawn from the context's chance."""
+
+    def __init__(self, seed: int | None = None) -> None:
+        self._seed = seed
+        self._context: Context | None = None
+        self._time = 0.0
+        self._sweep = 1.0  # how far the line at the top has swept since the stick changed hands
+        self._steps = self._since_end = 0
+        self._card: hud.Card | None = None
+        self._path: Doubles = np.empty((0, 2))
+
+    def enter(self, context: Context) -> None:
+        """Begin the first flight, or go on with the one that was paused."""
+        if self._context is not None:
+            return
+        self._context = context
+        self._controls, self._settings = context.controls, context.settings
+        self._network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        self._begin(self._new_seed() if self._seed is None else self._seed)
+        if self._network.problem:
+            context.note(texts.NO_NETWORK.format(problem=self._network.problem))
+
+    def exit(self) -> None:
+        """Keep the flight for the way back."""
+
+    def retry(self) -> None:
+        """Fly again from the same start."""
+        self._begin(self.flight.recording.seed)
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Hand over, begin again, pause."""
+        if event.type == pygame.WINDOWFOCUSLOST and not self.flight.over:
+            return self._pause()
+        match translate(event):
+            case Command.PAUSE:
+                return self._pause()
+            case Command.HANDOVER:
+                self._hand_over()
+            case Command.RETRY:
+                self.retry()
+            case Command.NEXT:
+                self._begin(self._new_seed())
+            case Command.CONFIRM if self._card_shown > 0:
+                self._go_on()
+            case _ if self._card_shown >= 1 and _is_space(event):
+                self._go_on()
+        return None
+
+    def update(self) -> None:
+        """Fly one step of 1/60 s."""
+        flight = self.flight
+        was_over = flight.over
+        flight.step(self._controls.action)
+        ended = np.array([flight.over and not was_over])
+        self._stage.follow(np.array([flight.hand is Hand.NETWORK]), ended)
+        if not self._settings.reduced_motion:
+            self._time += STEP
+            self._camera.follow(flight.env.position[0])
+        self._sweep += (1.0 - self._sweep) * (1.0 if self._settings.reduced_motion else _SWEEP)
+        self._steps += 1
+        if flight.over:
+            self._since_end += 1
+            if self._card is None:
+                self._card = outcome_card(flight.env, flight.share)
+                self._path = np.empty((0, 2))
+        elif self._steps % _PATH_EVERY == 1:
+            self._path = coast_path(flight.env)
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the world, the craft, the read-outs and, at the end, the card."""
+        view = self._camera.view(canvas.scale, alpha)
+        flight, env = self.flight, self.flight.env
+        pose = flight.poses.at(alpha)[0]
+        landscape(canvas.surface.get_size(), self._settings.reduced_motion).draw(
+            canvas, self._camera, self._time, alpha
+        )
+        centre = (float(env.pad[0, 0]), float(env.pad[0, 1]))
+        draw_pad(canvas, view, centre, float(env.pad_width[0]), self._time)
+        draw_dotted(canvas, view, self._path, HUMAN)
+        self._stage.draw_lander(canvas, view, pose)
+        self._stage.draw_dust(canvas, view, alpha)
+        self._draw_hud(canvas)
+        if self._card is not None and self._card_shown > 0:
+            hud.draw_card(canvas, self._card, self._card_keys(), self._card_shown)
+
+    # The flight
+
+    def _begin(self, seed: int) -> None:
+        self.flight = Flight(seed, self._network.flyer, _SPAWN)
+        reduced = self._settings.reduced_motion
+        # Decoration has a chance of its own: what flies must not depend on what is drawn.
+        self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
+        self._camera = Camera()
+        self._card = None
+        self._path = np.empty((0, 2))
+        self._sweep = 1.0
+        self._steps = self._since_end = 0
+
+    def _new_seed(self) -> int:
+        assert self._context is not None
+        return int(self._context.rng.integers(2**31))
+
+    def _hand_over(self) -> None:
+        if self.flight.hand_over():
+            self._sweep = 0.0
+        elif self._network.flyer is None and self._context is not None:
+            self._context.note(texts.NO_NETWORK.format(problem=self._network.problem))
+
+    def _go_on(self) -> None:
+        """After a landing to a new start, after a crash to the same one."""
+        if self._card is not None and self._card.good:
+            self._begin(self._new_seed())
+        else:
+            self.retry()
+
+    def _pause(self) -> Transition:
+        from game.scenes.pause import Pause
+
+        return Push(Pause(self, retry=self.retry))
+
+    # The picture
+
+    @property
+    def _card_shown(self) -> float:
+        """How far the card has come in, 0 to 1."""
+        since = self._since_end - _CARD_AFTER
+        if since <= 0:
+            return 0.0
+        return 1.0 if self._settings.reduced_motion else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
+
+    def _draw_hud(self, canvas: Canvas) -> None:
+        network_flies = self.flight.hand is Hand.NETWORK
+        text = texts.NETWORK_FLIES if network_flies else texts.YOU_FLY
+        hud.draw_hand(canvas, text, NET if network_flies else HUMAN, self._sweep)
+        network = self._network
+        flown = texts.WITH_NETWORK.format(name=network.name) if network.flyer else texts.ALONE
+        hud.draw_corner(canvas, texts.FREE_FLIGHT, flown)
+        if network.problem:
+            problem = texts.NO_NETWORK.format(problem=network.problem)
+            canvas.text(problem, (VIEW_SIZE[0] / 2, 78), size=SMALL, colour=MUTE, align="centre")
+        hud.draw_readouts(canvas, hud.flight_readouts(self.flight.env))
+        word = self._controls.word
+        hints = [(word(Command.PAUSE), texts.HINT_PAUSE)]
+        if network.flyer:
+            meaning = texts.HINT_TAKE_BACK if network_flies else texts.HINT_HAND_OVER
+            hints.insert(0, (word(Command.HANDOVER), meaning))
+        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+
+    def _card_keys(self) -> list[tuple[str, str]]:
+        assert self._card is not None
+        good, word = self._card.good, self._controls.word
+        other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
+        return [(word(Command.CONFIRM), texts.CARD_FIRST[good]), (word(other[0]), other[1])]
+
+
+def _is_space(event: pygame.event.Event) -> bool:
+    return bool(event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE)

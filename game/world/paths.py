@@ -1,0 +1,89 @@
+"""Lines through the sky: where a lander will go, and where others went."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Bools, Doubles
+from ai.lander import LanderEnv, Outcome
+from game.render import View
+from game.ui.canvas import Canvas
+from game.ui.tokens import NET, NIGHT1, Colour
+from game.world.paint import mix
+
+_SPACING: Final = 0.62  # metres between dots
+_TRAIL_STRIDE: Final = 6  # steps between points of a trail
+
+
+def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6) -> None:
+    """Draw a path (k, 2) as dots that fade along the way, from `start` metres on."""
+    if len(path) < 2:
+        return
+    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    marks = np.arange(start, lengths[-1], _SPACING)
+    if not len(marks):
+        return
+    places = np.stack([np.interp(marks, lengths, path[:, k]) for k in range(2)], axis=1)
+    fade = np.linspace(0.95, 0.22, len(marks))
+    for place, alpha in zip(view.points(places).tolist(), fade.tolist(), strict=True):
+        canvas.dot(place, 1.5, colour, alpha)
+    canvas.marker("diamond", view.points(path[-1]).tolist(), 7, colour, 0.55)
+
+
+@dataclass
+class _Trail:
+    points: Doubles
+    outcome: int
+    age: float = 0.0
+
+
+class Trails:
+    """The ways of recent flights, fading; `follow` once after every step."""
+
+    def __init__(self, env: LanderEnv, keep: int = 24) -> None:
+        self._env = env
+        self._open: list[list[tuple[float, float]]] = [[] for _ in range(env.num_envs)]
+        self._done: deque[_Trail] = deque(maxlen=keep)
+        self._step = 0
+
+    def follow(self, fresh: Bools, ended: Bools) -> None:
+        """Note where the landers are; `fresh` ones began anew, `ended` ones ended just now."""
+        for slot in np.flatnonzero(fresh):
+            self._open[slot] = []
+        self._step += 1
+        if self._step % _TRAIL_STRIDE == 0:
+            for way, place, outcome in zip(
+                self._open, self._env.position.tolist(), self._env.outcome.tolist(), strict=True
+            ):
+                if outcome == Outcome.FLYING:
+                    way.append(place)
+        for slot in np.flatnonzero(ended):
+            points = [*self._open[slot], self._env.position[slot].tolist()]
+            if len(points) > 1:
+                self._done.append(_Trail(np.array(points), int(self._env.outcome[slot])))
+        for trail in self._done:
+            trail.age += 1 / 60
+
+    def draw(self, canvas: Canvas, view: View, shown: int) -> None:
+        """Draw the trails of ended flights, newest brightest, and the one of slot `shown` so far."""
+        for rank, trail in enumerate(reversed(self._done)):
+            strength = 0.50 * 0.88**rank * max(0.0, 1 - trail.age / 40)
+            landed = trail.outcome == Outcome.LANDED
+            colour = canvas.palette.good if landed else canvas.palette.warn
+            if strength > 0.04:
+                self._draw_line(canvas, view, trail.points, mix(NIGHT1, colour, strength))
+                if not landed:
+                    end = view.points(trail.points[-1]).tolist()
+                    canvas.marker("cross", end, 7, colour, min(1.0, strength * 1.8))
+        way = self._open[shown]
+        if len(way) > 1:
+            self._draw_line(canvas, view, np.array(way), mix(NIGHT1, NET, 0.55))
+
+    @staticmethod
+    def _draw_line(canvas: Canvas, view: View, points: Doubles, colour: Colour) -> None:
+        pygame.draw.aalines(canvas.surface, colour, False, view.pixels(points).tolist())

@@ -1,0 +1,227 @@
+"""What moves in front of the landscape: landers, their fire and its light, shadows, dust."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Bools, Doubles
+from ai.lander import FOOT_CENTRE, LanderEnv, Outcome
+from game.flight import surface_height
+from game.render import View
+from game.ui.canvas import Canvas
+from game.ui.tokens import HUMAN, NET
+from game.world import lander as art
+from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume
+from game.world.paint import light, mix
+from game.world.particles import Particles
+
+_IGNITE: Final = 0.34  # share of the way to full thrust, and to none, in a step
+_DIE: Final = 0.22
+_DUST_HEIGHT: Final = 6.0
+_LIGHT_HEIGHT: Final = 9.0
+_FLASH_STEPS: Final = 34
+
+
+class Stage:
+    """The fire, dust and light around the landers of one environment; `follow` once after every step."""
+
+    def __init__(self, env: LanderEnv, rng: np.random.Generator, reduced_motion: bool = False) -> None:
+        self._env = env
+        self._rng = rng
+        self._calm = reduced_motion
+        self.particles = Particles(rng)
+        count = env.num_envs
+        self.thrust = np.zeros((count, 3))  # main engine, left-hand jet, right-hand jet
+        self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between in passing
+        self.flash = np.zeros(count, np.intp)
+        self._flicker = 0
+        self._was_down = np.zeros(count, bool)
+
+    def follow(self, networks: Bools, ended: Bools) -> None:
+        """Ease everything towards what the environment now says; `networks` (n,) fly, `ended` ended just now."""
+        env = self._env
+        flying = env.outcome == Outcome.FLYING
+        main, steer = env.actions >= 3, env.actions % 3
+        wanted = np.stack([main, steer == 2, steer == 1], axis=1) & flying[:, None]
+        self.thrust += np.where(wanted, _IGNITE, _DIE) * (wanted - self.thrust)
+        self.blue += (1.0 if self._calm else 0.14) * (networks - self.blue)
+        self._flicker += 1
+        self.flash = np.maximum(self.flash - 1, 0)
+        for slot in np.flatnonzero(ended & (env.outcome == Outcome.CRASHED)):
+            self.flash[slot] = _FLASH_STEPS
+            self.particles.burst(env.position[slot], env.velocity[slot])
+        if env.num_envs == 1:
+            self._raise_dust()
+        self.particles.update()
+
+    def _raise_dust(self) -> None:
+        env = self._env
+        x, y = env.position[0].tolist()
+        angle, thrust = float(env.angle[0]), float(self.thrust[0, 0])
+        reach = y - surface_height(env, x)
+        if thrust > 0.05 and reach < _DUST_HEIGHT and abs(angle) < 1.2:
+            aim = x + math.tan(angle) * reach
+            self.particles.blow(aim, surface_height(env, aim), thrust * (1 - reach / _DUST_HEIGHT) ** 1.5)
+        down = bool(env.contacts[0].any())
+        if down and not self._was_down[0] and env.outcome[0] != Outcome.CRASHED:
+            self.particles.settle(x, surface_height(env, x), float(env.impact[0, 0]))
+        self._was_down[0] = down
+
+    # One lander in full
+
+    def draw_lander(self, canvas: Canvas, view: View, pose: Doubles, slot: int = 0, size: float = 1.0) -> None:
+        """Draw one lander with everything around it but dust; `size` 1 is true to scale."""
+        x, y, angle = pose.tolist()
+        self._draw_shadow(canvas, view, x, y, angle)
+        self._draw_ground_light(canvas, view, x, y, angle, slot)
+        floor = float(view.pixels((x, surface_height(self._env, x)))[1]) + 2
+        draw_craft(canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor)
+        self._draw_flash(canvas, view, x, y, slot)
+
+    def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
+        """Draw dust, sparks and fragments."""
+        self.particles.draw(canvas.surface, view, alpha)
+
+    def _draw_shadow(self, canvas: Canvas, view: View, x: float, y: float, angle: float) -> None:
+        metre = view.pixels_per_metre
+        ground = surface_height(self._env, x)
+        clearance = max(0.0, y - 0.96 - ground)
+        level = round(8 * max(0.0, 1 - clearance / 7) ** 1.6)
+        if level:
+            across = (1.25 + 0.10 * clearance) * metre
+            _blit_middle(canvas, _shade(round(across), round(0.15 * metre), level), view, (x, ground + 0.03))
+        for side in (-1, 1):
+            foot_x = x + side * FOOT_CENTRE[0] * math.cos(angle) - FOOT_CENTRE[1] * math.sin(angle)
+            foot_y = y + side * FOOT_CENTRE[0] * math.sin(angle) + FOOT_CENTRE[1] * math.cos(angle) - 0.06
+            under = surface_height(self._env, foot_x)
+            near = round(8 * max(0.0, 1 - max(0.0, foot_y - under) / 0.6))
+            if near:
+                spot = _shade(round(0.34 * metre), max(2, round(0.075 * metre)), near)
+                _blit_middle(canvas, spot, view, (foot_x, under + 0.02))
+
+    def _draw_ground_light(self, canvas: Canvas, view: View, x: float, y: float, angle: float, slot: int) -> None:
+        thrust = float(self.thrust[slot, 0])
+        reach = max(0.0, y - surface_height(self._env, x))
+        if thrust < 0.05 or reach > _LIGHT_HEIGHT or abs(angle) > 1.2:
+            return
+        aim = x + math.tan(angle) * reach * 0.8
+        level = round(12 * thrust * (1 - reach / _LIGHT_HEIGHT) ** 1.8)
+        if level:
+            colour = mix(HUMAN, NET, round(float(self.blue[slot]) * 4) / 4)
+            metre = view.pixels_per_metre
+            pool = _pool(round((2.0 + 0.25 * reach) * metre), round(0.42 * metre), level, colour)
+            _blit_middle(canvas, pool, view, (aim, surface_height(self._env, aim) - 0.02), pygame.BLEND_RGB_ADD)
+
+    def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
+        left = self.flash[slot] / _FLASH_STEPS
+        if left > 0 and not self._calm:
+            metre = view.pixels_per_metre / view.scale
+            canvas.glow(view.points((x, y)).tolist(), 5.5 * metre, (255, 190, 120), 1.6 * left**2)
+            canvas.glow(view.points((x, y)).tolist(), 2.0 * metre, (255, 236, 210), 2.2 * left**3)
+
+
+def draw_craft(
+    canvas: Canvas,
+    view: View,
+    pose: Doubles,
+    thrust: Doubles,
+    blue: float,
+    flicker: int,
+    size: float = 1.0,
+    floor: float = math.inf,
+) -> None:
+    """Draw a lander and its fire, which ends at the pixel row `floor`.
+
+    A lander drawn smaller than it is still stands on its feet.
+    """
+    surface = canvas.surface
+    x, y, angle = pose.tolist()
+    metre = view.pixels_per_metre * size
+    middle_x, middle_y = view.pixels(stand(x, y, angle, size)).tolist()
+    cos, sin = math.cos(angle), math.sin(angle)
+
+    def place(right: float, up: float) -> tuple[float, float]:
+        return middle_x + metre * (right * cos - up * sin), middle_y - metre * (right * sin + up * cos)
+
+    main, *jets = thrust.tolist()
+    fire = mix(HUMAN, NET, round(blue * 4) / 4)
+    if main > 0.06:
+        nozzle = place(*art.NOZZLE)
+        heart = place(art.NOZZLE[0], art.NOZZLE[1] - 0.35)
+        scale = canvas.scale
+        spot = (heart[0] / scale, heart[1] / scale)
+        canvas.glow(spot, 2.3 * metre / scale, fire, 0.42 * main)
+        fire_kind = NET_PLUME if blue > 0.5 else HUMAN_PLUME
+        _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
+    fraction_x, fraction_y = middle_x - math.floor(middle_x), middle_y - math.floor(middle_y)
+    craft = art.sprite(metre, angle, fraction_x, fraction_y)
+    half = craft.get_width() // 2
+    surface.blit(craft, (math.floor(middle_x) - half, math.floor(middle_y) - half))
+    for side, force in enumerate(jets):
+        if force > 0.06:
+            outward = angle + (math.pi / 2 if side else -math.pi / 2)
+            _burn(surface, JET, metre, outward, force, flicker // 2 + side, place(*art.JETS[side]), floor)
+    tip_x, tip_y = place(*art.ANTENNA_TIP)
+    tip = (tip_x / canvas.scale, tip_y / canvas.scale)
+    owner = mix(HUMAN, NET, round(blue * 8) / 8)
+    canvas.glow(tip, 0.45 * metre / canvas.scale, owner, 1.0)
+    canvas.dot(tip, max(1.0, 0.07 * metre / canvas.scale), mix(owner, (255, 255, 255), 0.35))
+
+
+def stand(x: float, y: float, angle: float, size: float) -> tuple[float, float]:
+    """Return where the middle of a lander drawn at that size goes for its feet to stay where they are."""
+    lower = 0.96 * (1 - size)
+    return x + lower * math.sin(angle), y - lower * math.cos(angle)
+
+
+def _burn(
+    surface: pygame.Surface,
+    kind: Plume,
+    metre: float,
+    angle: float,
+    thrust: float,
+    flicker: int,
+    nozzle: tuple[float, float],
+    floor: float,
+) -> None:
+    fire = plume(kind, metre, angle, thrust, flicker)
+    if fire:
+        sheet, (x, y) = fire
+        left, top = round(nozzle[0]) - x, round(nozzle[1]) - y
+        height = min(sheet.get_height(), max(0.0, floor - top))
+        surface.blit(sheet, (left, top), (0, 0, sheet.get_width(), height), pygame.BLEND_RGB_ADD)
+
+
+def _blit_middle(
+    canvas: Canvas, sprite: pygame.Surface, view: View, position: tuple[float, float], flags: int = 0
+) -> None:
+    x, y = view.pixels(position).tolist()
+    corner = (round(x) - sprite.get_width() // 2, round(y) - sprite.get_height() // 2)
+    canvas.surface.blit(sprite, corner, special_flags=flags)
+
+
+@lru_cache(maxsize=512)
+def _shade(across: int, down: int, level: int) -> pygame.Surface:
+    """Return a soft dark ellipse; `level` is in 1/8."""
+    x = np.linspace(-1, 1, 2 * across + 1)[:, None]
+    y = np.linspace(-1, 1, 2 * down + 1)[None, :]
+    cover = np.clip(1 - np.hypot(x, y), 0, 1) ** 0.8 * 200 * level / 8
+    surface = pygame.Surface((2 * across + 1, 2 * down + 1), pygame.SRCALPHA)
+    surface.fill((4, 5, 12, 0))
+    pygame.surfarray.pixels_alpha(surface)[:] = cover.astype(np.uint8)
+    return surface
+
+
+@lru_cache(maxsize=256)
+def _pool(across: int, down: int, level: int, colour: tuple[int, int, int]) -> pygame.Surface:
+    """Return a flat pool of light, to be added; `level` is in 1/12."""
+    x = np.linspace(-1, 1, 2 * across + 1)[None, :]
+    y = np.linspace(-1, 1, 2 * down + 1)[:, None]
+    away = np.clip(1 - np.hypot(x, y), 0, 1)
+    shine = (0.34 * away**2 + 0.42 * away**6) * level / 12
+    return light(shine[..., None] * np.array(colour, np.float32))
