@@ -13,7 +13,11 @@ if TYPE_CHECKING:
 
 
 class Body:
-    """One body, `world.batch` of it. Arrays read through a handle are views: later steps change them."""
+    """One body, `world.batch` of it.
+
+    Arrays read through a handle are views that later steps change. They can't be written to: assign a whole
+    property, or use `set` for some of the worlds, so that what is kept about poses and contacts hears of it.
+    """
 
     def __init__(self, world: World, index: int) -> None:
         self.world = world
@@ -22,7 +26,7 @@ class Body:
     @property
     def position(self) -> Array:
         """Centre of mass in metres, (batch, 2)."""
-        return self.world.state.pose[:, self.index, :2]
+        return _read_only(self.world.state.pose[:, self.index, :2])
 
     @position.setter
     def position(self, value: object) -> None:
@@ -31,7 +35,7 @@ class Body:
     @property
     def angle(self) -> Array:
         """Radians, counter-clockwise, unwrapped, (batch,)."""
-        return self.world.state.pose[:, self.index, 2]
+        return _read_only(self.world.state.pose[:, self.index, 2])
 
     @angle.setter
     def angle(self, value: object) -> None:
@@ -40,7 +44,7 @@ class Body:
     @property
     def velocity(self) -> Array:
         """Metres a second, (batch, 2)."""
-        return self.world.state.velocity[:, self.index, :2]
+        return _read_only(self.world.state.velocity[:, self.index, :2])
 
     @velocity.setter
     def velocity(self, value: object) -> None:
@@ -49,7 +53,7 @@ class Body:
     @property
     def angular_velocity(self) -> Array:
         """Radians a second, (batch,)."""
-        return self.world.state.velocity[:, self.index, 2]
+        return _read_only(self.world.state.velocity[:, self.index, 2])
 
     @angular_velocity.setter
     def angular_velocity(self, value: object) -> None:
@@ -114,9 +118,14 @@ class Body:
             state.velocity[rows, self.index, :2] = np.asarray(velocity, dtype=float)
         if angular_velocity is not None:
             state.velocity[rows, self.index, 2] = np.asarray(angular_velocity, dtype=float)
-        if position is not None or angle is not None:
+        if self.static or position is not None or angle is not None:
             self.world.moved(self, worlds)
 
     def _inverse(self, row: int) -> float:
         value = float(self.world.params.inverse_mass[self.index, row])
         return 1.0 / value if value else float("inf")
+
+
+def _read_only(view: Array) -> Array:
+    view.flags.writeable = False
+    return view

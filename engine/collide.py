@@ -42,9 +42,7 @@ class Manifold:
 
     def rows(self, rows: Ints) -> Manifold:
         """Only these pairs."""
-        return Manifold(
-            self.normal[rows], self.points[rows], self.depth[rows], self.valid[rows], self.feature[rows]
-        )
+        return Manifold(self.normal[rows], self.points[rows], self.depth[rows], self.valid[rows], self.feature[rows])
 
     def put(self, rows: Ints, other: Manifold) -> None:
         """Overwrite these pairs with those of `other`."""

@@ -1,4 +1,4 @@
-"""From poses to contacts: a broad phase over bounding boxes, then the exact test for pairs that are near."""
+"""From poses to contacts: the exact test for pairs that are near, and what is remembered of the last step."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.broad import BroadPhase
 from engine.collide import Manifold, Placed, collide_circles, collide_polygon_circle, collide_polygons
 from engine.solver import Contacts, colour
 from engine.state import BodyParams, BodyState, ShapeTable
@@ -42,42 +43,36 @@ class Memory:
 
 
 class Detector:
-    """Finds what touches in every world, and remembers the impulses, so that a resting stack starts solved.
-
-    Which pairs of shapes may meet at all follows from the bodies and is laid down once. For up to some
-    hundreds of shapes, testing all those pairs in one go is faster in NumPy than any tree.
-    """
+    """Finds what touches in every world, and remembers the impulses, so that a resting stack starts solved."""
 
     def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
         self.shapes = shapes
-        self.dynamic = params.dynamic
-        self.pairs = _meeting_pairs(params, shapes)  # (pairs, 2) of shapes, a polygon before a circle
+        self.broad = BroadPhase(params, shapes)
+        self.pairs = self.broad.pairs  # (pairs, 2) of shapes, a polygon before a circle
         self.body_pairs = shapes.body[self.pairs]
+        self.free = params.dynamic[self.body_pairs]  # (pairs, 2): which of the two can move
         self.friction = _mix(params.friction[self.body_pairs], _geometric_mean, _DEFAULT_FRICTION)
         self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
         self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
-        self._fixed = np.flatnonzero(~self.dynamic[shapes.body])
-        self._fixed_bounds: tuple[Array, Array] | None = None
         self._memory = Memory.empty()
+        self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
 
     def find(self, state: BodyState) -> Contacts | None:
         """Return every touching pair of active bodies, in the solver's order; None if nothing touches."""
-        world, pair = self._near(state)
+        world, pair = self.broad.near(state)
         if not len(world):
             return None
         manifold = self._touch(state, world, pair)
         touching = np.flatnonzero(manifold.valid.any(axis=1))
         if not len(touching):
             return None
-        body = self.body_pairs[pair[touching]]
-        slots = world[touching, None] * state.pose.shape[1] + body
-        order, ends = colour(slots, self.dynamic[body], pair[touching])
+        order, ends = self._colour(world[touching], pair[touching], state.pose.shape[1])
         kept = touching[order]
         world, pair, manifold = world[kept], pair[kept], manifold.rows(kept)
         return Contacts(
             world=world,
             pair=pair,
-            body=body[order],
+            body=self.body_pairs[pair],
             manifold=manifold,
             friction=self.friction[pair],
             restitution=self.restitution[pair],
@@ -97,7 +92,7 @@ class Detector:
     def recall_memory(self, memory: Memory) -> None:
         """Return to what was kept at the time of a call of `memory`."""
         self._memory = memory
-        self.forget_bounds()
+        self.broad.forget_boxes()
 
     def forget(self, body: int, worlds: Bools | None) -> None:
         """A body was put elsewhere: what it touched before has no bearing on what it touches next."""
@@ -108,29 +103,13 @@ class Detector:
                 gone &= worlds[world]
             self._memory = self._memory.where(~gone)
 
-    def forget_bounds(self) -> None:
-        """A static body was put elsewhere."""
-        self._fixed_bounds = None
-
-    def _near(self, state: BodyState) -> tuple[Ints, Ints]:
-        """Broad phase: world and pair (n,) of shapes whose bounding boxes overlap, worlds in order."""
-        centre = self.shapes.world_centres(state)
-        half = np.empty_like(centre)
-        half[:] = self.shapes.reach[:, None]
-        if len(self._fixed):
-            if self._fixed_bounds is None or state.velocity[:, ~self.dynamic].any():
-                self._fixed_bounds = self.shapes.bounds(state, self._fixed)
-            centre[:, self._fixed], half[:, self._fixed] = self._fixed_bounds
-        low, high = centre - half, centre + half
-        a, b = self.pairs.T
-        near: Bools = low[:, a, 1] <= high[:, b, 1]
-        near &= low[:, b, 1] <= high[:, a, 1]
-        near &= low[:, a, 0] <= high[:, b, 0]
-        near &= low[:, b, 0] <= high[:, a, 0]
-        if not state.active.all():
-            near &= state.active[:, self.body_pairs[:, 0]] & state.active[:, self.body_pairs[:, 1]]
-        world, pair = near.nonzero()
-        return world, pair
+    def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, list[int]]:
+        """Order and ends of the colours, as last time if the same pairs touch."""
+        key = world * len(self.pairs) + pair
+        if not np.array_equal(key, self._colours[0]):
+            slots = world[:, None] * bodies + self.body_pairs[pair]
+            self._colours = (key, *colour(slots, self.free[pair]))
+        return self._colours[1:]
 
     def _touch(self, state: BodyState, world: Ints, pair: Ints) -> Manifold:
         """Narrow phase: the manifolds of n pairs, whatever kinds of shape they are."""
@@ -150,10 +129,10 @@ class Detector:
             return collide_polygons(self._place(state, world, a), self._place(state, world, b))
         radius = self.shapes.radius
         if circles == 1:
-            disc = self._centre(state, world, b)
+            disc = self.shapes.centres(state, world, b)
             return collide_polygon_circle(self._place(state, world, a), disc, radius[b])
         return collide_circles(
-            self._centre(state, world, a), radius[a], self._centre(state, world, b), radius[b]
+            self.shapes.centres(state, world, a), radius[a], self.shapes.centres(state, world, b), radius[b]
         )
 
     def _place(self, state: BodyState, world: Ints, shape: Ints) -> Placed:
@@ -166,12 +145,6 @@ class Detector:
         end = rotate(self.shapes.end[shape], cos, sin)
         end += position
         return Placed(start, end, rotate(self.shapes.normal[shape], cos, sin))
-
-    def _centre(self, state: BodyState, world: Ints, shape: Ints) -> Array:
-        body = self.shapes.body[shape]
-        centre = rotate(self.shapes.centre[shape], state.cos[world, body], state.sin[world, body])
-        centre += state.pose[world, body, :2]
-        return centre
 
     def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> Array:
         """Impulses (3, m) of the step before, at points that are made by the same faces as then."""
@@ -186,18 +159,6 @@ class Detector:
         rubs = same.all(axis=1) | (same.any(axis=1) & (manifold.valid.sum(axis=1) == 1))
         np.multiply(last.impulse[2, row], rubs, out=impulse[2])
         return impulse
-
-
-def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> Ints:
-    """Every two shapes of different bodies, one of which can move, whose groups let them touch."""
-    first, second = np.triu_indices(len(shapes), k=1)
-    a, b = shapes.body[first], shapes.body[second]
-    apart = (params.group[a] != 0) & (params.group[a] == params.group[b])
-    meet = (a != b) & (params.dynamic[a] | params.dynamic[b]) & ~apart
-    pairs = np.stack([first[meet], second[meet]], axis=1)
-    turned = shapes.is_circle[pairs[:, 0]] & ~shapes.is_circle[pairs[:, 1]]
-    pairs[turned] = pairs[turned, ::-1]
-    return pairs
 
 
 def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float) -> Array:

@@ -4,37 +4,39 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.state import BodyParams, BodyState
+from engine.state import BodyParams, BodyState, Span
 from engine.vector import Array
 
 
-def integrate_velocity(state: BodyState, params: BodyParams, gravity: Array, dt: float) -> None:
-    """Let gravity (2,) or (batch, 2), gathered forces and drag change the velocities in place.
+def integrate_velocity(state: BodyState, params: BodyParams, bodies: Span, gravity: Array, dt: float) -> None:
+    """Let gravity (2,) or (batch, 2), gathered forces and drag change the velocities of `bodies` in place.
 
     Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. It is taken implicitly
     in v, so that no coefficient, however large, can turn a motion round; terminal speeds are exact.
     """
-    ease = params.inverse_mass * dt  # how much a unit of force changes a velocity in one step
-    fall = np.where(params.dynamic[:, None], gravity[..., None, :] * dt, 0.0)
-    if not state.active.all():
-        ease = ease * state.active[..., None]
-        fall = fall * state.active[..., None]
-    damping = params.linear_drag
-    if params.quadratic_drag.any():
-        damping = damping + params.quadratic_drag * _speeds(state.velocity)
-    state.velocity += state.force * ease
-    state.velocity[..., :2] += fall
+    velocity = state.velocity[:, bodies]
+    ease = params.inverse_mass[bodies] * dt  # how much a unit of force changes a velocity in one step
+    fall = np.where(params.dynamic[bodies, None], gravity[..., None, :] * dt, 0.0)
+    active = state.active[:, bodies, None]
+    if not active.all():
+        ease, fall = ease * active, fall * active
+    damping = params.linear_drag[bodies]
+    if params.quadratic_drag[bodies].any():
+        damping = damping + params.quadratic_drag[bodies] * _speeds(velocity)
+    velocity += state.force[:, bodies] * ease
+    velocity[..., :2] += fall
     if damping.any():
-        state.velocity /= 1.0 + damping * ease
+        velocity /= 1.0 + damping * ease
+    state.velocity[:, bodies] = velocity
 
 
-def integrate_position(state: BodyState, dt: float) -> None:
-    """Move every active body along its velocity, in place."""
-    step = state.velocity * dt
-    if not state.active.all():
-        step *= state.active[..., None]
-    state.pose += step
-    state.refresh_rotation()
+def integrate_position(state: BodyState, bodies: Span, dt: float) -> None:
+    """Move `bodies`, if active, along their velocities, in place."""
+    step = state.velocity[:, bodies] * dt
+    active = state.active[:, bodies, None]
+    if not active.all():
+        step *= active
+    state.pose[:, bodies] += step
 
 
 def _speeds(velocity: Array) -> Array:

@@ -72,7 +72,7 @@ class Solver:
     def solve_overlaps(self, state: BodyState, iterations: int, dt: float) -> None:
         """Move bodies out of overlaps by a velocity that lasts for this step alone, and so adds no energy."""
         manifold = self.contacts.manifold
-        # What a rebound undoes by itself is left to it; taken back twice, it would lift a ball at each bounce.
+        # What a rebound is about to undo is left to it; taken back twice, it would lift a ball at each bounce.
         depth = manifold.depth.T - dt * self._rows.speeds(state.velocity.reshape(-1))[:2]
         excess = np.where(manifold.valid.T, depth - SLOP, 0.0)
         excess[excess < TOLERANCE] = 0.0
@@ -84,9 +84,7 @@ class Solver:
         self._sweep(shift, push, CORRECTION * excess, frictionless, iterations)
         state.pose += shift.reshape(state.pose.shape)
 
-    def _sweep(
-        self, velocity: Array, impulse: Array, target: Array, friction: Array, iterations: int
-    ) -> None:
+    def _sweep(self, velocity: Array, impulse: Array, target: Array, friction: Array, iterations: int) -> None:
         """Projected Gauss-Seidel: drive each normal speed to `target` (2, m) or more, by pushing only."""
         parts = [
             (rows, impulse[:, span], target[:, span], friction[span])
@@ -105,10 +103,9 @@ class _Rows:
     jacobian: Array  # (3, m, 6): row · velocities is the speed along it
     response: Array  # (3, m, 6): velocity change per unit of impulse
     mass: Array  # (3, m): impulse per unit of speed; 0 for a point that is not there
-    stiffness: Array  # (2, m): speed per unit of impulse, of the normal rows
     coupling: Array  # (m,): how a push at one point moves the other
     rub_coupling: Array  # (2, m): how friction moves both points
-    inverse: Array  # (2, m): of the 2 × 2 matrix of both pushes, the diagonal; NaN if singular
+    inverse: Array  # (2, m): of the 2 × 2 matrix of both pushes, the diagonal
     cross_inverse: Array  # (m,): and what stands beside it
 
     @classmethod
@@ -116,26 +113,29 @@ class _Rows:
         slots = contacts.world[:, None] * state.pose.shape[1] + contacts.body
         index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6)
         jacobian = _jacobian(state.pose.reshape(-1, 3)[slots, :2], contacts.manifold)
-        response = jacobian * params.inverse_mass[contacts.body].reshape(-1, 6)
-        stiffness = np.vecdot(jacobian[[0, 1, 2, 0, 0, 1]], response[[0, 1, 2, 1, 2, 2]])
+        inverse_mass = params.inverse_mass[contacts.body].reshape(-1, 6)
+        response = jacobian * inverse_mass
+        stiffness = _stiffness(jacobian, response)
+        spare = np.flatnonzero(_coincide(stiffness))
+        if len(spare):
+            # Points that nearly coincide can't share a push sensibly; the deeper one will do.
+            shallower = contacts.manifold.depth[spare].argmin(axis=1)
+            jacobian[shallower, spare] = contacts.impulse[shallower, spare] = 0.0
+            response = jacobian * inverse_mass
+            stiffness = _stiffness(jacobian, response)
         mass = np.divide(1.0, stiffness[:3], out=np.zeros_like(stiffness[:3]), where=stiffness[:3] > 0)
         first, second, coupling = stiffness[0], stiffness[1], stiffness[3]
-        product = first * second
-        determinant = product - coupling**2
-        # Points that nearly coincide can't share a push sensibly; NaN makes `push` take one of them.
-        determinant[determinant <= 1e-3 * product] = np.nan
-        single = product == 0
-        inverse = np.where(single, mass[:2], stiffness[1::-1] / determinant)
-        cross_inverse = np.where(single, 0.0, -coupling / determinant)
-        return cls(
-            index, jacobian, response, mass, stiffness[:2], coupling, stiffness[4:], inverse, cross_inverse
-        )
+        alone = first * second == 0
+        determinant = np.where(alone, 1.0, first * second - coupling**2)
+        inverse = np.where(alone, mass[:2], stiffness[1::-1] / determinant)
+        cross_inverse = np.where(alone, 0.0, -coupling / determinant)
+        return cls(index, jacobian, response, mass, coupling, stiffness[4:], inverse, cross_inverse)
 
     def part(self, span: slice) -> _Rows:
         """Only the manifolds of `span`."""
         return _Rows(
             self.index[span], self.jacobian[:, span], self.response[:, span], self.mass[:, span],
-            self.stiffness[:, span], self.coupling[span], self.rub_coupling[:, span],
+            self.coupling[span], self.rub_coupling[:, span],
             self.inverse[:, span], self.cross_inverse[span],
         )  # fmt: skip
 
@@ -165,55 +165,51 @@ class _Rows:
         velocity[self.index] = motion + self.effect(change)
 
     def push(self, lacking: Array, total: Array) -> Array:
-        """Impulses (2, m) >= 0 after which both points have the speed they are `lacking`, or more by no push."""
+        """Impulses (2, m) >= 0 that give both points the speed they are `lacking`; 0 where it is there."""
         both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
-        fits = both >= 0
-        if fits.all():
+        if (both >= 0).all():
             return both
-        # One point at a time, from the speeds there would be without any push at all.
-        speed = -lacking - self.stiffness * total - self.coupling * total[::-1]
-        alone = np.maximum(-self.mass[:2] * speed, 0.0)
-        first_will_do = speed[1] + self.coupling * alone[0] >= 0
-        alone[0] *= first_will_do
-        alone[1] *= ~first_will_do
-        return np.where(fits.all(axis=0), both, alone)
+        # Where that would pull at one point, there is no impulse at it, and the other point has to do alone.
+        alone = total + self.mass[:2] * (lacking + self.coupling * total[::-1])
+        return np.maximum(np.where(both[::-1] >= 0, both, alone), 0.0)
 
 
-def colour(slots: Ints, free: Bools, pair: Ints) -> tuple[Ints, list[int]]:
+def colour(slots: Ints, free: Bools) -> tuple[Ints, list[int]]:
     """Order m manifolds so that within each colour no two share a body that can move; and the colours' ends.
 
-    slots (m, 2) name the bodies and `free` (m, 2) says which can move. Manifolds choose in the order of a
-    scrambled `pair`, each the first colour that its bodies have not used; those with the lowest number among
-    their neighbours choose at once (Jones and Plassmann 1993). The numbers are the same in every batch, so
-    that a world is solved in the same order alone and among others.
+    slots (m, 2) name the bodies and `free` (m, 2) says which can move. Each manifold takes the first colour
+    that neither of its bodies has yet, so a world is solved in the same order alone and among others.
     """
-    rank = (pair * 0x9E3779B1) & 0xFFFFFFFF
-    nobody = int(slots.max(initial=-1)) + 1
-    slots = np.where(free, slots, nobody)
-    used = np.zeros(nobody + 1, dtype=np.int64)  # one bit for each colour
-    lowest = np.empty(nobody + 1, dtype=np.intp)
-    bits = np.zeros(len(slots), dtype=np.int64)
-    left = np.arange(len(slots))
-    while len(left):
-        lowest[slots[left]] = np.iinfo(np.intp).max
-        np.minimum.at(lowest, slots[left].ravel(), rank[left].repeat(2))
-        lowest[nobody] = -1
-        first: Bools = (lowest[slots[left]] >= rank[left, None]) | (slots[left] == nobody)
-        chosen = left[first.all(axis=1)]
-        busy = used[slots[chosen, 0]] | used[slots[chosen, 1]]
-        bits[chosen] = ~busy & (busy + 1)
-        used[slots[chosen]] |= bits[chosen, None]
-        used[nobody] = 0
-        left = left[~first.all(axis=1)]
-    order = np.argsort(bits, kind="stable")
-    ends = np.flatnonzero(np.diff(bits[order])) + 1
-    return order, [*ends.tolist(), len(order)]
+    used: dict[int, int] = {}  # one bit for each colour of a body's manifolds
+    chosen = np.empty(len(slots), dtype=np.intp)
+    for row, (a, b) in enumerate(np.where(free, slots, -1).tolist()):
+        busy = used.get(a, 0) | used.get(b, 0)
+        bit = ~busy & (busy + 1)
+        chosen[row] = bit.bit_length()
+        for body in (a, b):
+            if body >= 0:
+                used[body] = used.get(body, 0) | bit
+    order = np.argsort(chosen, kind="stable")
+    return order, np.bincount(chosen).cumsum()[1:].tolist()
+
+
+def _stiffness(jacobian: Array, response: Array) -> Array:
+    """Speed per unit of impulse: of each row (3, m), of both pushes on each other, of friction on both."""
+    products: Array = np.vecdot(jacobian[[0, 1, 2, 0, 0, 1]], response[[0, 1, 2, 1, 2, 2]])
+    return products
+
+
+def _coincide(stiffness: Array) -> Bools:
+    """Which manifolds have two points so near each other that no pair of pushes can tell them apart, (m,)."""
+    product = stiffness[0] * stiffness[1]
+    near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= 1e-3 * product)
+    return near
 
 
 def _jacobian(positions: Array, manifold: Manifold) -> Array:
     """Rows (3, m, 6) of a manifold between bodies centred at `positions` (m, 2, 2)."""
     valid = manifold.valid
-    both = valid.all(axis=1)[:, None]
+    both: Bools = valid.all(axis=1, keepdims=True)
     first, second = manifold.points[:, 0], manifold.points[:, 1]
     middle = np.where(both, (first + second) / 2, np.where(valid[:, :1], first, second))
     points = np.stack([first, second, middle])
@@ -223,5 +219,5 @@ def _jacobian(positions: Array, manifold: Manifold) -> Array:
     rows[..., 2] = -cross(points - positions[:, 0], along)
     rows[..., 3:5] = along
     rows[..., 5] = cross(points - positions[:, 1], along)
-    rows[:2][~valid.T] = 0.0
+    rows[:2] *= valid.T[..., None]
     return rows

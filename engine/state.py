@@ -7,11 +7,23 @@ or reset treats the three components alike.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
 from engine.shapes import Circle, Polygon, Shape
 from engine.vector import Array, Bools, Ints, rotate
+
+Span = slice | Ints
+ALL: Final = slice(None)
+
+
+def span(chosen: Bools) -> Span:
+    """Indices of the chosen bodies; a slice, which indexes without a copy, if they are neighbours."""
+    rows = np.flatnonzero(chosen)
+    if len(rows) and rows[-1] - rows[0] == len(rows) - 1:
+        return slice(int(rows[0]), int(rows[-1]) + 1)
+    return rows
 
 
 @dataclass
@@ -40,13 +52,15 @@ class BodyState:
         self.velocity = np.concatenate([self.velocity, zeros], axis=1)
         self.force = np.concatenate([self.force, zeros], axis=1)
         self.active = np.concatenate([self.active, np.ones((batch, 1), dtype=bool)], axis=1)
+        self.cos = np.concatenate([self.cos, zeros[..., 0]], axis=1)
+        self.sin = np.concatenate([self.sin, zeros[..., 0]], axis=1)
         self.refresh_rotation()
 
-    def refresh_rotation(self) -> None:
-        """Bring `cos` and `sin` up to date after a pose has changed."""
+    def refresh_rotation(self, bodies: Span = ALL) -> None:
+        """Bring `cos` and `sin` of some bodies up to date after their poses have changed."""
         # A strided array may take another code path than a contiguous one, and differ in the last bit.
-        angle = np.ascontiguousarray(self.pose[..., 2])
-        self.cos, self.sin = np.cos(angle), np.sin(angle)
+        angle = np.ascontiguousarray(self.pose[:, bodies, 2])
+        self.cos[:, bodies], self.sin[:, bodies] = np.cos(angle), np.sin(angle)
 
 
 @dataclass
@@ -78,9 +92,10 @@ class ShapeTable:
     Padding repeats the last edge, which is harmless: a repeated face can't separate what the first did not.
     """
 
-    def __init__(self, shapes: list[Shape], bodies: list[int]) -> None:
+    def __init__(self, shapes: list[Shape], bodies: list[int], dynamic: Bools) -> None:
         count = max([len(s.vertices) for s in shapes if isinstance(s, Polygon)], default=3)
         self.body = np.array(bodies, dtype=np.intp)
+        self.fixed = ~dynamic[self.body]
         self.is_circle = np.array([isinstance(s, Circle) for s in shapes])
         self.radius = np.array([s.radius if isinstance(s, Circle) else 0.0 for s in shapes])
         self.centre = np.array([s.centroid for s in shapes]).reshape(-1, 2)
@@ -98,21 +113,20 @@ class ShapeTable:
     def __len__(self) -> int:
         return len(self.body)
 
-    def world_centres(self, state: BodyState) -> Array:
-        """Centroids in the world, (batch, shapes, 2)."""
-        turned = rotate(self.centre, state.cos[:, self.body], state.sin[:, self.body])
-        turned += state.pose[:, self.body, :2]
-        return turned
+    def centres(self, state: BodyState, world: Ints, shape: Ints) -> Array:
+        """Centroids (n, 2) of some shapes in their worlds."""
+        body = self.body[shape]
+        centre = rotate(self.centre[shape], state.cos[world, body], state.sin[world, body])
+        centre += state.pose[world, body, :2]
+        return centre
 
-    def bounds(self, state: BodyState, shapes: Ints) -> tuple[Array, Array]:
-        """Middle and half size (batch, n, 2) of the axis-aligned boxes around `shapes`, corner by corner."""
-        body = self.body[shapes]
-        cos, sin = state.cos[:, body, None], state.sin[:, body, None]
-        corners = rotate(self.start[shapes], cos, sin) + state.pose[:, body, None, :2]
-        low, high = corners.min(axis=2), corners.max(axis=2)
-        round_ = self.is_circle[shapes]
-        centre = self.world_centres(state)[:, shapes]
-        radius = self.radius[shapes, None]
-        low = np.where(round_[:, None], centre - radius, low)
-        high = np.where(round_[:, None], centre + radius, high)
-        return (low + high) / 2, (high - low) / 2
+    def bounds(self, state: BodyState, shape: Ints) -> tuple[Array, Array]:
+        """Low and high corner (batch, n, 2) of the axis-aligned boxes around some shapes in every world."""
+        body = self.body[shape]
+        cos, sin, position = state.cos[:, body, None], state.sin[:, body, None], state.pose[:, body, None, :2]
+        corners = rotate(self.start[shape], cos, sin) + position
+        centre = rotate(self.centre[shape, None], cos, sin) + position
+        round_, radius = self.is_circle[shape, None, None], self.radius[shape, None, None]
+        low = np.where(round_, centre - radius, corners).min(axis=2)
+        high = np.where(round_, centre + radius, corners).max(axis=2)
+        return low, high

@@ -11,7 +11,7 @@ from engine.detect import Detector
 from engine.integrate import integrate_position, integrate_velocity
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Contacts, Solver
-from engine.state import BodyParams, BodyState, ShapeTable
+from engine.state import BodyParams, BodyState, ShapeTable, Span, span
 from engine.vector import Array, Bools
 
 DT = 1.0 / 60.0
@@ -46,6 +46,7 @@ class World:
         self.contacts: Contacts | None = None
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
+        self._moving: Span | None = None
 
     def add(
         self,
@@ -103,20 +104,20 @@ class World:
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
         self.bodies.append(Body(self, len(self.bodies)))
-        self._detector = None
+        self._detector = self._moving = None
         return self.bodies[-1]
 
     def step(self) -> None:
         """Advance every world by exactly 1/60 s."""
         contacts = self.detector.find(self.state)
         solver = Solver(self.state, self.params, contacts) if contacts else None
-        integrate_velocity(self.state, self.params, self.gravity, DT)
+        integrate_velocity(self.state, self.params, self.moving, self.gravity, DT)
         if solver:
             solver.solve_velocities(self.state, self.iterations, self.restitution_threshold)
-        integrate_position(self.state, DT)
+        integrate_position(self.state, self.moving, DT)
         if solver:
             solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT)
-            self.state.refresh_rotation()
+        self.state.refresh_rotation(self.moving)
         self.detector.remember(contacts)
         self.state.force[:] = 0.0
         self.contacts = contacts
@@ -125,13 +126,23 @@ class World:
     def detector(self) -> Detector:
         """What finds the contacts; made anew when a body has been added."""
         if self._detector is None:
-            self._detector = Detector(self.params, ShapeTable(self.shapes, self._shape_bodies))
+            table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
+            self._detector = Detector(self.params, table)
         return self._detector
 
+    @property
+    def moving(self) -> Span:
+        """Bodies that a step may move: those that forces can move, and static ones that have a velocity."""
+        if self._moving is None:
+            self._moving = span(self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
+        return self._moving
+
     def moved(self, body: Body, worlds: Bools | None) -> None:
-        """A body was put elsewhere by hand, in these worlds or in all: bring up to date what is kept."""
-        self.state.refresh_rotation()
+        """A body was changed by hand, in these worlds or in all: bring up to date what is kept about it."""
+        self.state.refresh_rotation(slice(body.index, body.index + 1))
+        if body.static:
+            self._moving = None
         if self._detector is not None:
             self._detector.forget(body.index, worlds)
             if body.static:
-                self._detector.forget_bounds()
+                self._detector.broad.forget_boxes()

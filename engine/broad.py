@@ -1,0 +1,121 @@
+"""The broad phase: which shapes are near enough for the exact test to be worth its price."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.state import BodyParams, BodyState, ShapeTable, span
+from engine.vector import Array, Bools, Ints
+
+
+class BroadPhase:
+    """Every two shapes that may ever meet, and which of them are near each other now.
+
+    Bodies that move are boxed by the circle around their centre of mass, which needs no trigonometry; fixed
+    ones by their corners, once. For up to some hundreds of bodies, comparing all moving boxes with all boxes
+    in one go is faster in NumPy than any tree. Shapes of near bodies are then compared in the same way.
+    """
+
+    def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
+        self._shapes = shapes
+        self._moving = span(params.dynamic)
+        self._fixed = np.flatnonzero(~params.dynamic)
+        self._fixed_shapes = np.flatnonzero(~params.dynamic[shapes.body])
+        self._several = len(shapes) > len(params.group)
+        far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + shapes.reach
+        self._reach = np.zeros(len(params.group))
+        np.maximum.at(self._reach, shapes.body, far)
+        self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
+        self._shape_boxes = np.zeros((4, 0, 0))  # the same of shapes; only those of fixed ones are filled
+        self._movers_first, self._first, self._count = _meeting_pairs(params, shapes)
+        a, b = self._movers_first.T
+        turned = shapes.is_circle[a] & ~shapes.is_circle[b]
+        self.pairs = np.where(turned[:, None], self._movers_first[:, ::-1], self._movers_first)
+
+    def forget_boxes(self) -> None:
+        """A body that is not moved by forces was put elsewhere, or will be."""
+        self._boxes = None
+
+    def near(self, state: BodyState) -> tuple[Ints, Ints]:
+        """World and row of `pairs` (n,) of shapes whose boxes overlap; worlds, and pairs in them, rising."""
+        boxes = self._boxes_now(state)
+        low_x, low_y, high_x, high_y = boxes[:, :, None, :]
+        my_low_x, my_low_y, my_high_x, my_high_y = boxes[:, :, self._moving, None]
+        near: Bools = (my_low_y <= high_y) & (self._count > 0)
+        near &= low_y <= my_high_y
+        near &= my_low_x <= high_x
+        near &= low_x <= my_high_x
+        if not state.active.all():
+            near &= state.active[:, self._moving, None] & state.active[:, None, :]
+        world, mover, other = near.nonzero()
+        pair = self._first[mover, other]
+        if not self._several or not len(world):
+            return world, pair
+        count = self._count[mover, other]
+        world, first = world.repeat(count), (pair - count.cumsum() + count).repeat(count)
+        pair = first + np.arange(len(first))
+        kept = self._shapes_near(state, world, pair)
+        return world[kept], pair[kept]
+
+    def _boxes_now(self, state: BodyState) -> Array:
+        boxes = self._boxes
+        if boxes is None:
+            boxes = np.empty((4, *state.active.shape))
+            self._box_fixed(state, boxes)
+            # A lift has other boxes in the next step.
+            self._boxes = None if state.velocity[:, self._fixed].any() else boxes
+        centre, reach = state.pose[:, self._moving, :2], self._reach[self._moving]
+        for axis in (0, 1):
+            boxes[axis, :, self._moving] = centre[..., axis] - reach
+            boxes[2 + axis, :, self._moving] = centre[..., axis] + reach
+        return boxes
+
+    def _box_fixed(self, state: BodyState, boxes: Array) -> None:
+        shapes = self._fixed_shapes
+        low, high = self._shapes.bounds(state, shapes)
+        self._shape_boxes = np.zeros((4, len(state.pose), len(self._shapes)))
+        self._shape_boxes[:2, :, shapes] = np.moveaxis(low, 2, 0)
+        self._shape_boxes[2:, :, shapes] = np.moveaxis(high, 2, 0)
+        for body in self._fixed:
+            parts = self._shape_boxes[:, :, self._shapes.body == body]
+            boxes[:2, :, body], boxes[2:, :, body] = parts[:2].min(axis=2), parts[2:].max(axis=2)
+
+    def _shapes_near(self, state: BodyState, world: Ints, pair: Ints) -> Bools:
+        """Whether the boxes of some pairs of shapes overlap, (n,)."""
+        mine, other = self._movers_first[pair].T
+        boxes = self._shape_boxes[:, world, other]
+        loose = np.flatnonzero(~self._shapes.fixed[other])
+        if len(loose):
+            centre = self._shapes.centres(state, world[loose], other[loose]).T
+            reach = self._shapes.reach[other[loose]]
+            boxes[:2, loose], boxes[2:, loose] = centre - reach, centre + reach
+        x, y = self._shapes.centres(state, world, mine).T
+        reach = self._shapes.reach[mine]
+        near: Bools = y - reach <= boxes[3]
+        near &= boxes[1] <= y + reach
+        near &= x - reach <= boxes[2]
+        near &= boxes[0] <= x + reach
+        return near
+
+
+def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints, Ints]:
+    """Shapes that may meet (pairs, 2), a moving body's first; and where they stand in that table.
+
+    The first row, and how many rows, of each moving body with each other body: (moving, bodies) twice. Two
+    bodies may meet if one of them can move and their groups let them touch.
+    """
+    bodies = np.arange(len(params.group))
+    moving = bodies[span(params.dynamic)]
+    met = params.dynamic[moving, None] & ((bodies > moving[:, None]) | ~params.dynamic)
+    met &= (params.group == 0) | (params.group != params.group[moving, None])
+    sizes = np.bincount(shapes.body, minlength=len(bodies))
+    count = np.where(met, sizes[moving, None] * sizes, 0)
+    first = (count.cumsum() - count.ravel()).reshape(count.shape)
+    starts = sizes.cumsum() - sizes
+    row, other = count.nonzero()
+    mover = moving[row]
+    repeats = count[row, other]
+    within = np.arange(repeats.sum()) - first[row, other].repeat(repeats)
+    a = starts[mover].repeat(repeats) + within // sizes[other].repeat(repeats)
+    b = starts[other].repeat(repeats) + within % sizes[other].repeat(repeats)
+    return np.stack([a, b], axis=1), first, count
