@@ -95,7 +95,7 @@ class FullyConnectedLayer(Layer):
         self.shapes = {"weights": (self.inputs, self.outputs), "bias": (self.outputs,)}
         self.initialisation = initialisation
         self.scale = scale
-        self.rng = rng
+        self.rng = rng.spawn(1)[0] if rng else None  # its own: the weights are drawn later
         self.dtype = dtype
         self.output = np.empty((0, 0), dtype)
 

@@ -130,10 +130,11 @@ def _read_config(folder: Path) -> dict[str, Any]:
 
 
 def _make_layer(description: Any) -> Layer:
-    kind = LAYERS.get(description["type"])
-    if kind is None:
-        raise ValueError(f"unknown type {description['type']!r}; known are {', '.join(LAYERS)}")
-    settings = {name: _required(description, name) for name in kind.settings}
+    name = _required(description, "type")
+    if name not in LAYERS:
+        raise ValueError(f"unknown type {name!r}; known are {', '.join(LAYERS)}")
+    kind = LAYERS[name]
+    settings = {setting: _required(description, setting) for setting in kind.settings}
     if "activation" in settings:
         settings["activation"] = _named(ACTIVATIONS, settings["activation"])
     return kind(**settings)
@@ -163,7 +164,9 @@ def _read_array(folder: Path, description: Any, name: str, wanted: str) -> Array
     try:
         # Mapped, a header that promises more than the file holds is an error, not an allocation.
         array = np.lib.format.open_memmap(folder / file, mode="r")
-    except ValueError as error:
+    except OSError:
+        raise  # names the file itself
+    except Exception as error:
         raise ValueError(f"{file}: {error}") from error
     said = f"{entry.get('dtype')} {entry.get('shape')}"
     held = f"{array.dtype.name} {list(array.shape)}"

@@ -255,6 +255,13 @@ def test_initialisation_and_scale_can_be_chosen():
         FullyConnectedLayer(3, 2, initialisation="zeros")
 
 
+def test_weights_do_not_depend_on_what_else_is_drawn():
+    rng, other = np.random.default_rng(1), np.random.default_rng(1)
+    layer, same = FullyConnectedLayer(3, 2, rng=rng), FullyConnectedLayer(3, 2, rng=other)
+    rng.random()
+    np.testing.assert_array_equal(layer.weights, same.weights)
+
+
 def test_weights_somebody_looked_at_are_not_drawn_again():
     layer = FullyConnectedLayer(3, 2)
     layer.weights[...] = 7
