@@ -186,9 +186,9 @@ class DeepQAgent:
         slope *= weights[:, None]
         self.online.backward_propagate(slope)
         length = self.optimizer.step(self.online.values, self.online.gradients)
-        if not np.isfinite(length):
+        if not (np.isfinite(length) and np.isfinite(errors).all()):
             raise FloatingPointError(
-                f"the gradient was not finite at learning step {self.train_count + 1}; "
+                f"the error was not finite at learning step {self.train_count + 1}; "
                 f"most likely the learning rate of {self.optimizer.learning_rate:g} is too high"
             )
         self.train_count += 1

@@ -59,17 +59,18 @@ def _train(arguments: argparse.Namespace) -> int:
     try:
         _advance(training, clock, output)
     except FloatingPointError as error:
+        save_run(training, output)
         return _fail(f"training stopped: {error}. What was best until then is kept in {output}.")
     except OSError as error:
         return _fail(f"could not write to {output}: {error.strerror or error}")
     try:
-        save_run(training, output)
+        save_run(training, output, final=True)
     except OSError as error:
         return _fail(f"could not write to {output}: {error.strerror or error}")
     best = training.best
     assert best is not None
-    print(f"kept in {output}: {best.success:.1%} of {best.episodes} validation flights landed,"
-          f" {best.mean_time:.1f} s and {best.mean_fuel:.1f} s of fuel on average")  # fmt: skip
+    took = "" if best.mean_time is None else f", in {best.mean_time:.1f} s on average"
+    print(f"kept in {output}: {best.success:.1%} of {best.episodes} validation flights landed{took}")
     return 0
 
 
@@ -124,7 +125,13 @@ def _evaluate(arguments: argparse.Namespace) -> int:
         print(json.dumps(result.to_json(), indent=2))
         return 0
     for name, value in result.to_json().items():
-        shown = f"{value:.2%}" if name in ("success", "crash", "out_of_bounds", "time_out") else f"{value:.2f}"
+        shown = (
+            "–"
+            if value is None
+            else f"{value:.2%}"
+            if name in ("success", "crash", "out_of_bounds", "time_out")
+            else f"{value:.2f}"
+        )
         print(f"{name.replace('_', ' '):14} {shown if name != 'episodes' else int(value)}")
     return 0
 

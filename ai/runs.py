@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Final
 
 from ai.agent import DeepQAgent
+from ai.config import PRESETS
 from ai.nn import ModelFormatError, atomic_folder
-from ai.training import Evaluation, Progress, Training
+from ai.training import TEST_SEED, Evaluation, Progress, Training, evaluate
 
 TRAINING_FILE: Final = "training.json"
 LAST: Final = "last"
@@ -45,22 +46,27 @@ class TrainingClock:
         return due
 
 
-def save_run(training: Training, folder: str | Path) -> None:
+def save_run(training: Training, folder: str | Path, final: bool = False) -> None:
     """Keep the best network of a run, and what is needed to go on with it, whole or not at all.
 
-    A run that has not yet been evaluated is evaluated first. Raises OSError if the disk does not take it.
+    A run that has not yet been evaluated is evaluated first; `final` measures the best network on spawns that
+    neither trained nor chose it. Raises OSError if the disk does not take it.
     """
     if training.best is None:
         training.evaluate()
     assert training.best is not None
     agent = training.agent
     described = {
+        "preset": next((name for name, preset in PRESETS.items() if preset == training.config), "custom"),
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 1), "best": training.best.to_json(),
     }  # fmt: skip
+    best = training.best_agent()
+    if final:
+        described["evaluation"] = evaluate(best, 1000, TEST_SEED, "random", agent.config.frame_skip).to_json()
     with atomic_folder(folder) as temporary:
-        training.best_agent().write(temporary)
+        best.write(temporary)
         agent.write(temporary / LAST)
         (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 

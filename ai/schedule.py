@@ -6,7 +6,7 @@ from __future__ import annotations
 def linear(start: float, end: float, done: int, total: int) -> float:
     """From `start` to `end` in a straight line over `total` steps, then level."""
     share = min(1.0, done / total) if total > 0 else 1.0
-    return start + (end - start) * share
+    return start * (1.0 - share) + end * share
 
 
 def geometric(start: float, end: float, factor: float, done: int) -> float:

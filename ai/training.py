@@ -26,7 +26,8 @@ from ai.schedule import geometric, linear
 from ai.spawns import Curriculum
 
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
-VALIDATION_SEED: Final = 1_000_003  # spawns that choose the best checkpoint, seen neither before nor after
+VALIDATION_SEED: Final = 1_000_003  # spawns that choose the best checkpoint
+TEST_SEED: Final = 2_000_003  # spawns that have no say in anything, to measure a finished network by
 
 
 @dataclass(frozen=True)
@@ -39,11 +40,11 @@ class Evaluation:
     out_of_bounds: float
     time_out: float
     mean_return: float
-    mean_time: float  # seconds, of the landings
-    mean_fuel: float  # seconds of main engine, of the landings
+    mean_time: float | None  # seconds, of the landings; None without any
+    mean_fuel: float | None  # seconds of main engine, of the landings
     switches: float  # times a second that an engine goes on or off, of all flights
 
-    def to_json(self) -> dict[str, float]:
+    def to_json(self) -> dict[str, float | None]:
         """Plain values."""
         return asdict(self)
 
@@ -71,8 +72,8 @@ def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", fram
     return Evaluation(
         episodes, share[Outcome.LANDED], share[Outcome.CRASHED], share[Outcome.OUT_OF_BOUNDS],
         share[Outcome.TIMED_OUT], float(returns.mean()),
-        float(env.time[landed].mean()) if landed.any() else float("nan"),
-        float(env.fuel[landed].mean()) if landed.any() else float("nan"),
+        float(env.time[landed].mean()) if landed.any() else None,
+        float(env.fuel[landed].mean()) if landed.any() else None,
         switches / float(env.time.sum()),
     )  # fmt: skip
 

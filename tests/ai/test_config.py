@@ -30,7 +30,7 @@ def test_classic_is_the_agent_first_described():
     assert (classic.epsilon_start, classic.epsilon_decay, classic.epsilon_end) == (1.0, 0.999, 0.05)
     assert classic.success_pass
     assert classic.success_batch_size < classic.batch_size
-    assert not (classic.double or classic.dueling or classic.prioritised or classic.mirror)
+    assert not any((classic.double, classic.dueling, classic.prioritised, classic.mirror))
     assert classic.spawn == "curriculum"
 
 

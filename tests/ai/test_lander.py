@@ -237,9 +237,7 @@ def test_the_curriculum_follows_landings():
         Curriculum(((0, "fixed"), (0, "random")))
 
 
-@pytest.mark.parametrize(
-    "actions", [[6, 0], [-1, 0], [0], [0, 0, 0], [[0, 0]], [0.5, 1.0], [np.nan, 0.0], ["a", "b"]]
-)
+@pytest.mark.parametrize("actions", [[6, 0], [-1, 0], [0], [0, 0, 0], [[0, 0]], [0.5, 1.0], [np.nan, 0.0], ["a", "b"]])
 def test_wrong_actions_are_refused(actions):
     env = LanderEnv(2, 0)
     env.reset()

@@ -1,0 +1,146 @@
+import json
+
+import numpy as np
+import pytest
+
+from ai.config import Config
+from ai.lander import LanderEnv, Outcome
+from ai.nn import ModelFormatError
+from ai.pilots import NoPilot, ScriptedPilot
+from ai.runs import TrainingClock, resume_run, save_run
+from ai.schedule import geometric, linear
+from ai.training import Evaluation, Training, evaluate, run
+
+SMALL = Config(hidden=(16,), batch_size=16, updates=1, warm_up=32, replay_size=2000, num_envs=8, spawn="near")
+QUICK = {"evaluate_every": 0, "validation_episodes": 4}
+
+
+def advanced(config=SMALL, decisions=30, **options):
+    training = Training(config, 0, **(QUICK | options))
+    for _ in range(decisions):
+        progress = training.advance()
+    return training, progress
+
+
+def test_schedules():
+    assert [linear(1.0, 0.0, done, 4) for done in (0, 1, 4, 9)] == [1.0, 0.75, 0.0, 0.0]
+    assert linear(1.0, 0.2, 0, 0) == 0.2
+    assert geometric(1.0, 0.05, 0.5, 2) == 0.25
+    assert geometric(1.0, 0.05, 0.5, 10) == 0.05
+
+
+@pytest.mark.parametrize("changes", [{}, {"spawn": "curriculum", "num_envs": 1, "epsilon_decay": 0.9,
+                                          "epsilon_decisions": 0, "success_pass": True}])  # fmt: skip
+def test_the_same_seed_and_configuration_give_the_same_network(changes):
+    first, _ = advanced(SMALL.changed(**changes), 60)
+    second, _ = advanced(SMALL.changed(**changes), 60)
+    assert first.agent.train_count > 0
+    assert np.array_equal(first.agent.online.values, second.agent.online.values)
+    assert np.array_equal(first.agent.target.values, second.agent.target.values)
+    assert not np.array_equal(first.agent.online.values, advanced(SMALL, 59)[0].agent.online.values)
+
+
+def test_evaluating_changes_nothing_about_the_training():
+    quiet, _ = advanced(SMALL, 40)
+    measured, progress = advanced(SMALL, 40, evaluate_every=80)
+    assert np.array_equal(quiet.agent.online.values, measured.agent.online.values)
+    assert progress.best is not None
+
+
+def test_progress_counts_what_happened():
+    training, progress = advanced(SMALL, 80)
+    assert progress.decisions == 80 * 8
+    assert progress.updates == training.agent.train_count
+    assert progress.episodes == training.episodes > 0
+    assert 0.0 <= progress.success_rate <= 1.0
+    assert progress.epsilon == pytest.approx(linear(1.0, 0.05, 79 * 8, SMALL.epsilon_decisions))
+
+
+def test_the_generator_takes_changed_knobs():
+    going = run(SMALL, 0, **QUICK)
+    next(going)
+    assert going.send(SMALL.changed(epsilon_start=0.0, epsilon_end=0.0)).epsilon == 0.0
+    going.close()
+
+
+def test_evaluation_shares_add_up_and_the_pilot_is_asked_for_living_slots_only():
+    result = evaluate(NoPilot(), 50, 0)
+    assert result.success == 0.0
+    assert result.crash + result.out_of_bounds + result.time_out == 1.0
+    assert result.switches == 0.0
+    assert result.mean_time is None
+    again = evaluate(ScriptedPilot(), 20, 3, "near")
+    assert again == evaluate(ScriptedPilot(), 20, 3, "near")
+
+
+def test_the_best_checkpoint_is_kept():
+    training, _ = advanced()
+    training.evaluate()
+    kept = training.best_values.copy()
+    worse = Evaluation(4, 0.0, 1.0, 0.0, 0.0, -1e9, 1.0, 1.0, 1.0)
+    assert not worse.better_than(training.best)
+    training.best = Evaluation(4, 1.0, 0.0, 0.0, 0.0, 1e9, 1.0, 1.0, 1.0)
+    for _ in range(5):
+        training.advance()
+    training.evaluate()
+    assert np.array_equal(training.best_values, kept)
+    assert np.array_equal(training.best_agent().network.values, kept)
+
+
+def test_a_run_is_kept_and_gone_on_with(tmp_path):
+    training, _ = advanced()
+    training.seconds = 12.0
+    save_run(training, tmp_path / "run", final=True)
+    described = json.loads((tmp_path / "run" / "training.json").read_text())
+    assert described["decisions"] == 240
+    assert described["evaluation"]["episodes"] == 1000
+    resumed = resume_run(tmp_path / "run")
+    assert np.array_equal(resumed.agent.online.values, training.agent.online.values)
+    assert resumed.agent.decisions == training.agent.decisions
+    assert resumed.best == training.best
+    assert resumed.episodes == training.episodes
+    assert resumed.seconds == 12.0
+    before = resumed.agent.train_count
+    for _ in range(40):
+        resumed.advance()
+    assert resumed.agent.train_count > before
+
+
+@pytest.mark.parametrize("damage", ["", "{", '{"seed": 0}', "[]"])
+def test_a_damaged_run_is_named(tmp_path, damage):
+    save_run(advanced()[0], tmp_path / "run")
+    (tmp_path / "run" / "training.json").write_text(damage)
+    with pytest.raises(ModelFormatError, match=r"training\.json"):
+        resume_run(tmp_path / "run")
+
+
+def test_a_failed_save_leaves_the_old_run(tmp_path, monkeypatch):
+    training, _ = advanced()
+    save_run(training, tmp_path / "run")
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np, "savez", full)
+    with pytest.raises(OSError, match="No space"):
+        save_run(training, tmp_path / "run")
+    monkeypatch.undo()
+    assert resume_run(tmp_path / "run").agent.decisions == 240
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+def test_the_clock_stops_at_the_decisions_asked_for():
+    training, _ = advanced(decisions=1)
+    clock = TrainingClock(decisions=80)
+    assert [progress.decisions for progress in clock.run(training)][-1] == 80
+    assert clock.share == 1.0
+    assert not clock.checkpoint_due()
+
+
+def test_a_curriculum_run_climbs_its_stages():
+    training, _ = advanced(SMALL.changed(spawn="curriculum"), 1)
+    training.env.landings = 300
+    training.env.reset()
+    assert isinstance(training.env, LanderEnv)
+    assert training.advance().stage == 3
+    assert (training.env.outcome == Outcome.FLYING).all()
