@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -30,7 +31,7 @@ from game.ui.tokens import (
 from game.world.paint import mix
 
 # Four columns on the left, two on the right: the pad stands in the middle.
-_COLUMNS: Final = (64.0, 186.0, 308.0, 430.0, 1002.0, 1124.0)
+COLUMNS: Final = (64.0, 186.0, 308.0, 430.0, 1002.0, 1124.0)
 _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
@@ -78,9 +79,9 @@ def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
     ]
 
 
-def draw_readouts(canvas: Canvas, readouts: list[Readout]) -> None:
+def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
     """Draw figures side by side; a bar says how far from the limit, a mark beside the label on which side."""
-    for x, readout in zip(_COLUMNS, readouts, strict=True):
+    for x, readout in zip(columns, readouts, strict=True):
         colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
         label = canvas.text(readout.label, (x, _LABEL_LINE), size=LABEL, colour=MUTE, weight="medium")
         if readout.within is not None:

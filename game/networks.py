@@ -72,7 +72,7 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
     for wanted in (name, DEFAULT):
         if wanted in known:
             return load(wanted, known[wanted])
-    return Network(DEFAULT, problem=f"{models_dir / 'lander' / DEFAULT} is missing")
+    return _missing(models_dir)
 
 
 def available(models_dir: Path, user_dir: Path) -> list[Network]:
@@ -80,4 +80,11 @@ def available(models_dir: Path, user_dir: Path) -> list[Network]:
     from ai.pilots import ScriptedPilot
 
     known = folders(models_dir, user_dir)
-    return [*(load(name, folder) for name, folder in known.items()), Network(SCRIPTED, ScriptedPilot())]
+    found = [load(name, folder) for name, folder in known.items()]
+    if DEFAULT not in known:
+        found.insert(0, _missing(models_dir))
+    return [*found, Network(SCRIPTED, ScriptedPilot())]
+
+
+def _missing(models_dir: Path) -> Network:
+    return Network(DEFAULT, problem=f"{models_dir / 'lander' / DEFAULT} is missing")

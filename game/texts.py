@@ -124,3 +124,39 @@ HINT_PAUSE: Final = "pause"
 HINT_AGAIN: Final = "same start"
 HINT_NEW: Final = "new start"
 CARD_FIRST: Final = {True: "fly on", False: "try again"}
+
+# Watch
+WATCH_TITLE: Final = "Watch"
+WATCH_FLIES: Final = "The {name} network flies"
+WATCH_SCRIPTED: Final = "The scripted pilot flies"
+WATCH_ONE: Final = "one lander"
+WATCH_MANY: Final = "{count} landers"
+WATCH_LANDED: Final = "% landed"
+WATCH_COUNTS: Final = "{landed} landed  ·  {lost} lost"
+WATCH_MODEL: Final = "Flown by"
+WATCH_COUNT: Final = "Landers"
+WATCH_SPEED: Final = "Speed"
+WATCH_DAMAGED: Final = "{name} (damaged)"
+WATCH_PROBLEM: Final = "{name} cannot fly: {problem}"
+WATCH_STOPPED: Final = "Stopped"
+HINT_STOP: Final = "stop"
+HINT_GO: Final = "go on"
+HINT_STEP: Final = "one step"
+HINT_RESTART: Final = "new starts"
+HINT_NEXT_LANDER: Final = "next lander"
+MIND_TITLE: Final = "What the network thinks"
+MIND_VALUE: Final = "what it expects from here"
+MIND_SCRIPTED_TITLE: Final = "What the pilot does"
+MIND_SCRIPTED: Final = "Written rules: it weighs nothing up."
+MIND_INPUTS: Final = "WHAT IT SENSES"
+INPUTS: Final = (
+    "across",
+    "height",
+    "drift",
+    "climb",
+    "lean, sin θ",
+    "upright, cos θ",
+    "turning",
+    "left foot",
+    "right foot",
+)

@@ -14,7 +14,7 @@ from game.world.earth import paint_earth
 from game.world.sky import NearStars, paint_sky
 from game.world.terrain import MARGIN, RIDGES, paint_plain, paint_ridge
 
-EARTH: Final = (218.0, 144.0)  # points
+EARTH: Final = (312.0, 152.0)  # points
 EARTH_RADIUS: Final = 43.0
 _EARTH_DEPTH: Final = 0.04
 _MOON: Final = 5

@@ -82,13 +82,14 @@ class Particles:
         speed = np.stack([side * self._rng.uniform(0.3, 1.8, count), self._rng.uniform(0.1, 0.8, count)], 1)
         self._add(Kind.DUST, start, speed, self._rng.uniform(0.5, 1.2, count), self._rng.uniform(0.06, 0.14, count))
 
-    def burst(self, position: npt.NDArray[np.float64], velocity: npt.NDArray[np.float64]) -> None:
-        """Break something: sparks, fragments and a ring of dust."""
-        for kind, count, speed, life, size in (
+    def burst(self, position: npt.NDArray[np.float64], velocity: npt.NDArray[np.float64], share: float = 1.0) -> None:
+        """Break something: sparks, fragments and a ring of dust, or a share of them."""
+        for kind, most, speed, life, size in (
             (Kind.SPARK, 46, 6.5, (0.4, 1.6), (0.03, 0.07)),
             (Kind.SHARD, 20, 4.2, (1.6, 3.4), (0.10, 0.26)),
             (Kind.DUST, 46, 3.4, (0.7, 1.8), (0.14, 0.40)),
         ):
+            count = math.ceil(share * most)
             turn = self._rng.uniform(0.05 * np.pi, 0.95 * np.pi, count)
             fast = speed * self._rng.uniform(0.15, 1.0, count)
             push = np.stack([np.cos(turn), np.sin(turn)], 1) * fast[:, None] + 0.35 * velocity * (1, -0.4)

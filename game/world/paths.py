@@ -13,11 +13,12 @@ from ai.env import Bools, Doubles
 from ai.lander import LanderEnv, Outcome
 from game.render import View
 from game.ui.canvas import Canvas
-from game.ui.tokens import NET, NIGHT1, Colour
+from game.ui.tokens import NET, Colour
 from game.world.paint import mix
 
 _SPACING: Final = 0.62  # metres between dots
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
+_STRETCH: Final = 6  # points of a trail drawn in one colour
 
 
 def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6) -> None:
@@ -72,18 +73,26 @@ class Trails:
     def draw(self, canvas: Canvas, view: View, shown: int) -> None:
         """Draw the trails of ended flights, newest brightest, and the one of slot `shown` so far."""
         for rank, trail in enumerate(reversed(self._done)):
-            strength = 0.50 * 0.88**rank * max(0.0, 1 - trail.age / 40)
+            strength = 0.55 * 0.9**rank * max(0.0, 1 - trail.age / 40)
             landed = trail.outcome == Outcome.LANDED
             colour = canvas.palette.good if landed else canvas.palette.warn
             if strength > 0.04:
-                self._draw_line(canvas, view, trail.points, mix(NIGHT1, colour, strength))
+                _draw_faint(canvas.surface, view.pixels(trail.points), colour, strength)
                 if not landed:
                     end = view.points(trail.points[-1]).tolist()
                     canvas.marker("cross", end, 7, colour, min(1.0, strength * 1.8))
         way = self._open[shown]
         if len(way) > 1:
-            self._draw_line(canvas, view, np.array(way), mix(NIGHT1, NET, 0.55))
+            _draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6)
 
-    @staticmethod
-    def _draw_line(canvas: Canvas, view: View, points: Doubles, colour: Colour) -> None:
-        pygame.draw.aalines(canvas.surface, colour, False, view.pixels(points).tolist())
+
+def _draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float) -> None:
+    """Draw a line as if translucent: each stretch is mixed with what lies under its middle."""
+    places = points.tolist()
+    area = surface.get_rect()
+    for start in range(0, len(places) - 1, _STRETCH):
+        stretch = places[start : start + _STRETCH + 1]
+        x, y = stretch[len(stretch) // 2]
+        if area.collidepoint(x, y):
+            under = surface.get_at((int(x), int(y)))
+            pygame.draw.aalines(surface, mix((under.r, under.g, under.b), colour, strength), False, stretch)

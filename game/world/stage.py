@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 
 from ai.env import Bools, Doubles
-from ai.lander import FOOT_CENTRE, LanderEnv, Outcome
+from ai.lander import FOOT_CENTRE, PARAMS, LanderEnv, Outcome
 from game.flight import surface_height
 from game.render import View
 from game.ui.canvas import Canvas
@@ -25,6 +25,7 @@ _DIE: Final = 0.22
 _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 34
+STAND: Final = PARAMS.stand
 
 
 class Stage:
@@ -54,7 +55,7 @@ class Stage:
         self.flash = np.maximum(self.flash - 1, 0)
         for slot in np.flatnonzero(ended & (env.outcome == Outcome.CRASHED)):
             self.flash[slot] = _FLASH_STEPS
-            self.particles.burst(env.position[slot], env.velocity[slot])
+            self.particles.burst(env.position[slot], env.velocity[slot], 1.0 if env.num_envs == 1 else 0.2)
         if env.num_envs == 1:
             self._raise_dust()
         self.particles.update()
@@ -83,6 +84,29 @@ class Stage:
         draw_craft(canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor)
         self._draw_flash(canvas, view, x, y, slot)
 
+    def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
+        """Draw the landers of the mask `shown` small and in one go, each standing on its feet."""
+        slots = np.flatnonzero(shown)
+        x, y, angle = poses[slots].T
+        lower = STAND * (1 - size)
+        middles = np.stack([x + lower * np.sin(angle), y - lower * np.cos(angle)], axis=1)
+        nozzles = middles + size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+        metre = view.pixels_per_metre * size
+        fires: list[tuple[pygame.Surface, tuple[int, int]]] = []
+        crafts: list[tuple[pygame.Surface, tuple[int, int]]] = []
+        for slot, turn, (left, top), (fire_x, fire_y) in zip(
+            slots.tolist(), angle.tolist(), view.pixels(middles).tolist(), view.pixels(nozzles).tolist(), strict=True
+        ):
+            thrust = round(2 * self.thrust[slot, 0]) / 2
+            fire = plume(NET_PLUME, metre, turn, thrust, (self._flicker // 2 + slot) % 2)
+            if fire:
+                fires.append((fire[0], (round(fire_x) - fire[1][0], round(fire_y) - fire[1][1])))
+            craft = art.sprite(metre, turn)
+            half = craft.get_width() // 2
+            crafts.append((craft, (round(left) - half, round(top) - half)))
+        canvas.surface.fblits(fires, pygame.BLEND_RGB_ADD)
+        canvas.surface.fblits(crafts)
+
     def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw dust, sparks and fragments."""
         self.particles.draw(canvas.surface, view, alpha)
@@ -90,7 +114,7 @@ class Stage:
     def _draw_shadow(self, canvas: Canvas, view: View, x: float, y: float, angle: float) -> None:
         metre = view.pixels_per_metre
         ground = surface_height(self._env, x)
-        clearance = max(0.0, y - 0.96 - ground)
+        clearance = max(0.0, y - STAND - ground)
         level = round(8 * max(0.0, 1 - clearance / 7) ** 1.6)
         if level:
             across = (1.25 + 0.10 * clearance) * metre
@@ -175,7 +199,7 @@ def draw_craft(
 
 def stand(x: float, y: float, angle: float, size: float) -> tuple[float, float]:
     """Return where the middle of a lander drawn at that size goes for its feet to stay where they are."""
-    lower = 0.96 * (1 - size)
+    lower = STAND * (1 - size)
     return x + lower * math.sin(angle), y - lower * math.cos(angle)
 
 

@@ -1,0 +1,268 @@
+"""Watch: a network flies, one lander or a swarm, and shows what it thinks on the way down."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Doubles
+from ai.lander import Outcome
+from game import hud, networks, texts
+from game.clock import STEP
+from game.context import Context
+from game.controls import Command, translate
+from game.flight import Swarm
+from game.mind import PANEL, Mind
+from game.render import Camera, View
+from game.scene import Pop, Push, Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.ui.widgets import Choice
+from game.world.backdrop import landscape
+from game.world.pad import draw_pad
+from game.world.paths import Trails
+from game.world.stage import Stage
+
+COUNTS: Final = (1, 16, 64, 256)
+SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
+_SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2", "×4")
+_SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smaller, to be seen through
+_ROW: Final = (MARGIN, 638.0, 24.0)  # left and top of the first row of choices, and its height
+_LABEL_WIDTH: Final = 84.0
+_GAP: Final = 24.0
+_CLICK_REACH: Final = 1.6  # metres
+_WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
+
+
+class Watch:
+    """A swarm in the sky, the mind of one of its landers in a panel, choices on the ground line."""
+
+    def __init__(self, count: int = 1, seed: int | None = None) -> None:
+        self._count = COUNTS.index(count)
+        self._seed = seed
+        self._context: Context | None = None
+        self._speed = SPEEDS.index(1.0)
+        self._time = self._due = 0.0
+        self.stopped = False
+        self.shown = 0
+        self.problem = ""
+
+    def enter(self, context: Context) -> None:
+        """Read the networks and begin, or go on after a pause."""
+        if self._context is not None:
+            return
+        self._context, self._settings = context, context.settings
+        self._networks = networks.available(context.models_dir, context.user_dir)
+        names = [network.name for network in self._networks]
+        wanted = names.index(context.settings.model) if context.settings.model in names else 0
+        self._form = Form(context, on_back=Pop)
+        self._model_choice = self._add_choice(0, texts.WATCH_MODEL, self._words(), wanted, self._choose_network)
+        self._count_choice = self._add_choice(
+            1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
+        )
+        self._speed_choice = self._add_choice(2, texts.WATCH_SPEED, _SPEED_WORDS, self._speed, self._choose_speed)
+        self._network = next(network for network in self._networks if network.flyer)
+        if self._seed is None:
+            self._seed = int(context.rng.integers(2**31))
+        self._choose_network(wanted)
+        self._begin()
+
+    def exit(self) -> None:
+        """Keep everything for the way back."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Stop, step, choose, pause."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._pick(event.pos):
+            return None
+        pad = event.type == pygame.CONTROLLERBUTTONDOWN
+        match translate(event):
+            case Command.PAUSE:
+                return self._pause()
+            case Command.STEP:
+                self.stopped = True
+                self._fly()
+            case Command.RETRY:
+                self._begin_anew()
+            case Command.NEXT | Command.PREVIOUS as command:
+                self._show((self.shown + (1 if command is Command.NEXT else -1)) % COUNTS[self._count])
+            case Command.SLOWER:
+                self._speed_choice.shift(-1)
+            case Command.FASTER:
+                self._speed_choice.shift(1)
+            case Command.HANDOVER if pad:
+                self.stopped = not self.stopped
+            case _ if event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE:
+                self.stopped = not self.stopped
+            case _:
+                return self._form.handle_event(event)
+        return None
+
+    def update(self) -> Transition | None:
+        """Fly as many steps as the chosen speed makes due."""
+        if not self.stopped:
+            self._due += SPEEDS[self._speed]
+            while self._due >= 1:
+                self._due -= 1
+                self._fly()
+        if not self._settings.reduced_motion:
+            self._time += STEP
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the world, the swarm, the panel and the choices."""
+        between = min(1.0, self._due + alpha * SPEEDS[self._speed]) if not self.stopped else 1.0
+        view = self._camera.view(canvas.scale, between)
+        size = canvas.surface.get_size()
+        landscape(size, self._settings.reduced_motion).draw(canvas, self._camera, self._time, between)
+        env = self.swarm.env
+        draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
+        self._trails.draw(canvas, view, self.shown)
+        self._draw_landers(canvas, view, self.swarm.poses.at(between))
+        self._stage.draw_dust(canvas, view, between)
+        self._mind.draw(canvas)
+        self._draw_words(canvas)
+
+    # What flies
+
+    def _begin(self) -> None:
+        assert self._network.flyer is not None
+        assert self._seed is not None
+        count = COUNTS[self._count]
+        self.swarm = Swarm(count, self._seed, self._network.flyer)
+        self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed), self._settings.reduced_motion)
+        self._stage.blue[:] = 1.0
+        self._trails = Trails(self.swarm.env, keep=12 if count == 1 else 28)
+        self._camera = Camera()
+        self._mind = Mind()
+        self._due = 0.0
+        self.shown = min(self.shown, count - 1)
+
+    def _begin_anew(self) -> None:
+        assert self._context is not None
+        self._seed = int(self._context.rng.integers(2**31))
+        self._begin()
+
+    def _fly(self) -> None:
+        swarm = self.swarm
+        ended = swarm.step()
+        self._stage.follow(np.ones(swarm.env.num_envs, bool), ended)
+        self._trails.follow(swarm.fresh, ended)
+        self._mind.follow(swarm.flyer, swarm.observation[self.shown], int(swarm.env.actions[self.shown]))
+        if swarm.env.num_envs == 1 and not self._settings.reduced_motion:
+            self._camera.follow(swarm.env.position[0])
+
+    def _show(self, slot: int) -> None:
+        self.shown = slot
+
+    def _pick(self, point: tuple[float, float]) -> bool:
+        """Show the mind of the lander at a point of the canvas, if there is one near it."""
+        if COUNTS[self._count] == 1 or PANEL.collidepoint(point):
+            return False
+        place = self._camera.view(1.0).metres(point)
+        distance = np.hypot(*(self.swarm.env.position - place).T)
+        nearest = int(distance.argmin())
+        if distance[nearest] > _CLICK_REACH:
+            return False
+        self._show(nearest)
+        return True
+
+    def _pause(self) -> Transition:
+        from game.scenes.pause import Pause
+
+        return Push(Pause(self, retry=self._begin_anew))
+
+    # Choices
+
+    def _add_choice(
+        self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
+    ) -> Choice:
+        x, y, height = _ROW
+        width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + _GAP for word in words) - _GAP
+        box = pygame.Rect(x, y + row * height, math.ceil(width), height)
+        manager = self._form.manager
+        return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
+
+    def _words(self) -> list[str]:
+        return [
+            network.name if network.flyer else texts.WATCH_DAMAGED.format(name=network.name)
+            for network in self._networks
+        ]
+
+    def _choose_network(self, index: int) -> None:
+        """Fly the same starts with another network; a damaged one is named, and the last good one flies on."""
+        network = self._networks[index]
+        self.problem = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem) if network.problem else ""
+        if network.flyer is None:
+            return
+        self._network = network
+        self._settings.model = network.name
+        self._begin()
+
+    def _choose_count(self, index: int) -> None:
+        self._count = index
+        self._begin()
+
+    def _choose_speed(self, index: int) -> None:
+        self._speed = index
+
+    # The picture
+
+    def _draw_landers(self, canvas: Canvas, view: View, poses: Doubles) -> None:
+        count, env, swarm = COUNTS[self._count], self.swarm.env, self.swarm
+        wrecked = (swarm.since_end > _WRECK_STEPS) & (env.outcome != Outcome.LANDED)
+        if count > 1:
+            others = ~wrecked
+            others[self.shown] = False
+            self._stage.draw_swarm(canvas, view, poses, others, _SIZES[count])
+        if not wrecked[self.shown] or count == 1:
+            size = min(1.0, _SIZES[count] * 1.5)
+            self._stage.draw_lander(canvas, view, poses[self.shown], self.shown, size)
+        if count > 1:
+            x, y, _ = poses[self.shown].tolist()
+            above = view.points((x, y)).tolist()
+            canvas.marker("triangle_down", (above[0], above[1] - 46 * _SIZES[count] * 1.5 - 10), 9, INK)
+
+    def _draw_words(self, canvas: Canvas) -> None:
+        count = COUNTS[self._count]
+        crowd = texts.WATCH_ONE if count == 1 else texts.WATCH_MANY.format(count=count)
+        hud.draw_corner(canvas, texts.WATCH_TITLE, crowd)
+        scripted = self._network.name == networks.SCRIPTED
+        flies = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=self._network.name)
+        hud.draw_hand(canvas, texts.WATCH_STOPPED if self.stopped else flies, NET)
+        self._draw_counts(canvas)
+        hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], (758, 880, 1002, 1124))
+        if self.problem:
+            canvas.marker("cross", (MARGIN + 5, _ROW[1] - 14), 9, canvas.palette.warn)
+            canvas.text(self.problem, (MARGIN + 18, _ROW[1] - 10), size=SMALL, colour=canvas.palette.warn)
+        self._form.draw(canvas)
+        assert self._context is not None
+        word = self._context.controls.word
+        pad = self._context.controls.pad_in_use
+        hints = [
+            (word(Command.HANDOVER) if pad else "Space", texts.HINT_GO if self.stopped else texts.HINT_STOP),
+            (word(Command.STEP), texts.HINT_STEP),
+            (word(Command.RETRY), texts.HINT_RESTART),
+            (word(Command.PAUSE), texts.HINT_PAUSE),
+        ]
+        if COUNTS[self._count] > 1:
+            hints.insert(2, (word(Command.NEXT), texts.HINT_NEXT_LANDER))
+        draw_hints(canvas, hints, (VIEW_SIZE[0] - 36, 42), from_right=True)
+
+    def _draw_counts(self, canvas: Canvas) -> None:
+        landed, lost = self.swarm.landed, self.swarm.lost
+        if landed + lost == 0:
+            return
+        share = f"{100 * landed / (landed + lost):.0f}"
+        figure = canvas.text(
+            share, (MARGIN - 1, 118), size=FIGURE, weight="light", tabular=True, colour=canvas.palette.good
+        )
+        canvas.text(texts.WATCH_LANDED, (figure.right + 6, 118), size=SMALL, colour=MUTE)
+        counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
+        canvas.text(counts, (MARGIN, 140), size=SMALL, colour=MUTE, tabular=True)
