@@ -16,13 +16,14 @@ class BroadPhase:
     in one go is faster in NumPy than any tree. Shapes of near bodies are then compared in the same way.
     """
 
-    def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
+    def __init__(self, params: BodyParams, shapes: ShapeTable, margin: float) -> None:
         self._shapes = shapes
         self._moving = span(params.dynamic)
         self._fixed = np.flatnonzero(~params.dynamic)
         self._fixed_shapes = np.flatnonzero(~params.dynamic[shapes.body])
         self._several = len(shapes) > len(params.group)
-        far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + shapes.reach
+        self._shape_reach = shapes.reach + margin
+        far = np.sqrt(shapes.centre[:, 0] ** 2 + shapes.centre[:, 1] ** 2) + self._shape_reach
         self._reach = np.zeros(len(params.group))
         np.maximum.at(self._reach, shapes.body, far)
         self._boxes: Array | None = None  # (4, batch, bodies): low x and y, high x and y
@@ -87,10 +88,10 @@ class BroadPhase:
         loose = np.flatnonzero(~self._shapes.fixed[other])
         if len(loose):
             centre = self._shapes.centres(state, world[loose], other[loose]).T
-            reach = self._shapes.reach[other[loose]]
+            reach = self._shape_reach[other[loose]]
             boxes[:2, loose], boxes[2:, loose] = centre - reach, centre + reach
         x, y = self._shapes.centres(state, world, mine).T
-        reach = self._shapes.reach[mine]
+        reach = self._shape_reach[mine]
         near: Bools = y - reach <= boxes[3]
         near &= boxes[1] <= y + reach
         near &= x - reach <= boxes[2]

@@ -58,29 +58,32 @@ class Placed(NamedTuple):
     normal: Array
 
 
-def collide(a: Shape, pose_a: Array, b: Shape, pose_b: Array) -> Manifold:
-    """Contacts of shape `a` with shape `b`; poses are (x, y, angle), (3,) or (n, 3)."""
+def collide(a: Shape, pose_a: Array, b: Shape, pose_b: Array, margin: float = 0.0) -> Manifold:
+    """Contacts of shape `a` with shape `b`; poses are (x, y, angle), (3,) or (n, 3).
+
+    Points that are up to `margin` metres apart count as touching, with a depth below 0.
+    """
     poses = (np.atleast_2d(np.asarray(pose, dtype=float)) for pose in (pose_a, pose_b))
     pose_a, pose_b = np.broadcast_arrays(*poses)
     if isinstance(a, Circle) and isinstance(b, Circle):
         return collide_circles(_centre(a, pose_a), np.full(len(pose_a), a.radius),
-                               _centre(b, pose_b), np.full(len(pose_b), b.radius))  # fmt: skip
+                               _centre(b, pose_b), np.full(len(pose_b), b.radius), margin)  # fmt: skip
     if isinstance(a, Polygon) and isinstance(b, Circle):
-        return collide_polygon_circle(_place(a, pose_a), _centre(b, pose_b), np.full(len(pose_b), b.radius))
+        return collide_polygon_circle(_place(a, pose_a), _centre(b, pose_b), np.full(len(pose_b), b.radius), margin)
     if isinstance(a, Circle) and isinstance(b, Polygon):
-        turned = collide(b, pose_b, a, pose_a)
+        turned = collide(b, pose_b, a, pose_a, margin)
         turned.normal *= -1
         return turned
     assert isinstance(a, Polygon)
     assert isinstance(b, Polygon)
-    return collide_polygons(_place(a, pose_a), _place(b, pose_b))
+    return collide_polygons(_place(a, pose_a), _place(b, pose_b), margin)
 
 
-def collide_polygons(a: Placed, b: Placed) -> Manifold:
+def collide_polygons(a: Placed, b: Placed, margin: float) -> Manifold:
     """Contacts of n pairs of convex polygons."""
     gap_a, face_a = _deepest_face(a, b.start)
     gap_b, face_b = _deepest_face(b, a.start)
-    touching = np.maximum(gap_a, gap_b) <= 0
+    touching = np.maximum(gap_a, gap_b) <= margin
     flip = gap_b > gap_a + _REFERENCE_BIAS  # B holds the reference face
     rows = np.arange(len(flip))
     swap = flip[:, None]
@@ -100,12 +103,12 @@ def collide_polygons(a: Placed, b: Placed) -> Manifold:
         normal=np.where(swap, -normal, normal),
         points=points,
         depth=depth,
-        valid=touching[:, None] & (depth >= 0),
+        valid=touching[:, None] & (depth >= -margin),
         feature=number[:, None] * 2 + np.arange(1, 3),
     )
 
 
-def collide_polygon_circle(a: Placed, centre: Array, radius: Array) -> Manifold:
+def collide_polygon_circle(a: Placed, centre: Array, radius: Array, margin: float) -> Manifold:
     """Contacts of n convex polygons with n circles, `centre` (n, 2) and `radius` (n,)."""
     rows = np.arange(len(centre))
     face = np.argmax(dot(a.normal, centre[:, None] - a.start), axis=1)
@@ -120,17 +123,17 @@ def collide_polygon_circle(a: Placed, centre: Array, radius: Array) -> Manifold:
     from_corner = (gap > 1e-9) & (distance > 1e-9)
     normal = np.where(from_corner[:, None], away / np.maximum(distance, 1e-9)[:, None], normal)
     gap = np.where(from_corner, distance, gap)
-    return _single(normal, centre - normal * (radius + gap)[:, None] / 2, radius - gap)
+    return _single(normal, centre - normal * (radius + gap)[:, None] / 2, radius - gap, margin)
 
 
-def collide_circles(centre_a: Array, radius_a: Array, centre_b: Array, radius_b: Array) -> Manifold:
+def collide_circles(centre_a: Array, radius_a: Array, centre_b: Array, radius_b: Array, margin: float) -> Manifold:
     """Contacts of n pairs of circles, centres (n, 2) and radii (n,)."""
     away = centre_b - centre_a
     distance = length(away)
     safe = np.maximum(distance, 1e-9)[:, None]
     normal = np.where(distance[:, None] > 1e-9, away / safe, np.array([0.0, 1.0]))
     depth = radius_a + radius_b - distance
-    return _single(normal, centre_a + normal * (radius_a - depth / 2)[:, None], depth)
+    return _single(normal, centre_a + normal * (radius_a - depth / 2)[:, None], depth, margin)
 
 
 def _deepest_face(a: Placed, corners: Array) -> tuple[Array, Ints]:
@@ -161,11 +164,11 @@ def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) 
     return incident_start[:, None] + (incident_end - incident_start)[:, None] * along[..., None]
 
 
-def _single(normal: Array, point: Array, depth: Array) -> Manifold:
+def _single(normal: Array, point: Array, depth: Array, margin: float) -> Manifold:
     """One point each; the second stays empty."""
     count = len(depth)
     valid = np.zeros((count, 2), dtype=bool)
-    valid[:, 0] = depth >= 0
+    valid[:, 0] = depth >= -margin
     return Manifold(
         normal=normal,
         points=np.repeat(point[:, None], 2, axis=1),

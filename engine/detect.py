@@ -14,6 +14,9 @@ from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools, Ints, rotate
 
 _DEFAULT_FRICTION = 0.5
+# Shapes so near count as touching, metres: a contact that came and went with the last digits would start from
+# nothing each time, and a heap would never come to rest.
+MARGIN = 0.002
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,7 @@ class Detector:
 
     def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
         self.shapes = shapes
-        self.broad = BroadPhase(params, shapes)
+        self.broad = BroadPhase(params, shapes, MARGIN)
         self.pairs = self.broad.pairs  # (pairs, 2) of shapes, a polygon before a circle
         self.body_pairs = shapes.body[self.pairs]
         self.free = params.dynamic[self.body_pairs]  # (pairs, 2): which of the two can move
@@ -126,14 +129,13 @@ class Detector:
     def _touch_kind(self, circles: int, state: BodyState, world: Ints, pair: Ints) -> Manifold:
         a, b = self.pairs[pair].T
         if circles == 0:
-            return collide_polygons(self._place(state, world, a), self._place(state, world, b))
+            return collide_polygons(self._place(state, world, a), self._place(state, world, b), MARGIN)
         radius = self.shapes.radius
         if circles == 1:
             disc = self.shapes.centres(state, world, b)
-            return collide_polygon_circle(self._place(state, world, a), disc, radius[b])
-        return collide_circles(
-            self.shapes.centres(state, world, a), radius[a], self.shapes.centres(state, world, b), radius[b]
-        )
+            return collide_polygon_circle(self._place(state, world, a), disc, radius[b], MARGIN)
+        disc_a, disc_b = self.shapes.centres(state, world, a), self.shapes.centres(state, world, b)
+        return collide_circles(disc_a, radius[a], disc_b, radius[b], MARGIN)
 
     def _place(self, state: BodyState, world: Ints, shape: Ints) -> Placed:
         """Return polygons in their worlds, from their bodies' poses."""

@@ -59,15 +59,17 @@ class Solver:
         self._spans = [slice(a, b) for a, b in zip(starts, contacts.colour_ends, strict=True)]
         self._colours = [self._rows.part(span) for span in self._spans]
 
-    def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float) -> None:
+    def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float, dt: float) -> None:
         """Change velocities in place until contacts stop closing, bounce and rub; fills contacts.impulse."""
         contacts = self.contacts
         closing = contacts.approach[:2]
         rebound = np.where(closing > restitution_threshold, contacts.restitution * closing, 0.0)
+        # Where there still is a gap, this step may use it up.
+        target = np.where(rebound > 0, rebound, np.minimum(contacts.manifold.depth.T, 0.0) / dt)
         velocity = state.velocity.reshape(-1)
         for rows, span in zip(self._colours, self._spans, strict=True):
             velocity[rows.index] += rows.effect(contacts.impulse[:, span])
-        self._sweep(velocity, contacts.impulse, rebound, contacts.friction, iterations)
+        self._sweep(velocity, contacts.impulse, target, contacts.friction, iterations)
 
     def solve_overlaps(self, state: BodyState, iterations: int, dt: float) -> None:
         """Move bodies out of overlaps by a velocity that lasts for this step alone, and so adds no energy."""
@@ -209,7 +211,7 @@ def _coincide(stiffness: Array) -> Bools:
 def _jacobian(positions: Array, manifold: Manifold) -> Array:
     """Rows (3, m, 6) of a manifold between bodies centred at `positions` (m, 2, 2)."""
     valid = manifold.valid
-    both: Bools = valid.all(axis=1, keepdims=True)
+    both = (valid[:, 0] & valid[:, 1])[:, None]
     first, second = manifold.points[:, 0], manifold.points[:, 1]
     middle = np.where(both, (first + second) / 2, np.where(valid[:, :1], first, second))
     points = np.stack([first, second, middle])

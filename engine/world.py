@@ -113,7 +113,7 @@ class World:
         solver = Solver(self.state, self.params, contacts) if contacts else None
         integrate_velocity(self.state, self.params, self.moving, self.gravity, DT)
         if solver:
-            solver.solve_velocities(self.state, self.iterations, self.restitution_threshold)
+            solver.solve_velocities(self.state, self.iterations, self.restitution_threshold, DT)
         integrate_position(self.state, self.moving, DT)
         if solver:
             solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT)
