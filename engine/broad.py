@@ -67,8 +67,8 @@ class BroadPhase:
             self._boxes = None if state.velocity[:, self._fixed].any() else boxes
         centre, reach = state.pose[:, self._moving, :2], self._reach[self._moving]
         for axis in (0, 1):
-            boxes[axis, :, self._moving] = centre[..., axis] - reach
-            boxes[2 + axis, :, self._moving] = centre[..., axis] + reach
+            boxes[axis][:, self._moving] = centre[..., axis] - reach
+            boxes[2 + axis][:, self._moving] = centre[..., axis] + reach
         return boxes
 
     def _box_fixed(self, state: BodyState, boxes: Array) -> None:

@@ -16,7 +16,7 @@ def integrate_velocity(state: BodyState, params: BodyParams, bodies: Span, gravi
     """
     velocity = state.velocity[:, bodies]
     ease = params.inverse_mass[bodies] * dt  # how much a unit of force changes a velocity in one step
-    fall = np.where(params.dynamic[bodies, None], gravity[..., None, :] * dt, 0.0)
+    fall = np.where(params.dynamic[bodies, None], np.asarray(gravity)[..., None, :] * dt, 0.0)
     active = state.active[:, bodies, None]
     if not active.all():
         ease, fall = ease * active, fall * active
