@@ -146,9 +146,11 @@ def draw_centred_bars(
 def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
     """Say how much of a flight the person flew and how much the network."""
     you = round(100 * human)
-    canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
-    network = texts.SHARE_NETWORK.format(percent=100 - you)
-    canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right")
+    if you:
+        canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
+    if you < 100:
+        network = texts.SHARE_NETWORK.format(percent=100 - you)
+        canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right")
     edge = width * human
     if human > 0:
         canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)

@@ -84,6 +84,8 @@ class Play:
         """Fly one step of 1/60 s."""
         flight = self.flight
         was_over = flight.over
+        if not was_over:  # at the end, the figures stay those of the last moment before
+            self._readouts = hud.flight_readouts(flight.env)
         flight.step(self._controls.action)
         ended = np.array([flight.over and not was_over])
         self._stage.follow(np.array([flight.hand is Hand.NETWORK]), ended)
@@ -125,6 +127,7 @@ class Play:
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
         self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
         self._camera = Camera()
+        self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
         self._path = np.empty((0, 2))
         self._sweep = 1.0
@@ -172,7 +175,7 @@ class Play:
         if network.problem:
             problem = texts.NO_NETWORK.format(problem=network.problem)
             canvas.text(problem, (VIEW_SIZE[0] / 2, 78), size=SMALL, colour=MUTE, align="centre")
-        hud.draw_readouts(canvas, hud.flight_readouts(self.flight.env))
+        hud.draw_readouts(canvas, self._readouts)
         word = self._controls.word
         hints = [(word(Command.PAUSE), texts.HINT_PAUSE)]
         if network.flyer:

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.env import Doubles
 from game.ui.tokens import Colour
 from game.world.paint import light
 
@@ -17,7 +18,7 @@ LEVELS: Final = 8
 FLICKERS: Final = 5
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # one of a kind each, and so a quick key
 class Plume:
     """What a jet of fire looks like, from its heart outwards; lengths in metres at full thrust."""
 
@@ -46,6 +47,18 @@ def plume(
     step = 3 if pixels_per_metre >= 20 else 6
     degrees = round(math.degrees(angle) / step) * step % 360
     return _paint(kind, pixels_per_metre, degrees, level, flicker % FLICKERS)
+
+
+def plumes(
+    kind: Plume, pixels_per_metre: float, angles: Doubles, nozzles: Doubles, flicker: int
+) -> list[tuple[pygame.Surface, tuple[int, int]]]:
+    """Return the fires of a swarm at full thrust, ready to be blitted: angles (n,), nozzles (n, 2) in pixels."""
+    degrees = np.rint(np.degrees(angles) / 6).astype(int) * 6 % 360
+    fires = []
+    for number, (turn, (x, y)) in enumerate(zip(degrees.tolist(), np.rint(nozzles).astype(int).tolist(), strict=True)):
+        fire, (left, top) = _paint(kind, pixels_per_metre, turn, LEVELS, (flicker + number) % 2)
+        fires.append((fire, (x - left, y - top)))
+    return fires
 
 
 @lru_cache(maxsize=1024)

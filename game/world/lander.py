@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.env import Doubles
 from ai.lander import FOOT_CENTRE, FOOT_SIZE
 from game.ui.tokens import Colour
 
@@ -23,7 +24,6 @@ REACH: Final = 1.28  # metres from the centre of mass to the tip of the antenna,
 ANTENNA_TIP: Final = (0.16, 1.16)
 NOZZLE: Final = (0.0, -0.66)
 JETS: Final = ((-0.56, 0.60), (0.56, 0.60))  # the left-hand and the right-hand one
-SMALL: Final = 20.0  # pixels per metre below which turning is drawn in coarser steps
 
 _FACTOR: Final = 4
 _SUN: Final = np.array((0.84, 0.06, 0.54))
@@ -154,15 +154,26 @@ _RIMS: Final = (
 )
 
 
-def sprite(pixels_per_metre: float, angle: float, x: float = 0.0, y: float = 0.0) -> pygame.Surface:
+def sprite(
+    pixels_per_metre: float, angle: float, x: float = 0.0, y: float = 0.0, wreck: bool = False
+) -> pygame.Surface:
     """Return the lander turned by `angle`, its centre of mass in the middle, moved by a pixel's fraction x, y."""
-    if pixels_per_metre < SMALL:
-        return _paint(pixels_per_metre, round(math.degrees(angle) / 5) % 72 * 5, (0, 0))
-    return _paint(pixels_per_metre, round(math.degrees(angle)) % 360, (int(x * 2) & 1, int(y * 2) & 1))
+    return _paint(pixels_per_metre, round(math.degrees(angle)) % 360, (int(x * 2) & 1, int(y * 2) & 1), wreck)
+
+
+def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[tuple[pygame.Surface, tuple[int, int]]]:
+    """Return a swarm ready to be blitted: angles (n,), centres of mass (n, 2) in pixels."""
+    degrees = np.rint(np.degrees(angles) / 5).astype(int) * 5 % 360
+    half = _paint(pixels_per_metre, 0, (0, 0)).get_width() // 2
+    corners = np.rint(middles - half).astype(int).tolist()
+    return [
+        (_paint(pixels_per_metre, turn, (0, 0)), (left, top))
+        for turn, (left, top) in zip(degrees.tolist(), corners, strict=True)
+    ]
 
 
 @lru_cache(maxsize=1536)
-def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int]) -> pygame.Surface:
+def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool = False) -> pygame.Surface:
     half = math.ceil(REACH * pixels_per_metre) + 1
     side = 2 * half + 1
     sheet = pygame.Surface((side * _FACTOR, side * _FACTOR), pygame.SRCALPHA)
@@ -172,13 +183,14 @@ def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int]) -> py
     middle = [_FACTOR * (half + 0.5 + part / 2) for part in halves]
     placed = _CORNERS @ np.array(((math.cos(turn), -math.sin(turn)), (math.sin(turn), math.cos(turn)))).T
     places = (placed * (scale, -scale) + middle).tolist()
-    colours = _lit(turn)
+    colours = _lit(turn, 0.42 if wreck else 1.0)
     for facet, (start, stop), colour in zip(FACETS, _SPANS, colours, strict=True):
         if facet.width:
             _strut(sheet, colour, places[start], places[stop - 1], facet.width * scale)
         else:
             pygame.draw.polygon(sheet, colour, places[start:stop])
-    _paint_rim(sheet, turn, scale, middle)
+    if not wreck:
+        _paint_rim(sheet, turn, scale, middle)
     return pygame.transform.smoothscale(sheet, (side, side))
 
 
@@ -190,15 +202,15 @@ def _strut(sheet: pygame.Surface, colour: Colour, start: Corner, end: Corner, wi
     pygame.draw.polygon(sheet, colour, corners)
 
 
-def _lit(turn: float) -> list[Colour]:
-    """Return each facet's colour under the sun's last warmth and the Earth's cold light."""
+def _lit(turn: float, share: float) -> list[Colour]:
+    """Return each facet's colour under the sun's first warmth and the Earth's cold light, or a share of it."""
     cos, sin = math.cos(turn), math.sin(turn)
     facing = _FACING.copy()
     facing[:, 0], facing[:, 1] = _FACING[:, 0] * cos - _FACING[:, 1] * sin, _FACING[:, 0] * sin + _FACING[:, 1] * cos
     sun = np.clip(facing @ _SUN, 0, None)[:, None]
     earth = np.clip(facing @ _EARTH, 0, None)[:, None]
     light = 0.16 + 0.98 * sun * _SUNLIGHT + 0.52 * earth * _EARTHLIGHT
-    shaded = _COLOURS * (_GLOSS * light + (1 - _GLOSS))
+    shaded = share * _COLOURS * (_GLOSS * light + (1 - _GLOSS))
     return [(r, g, b) for r, g, b in np.clip(shaded, 0, 255).astype(int).tolist()]
 
 

@@ -16,7 +16,7 @@ from game.render import View
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, NET
 from game.world import lander as art
-from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume
+from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume, plumes
 from game.world.paint import light, mix
 from game.world.particles import Particles
 
@@ -81,31 +81,33 @@ class Stage:
         self._draw_shadow(canvas, view, x, y, angle)
         self._draw_ground_light(canvas, view, x, y, angle, slot)
         floor = float(view.pixels((x, surface_height(self._env, x)))[1]) + 2
-        draw_craft(canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor)
+        if self._env.outcome[slot] == Outcome.CRASHED:
+            self._draw_wreck(canvas, view, pose, slot, size)
+        else:
+            draw_craft(canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor)
         self._draw_flash(canvas, view, x, y, slot)
+
+    def _draw_wreck(self, canvas: Canvas, view: View, pose: Doubles, slot: int, size: float) -> None:
+        """Draw what a crash has left: dark, and sagging to the side it leans to."""
+        x, y, angle = pose.tolist()
+        sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
+        angle += 0.16 * sag * (1 if angle >= 0 else -1)
+        middle = view.pixels(stand(x, y - 0.16 * sag, angle, size)).tolist()
+        craft = art.sprite(view.pixels_per_metre * size, angle, wreck=True)
+        corner = [round(place) - craft.get_width() // 2 for place in middle]
+        canvas.surface.blit(craft, (corner[0], corner[1]))
 
     def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
         """Draw the landers of the mask `shown` small and in one go, each standing on its feet."""
-        slots = np.flatnonzero(shown)
-        x, y, angle = poses[slots].T
+        metre = view.pixels_per_metre * size
+        x, y, angle = poses[shown].T
         lower = STAND * (1 - size)
         middles = np.stack([x + lower * np.sin(angle), y - lower * np.cos(angle)], axis=1)
         nozzles = middles + size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-        metre = view.pixels_per_metre * size
-        fires: list[tuple[pygame.Surface, tuple[int, int]]] = []
-        crafts: list[tuple[pygame.Surface, tuple[int, int]]] = []
-        for slot, turn, (left, top), (fire_x, fire_y) in zip(
-            slots.tolist(), angle.tolist(), view.pixels(middles).tolist(), view.pixels(nozzles).tolist(), strict=True
-        ):
-            thrust = round(2 * self.thrust[slot, 0]) / 2
-            fire = plume(NET_PLUME, metre, turn, thrust, (self._flicker // 2 + slot) % 2)
-            if fire:
-                fires.append((fire[0], (round(fire_x) - fire[1][0], round(fire_y) - fire[1][1])))
-            craft = art.sprite(metre, turn)
-            half = craft.get_width() // 2
-            crafts.append((craft, (round(left) - half, round(top) - half)))
+        lit = self.thrust[shown, 0] > 0.25
+        fires = plumes(NET_PLUME, metre, angle[lit], view.pixels(nozzles[lit]), self._flicker // 2)
         canvas.surface.fblits(fires, pygame.BLEND_RGB_ADD)
-        canvas.surface.fblits(crafts)
+        canvas.surface.fblits(art.sprites(metre, angle, view.pixels(middles)))
 
     def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw dust, sparks and fragments."""
@@ -145,8 +147,8 @@ class Stage:
         left = self.flash[slot] / _FLASH_STEPS
         if left > 0 and not self._calm:
             metre = view.pixels_per_metre / view.scale
-            canvas.glow(view.points((x, y)).tolist(), 5.5 * metre, (255, 190, 120), 1.6 * left**2)
-            canvas.glow(view.points((x, y)).tolist(), 2.0 * metre, (255, 236, 210), 2.2 * left**3)
+            canvas.glow(view.points((x, y)).tolist(), 5.5 * metre, (255, 190, 120), 1.1 * left**2)
+            canvas.glow(view.points((x, y)).tolist(), 2.0 * metre, (255, 236, 210), 1.5 * left**3)
 
 
 def draw_craft(
