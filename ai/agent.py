@@ -105,10 +105,13 @@ class DeepQAgent:
         values: Floats = self.network.predict(np.atleast_2d(observation))
         return values
 
-    def act(self, observation: Floats, epsilon: float = 0.0) -> Ints:
-        """Actions (n,) for observations (n, features): the best, or with chance `epsilon` a random one."""
+    def act(self, observation: Floats, epsilon: float | Floats = 0.0) -> Ints:
+        """Actions (n,) for observations (n, features): the best, or with chance `epsilon` a random one.
+
+        `epsilon` is one number, or (n,) to let some slots explore more than others.
+        """
         actions: Ints = self.q_values(observation).argmax(axis=1)
-        if epsilon > 0.0:
+        if np.any(epsilon):
             explore = self.rng.random(len(actions)) < epsilon
             chances = self.action_chances
             actions[explore] = self.rng.choice(self.num_actions, int(explore.sum()), p=chances)

@@ -103,6 +103,8 @@ class Config:
                                 "exploration", low=0.9, high=1.0, live=True)
     epsilon_decisions: int = knob(40_000, "Decisions over which ε falls in a straight line; 0 for none.",
                                   "exploration", low=0, high=10_000_000, live=True)
+    epsilon_spread: float = knob(0.0, "Spread ε over the landers: at 1, from ε for the first up to 1 for the last.",
+                                 "exploration", low=0.0, high=1.0, live=True)
     random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
                               "exploration", low=0.0, high=1.0, live=True)
 

@@ -134,11 +134,16 @@ class Training:
         start = geometric(start, end, config.epsilon_decay, self.episodes)
         return linear(start, end, self.agent.decisions, config.epsilon_decisions) if config.epsilon_decisions else start
 
+    def _spread(self, epsilon: float) -> Floats:
+        """Each lander's share of random actions: bold ones go on finding what the careful ones never try."""
+        reach = np.linspace(1.0, 1.0 - self.agent.config.epsilon_spread, self.env.num_envs)
+        return np.asarray(epsilon**reach)
+
     def advance(self) -> Progress:
         """Let every lander take one decision, learn from it, and evaluate if it is time."""
         agent, env = self.agent, self.env
         epsilon = self.epsilon
-        actions = agent.act(self.observation, epsilon)
+        actions = agent.act(self.observation, self._spread(epsilon))
         result = env.step(actions)
         agent.remember(self.observation, actions, result, result.outcome == Outcome.LANDED)
         self.observation = result.observation
