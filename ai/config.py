@@ -103,7 +103,7 @@ class Config:
                                 "exploration", low=0.9, high=1.0, live=True)
     epsilon_decisions: int = knob(40_000, "Decisions over which ε falls in a straight line; 0 for none.",
                                   "exploration", low=0, high=10_000_000, live=True)
-    epsilon_spread: float = knob(0.0, "Spread ε over the landers: at 1, from ε for the first up to 1 for the last.",
+    epsilon_spread: float = knob(0.7, "Spread ε over the landers: at 1, from ε for the first up to 1 for the last.",
                                  "exploration", low=0.0, high=1.0, live=True)
     random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
                               "exploration", low=0.0, high=1.0, live=True)
@@ -172,6 +172,6 @@ PRESETS: Final[dict[str, Config]] = {
         optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh", layer_normalisation=False,
         output_scale=1.0, replay_size=1500, replay_prune=1000, warm_up=64, mirror=False, success_pass=True,
         double=False, target_every=50, target_rate=1.0, fly_target=False, epsilon_decay=0.999,
-        epsilon_decisions=0, random_main=0.5, num_envs=1, spawn=CURRICULUM,
+        epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, spawn=CURRICULUM, reward_scale=0.1,
     ),
 }  # fmt: skip
