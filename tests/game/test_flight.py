@@ -1,0 +1,177 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.lander import LIMITS, PARAMS, Cause, LanderEnv, Outcome
+from ai.pilots import ScriptedPilot
+from game import networks, texts
+from game.assets import MODELS_DIR
+from game.flight import DECISION_STEPS, Flight, Hand, Swarm, coast_path
+from game.outcomes import outcome_card
+
+STANDING = PARAMS.pad_top + PARAMS.stand
+
+
+class Counting:
+    """A network that counts how often it is asked, and always fires the main engine."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def act(self, observation: np.ndarray) -> np.ndarray:
+        self.asked += 1
+        return np.full(len(observation), 3)
+
+
+def place(env: LanderEnv, *start: float) -> None:
+    env.place(np.ones(1, bool), np.array([start]))
+
+
+def flown(seed: int, hand_over_at: tuple[int, ...]) -> Flight:
+    flight = Flight(seed, ScriptedPilot())
+    for step in range(2000):
+        if flight.over:
+            break
+        if step in hand_over_at:
+            flight.hand_over()
+        flight.step(step // 7 % 6)
+    return flight
+
+
+def test_the_same_seed_and_inputs_are_the_same_flight_and_the_recording_flies_it_again():
+    first, second = (flown(5, (40, 90, 200)) for _ in range(2))
+    assert first.recording == second.recording
+    assert np.array_equal(first.poses.now, second.poses.now)
+    again = Flight(first.recording.seed, spawn=first.recording.spawn)
+    for action in first.recording.actions:
+        again.step(action)
+    assert np.array_equal(again.poses.now, first.poses.now)
+    assert again.outcome is first.outcome
+
+
+def test_a_network_decides_every_four_steps_and_at_once_when_it_takes_over():
+    network = Counting()
+    flight = Flight(1, network)
+    flight.step(0)
+    assert flight.hand_over()
+    for _ in range(2 * DECISION_STEPS):
+        flight.step(1)
+        assert flight.env.actions[0] == 3
+    assert network.asked == 2
+    flight.hand_over()
+    flight.step(2)
+    assert flight.env.actions[0] == 2
+    assert flight.share == pytest.approx(2 / 10)
+    flight.hand_over()
+    flight.step(0)
+    assert network.asked == 3
+
+
+def test_no_network_and_no_flight_cannot_be_handed_over():
+    flight = Flight(1)
+    assert not flight.hand_over()
+    assert flight.hand is Hand.HUMAN
+    flight = Flight(1, Counting())
+    while not flight.over:
+        flight.step(0)
+    assert not flight.hand_over()
+
+
+def test_the_path_ahead_is_the_way_it_then_goes():
+    flight = Flight(2)
+    path = coast_path(flight.env)
+    for _ in range(100):
+        flight.step(0)
+    nearest = np.abs(path - flight.env.position[0]).sum(axis=1).min()
+    assert nearest < 0.15
+    assert path[-1, 1] < path[0, 1]
+
+
+def test_a_swarm_flies_again_and_again_and_counts():
+    swarm = Swarm(16, 4, ScriptedPilot())
+    ended = sum(int(swarm.step().sum()) for _ in range(1500))
+    assert ended == swarm.landed + swarm.lost > 16
+    assert swarm.landed > 12
+    assert len(swarm.poses.at(0.5)) == 16
+
+
+def test_a_swarm_is_drawn_without_a_leap_when_a_flight_begins_anew():
+    swarm = Swarm(4, 4, ScriptedPilot())
+    for _ in range(1500):
+        swarm.step()
+        assert np.abs(swarm.poses.now - swarm.poses.before)[:, :2].max() < 0.4
+
+
+CASES = {
+    Cause.HARD: ((0, 6, 0, -3, 0, 0), "Touched down at {0:.1f} m/s; 2.0 is the limit."),
+    Cause.TILTED: ((0, 3.2, 0, -0.5, 0.6, 0), "Tilted {2:.0f}° at contact; 29° is the limit."),
+    Cause.SLIDING: ((-2, 2.6, 3.5, -0.3, 0, 0), "Slid across the ground at {1:.1f} m/s; 2.0 is the limit."),
+    Cause.HULL: ((0, 3.5, 0, -0.5, np.pi, 0), texts.CAUSES["HULL"]),
+    Cause.TERRAIN: ((10, 2.2, 0, -0.5, 0, 0), texts.CAUSES["TERRAIN"]),
+}
+
+
+@pytest.mark.parametrize("cause", CASES)
+def test_the_card_names_what_broke_it(cause: Cause):
+    start, words = CASES[cause]
+    flight = Flight(1)
+    place(flight.env, *start)
+    for _ in range(600):
+        flight.step(0)
+    assert flight.outcome is Outcome.CRASHED
+    assert flight.env.cause[0] == cause
+    speed, slide, tilt = flight.env.impact[0]
+    card = outcome_card(flight.env, 1.0)
+    assert not card.good
+    assert card.reason == words.format(speed, slide, np.degrees(tilt))
+
+
+def test_the_card_of_a_landing_and_of_the_other_ends():
+    flight = Flight(1)
+    place(flight.env, 0.4, STANDING + 0.02, 0, 0, 0, 0)
+    while not flight.over:
+        flight.step(0)
+    card = outcome_card(flight.env, 0.81)
+    assert card.good
+    assert card.title == "Landed"
+    assert ("OFF CENTRE", "0.4", "m") in card.figures
+    flight = Flight(1)
+    place(flight.env, 21.9, 12, 6, 0, 0, 0)
+    while not flight.over:
+        flight.step(0)
+    assert outcome_card(flight.env, 1.0).reason == "Left the area."
+    flight = Flight(1)
+    flight.env.steps[:] = round(LIMITS.time * 60) - 1
+    flight.step(0)
+    assert outcome_card(flight.env, 1.0).reason.startswith("Time ran out")
+
+
+def test_a_speed_just_over_the_limit_does_not_read_as_the_limit():
+    env = LanderEnv(1, 0, frame_skip=1)
+    env.reset()
+    env.outcome[:], env.cause[:], env.impact[:] = Outcome.CRASHED, Cause.HARD, (2.02, 0, 0)
+    assert outcome_card(env, 1.0).reason == "Touched down at 2.02 m/s; 2.0 is the limit."
+
+
+def test_networks_are_listed_with_what_is_wrong_with_them(tmp_path: Path):
+    models, user = tmp_path / "models", tmp_path / "user"
+    assert [n.name for n in networks.available(models, user)] == ["modern", "scripted"]
+    assert "missing" in networks.available(models, user)[0].problem
+    (models / "lander" / "broken").mkdir(parents=True)
+    (user / "models" / "mine").mkdir(parents=True)
+    found = {network.name: network for network in networks.available(models, user)}
+    assert list(found) == ["modern", "broken", "mine", "scripted"]
+    assert all(found[name].flyer is None and found[name].problem for name in ("modern", "broken", "mine"))
+    assert networks.chosen(models, user, "broken").problem
+    assert networks.chosen(models, user, "gone").name == "modern"
+
+
+@pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exists(), reason="no trained network here")
+def test_the_shipped_network_lands():
+    network = networks.chosen(MODELS_DIR, Path("nowhere"))
+    assert network.flyer is not None, network.problem
+    swarm = Swarm(32, 9, network.flyer)
+    for _ in range(1600):
+        swarm.step()
+    assert swarm.landed > 0.9 * (swarm.landed + swarm.lost)

@@ -1,0 +1,208 @@
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander import PARAMS, Outcome
+from ai.pilots import ScriptedPilot
+from game import networks
+from game.assets import MODELS_DIR
+from game.context import Context
+from game.flight import Hand
+from game.scenes.play import Play
+from tests.game.driver import Driver
+
+Open = Callable[..., Driver]
+MAIN, LEFT, RIGHT = pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT
+
+
+class Steady:
+    """A network that always steers left."""
+
+    def act(self, observation: np.ndarray) -> np.ndarray:
+        return np.full(len(observation), 1)
+
+
+@pytest.fixture
+def flown_by(monkeypatch: pytest.MonkeyPatch) -> Callable[[object], None]:
+    def use(flyer: object) -> None:
+        monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", flyer))  # type: ignore[arg-type]
+
+    return use
+
+
+def scene(driver: Driver) -> Play:
+    assert isinstance(driver.top, Play)
+    return driver.top
+
+
+def press(driver: Driver, key: int) -> None:
+    driver.post(pygame.KEYDOWN, key=key, mod=0, unicode="", scancode=0)
+
+
+def let_go(driver: Driver, key: int) -> None:
+    driver.post(pygame.KEYUP, key=key, mod=0, unicode="", scancode=0)
+
+
+def start_at(play: Play, *start: float) -> None:
+    play.flight.env.place(np.ones(1, bool), np.array([start]))
+
+
+def action(driver: Driver) -> int:
+    return int(scene(driver).flight.env.actions[0])
+
+
+@pytest.mark.parametrize(("keys", "wanted"), [((MAIN,), 3), ((LEFT,), 1), ((RIGHT, pygame.K_w), 5), ((LEFT, RIGHT), 0)])
+def test_keys_fly(open_game: Open, flown_by, keys: tuple[int, ...], wanted: int):
+    flown_by(None)
+    driver = open_game(Play(seed=1))
+    for key in keys:
+        press(driver, key)
+    driver.frames(2)
+    assert action(driver) == wanted
+    for key in keys:
+        let_go(driver, key)
+    driver.frames(1)
+    assert action(driver) == 0
+
+
+def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, flown_by):
+    flown_by(Steady())
+    driver = open_game(Play(seed=1))
+    held = False
+    for turn in range(100):
+        if turn % 10 == 0:  # stay clear of the ground
+            start_at(scene(driver), 0, 16, 0, 0, 0, 0)
+        before = scene(driver).flight.hand
+        driver.key(pygame.K_TAB)
+        assert scene(driver).flight.hand is not before
+        if turn % 3 == 0:  # press or let go while either of the two flies
+            (let_go if held else press)(driver, MAIN)
+            held = not held
+        driver.frames(1)
+        assert action(driver) == (1 if scene(driver).flight.hand is Hand.NETWORK else 3 * held)
+    assert not scene(driver).flight.over
+
+
+def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_game: Open, flown_by):
+    flown_by(ScriptedPilot())
+    driver = open_game(Play(seed=12))
+    driver.frames(20)
+    driver.key(pygame.K_TAB)
+    driver.frames(1400)
+    play = scene(driver)
+    assert play.flight.outcome is Outcome.LANDED
+    assert play._card is not None
+    assert 0 < play._card.human < 0.2
+
+
+@pytest.mark.parametrize("key", [pygame.K_RETURN, pygame.K_SPACE, pygame.K_r])
+def test_after_a_crash_one_key_flies_the_same_start_again(open_game: Open, flown_by, key: int):
+    flown_by(None)
+    driver = open_game(Play(seed=3))
+    began = scene(driver).flight.poses.before.copy()
+    start_at(scene(driver), 8, 3, 0, -3, 0, 0)
+    driver.frames(140)
+    assert scene(driver).flight.outcome is Outcome.CRASHED
+    driver.key(key)
+    assert not scene(driver).flight.over
+    assert scene(driver).flight.recording.seed == 3
+    assert np.abs(scene(driver).flight.poses.now - began).max() < 0.3
+
+
+def test_after_a_landing_enter_flies_a_new_start_and_r_the_same(open_game: Open, flown_by):
+    flown_by(None)
+    driver = open_game(Play(seed=3))
+    for key, same in ((pygame.K_r, True), (pygame.K_RETURN, False)):
+        start_at(scene(driver), 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
+        driver.frames(140)
+        assert scene(driver).flight.outcome is Outcome.LANDED
+        driver.key(key)
+        assert (scene(driver).flight.recording.seed == 3) is same
+
+
+def test_a_thrust_held_through_the_end_does_not_dismiss_the_card(open_game: Open, flown_by):
+    flown_by(None)
+    driver = open_game(Play(seed=3))
+    start_at(scene(driver), 8, 3, 0, -4, 0, 0)
+    press(driver, pygame.K_SPACE)
+    driver.frames(20)
+    let_go(driver, pygame.K_SPACE)
+    press(driver, pygame.K_SPACE)
+    driver.frames(10)
+    assert scene(driver).flight.over
+
+
+def test_pause_by_key_and_by_looking_away_keeps_the_flight(open_game: Open, flown_by):
+    flown_by(None)
+    driver = open_game(Play(seed=3))
+    flight = scene(driver).flight
+    for event in (pygame.WINDOWFOCUSLOST, None):
+        if event is None:
+            driver.key(pygame.K_ESCAPE)
+        else:
+            driver.post(event)
+        assert driver.top_name == "Pause"
+        steps = int(flight.env.steps[0])
+        driver.frames(10)
+        assert flight.env.steps[0] == steps
+        driver.key(pygame.K_ESCAPE)
+        assert scene(driver).flight is flight
+    driver.key(pygame.K_ESCAPE)
+    driver.keys(pygame.K_DOWN, pygame.K_RETURN)  # Retry
+    assert scene(driver).flight is not flight
+
+
+def test_a_resize_in_the_middle_changes_nothing_but_the_picture(open_game: Open, flown_by):
+    flown_by(ScriptedPilot())
+    ends = []
+    for sizes in ([], [(900, 700), (640, 360), (1280, 720)]):
+        driver = open_game(Play(seed=4))
+        driver.key(pygame.K_TAB)
+        for size in sizes:
+            driver.resize(size)
+        driver.frames(100)
+        flight = scene(driver).flight
+        while len(flight.recording.actions) < 130:
+            driver.frames(1)
+        ends.append(flight.poses.before if len(flight.recording.actions) > 130 else flight.poses.now)
+        driver.app.close()
+    assert np.array_equal(*ends)
+
+
+def test_a_missing_network_is_named_and_the_game_goes_on(open_game: Open, context: Context, tmp_path: Path):
+    context.models_dir = tmp_path
+    driver = open_game(Play(seed=1))
+    driver.key(pygame.K_TAB)
+    driver.frames(30)
+    play = scene(driver)
+    assert play.flight.hand is Hand.HUMAN
+    assert "missing" in play._network.problem
+
+
+@pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exists(), reason="no trained network here")
+def test_a_damaged_network_is_named_and_the_game_goes_on(open_game: Open, context: Context, tmp_path: Path):
+    shutil.copytree(MODELS_DIR / "lander" / "modern", tmp_path / "lander" / "modern")
+    for path in (tmp_path / "lander" / "modern").rglob("*weights.npy"):
+        path.write_bytes(path.read_bytes()[:100])
+    context.models_dir = tmp_path
+    driver = open_game(Play(seed=1))
+    driver.key(pygame.K_TAB)
+    driver.frames(30)
+    assert scene(driver).flight.hand is Hand.HUMAN
+    assert "weights" in scene(driver)._network.problem
+
+
+def test_draw_changes_nothing(open_game: Open, flown_by):
+    flown_by(ScriptedPilot())
+    driver = open_game(Play(seed=4))
+    driver.key(pygame.K_TAB)
+    driver.frames(90)
+    pictures = []
+    for _ in range(2):
+        driver.top.draw(driver.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
+    assert np.array_equal(*pictures)

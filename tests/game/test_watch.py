@@ -1,0 +1,138 @@
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from game.context import Context
+from game.render import Camera
+from game.scenes.watch import Watch
+from tests.game.driver import Driver
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture
+def watching(open_game: Open, context: Context, tmp_path: Path) -> Driver:
+    context.models_dir = tmp_path / "models"  # only the scripted pilot is here
+    return open_game(Watch(seed=2))
+
+
+def scene(driver: Driver) -> Watch:
+    assert isinstance(driver.top, Watch)
+    return driver.top
+
+
+def steps(driver: Driver) -> int:
+    return scene(driver).swarm._step
+
+
+def test_space_stops_and_a_period_goes_one_step(watching: Driver):
+    watching.frames(5)
+    watching.key(pygame.K_SPACE)
+    before = steps(watching)
+    watching.frames(10)
+    assert steps(watching) == before
+    watching.keys(pygame.K_PERIOD, pygame.K_PERIOD)
+    assert steps(watching) == before + 2
+    watching.key(pygame.K_SPACE)
+    watching.frames(5)
+    assert steps(watching) > before + 4
+
+
+@pytest.mark.parametrize(
+    ("key", "times", "speed"), [(pygame.K_MINUS, 2, 0.25), (pygame.K_PLUS, 2, 4), (pygame.K_PLUS, 9, 4)]
+)
+def test_slower_and_faster(watching: Driver, key: int, times: int, speed: float):
+    watching.keys(*[key] * times)
+    before = steps(watching)
+    watching.frames(40)
+    assert steps(watching) - before == pytest.approx(40 * speed, abs=1)
+
+
+def test_arrows_choose_how_many_and_the_same_starts_stay(watching: Driver):
+    first = scene(watching).swarm.poses.before[0].copy()
+    watching.keys(pygame.K_DOWN, pygame.K_RIGHT)
+    assert scene(watching).swarm.env.num_envs == 16
+    assert np.abs(scene(watching).swarm.poses.now[0] - first).max() < 0.5
+    watching.keys(pygame.K_RIGHT, pygame.K_RIGHT)
+    assert scene(watching).swarm.env.num_envs == 256
+    watching.frames(3)
+
+
+def test_the_mouse_chooses_words_and_landers(watching: Driver):
+    choice = scene(watching)._count_choice
+    watching.click((choice._lefts[1] + 4, choice.box.centery))
+    assert scene(watching).swarm.env.num_envs == 16
+    scene(watching).stopped = True
+    positions = scene(watching).swarm.env.position
+    apart = [np.sort(np.hypot(*(positions - place).T))[1] for place in positions]
+    free = [slot for slot in np.argsort(apart)[::-1] if abs(positions[slot][0]) < 9 and slot]
+    watching.click(tuple(Camera().view(1.0).points(positions[free[0]])))
+    assert scene(watching).shown == free[0]
+    watching.keys(pygame.K_n)
+    assert scene(watching).shown == (free[0] + 1) % 16
+
+
+def test_a_gamepad_stops_steps_and_chooses(watching: Driver):
+    watching.button(pygame.CONTROLLER_BUTTON_Y)
+    assert scene(watching).stopped
+    before = steps(watching)
+    watching.button(pygame.CONTROLLER_BUTTON_RIGHTSTICK)
+    assert steps(watching) == before + 1
+    watching.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    watching.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    assert scene(watching).swarm.env.num_envs == 16
+    watching.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    assert scene(watching).shown == 1
+    watching.button(pygame.CONTROLLER_BUTTON_START)
+    assert watching.top_name == "Pause"
+
+
+def test_restart_flies_new_starts(watching: Driver):
+    first = scene(watching).swarm
+    watching.key(pygame.K_r)
+    assert scene(watching).swarm is not first
+    assert np.abs(scene(watching).swarm.poses.now - first.poses.before).max() > 0.5
+
+
+def test_a_missing_network_is_listed_with_what_is_wrong_and_another_flies(watching: Driver):
+    watching.frames(2)
+    watch = scene(watching)
+    assert "missing" in watch.problem
+    assert watch._network.name == "scripted"
+    watching.key(pygame.K_RIGHT)
+    assert not watch.problem
+    watching.frames(60)
+    assert watching.top is watch
+
+
+def test_landings_are_counted_and_a_resize_is_survived(watching: Driver):
+    watching.keys(pygame.K_DOWN, pygame.K_RIGHT, pygame.K_PLUS, pygame.K_PLUS)
+    watching.resize((900, 700))
+    watching.frames(400)
+    assert scene(watching).swarm.landed > 5
+    watching.resize((1280, 720))
+    watching.frames(2)
+
+
+def test_draw_changes_nothing(watching: Driver):
+    watching.keys(pygame.K_DOWN, pygame.K_RIGHT)
+    watching.frames(200)
+    pictures = []
+    for _ in range(2):
+        watching.top.draw(watching.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(watching.app.canvas.surface))
+    assert np.array_equal(*pictures)
+
+
+def test_menu_leads_to_watch_and_back(open_game: Open):
+    driver = open_game()
+    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    assert driver.top_name == "Watch"
+    driver.frames(5)
+    driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
+    assert driver.top_name == "Watch"
+    driver.key(pygame.K_BACKSPACE)
+    assert driver.top_name == "Menu"

@@ -1,0 +1,144 @@
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv
+from game.render import Camera, View
+from game.ui.canvas import Canvas
+from game.world import lander as art
+from game.world.backdrop import Backdrop
+from game.world.flame import HUMAN_PLUME, LEVELS, plume
+from game.world.pad import draw_pad
+from game.world.particles import Particles
+from game.world.paths import Trails, draw_dotted
+from game.world.stage import Stage, stand
+
+SIZES = [(1280, 720), (640, 360), (1000, 800)]
+
+
+@pytest.fixture
+def canvas() -> Canvas:
+    return Canvas(pygame.Surface((640, 360)))
+
+
+def pixels(surface: pygame.Surface) -> np.ndarray:
+    return pygame.surfarray.array3d(surface)
+
+
+@pytest.mark.parametrize("scale", [0.5, 1.0, 1.5])
+def test_metres_become_pixels_and_points_and_come_back(scale: float):
+    view = View(scale, centre=(1.0, 10.0), zoom=1.2)
+    places = np.array([[-20.0, 0.0], [0.0, 1.6], [3.3, 22.0]])
+    assert np.allclose(view.metres(view.points(places)), places)
+    assert np.allclose(view.pixels(places), view.points(places) * scale)
+
+
+def test_at_rest_the_view_shows_the_whole_width_and_the_surface_stands_above_the_read_outs():
+    view = Camera().view(1.0)
+    left, right = view.points([[-20, PARAMS.ground], [20, PARAMS.ground]])
+    assert (left[0], right[0]) == (0, 1280)
+    assert 600 < left[1] < 656
+
+
+def test_a_camera_eases_and_is_drawn_in_between():
+    camera = Camera()
+    for _ in range(400):
+        camera.follow((15.0, 5.0))
+    moved = camera.view(1.0).centre[0]
+    assert 0.3 < moved < 1.5
+    camera.follow((-15.0, 5.0))
+    assert camera.view(1.0, 1.0).centre[0] < camera.view(1.0, 0.5).centre[0] < moved
+
+
+@pytest.mark.parametrize("window", SIZES)
+def test_the_same_chance_paints_the_same_moon(window: tuple[int, int]):
+    canvas = Canvas(pygame.Surface(window))
+    pictures = []
+    for _ in range(2):
+        Backdrop(canvas.size, np.random.default_rng(7)).draw(canvas, Camera(), 1.0)
+        pictures.append(pixels(canvas.surface))
+    assert np.array_equal(*pictures)
+    assert pictures[0].any(axis=2).mean() > 0.99  # the whole view is painted
+
+
+def test_reduced_motion_stills_the_stars_and_motion_does_not(canvas: Canvas):
+    for reduced in (True, False):
+        backdrop = Backdrop(canvas.size, np.random.default_rng(7), reduced)
+        pictures = []
+        for time in (0.0, 2.0):
+            backdrop.draw(canvas, Camera(), time)
+            pictures.append(pixels(canvas.surface))
+        assert np.array_equal(*pictures) is reduced
+
+
+def test_the_art_fits_the_physics():
+    scale = 64.0
+    craft = art.sprite(scale, 0.0)
+    cover = pygame.surfarray.array_alpha(craft) > 128
+    middle = craft.get_width() // 2
+    columns, rows = np.flatnonzero(cover.any(axis=1)), np.flatnonzero(cover.any(axis=0))
+    assert abs((columns[0] - middle) / scale + FOOT_CENTRE[0] + FOOT_SIZE[0] / 2) < 0.04
+    assert abs((columns[-1] - middle) / scale - FOOT_CENTRE[0] - FOOT_SIZE[0] / 2) < 0.04
+    assert abs((rows[-1] + 1 - middle) / scale - PARAMS.stand) < 0.03
+    across = cover[:, round(middle - 0.03 * scale)]  # at the hull's widest
+    assert abs((np.flatnonzero(across)[-1] - middle) / scale - max(x for x, _ in HULL)) < 0.06
+
+
+def test_a_small_lander_still_stands_on_its_feet():
+    for angle in (0.0, 0.4):
+        x, y = stand(2.0, 5.0, angle, 0.4)
+        foot = np.array([x, y]) + 0.4 * PARAMS.stand * np.array([np.sin(angle), -np.cos(angle)])
+        assert np.allclose(foot, np.array([2.0, 5.0]) + PARAMS.stand * np.array([np.sin(angle), -np.cos(angle)]))
+
+
+def test_fire_grows_with_thrust_and_none_is_no_fire():
+    assert plume(HUMAN_PLUME, 32.0, 0.3, 0.0, 0) is None
+    weak, strong = (plume(HUMAN_PLUME, 32.0, 0.3, thrust, 0) for thrust in (1 / LEVELS, 1.0))
+    assert weak is not None
+    assert strong is not None
+    assert pixels(strong[0]).sum() > 3 * pixels(weak[0]).sum()
+
+
+def test_particles_move_in_update_and_never_in_draw(canvas: Canvas):
+    view = Camera().view(canvas.scale)
+    particles = Particles(np.random.default_rng(1))
+    for _ in range(30):
+        particles.blow(0.0, 1.0, 1.0)
+    particles.burst(np.array([0.0, 3.0]), np.array([1.0, -4.0]))
+    pictures = []
+    for _ in range(2):
+        canvas.surface.fill((30, 30, 40))
+        particles.draw(canvas.surface, view, 0.5)
+        pictures.append(pixels(canvas.surface))
+    assert np.array_equal(*pictures)
+    for _ in range(240):
+        particles.update()
+    canvas.surface.fill((30, 30, 40))
+    particles.draw(canvas.surface, view, 1.0)
+    assert (pixels(canvas.surface) == (30, 30, 40)).all()  # all gone
+
+
+@pytest.mark.parametrize("count", [1, 16])
+def test_everything_draws_and_draws_alike_twice(canvas: Canvas, count: int):
+    env = LanderEnv(count, 3, frame_skip=1)
+    env.reset()
+    stage, trails = Stage(env, np.random.default_rng(0)), Trails(env)
+    nobody = np.zeros(count, bool)
+    for _ in range(90):
+        env.step(np.full(count, 4))
+        stage.follow(~nobody, nobody)
+        trails.follow(nobody, nobody)
+    trails.follow(nobody, ~nobody)
+    view = Camera().view(canvas.scale)
+    poses = np.concatenate([env.position, env.angle[:, None]], axis=1)
+    pictures = []
+    for _ in range(2):
+        canvas.surface.fill((10, 10, 20))
+        draw_pad(canvas, view, (0.0, 1.6), 6.0, 0.4)
+        trails.draw(canvas, view, 0)
+        draw_dotted(canvas, view, np.array([[0.0, 12.0], [2.0, 9.0], [3.0, 2.0]]), (255, 196, 112))
+        stage.draw_swarm(canvas, view, poses, ~nobody, 0.5)
+        stage.draw_lander(canvas, view, poses[0])
+        stage.draw_dust(canvas, view, 0.5)
+        pictures.append(pixels(canvas.surface))
+    assert np.array_equal(*pictures)
