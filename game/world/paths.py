@@ -18,7 +18,7 @@ from game.world.paint import mix
 
 _SPACING: Final = 0.62  # metres between dots
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
-_STRETCH: Final = 6  # points of a trail drawn in one colour
+_STRETCH: Final = 10  # points of a trail drawn in one colour
 
 
 def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6) -> None:
@@ -76,7 +76,7 @@ class Trails:
             strength = 0.55 * 0.9**rank * max(0.0, 1 - trail.age / 40)
             landed = trail.outcome == Outcome.LANDED
             colour = canvas.palette.good if landed else canvas.palette.warn
-            if strength > 0.04:
+            if strength > 0.06:
                 _draw_faint(canvas.surface, view.pixels(trail.points), colour, strength)
                 if not landed:
                     end = view.points(trail.points[-1]).tolist()
