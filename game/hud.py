@@ -12,6 +12,7 @@ import pygame
 from ai.lander import LanderEnv
 from game import texts
 from game.ui.canvas import Canvas, Point
+from game.ui.hints import draw_hints
 from game.ui.tokens import (
     FAINT,
     FIGURE,
@@ -190,10 +191,16 @@ def draw_card(canvas: Canvas, card: Card, keys: list[tuple[str, str]], shown: fl
         canvas.text(unit, (figure.right + 4, top + 149), size=LABEL, colour=MUTE)
     draw_share(canvas, left, top + 188, width, card.human)
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
-    x = left
-    for key, meaning in keys:
-        x = canvas.text(key, (x, top + 244), size=SMALL, weight="medium").right + 8
-        x = canvas.text(meaning, (x, top + 244), size=SMALL, colour=MUTE).right + 24
+    draw_hints(canvas, keys, (left, top + 244))
+
+
+def draw_opening(canvas: Canvas, keys: Sequence[tuple[str, str]], line: str) -> None:
+    """Say in the middle, while the craft hangs still, how it is flown and that a touch begins it."""
+    middle = VIEW_SIZE[0] / 2
+    canvas.text(line, (middle, 96), size=TEXT, colour=MUTE, align="centre")
+    # As wide as `draw_hints` sets them: 8 from a key to its meaning, 24 to the next.
+    width = sum(canvas.text_width(text, size=SMALL) for pair in keys for text in pair) + 32 * len(keys) - 24
+    draw_hints(canvas, keys, (middle - width / 2, 124))
 
 
 def _draw_mark(canvas: Canvas, place: Point, within: bool) -> None:

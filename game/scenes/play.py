@@ -32,11 +32,18 @@ _SPAWN: Final = "graded"  # from easy to as hard as any: a person is still learn
 
 
 class Play:
-    """One flight after another. `seed` fixes the first; the others are drawn from the context's chance."""
+    """One flight after another. `seed` fixes the first; the others are drawn from the context's chance.
+
+    Attributes:
+        flight: the flight on the screen.
+        waiting: whether it still hangs in the sky for the pilot's first touch.
+
+    """
 
     def __init__(self, seed: int | None = None) -> None:
         self._seed = seed
         self._context: Context | None = None
+        self.waiting = True
         self._time = 0.0
         self._sweep = 1.0  # how far the line at the top has swept since the stick changed hands
         self._steps = self._since_end = 0
@@ -82,6 +89,10 @@ class Play:
 
     def update(self) -> None:
         """Fly one step of 1/60 s."""
+        self._let_pass()
+        if self.waiting and self.flight.hand is Hand.HUMAN and not self._controls.action:
+            return
+        self.waiting = False
         flight = self.flight
         was_over = flight.over
         if not was_over:  # at the end, the figures stay those of the last moment before
@@ -90,9 +101,7 @@ class Play:
         ended = np.array([flight.over and not was_over])
         self._stage.follow(np.array([flight.hand is Hand.NETWORK]), ended)
         if not self._settings.reduced_motion:
-            self._time += STEP
             self._camera.follow(flight.env.position[0])
-        self._sweep += (1.0 - self._sweep) * (1.0 if self._settings.reduced_motion else _SWEEP)
         self._steps += 1
         if flight.over:
             self._since_end += 1
@@ -121,7 +130,14 @@ class Play:
 
     # The flight
 
+    def _let_pass(self) -> None:
+        """Let 1/60 s pass for what moves whether or not anything flies."""
+        if not self._settings.reduced_motion:
+            self._time += STEP
+        self._sweep += (1.0 - self._sweep) * (1.0 if self._settings.reduced_motion else _SWEEP)
+
     def _begin(self, seed: int) -> None:
+        self.waiting = True
         self.flight = Flight(seed, self._network.flyer, _SPAWN)
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
@@ -129,7 +145,7 @@ class Play:
         self._camera = Camera()
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
-        self._path = np.empty((0, 2))
+        self._path = coast_path(self.flight.env)
         self._sweep = 1.0
         self._steps = self._since_end = 0
 
@@ -177,6 +193,9 @@ class Play:
             canvas.text(problem, (VIEW_SIZE[0] / 2, 78), size=SMALL, colour=MUTE, align="centre")
         hud.draw_readouts(canvas, self._readouts)
         word = self._controls.word
+        if self.waiting:
+            keys = texts.FLIGHT_KEYS_PAD if self._controls.pad_in_use else texts.FLIGHT_KEYS
+            hud.draw_opening(canvas, keys, texts.BEGIN)
         hints = [(word(Command.PAUSE), texts.HINT_PAUSE)]
         if network.flyer:
             meaning = texts.HINT_TAKE_BACK if network_flies else texts.HINT_HAND_OVER

@@ -48,6 +48,7 @@ def let_go(driver: Driver, key: int) -> None:
 
 
 def start_at(play: Play, *start: float) -> None:
+    play.waiting = False
     play.flight.env.place(np.ones(1, bool), np.array([start]))
 
 
@@ -67,6 +68,18 @@ def test_keys_fly(open_game: Open, flown_by, keys: tuple[int, ...], wanted: int)
         let_go(driver, key)
     driver.frames(1)
     assert action(driver) == 0
+
+
+@pytest.mark.parametrize("begin", [MAIN, LEFT, pygame.K_TAB])
+def test_a_flight_waits_for_the_first_touch_even_through_a_pause(open_game: Open, flown_by, begin: int):
+    flown_by(Steady())
+    driver = open_game(Play(seed=1))
+    driver.frames(30)
+    driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
+    assert scene(driver).flight.env.steps[0] == 0
+    press(driver, begin)
+    driver.frames(2)
+    assert scene(driver).flight.env.steps[0] > 0
 
 
 def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, flown_by):
@@ -90,6 +103,7 @@ def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, 
 def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
     driver = open_game(Play(seed=12))
+    driver.key(LEFT)
     driver.frames(20)
     driver.key(pygame.K_TAB)
     driver.frames(1400)
