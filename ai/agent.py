@@ -25,6 +25,7 @@ from ai.nn import (
 from ai.nn.activations import ACTIVATIONS
 from ai.nn.costs import COSTS
 from ai.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+from ai.scaling import RunningScale
 from ai.schedule import linear
 
 FORMAT: Final = "tranquility agent"
@@ -77,6 +78,7 @@ class DeepQAgent:
         self.rng = rng or np.random.default_rng(0)
         self.symmetry = symmetry
         self.action_chances = action_chances
+        self.scale = RunningScale(num_features) if self.config.normalise_inputs else None
         self.online = build_network(num_features, num_actions, self.config, self.rng)
         self.target = self.online.copy()
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
@@ -102,7 +104,8 @@ class DeepQAgent:
 
     def q_values(self, observation: Floats) -> Floats:
         """Value of every action, (n, actions), for observations (n, features)."""
-        values: Floats = self.network.predict(np.atleast_2d(observation))
+        observation = np.atleast_2d(observation)
+        values: Floats = self.network.predict(self.scale(observation) if self.scale else observation)
         return values
 
     def act(self, observation: Floats, epsilon: float | Floats = 0.0) -> Ints:
@@ -124,6 +127,8 @@ class DeepQAgent:
             result.observation, result.terminated, result.ended,
         )  # fmt: skip
         self.decisions += len(actions)
+        if self.scale:
+            self.scale.watch(observation)
         if not len(slots):
             return
         self.replay.add(cells)
@@ -153,6 +158,8 @@ class DeepQAgent:
         if isinstance(memory, PrioritisedReplayBuffer):
             memory.importance = linear(self.config.importance_exponent, 1.0, self.decisions, self.config.horizon)
         cells, rows, weights = memory.sample(batch_size * updates, self.rng)
+        if self.scale:
+            cells = cells._replace(state=self.scale(cells.state), next_state=self.scale(cells.next_state))
         if self.config.mirror and self.symmetry is not None:
             _mirror_half_of_each(cells, self.symmetry, batch_size)
         targets = self._targets(cells)
@@ -211,7 +218,7 @@ class DeepQAgent:
         """Go on as `other`: its networks, optimizer and counts, but not its memories."""
         self.online.values, self.target.values = other.online.values, other.target.values
         self.optimizer.load_state(other.optimizer.state())
-        self.decisions, self.train_count = other.decisions, other.train_count
+        self.decisions, self.train_count, self.scale = other.decisions, other.train_count, other.scale
 
     def save(self, folder: str | Path) -> None:
         """Write the agent to a folder, whole or not at all. Memories are not kept.
@@ -227,6 +234,8 @@ class DeepQAgent:
             "format": FORMAT, "version": VERSION, "features": self.num_features, "actions": self.num_actions,
             "decisions": self.decisions, "train_count": self.train_count, "config": self.config.to_json(),
         }  # fmt: skip
+        if self.scale:
+            described["scale"] = self.scale.to_json()
         folder.mkdir(parents=True, exist_ok=True)
         self.online.save(folder / "online")
         self.target.save(folder / "target")
@@ -242,6 +251,8 @@ class DeepQAgent:
             config = Config.from_json(described["config"])
             agent = cls(int(described["features"]), int(described["actions"]), config, rng)
             agent.decisions, agent.train_count = int(described["decisions"]), int(described["train_count"])
+            if agent.scale:
+                agent.scale.load(described["scale"])
         except (KeyError, TypeError, ValueError) as error:
             raise ModelFormatError(folder, [f"{AGENT_FILE}: {error!r}"]) from error
         problems = []

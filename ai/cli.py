@@ -1,4 +1,4 @@
-"""The commands that need no window: train a lander, evaluate one.
+"""The commands that need no window: train a network, evaluate one.
 
 Nothing heavy is imported until a command runs, because the game reads this table too before it opens.
 """
@@ -16,13 +16,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ai.config import Config
+    from ai.task import Score
     from ai.training import Training
 
 
 def add_commands(commands: Any) -> None:
     """Add `train` and `evaluate` to a parser's sub-commands."""
-    train = commands.add_parser("train", help="teach a network to land")
-    train.add_argument("--preset", default="modern", help="modern or classic (default: modern)")
+    train = commands.add_parser("train", help="teach a network to land, or to master another environment")
+    train.add_argument("--env", default="lander", metavar="NAME",
+                       help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)")  # fmt: skip
+    train.add_argument("--preset", help="modern or classic (default: modern; for --env, settings of its own)")
     train.add_argument("--seed", type=int, default=0)
     train.add_argument("--seconds", type=float, help="stop after so many seconds")
     train.add_argument("--decisions", type=int, help="stop after so many decisions; the same seed, the same network")
@@ -32,11 +35,11 @@ def add_commands(commands: Any) -> None:
                        help="change a setting of the preset, such as --set n_step=5")  # fmt: skip
     train.set_defaults(run=_train)
 
-    evaluate = commands.add_parser("evaluate", help="measure how well a network lands")
+    evaluate = commands.add_parser("evaluate", help="measure how well a network does")
     evaluate.add_argument("--model", type=Path, required=True, metavar="DIR")
-    evaluate.add_argument("--episodes", type=int, default=1000)
+    evaluate.add_argument("--episodes", type=int, help="default: 1000 flights, or 100 episodes of another environment")
     evaluate.add_argument("--seed", type=int, default=0)
-    evaluate.add_argument("--spawn", default="random", help="random or hard (default: random)")
+    evaluate.add_argument("--spawn", help="random or hard (default: random)")
     evaluate.add_argument("--json", action="store_true", help="print one JSON object")
     evaluate.set_defaults(run=_evaluate)
 
@@ -53,7 +56,7 @@ def _train(arguments: argparse.Namespace) -> int:
     try:
         resumed = resume_run(arguments.resume) if arguments.resume else None
         training = resumed or Training(_config(arguments), arguments.seed)
-    except ValueError as error:
+    except (ValueError, ImportError) as error:
         return _fail(str(error))
     clock = TrainingClock(arguments.seconds, arguments.decisions)
     try:
@@ -67,10 +70,7 @@ def _train(arguments: argparse.Namespace) -> int:
         save_run(training, output, final=True)
     except OSError as error:
         return _fail(f"could not write to {output}: {error.strerror or error}")
-    best = training.best
-    assert best is not None
-    took = "" if best.mean_time is None else f", in {best.mean_time:.1f} s on average"
-    print(f"kept in {output}: {best.success:.1%} of {best.episodes} validation flights landed{took}")
+    print(f"kept in {output}: {training.best}")
     return 0
 
 
@@ -78,15 +78,18 @@ def _advance(training: Training, clock: Any, output: Path) -> None:
     """Train until the clock or the user says stop, with a progress bar, keeping the work now and then."""
     from tqdm import tqdm
 
+    from ai.config import LANDER
     from ai.runs import save_run
 
+    lander = training.config.env == LANDER
     form = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
     with tqdm(total=1000, desc="training", bar_format=form, disable=None) as bar, _stoppable() as stop:
         for progress in clock.run(training):
             bar.update(int(clock.share * 1000) - bar.n)
-            best = f" best {progress.best.success:.1%}" if progress.best else ""
+            best = f" best {progress.best.figure}" if progress.best else ""
+            recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
             bar.set_postfix_str(
-                f"landed {progress.success_rate:.0%} of the last 100, ε {progress.epsilon:.2f},"
+                f"{recent} of the last 100, ε {progress.epsilon:.2f},"
                 f" {progress.decisions:,} decisions{best}", refresh=False,
             )  # fmt: skip
             if clock.checkpoint_due():
@@ -108,39 +111,56 @@ def _stoppable() -> Iterator[list[bool]]:
 
 def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.agent import DeepQAgent
+    from ai.config import LANDER
     from ai.nn import ModelFormatError
     from ai.spawns import SPAWNS
+    from ai.task import task_of
     from ai.training import evaluate
 
-    if arguments.episodes < 1:
+    spawn, episodes = arguments.spawn or "random", arguments.episodes
+    if episodes is not None and episodes < 1:
         return _fail("--episodes starts from 1")
-    if arguments.spawn not in SPAWNS:
-        return _fail(f"--spawn is one of {', '.join(SPAWNS)}, not {arguments.spawn}")
+    if spawn not in SPAWNS:
+        return _fail(f"--spawn is one of {', '.join(SPAWNS)}, not {spawn}")
     try:
         agent = DeepQAgent.load(arguments.model)
-    except ModelFormatError as error:
+        task = task_of(agent.config)
+    except (ModelFormatError, ValueError, ImportError) as error:
         return _fail(str(error))
-    result = evaluate(agent, arguments.episodes, arguments.seed, arguments.spawn, agent.config.frame_skip)
+    episodes = episodes or task.test_episodes
+    if agent.config.env == LANDER:
+        score: Score = evaluate(agent, episodes, arguments.seed, spawn, agent.config.frame_skip)
+    elif arguments.spawn is None:
+        score = task.evaluate(agent, episodes, arguments.seed)
+    else:
+        return _fail(f"--spawn is for the lander; this network is for {agent.config.env}")
     if arguments.json:
-        print(json.dumps(result.to_json(), indent=2))
+        print(json.dumps(score.to_json(), indent=2))
         return 0
-    for name, value in result.to_json().items():
-        shown = (
-            "–"
-            if value is None
-            else f"{value:.2%}"
-            if name in ("success", "crash", "out_of_bounds", "time_out")
-            else f"{value:.2f}"
-        )
-        print(f"{name.replace('_', ' '):14} {shown if name != 'episodes' else int(value)}")
+    for name, value in score.to_json().items():
+        print(f"{name.replace('_', ' '):14} {_shown(name, value)}")
     return 0
+
+
+def _shown(name: str, value: float | None) -> str:
+    if value is None:
+        return "–"
+    if name in ("success", "crash", "out_of_bounds", "time_out"):
+        return f"{value:.2%}"
+    return str(value) if isinstance(value, int) else f"{value:.2f}"
 
 
 def _config(arguments: argparse.Namespace) -> Config:
     """Return the preset with the changes asked for; raises ValueError for one that makes no sense."""
-    from ai.config import PRESETS
+    from ai.config import LANDER, PRESETS
 
-    if arguments.preset not in PRESETS:
+    if arguments.preset is None and arguments.env != LANDER:
+        from ai.gym_task import gym_config
+
+        preset = gym_config(arguments.env)
+    elif (arguments.preset or "modern") in PRESETS:
+        preset = PRESETS[arguments.preset or "modern"].changed(env=arguments.env)
+    else:
         raise ValueError(f"--preset is one of {', '.join(PRESETS)}, not {arguments.preset}")
     changes = {}
     for change in arguments.changes:
@@ -151,7 +171,7 @@ def _config(arguments: argparse.Namespace) -> Config:
             changes[name] = json.loads(text)
         except ValueError:
             changes[name] = text
-    return PRESETS[arguments.preset].from_json(PRESETS[arguments.preset].to_json() | changes)
+    return preset.from_json(preset.to_json() | changes)
 
 
 def _fail(message: str) -> int:

@@ -18,6 +18,7 @@ from ai.rewards import RewardWeights
 from ai.spawns import SPAWNS
 
 CURRICULUM: Final = "curriculum"
+LANDER: Final = "lander"
 _DEFAULT_WEIGHTS: Final = RewardWeights()
 
 
@@ -73,6 +74,8 @@ class Config:
     activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
     layer_normalisation: bool = knob(True, "Keep each layer's inputs in range: steadier learning.", "network")
     dueling: bool = knob(False, "Estimate the state and the advantage of each action apart.", "network")
+    normalise_inputs: bool = knob(False, "Bring observations to mean 0 and spread 1, as they have been so far.",
+                                  "network")
     output_scale: float = knob(0.1, "Shrinks the last layer's first weights, so that early guesses are near 0.",
                                "network", low=0.01, high=1.0, log=True)
 
@@ -108,6 +111,7 @@ class Config:
     random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
                               "exploration", low=0.0, high=1.0, live=True)
 
+    env: str = knob(LANDER, "What is learnt: our lander, or an environment of Gymnasium by its name.", "task")
     num_envs: int = knob(256, "Landers at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps to a decision.", "lander", low=1, high=12)
     spawn: str = knob("practice", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ Floats = NDArray[np.floating[Any]]
 Doubles = NDArray[np.floating[Any]]
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.intp]
+SUCCESS: Final = 1  # the outcome of an episode that ended well, in every environment; 0 is one that goes on
 
 
 @dataclass(frozen=True)
@@ -38,11 +39,22 @@ class StepResult:
         """Terminated or truncated, (num_envs,)."""
         return self.terminated | self.truncated
 
+    @property
+    def succeeded(self) -> Bools:
+        """Ended well, (num_envs,)."""
+        succeeded: Bools = self.outcome == SUCCESS
+        return succeeded
+
 
 class Env(Protocol):
     """Many slots of one environment, stepped together; ended slots wait for `reset(mask)`."""
 
     num_envs: int
+    landings: int  # or whatever else a success is called, so far
+
+    @property
+    def stage(self) -> int:
+        """Stage of a curriculum, 0 without one."""
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new episode in the slots of `mask`, or in all; return every slot's observation."""

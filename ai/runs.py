@@ -11,7 +11,8 @@ from typing import Final
 from ai.agent import DeepQAgent
 from ai.config import PRESETS
 from ai.nn import ModelFormatError, atomic_folder
-from ai.training import TEST_SEED, Evaluation, Progress, Training, evaluate
+from ai.task import TEST_SEED
+from ai.training import Progress, Training
 
 TRAINING_FILE: Final = "training.json"
 LAST: Final = "last"
@@ -57,6 +58,7 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
     assert training.best is not None
     agent = training.agent
     described = {
+        "env": training.config.env,
         "preset": next((name for name, preset in PRESETS.items() if preset == training.config), "custom"),
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
@@ -64,7 +66,7 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
     }  # fmt: skip
     best = training.best_agent()
     if final:
-        described["evaluation"] = evaluate(best, 1000, TEST_SEED, "random", agent.config.frame_skip).to_json()
+        described["evaluation"] = training.task.evaluate(best, training.task.test_episodes, TEST_SEED).to_json()
     with atomic_folder(folder) as temporary:
         best.write(temporary)
         agent.write(temporary / LAST)
@@ -78,11 +80,11 @@ def resume_run(folder: str | Path) -> Training:
     try:
         described = json.loads((folder / TRAINING_FILE).read_text(encoding="utf-8"))
         training = Training(last.config, int(described["seed"]))
-        training.best = Evaluation(**described["best"])
+        training.best = training.task.read_score(described["best"])
         training.episodes, training.env.landings = int(described["episodes"]), int(described["landings"])
         training.seconds = float(described["seconds"])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error!r}"]) from error
-    training.best_values = best.network.values.copy()
+    training.best_values, training.best_scale = best.network.values.copy(), best.scale
     training.agent.take_over(last)
     return training

@@ -4,83 +4,28 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Generator
-from dataclasses import asdict, dataclass, field
-from typing import Any, Final
+from copy import deepcopy
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from ai.agent import DeepQAgent, Symmetry
-from ai.config import CURRICULUM, Config
-from ai.env import Bools, Doubles, Floats
-from ai.lander import (
-    MIRROR_ACTIONS,
-    MIRROR_FEATURES,
-    MIRROR_SIGNS,
-    NUM_ACTIONS,
-    NUM_FEATURES,
-    LanderEnv,
-    Outcome,
-)
-from ai.pilots import Pilot
+from ai.agent import DeepQAgent
+from ai.config import Config
+from ai.env import Env, Floats, StepResult
+from ai.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
+from ai.scaling import RunningScale
 from ai.schedule import geometric, linear
-from ai.spawns import Curriculum
+from ai.task import TEST_SEED, VALIDATION_SEED, Score, Task, task_of
 
-LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
-VALIDATION_SEED: Final = 1_000_003  # spawns that choose the best checkpoint
-TEST_SEED: Final = 2_000_003  # spawns that have no say in anything, to measure a finished network by
-
-
-@dataclass(frozen=True)
-class Evaluation:
-    """What became of a number of flights with no random actions in them."""
-
-    episodes: int
-    success: float  # shares of the flights
-    crash: float
-    out_of_bounds: float
-    time_out: float
-    mean_return: float
-    mean_time: float | None  # seconds, of the landings; None without any
-    mean_fuel: float | None  # seconds of main engine, of the landings
-    switches: float  # times a second that an engine goes on or off, of all flights
-
-    def to_json(self) -> dict[str, float | None]:
-        """Plain values."""
-        return asdict(self)
-
-    def better_than(self, other: Evaluation | None) -> bool:
-        """Whether more flights landed or, if as many did, they earned more."""
-        return other is None or (self.success, self.mean_return) > (other.success, other.mean_return)
-
-
-def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
-    """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
-    env = LanderEnv(episodes, seed, spawn, frame_skip)
-    observation = env.reset()
-    returns: Doubles = np.zeros(episodes)
-    switches, last = 0, np.zeros(episodes, dtype=np.intp)
-    while (flying := env.outcome == Outcome.FLYING).any():
-        actions = np.zeros(episodes, dtype=np.intp)
-        actions[flying] = pilot.act(observation[flying])
-        switches += int(((actions >= 3) != (last >= 3))[flying].sum() + ((actions % 3) != (last % 3))[flying].sum())
-        last = actions
-        result = env.step(actions)
-        observation = result.observation
-        returns += result.reward
-    share = {outcome: float((env.outcome == outcome).mean()) for outcome in Outcome}
-    landed = env.outcome == Outcome.LANDED
-    return Evaluation(
-        episodes, share[Outcome.LANDED], share[Outcome.CRASHED], share[Outcome.OUT_OF_BOUNDS],
-        share[Outcome.TIMED_OUT], float(returns.mean()),
-        float(env.time[landed].mean()) if landed.any() else None,
-        float(env.fuel[landed].mean()) if landed.any() else None,
-        switches / float(env.time.sum()),
-    )  # fmt: skip
+__all__ = [
+    "LANDER_SYMMETRY", "TEST_SEED", "VALIDATION_SEED", "Evaluation", "Progress", "Training", "evaluate", "run",
+]  # fmt: skip
 
 
 @dataclass
 class Progress:
-    """How a run stands after one decision of all landers."""
+    """How a run stands after one decision of all landers, or whatever else learns."""
 
     decisions: int  # of single landers
     updates: int
@@ -91,40 +36,48 @@ class Progress:
     mean_q: float
     epsilon: float
     stage: int  # of the curriculum
-    evaluation: Evaluation | None = None  # when one was due
-    best: Evaluation | None = None
+    evaluation: Score | None = None  # when one was due
+    best: Score | None = None
 
 
 @dataclass
 class Training:
-    """A run of the lander: everything that changes as it goes on."""
+    """A run of the lander, or of another task: everything that changes as it goes on."""
 
     config: Config
     seed: int = 0
-    evaluate_every: int = 50_000  # decisions; 0 for never
-    validation_episodes: int = 500
+    evaluate_every: int | None = None  # decisions; 0 for never, None for as often as suits the task
+    validation_episodes: int | None = None  # None for as many as suit the task
+    task: Task = field(init=False)
     agent: DeepQAgent = field(init=False)
-    env: LanderEnv = field(init=False)
-    best: Evaluation | None = None
+    env: Env = field(init=False)
+    best: Score | None = None
     best_values: Floats | None = None
+    best_scale: RunningScale | None = None
     seconds: float = 0.0  # spent, as whoever runs it counts them
 
     def __post_init__(self) -> None:
-        config = self.config
+        self.task = task_of(self.config)
+        if self.evaluate_every is None:
+            self.evaluate_every = self.task.evaluate_every
+        if self.validation_episodes is None:
+            self.validation_episodes = self.task.validation_episodes
         agent_rng, env_rng = np.random.default_rng(self.seed).spawn(2)
-        main = config.random_main
-        chances = np.array([1 - main] * 3 + [main] * 3) / 3
-        self.agent = DeepQAgent(
-            NUM_FEATURES, NUM_ACTIONS, config, agent_rng, symmetry=LANDER_SYMMETRY, action_chances=chances
-        )
-        spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
-        self.env = LanderEnv(config.num_envs, env_rng, spawn, config.frame_skip, weights=config.weights)
+        self.agent = self._new_agent(self.config, agent_rng)
+        self.env = self.task.make_env(env_rng)
         self.observation = self.env.reset()
         self.episodes = 0
         self._evaluated = 0
         self._landed: deque[bool] = deque(maxlen=100)
         self._returns: deque[float] = deque(maxlen=100)
-        self._earned: Doubles = np.zeros(config.num_envs)
+        self._earned = np.zeros(self.env.num_envs)
+
+    def _new_agent(self, config: Config, rng: np.random.Generator | None = None) -> DeepQAgent:
+        task = self.task
+        return DeepQAgent(
+            task.num_features, task.num_actions, config, rng,
+            symmetry=task.symmetry, action_chances=task.action_chances,
+        )  # fmt: skip
 
     @property
     def epsilon(self) -> float:
@@ -145,11 +98,11 @@ class Training:
         epsilon = self.epsilon
         actions = agent.act(self.observation, self._spread(epsilon))
         result = env.step(actions)
-        agent.remember(self.observation, actions, result, result.outcome == Outcome.LANDED)
+        agent.remember(self.observation, actions, result, result.succeeded)
         self.observation = result.observation
         self._earned += result.reward
         if result.ended.any():
-            self._finish(result.ended)
+            self._finish(result)
             self.observation = env.reset(result.ended)
         agent.learn()
         evaluation = self._evaluate_if_due()
@@ -159,31 +112,34 @@ class Training:
             sum(self._returns) / count, agent.loss, agent.mean_q, epsilon, env.stage, evaluation, self.best,
         )  # fmt: skip
 
-    def _finish(self, ended: Bools) -> None:
+    def _finish(self, result: StepResult) -> None:
+        ended = result.ended
         self.episodes += int(ended.sum())
-        self._landed.extend((self.env.outcome[ended] == Outcome.LANDED).tolist())
+        self._landed.extend(result.succeeded[ended].tolist())
         self._returns.extend(self._earned[ended].tolist())
         self._earned[ended] = 0.0
 
-    def _evaluate_if_due(self) -> Evaluation | None:
+    def _evaluate_if_due(self) -> Score | None:
         if not self.evaluate_every or self.agent.decisions - self._evaluated < self.evaluate_every:
             return None
         self._evaluated = self.agent.decisions
         return self.evaluate()
 
-    def evaluate(self) -> Evaluation:
-        """Fly the validation spawns, and keep the network if it is the best so far."""
-        frame_skip = self.config.frame_skip
-        evaluation = evaluate(self.agent, self.validation_episodes, VALIDATION_SEED, "random", frame_skip)
-        if evaluation.better_than(self.best):
-            self.best, self.best_values = evaluation, self.agent.network.values.copy()
-        return evaluation
+    def evaluate(self) -> Score:
+        """Try the validation episodes, and keep the network if it is the best so far."""
+        assert self.validation_episodes is not None
+        score = self.task.evaluate(self.agent, self.validation_episodes, VALIDATION_SEED)
+        if score.better_than(self.best):
+            self.best, self.best_values = score, self.agent.network.values.copy()
+            self.best_scale = deepcopy(self.agent.scale)
+        return score
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
-        agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, self.agent.config)
+        agent = self._new_agent(self.agent.config)
         values = self.agent.network.values if self.best_values is None else self.best_values
         agent.online.values = agent.target.values = values
+        agent.scale = self.agent.scale if self.best_values is None else self.best_scale
         agent.decisions, agent.train_count = self.agent.decisions, self.agent.train_count
         return agent
 

@@ -10,7 +10,7 @@ def test_every_setting_tells_a_screen_how_to_show_it():
     for item in fields(Config):
         described = item.metadata
         assert described["help"].endswith(".")
-        assert described["group"] in {"learning", "network", "memory", "target", "exploration", "lander"}
+        assert described["group"] in {"learning", "network", "memory", "target", "exploration", "lander", "task"}
         if item.type in ("int", "float"):
             assert described["low"] < described["high"]
 

@@ -1,0 +1,109 @@
+"""The lander as a task to learn, and how its pilots are measured."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from ai.agent import Symmetry
+from ai.config import CURRICULUM, Config
+from ai.env import Doubles, Floats
+from ai.lander import (
+    MIRROR_ACTIONS,
+    MIRROR_FEATURES,
+    MIRROR_SIGNS,
+    NUM_ACTIONS,
+    NUM_FEATURES,
+    LanderEnv,
+    Outcome,
+)
+from ai.pilots import Pilot
+from ai.spawns import Curriculum
+
+LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What became of a number of flights with no random actions in them."""
+
+    episodes: int
+    success: float  # shares of the flights
+    crash: float
+    out_of_bounds: float
+    time_out: float
+    mean_return: float
+    mean_time: float | None  # seconds, of the landings; None without any
+    mean_fuel: float | None  # seconds of main engine, of the landings
+    switches: float  # times a second that an engine goes on or off, of all flights
+
+    def to_json(self) -> dict[str, float | None]:
+        """Plain values."""
+        return asdict(self)
+
+    def better_than(self, other: Evaluation | None) -> bool:
+        """Whether more flights landed or, if as many did, they earned more."""
+        return other is None or (self.success, self.mean_return) > (other.success, other.mean_return)
+
+    @property
+    def figure(self) -> str:
+        """The share that landed."""
+        return f"{self.success:.1%}"
+
+    def __str__(self) -> str:
+        took = "" if self.mean_time is None else f", in {self.mean_time:.1f} s on average"
+        return f"{self.figure} of {self.episodes} validation flights landed{took}"
+
+
+def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
+    """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
+    env = LanderEnv(episodes, seed, spawn, frame_skip)
+    observation = env.reset()
+    returns: Doubles = np.zeros(episodes)
+    switches, last = 0, np.zeros(episodes, dtype=np.intp)
+    while (flying := env.outcome == Outcome.FLYING).any():
+        actions = np.zeros(episodes, dtype=np.intp)
+        actions[flying] = pilot.act(observation[flying])
+        switches += int(((actions >= 3) != (last >= 3))[flying].sum() + ((actions % 3) != (last % 3))[flying].sum())
+        last = actions
+        result = env.step(actions)
+        observation = result.observation
+        returns += result.reward
+    share = {outcome: float((env.outcome == outcome).mean()) for outcome in Outcome}
+    landed = env.outcome == Outcome.LANDED
+    return Evaluation(
+        episodes, share[Outcome.LANDED], share[Outcome.CRASHED], share[Outcome.OUT_OF_BOUNDS],
+        share[Outcome.TIMED_OUT], float(returns.mean()),
+        float(env.time[landed].mean()) if landed.any() else None,
+        float(env.fuel[landed].mean()) if landed.any() else None,
+        switches / float(env.time.sum()),
+    )  # fmt: skip
+
+
+class LanderTask:
+    """Learn to land."""
+
+    num_features, num_actions = NUM_FEATURES, NUM_ACTIONS
+    evaluate_every, validation_episodes, test_episodes = 50_000, 500, 1000
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+        self.symmetry: Symmetry | None = LANDER_SYMMETRY
+        main = config.random_main
+        self.action_chances: Floats | None = np.array([1 - main] * 3 + [main] * 3) / 3
+
+    def make_env(self, rng: np.random.Generator) -> LanderEnv:
+        """Make the landers to train with."""
+        config = self.config
+        spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
+        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.weights)
+
+    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
+        """Fly so many flights at once from random spawns."""
+        return evaluate(pilot, episodes, seed, "random", self.config.frame_skip)
+
+    def read_score(self, values: dict[str, Any]) -> Evaluation:
+        """Read what `Evaluation.to_json` gave."""
+        return Evaluation(**values)

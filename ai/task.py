@@ -1,0 +1,79 @@
+"""What training must know of whatever is to be learnt: the lander, or any other environment."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from ai.agent import Symmetry
+from ai.config import LANDER, Config
+from ai.env import Env, Floats
+from ai.pilots import Pilot
+
+VALIDATION_SEED = 1_000_003  # episodes that choose the best checkpoint
+TEST_SEED = 2_000_003  # episodes that have no say in anything, to measure a finished network by
+
+
+class Score(Protocol):
+    """How well a pilot did over a number of episodes with no random actions in them."""
+
+    @property
+    def episodes(self) -> int:
+        """How many there were."""
+
+    @property
+    def success(self) -> float | None:
+        """Share that ended well; None where nobody has said what that is."""
+
+    @property
+    def mean_return(self) -> float:
+        """Mean sum of rewards."""
+
+    @property
+    def figure(self) -> str:
+        """The one figure that matters, in a few letters."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values."""
+
+    def better_than(self, other: Any) -> bool:
+        """Whether this beats another score of its kind, or None."""
+
+    def __str__(self) -> str: ...
+
+
+class Task(Protocol):
+    """An environment as an agent is to learn it. Made from a Config."""
+
+    num_features: int
+    num_actions: int
+    symmetry: Symmetry | None
+    action_chances: Floats | None  # (actions,) odds of random actions; None for uniform
+    evaluate_every: int  # decisions
+    validation_episodes: int
+    test_episodes: int
+
+    def make_env(self, rng: np.random.Generator) -> Env:
+        """Make the environment to train in."""
+
+    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Score:
+        """Measure a pilot over so many episodes, which follow from `seed`."""
+
+    def read_score(self, values: dict[str, Any]) -> Score:
+        """Read what a score's `to_json` gave; raises TypeError for anything else."""
+
+
+def task_of(config: Config) -> Task:
+    """Make the task that a configuration names.
+
+    Raises ValueError for an environment that does not exist or cannot be learnt by Q-learning, and ImportError
+    where Gymnasium is needed and not installed.
+    """
+    if config.env == LANDER:
+        from ai.lander_task import LanderTask
+
+        return LanderTask(config)
+    from ai.gym_task import GymTask
+
+    return GymTask(config)
