@@ -28,7 +28,8 @@ _PATH_EVERY: Final = 6  # steps between predictions
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
 _SWEEP: Final = 0.16
-_SPAWN: Final = "graded"  # from easy to as hard as any: a person is still learning
+# Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
+_AWAY_STEPS: Final = 10
 
 
 class Play:
@@ -46,6 +47,7 @@ class Play:
         self.waiting = True
         self._time = 0.0
         self._sweep = 1.0  # how far the line at the top has swept since the stick changed hands
+        self._away = 0  # steps since the window was left; 0 while it is in use
         self._steps = self._since_end = 0
         self._card: hud.Card | None = None
         self._path: Doubles = np.empty((0, 2))
@@ -70,8 +72,8 @@ class Play:
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Hand over, begin again, pause."""
-        if event.type == pygame.WINDOWFOCUSLOST and not self.flight.over:
-            return self._pause()
+        if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
+            self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         match translate(event):
             case Command.PAUSE:
                 return self._pause()
@@ -87,11 +89,13 @@ class Play:
                 self._go_on()
         return None
 
-    def update(self) -> None:
+    def update(self) -> Transition | None:
         """Fly one step of 1/60 s."""
         self._let_pass()
+        if self._away > _AWAY_STEPS and not self.flight.over:
+            return self._pause()
         if self.waiting and self.flight.hand is Hand.HUMAN and not self._controls.action:
-            return
+            return None
         self.waiting = False
         flight = self.flight
         was_over = flight.over
@@ -110,6 +114,7 @@ class Play:
                 self._path = np.empty((0, 2))
         elif self._steps % _PATH_EVERY == 1:
             self._path = coast_path(flight.env)
+        return None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the craft, the read-outs and, at the end, the card."""
@@ -134,11 +139,12 @@ class Play:
         """Let 1/60 s pass for what moves whether or not anything flies."""
         if not self._settings.reduced_motion:
             self._time += STEP
+        self._away += self._away > 0
         self._sweep += (1.0 - self._sweep) * (1.0 if self._settings.reduced_motion else _SWEEP)
 
     def _begin(self, seed: int) -> None:
         self.waiting = True
-        self.flight = Flight(seed, self._network.flyer, _SPAWN)
+        self.flight = Flight(seed, self._network.flyer)
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
         self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
@@ -169,6 +175,7 @@ class Play:
     def _pause(self) -> Transition:
         from game.scenes.pause import Pause
 
+        self._away = 0
         return Push(Pause(self, retry=self.retry))
 
     # The picture
