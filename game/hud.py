@@ -105,8 +105,9 @@ def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> 
     canvas.text(text, (middle + 9, 41), size=TEXT, align="centre")
     canvas.glow((middle - width / 2 - 8, 36), 14, colour, 0.8)
     canvas.dot((middle - width / 2 - 8, 36), 4, colour)
-    reach = 90 * sweep
-    canvas.pill((middle - 90, 54, 180, 2), FAINT, 0.5)
+    half = max(90.0, width / 2 + 14)
+    reach = half * sweep
+    canvas.pill((middle - half, 54, 2 * half, 2), FAINT, 0.5)
     canvas.pill((middle - reach, 54, max(2.0, 2 * reach), 2), colour)
 
 

@@ -44,7 +44,7 @@ class Play:
     def __init__(self, seed: int | None = None) -> None:
         self._seed = seed
         self._context: Context | None = None
-        self.waiting = True
+        self.waiting, self._let_go = True, False
         self._time = 0.0
         self._sweep = 1.0  # how far the line at the top has swept since the stick changed hands
         self._away = 0  # steps since the window was left; 0 while it is in use
@@ -94,9 +94,8 @@ class Play:
         self._let_pass()
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
-        if self.waiting and self.flight.hand is Hand.HUMAN and not self._controls.action:
+        if self._waits():
             return None
-        self.waiting = False
         flight = self.flight
         was_over = flight.over
         if not was_over:  # at the end, the figures stay those of the last moment before
@@ -142,8 +141,16 @@ class Play:
         self._away += self._away > 0
         self._sweep += (1.0 - self._sweep) * (1.0 if self._settings.reduced_motion else _SWEEP)
 
+    def _waits(self) -> bool:
+        """Whether the craft still hangs; a key that began the flight itself must first be let go."""
+        action = self._controls.action
+        self._let_go = self._let_go or not action
+        if self.flight.hand is Hand.NETWORK or (action and self._let_go):
+            self.waiting = False
+        return self.waiting
+
     def _begin(self, seed: int) -> None:
-        self.waiting = True
+        self.waiting, self._let_go = True, False
         self.flight = Flight(seed, self._network.flyer)
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Doubles
+from ai.env import Bools, Doubles
 from ai.lander import Outcome
 from game import hud, networks, texts
 from game.clock import STEP
@@ -34,7 +34,8 @@ COUNTS: Final = (1, 16, 64, 256)
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
 _SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2", "×4")
 _SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smaller, to be seen through
-_ROW: Final = (MARGIN, 638.0, 24.0)  # left and top of the first row of choices, and its height
+_ROW: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices, and how far to the next
+_ROW_HEIGHT: Final = 17.0
 _LABEL_WIDTH: Final = 84.0
 _GAP: Final = 24.0
 _CLICK_REACH: Final = 1.6  # metres
@@ -121,10 +122,13 @@ class Watch:
         view = self._camera.view(canvas.scale, between)
         size = canvas.surface.get_size()
         landscape(size, self._settings.reduced_motion).draw(canvas, self._camera, self._time, between)
-        env = self.swarm.env
+        env, poses = self.swarm.env, self.swarm.poses.at(between)
+        others = self._others()
+        self._stage.draw_fires(canvas, view, poses, others, self._size)  # the pad hides what reaches below it
         draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
         self._trails.draw(canvas, view, self.shown)
-        self._draw_landers(canvas, view, self.swarm.poses.at(between))
+        self._stage.draw_swarm(canvas, view, poses, others, self._size)
+        self._draw_shown(canvas, view, poses[self.shown])
         self._stage.draw_dust(canvas, view, between)
         self._mind.draw(canvas)
         self._draw_words(canvas)
@@ -183,9 +187,9 @@ class Watch:
     def _add_choice(
         self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
     ) -> Choice:
-        x, y, height = _ROW
+        x, y, pitch = _ROW
         width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + _GAP for word in words) - _GAP
-        box = pygame.Rect(x, y + row * height, math.ceil(width), height)
+        box = pygame.Rect(x, y + row * pitch, math.ceil(width), _ROW_HEIGHT)
         manager = self._form.manager
         return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
 
@@ -214,20 +218,22 @@ class Watch:
 
     # The picture
 
-    def _draw_landers(self, canvas: Canvas, view: View, poses: Doubles) -> None:
-        count, env, swarm = COUNTS[self._count], self.swarm.env, self.swarm
-        wrecked = (swarm.since_end > _WRECK_STEPS) & (env.outcome != Outcome.LANDED)
-        if count > 1:
-            others = ~wrecked
-            others[self.shown] = False
-            self._stage.draw_swarm(canvas, view, poses, others, _SIZES[count])
-        if not wrecked[self.shown] or count == 1:
-            size = min(1.0, _SIZES[count] * 1.5)
-            self._stage.draw_lander(canvas, view, poses[self.shown], self.shown, size)
-        if count > 1:
-            x, y, _ = poses[self.shown].tolist()
-            above = view.points((x, y)).tolist()
-            canvas.marker("triangle_down", (above[0], above[1] - 46 * _SIZES[count] * 1.5 - 10), 9, INK)
+    @property
+    def _size(self) -> float:
+        return _SIZES[COUNTS[self._count]]
+
+    def _others(self) -> Bools:
+        """Which landers are drawn beside the one that is shown, (n,): all but those long wrecked."""
+        others: Bools = (self.swarm.since_end <= _WRECK_STEPS) | (self.swarm.env.outcome == Outcome.LANDED)
+        others[self.shown] = False
+        return others
+
+    def _draw_shown(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        size = min(1.0, 1.5 * self._size)
+        self._stage.draw_lander(canvas, view, pose, self.shown, size)
+        if COUNTS[self._count] > 1:
+            x, y = view.points(pose[:2]).tolist()
+            canvas.marker("triangle_down", (x, y - 46 * size - 10), 9, INK)
 
     def _draw_words(self, canvas: Canvas) -> None:
         count = COUNTS[self._count]

@@ -97,17 +97,22 @@ class Stage:
         corner = [round(place) - craft.get_width() // 2 for place in middle]
         canvas.surface.blit(craft, (corner[0], corner[1]))
 
-    def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
-        """Draw the landers of the mask `shown` small and in one go, each standing on its feet."""
+    # A swarm, small and in one go, each standing on its feet; `shown` is a mask (n,)
+
+    def draw_fires(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
+        """Draw the fire of those whose main engine burns."""
+        lit = shown & (self.thrust[:, 0] > 0.25)
+        angle = poses[lit, 2]
+        nozzles = _middles(poses[lit], size)
+        nozzles += size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
         metre = view.pixels_per_metre * size
-        x, y, angle = poses[shown].T
-        lower = STAND * (1 - size)
-        middles = np.stack([x + lower * np.sin(angle), y - lower * np.cos(angle)], axis=1)
-        nozzles = middles + size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-        lit = self.thrust[shown, 0] > 0.25
-        fires = plumes(NET_PLUME, metre, angle[lit], view.pixels(nozzles[lit]), self._flicker // 2)
+        fires = plumes(NET_PLUME, metre, angle, view.pixels(nozzles), self._flicker // 2)
         canvas.surface.fblits(fires, pygame.BLEND_RGB_ADD)
-        canvas.surface.fblits(art.sprites(metre, angle, view.pixels(middles)))
+
+    def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
+        """Draw the landers themselves."""
+        middles = view.pixels(_middles(poses[shown], size))
+        canvas.surface.fblits(art.sprites(view.pixels_per_metre * size, poses[shown, 2], middles))
 
     def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw dust, sparks and fragments."""
@@ -203,6 +208,14 @@ def stand(x: float, y: float, angle: float, size: float) -> tuple[float, float]:
     """Return where the middle of a lander drawn at that size goes for its feet to stay where they are."""
     lower = STAND * (1 - size)
     return x + lower * math.sin(angle), y - lower * math.cos(angle)
+
+
+def _middles(poses: Doubles, size: float) -> Doubles:
+    """Return what `stand` does, for poses (n, 3): (n, 2)."""
+    lower = STAND * (1 - size)
+    angle = poses[:, 2]
+    middles: Doubles = poses[:, :2] + lower * np.stack([np.sin(angle), -np.cos(angle)], axis=1)
+    return middles
 
 
 def _burn(

@@ -22,7 +22,7 @@ MAIN, LEFT, RIGHT = pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT
 class Steady:
     """A network that always steers left."""
 
-    def act(self, observation: np.ndarray) -> np.ndarray:
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
         return np.full(len(observation), 1)
 
 
@@ -60,6 +60,7 @@ def action(driver: Driver) -> int:
 def test_keys_fly(open_game: Open, flown_by, keys: tuple[int, ...], wanted: int):
     flown_by(None)
     driver = open_game(Play(seed=1))
+    driver.frames(1)
     for key in keys:
         press(driver, key)
     driver.frames(2)
@@ -80,6 +81,19 @@ def test_a_flight_waits_for_the_first_touch_even_through_a_pause(open_game: Open
     press(driver, begin)
     driver.frames(2)
     assert scene(driver).flight.env.steps[0] > 0
+
+
+def test_the_key_that_opened_the_flight_does_not_also_begin_it(open_game: Open, flown_by):
+    flown_by(None)
+    driver = open_game()
+    press(driver, pygame.K_SPACE)  # chooses Play, and is held on
+    driver.frames(20)
+    assert scene(driver).waiting
+    let_go(driver, pygame.K_SPACE)
+    driver.frames(1)
+    press(driver, pygame.K_SPACE)
+    driver.frames(1)
+    assert not scene(driver).waiting
 
 
 def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, flown_by):
@@ -103,6 +117,7 @@ def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, 
 def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
     driver = open_game(Play(seed=12))
+    driver.frames(1)
     driver.key(LEFT)
     driver.frames(20)
     driver.key(pygame.K_TAB)
