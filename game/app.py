@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import time
 from collections.abc import Callable
 from datetime import datetime
@@ -19,29 +18,17 @@ from game.controls import Command, translate
 from game.scene_manager import SceneManager
 from game.ui.canvas import Canvas
 from game.ui.notes import Notes
-from game.ui.tokens import COLOUR_SAFE, PALETTE, VIEW_SIZE
+from game.ui.tokens import COLOUR_SAFE, PALETTE
+from game.window import GameWindow
 
 if TYPE_CHECKING:
     from game.context import Context
     from game.scene import Scene
 
-MINIMUM_SIZE: Final = (640, 360)
 LOG_NAME: Final = "tranquility.log"
-_HINTS: Final = {
-    "PYGAME_HIDE_SUPPORT_PROMPT": "1",
-    "SDL_APP_NAME": texts.GAME,
-    "SDL_VIDEO_X11_WMCLASS": "tranquility",
-    "SDL_VIDEO_CENTERED": "1",
-    "SDL_VIDEO_MINIMIZE_ON_FOCUS_LOSS": "0",
-    "SDL_WINDOWS_DPI_AWARENESS": "permonitorv2",
-    "SDL_MOUSE_FOCUS_CLICKTHROUGH": "1",
-}
+_SETTLE: Final = 0.1  # seconds: a landscape takes longer to paint than a window edge stays in one place
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 _log = logging.getLogger("tranquility")
-
-
-class NoDisplayError(Exception):
-    """There is no screen to open a window on."""
 
 
 class App:
@@ -71,12 +58,14 @@ class App:
         self._clock = pygame.time.Clock()
         self._steps = FixedStep()
         self._notes = Notes()
-        self._minimised = False
-        self._windowed_size: tuple[int, int] = VIEW_SIZE
-        self.canvas = Canvas(pygame.Surface(VIEW_SIZE))
+        self._settled = 0.0  # when the window will have kept its size long enough to be worth a picture
+        self.window = GameWindow(context.settings.full_screen)
+        self.canvas = Canvas(self.window.surface)
+        self._follow_window()
         context.note = self._notes.show
         context.apply_settings = self.apply_settings
-        self._open_window()
+        self._palette()
+        self._start_pads()
         self.scenes = SceneManager(context, first or _menu())
         self._last = now()
 
@@ -100,10 +89,10 @@ class App:
         for _ in range(steps):
             self._notes.update()
             self._guarded(self.scenes.update)
-        if self.scenes.running and not self._minimised:
+        if self.scenes.running and not self.window.minimised and time_now >= self._settled:
             self._draw()
         if self._capped:
-            self._clock.tick(20 if self._minimised else self._frame_rate)
+            self._clock.tick(self._frame_rate)
         return self.scenes.running
 
     def close(self) -> None:
@@ -113,22 +102,9 @@ class App:
         except Exception:
             _log.exception("leaving the last scene")
         self._save_settings()
-        pygame.display.quit()
+        self.window.close()
 
     # The window
-
-    def _open_window(self) -> None:
-        for name, value in _HINTS.items():
-            os.environ.setdefault(name, value)
-        try:
-            pygame.display.init()
-            pygame.font.init()
-            pygame.display.set_caption(texts.GAME)
-            self._set_mode()
-        except pygame.error as error:
-            raise NoDisplayError(str(error)) from error
-        self._start_pads()
-        self._palette()
 
     def _start_pads(self) -> None:
         from pygame._sdl2 import controller
@@ -138,23 +114,20 @@ class App:
         except pygame.error:
             _log.exception("no gamepads")
 
-    def _set_mode(self) -> None:
-        if self.context.settings.full_screen:
-            window = pygame.display.set_mode((0, 0), pygame.FULLSCREEN)
-        else:
-            window = pygame.display.set_mode(self._windowed_size, pygame.RESIZABLE)
-            _keep_above_minimum()
-        self._frame_rate = min(max(pygame.display.get_current_refresh_rate(), 60), 144)
-        self.canvas.attach(window)
+    def _follow_window(self) -> None:
+        """Draw into the window as it is now."""
+        self.canvas.attach(self.window.surface)
+        self._attached_size = self.window.size
+        self._frame_rate = self.window.frame_rate
 
     def _palette(self) -> None:
         self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
 
     def apply_settings(self) -> None:
         """Make the window follow the settings, and save them."""
-        is_full_screen = bool(_window().get_flags() & pygame.FULLSCREEN)
-        if self.context.settings.full_screen != is_full_screen:
-            self._set_mode()
+        if self.window.full_screen != self.context.settings.full_screen:
+            self.window.full_screen = self.context.settings.full_screen
+            self._follow_window()
         self._palette()
         self._save_settings()
 
@@ -170,12 +143,16 @@ class App:
         match event.type:
             case pygame.QUIT:
                 self.scenes.running = False
-            case pygame.VIDEORESIZE | pygame.WINDOWSIZECHANGED:
-                self._resized()
             case pygame.WINDOWMINIMIZED:
-                self._minimised = True
+                self.window.minimised = True
+                self._frame_rate = self.window.frame_rate
             case pygame.WINDOWRESTORED | pygame.WINDOWSHOWN | pygame.WINDOWMAXIMIZED:
-                self._minimised = False
+                self.window.minimised = False
+                self._follow_window()
+            case pygame.WINDOWSIZECHANGED | pygame.WINDOWDISPLAYCHANGED:
+                if self.window.size != self._attached_size:
+                    self._follow_window()
+                    self._settled = self._last + _SETTLE
         if not self.scenes.running:
             return
         match translate(event):
@@ -194,12 +171,6 @@ class App:
         if controls.mouse_in_use != used_mouse:
             pygame.mouse.set_visible(controls.mouse_in_use)
 
-    def _resized(self) -> None:
-        window = _window()
-        self.canvas.attach(window)
-        if not self.context.settings.full_screen:
-            self._windowed_size = window.get_size()
-
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
         if event.type not in _MOUSE:
             return event
@@ -213,7 +184,7 @@ class App:
     def _draw(self) -> None:
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
         self._notes.draw(self.canvas)
-        pygame.display.flip()
+        self.window.flip()
 
     def _save_screenshot(self) -> None:
         folder = self.context.user_dir / "screenshots"
@@ -244,17 +215,6 @@ def _menu() -> Scene:
     from game.scenes.menu import Menu
 
     return Menu()
-
-
-def _window() -> pygame.Surface:
-    window = pygame.display.get_surface()
-    assert window is not None
-    return window
-
-
-def _keep_above_minimum() -> None:
-    if pygame.display.get_driver() != "dummy":
-        pygame.Window.from_display_module().minimum_size = MINIMUM_SIZE
 
 
 def log_to(folder: Path) -> None:

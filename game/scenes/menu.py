@@ -1,4 +1,4 @@
-"""The menu: a title, a column of words, the night behind them."""
+"""The menu: a title, a column of words, the moon behind them."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from typing import Final
 import pygame
 
 from game import texts
-from game.clock import STEP
 from game.context import Context
 from game.controls import Command
 from game.scene import Push, Quit, Scene, Transition
+from game.scenes.vista import Vista
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.sky import NightSky
 from game.ui.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
 from game.ui.widgets import Word
 
@@ -56,16 +55,15 @@ class Menu:
     """The first screen."""
 
     def __init__(self) -> None:
+        self._vista = Vista()
         self._form: Form | None = None
 
     def enter(self, context: Context) -> None:
         """Build the column once; the focus stays where it was when coming back."""
+        self._vista.still = context.settings.reduced_motion
         if self._form is not None:
             return
         self._controls = context.controls
-        self._settings = context.settings
-        self._backdrop = NightSky(context.rng)
-        self._time = 0.0
         self._form = Form(context, on_back=self._back)
         self._lines: list[tuple[Word, str]] = []
         for number, (name, open_scene) in enumerate(ROWS):
@@ -82,14 +80,13 @@ class Menu:
         return self._column.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the column ease and the backdrop move."""
-        if not self._settings.reduced_motion:
-            self._time += STEP
+        """Let the column ease and the lander hover."""
+        self._vista.update()
         return self._column.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw night, title, column, hints."""
-        self._backdrop.draw(canvas, self._time + alpha * STEP)
+        """Draw the moon, the title, the column and the hints."""
+        self._vista.draw(canvas, alpha)
         canvas.text(texts.GAME, (MARGIN - 2, 208), size=_TITLE_SIZE, weight="extralight")
         canvas.text(texts.MENU_LINE, (MARGIN, 248), size=TEXT, colour=MUTE)
         self._column.draw(canvas)

@@ -72,8 +72,9 @@ class Pause:
     def _blur_below(self, canvas: Canvas) -> pygame.Surface:
         self._below.draw(canvas, 1.0)
         width, height = canvas.surface.get_size()
-        small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 20), max(1, height // 20)))
-        canvas.surface.blit(pygame.transform.smoothscale(small, (width, height)), (0, 0))
+        small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 4), max(1, height // 4)))
+        blurred = pygame.transform.gaussian_blur(small, max(1, canvas.px(3)))
+        canvas.surface.blit(pygame.transform.smoothscale(blurred, (width, height)), (0, 0))
         canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.5)
         return canvas.surface.copy()
 

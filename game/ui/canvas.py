@@ -173,18 +173,14 @@ class Canvas:
         size = (int(abs(b[0] - a[0])) + 2 * margin + 2, int(abs(b[1] - a[1])) + 2 * margin + 2)
         sheet = pygame.Surface(size, pygame.SRCALPHA)
         sheet.fill((*colour, 0))
-        pygame.draw.aaline(
-            sheet, (*colour, 255), (a[0] - left, a[1] - top), (b[0] - left, b[1] - top), thickness
-        )
+        pygame.draw.aaline(sheet, (*colour, 255), (a[0] - left, a[1] - top), (b[0] - left, b[1] - top), thickness)
         self._blit(sheet, (left, top), alpha)
 
     def dot(self, centre: Point, radius: float, colour: Colour, alpha: float = 1.0) -> None:
         """Draw a filled anti-aliased circle, placed to a quarter of a pixel."""
         self._shape("circle", centre, radius, colour, alpha)
 
-    def marker(
-        self, shape: shapes.Shape, centre: Point, size: float, colour: Colour, alpha: float = 1.0
-    ) -> None:
+    def marker(self, shape: shapes.Shape, centre: Point, size: float, colour: Colour, alpha: float = 1.0) -> None:
         """Draw a small sign, `size` points across, so that meaning never hangs on colour alone."""
         self._shape(shape, centre, size / 2, colour, alpha)
 
@@ -216,9 +212,7 @@ class Canvas:
         box = pygame.FRect(rect)
         self.rounded(box, min(box.width, box.height) / 2, colour, alpha)
 
-    def rounded(
-        self, rect: pygame.typing.RectLike, radius: float, colour: Colour, alpha: float = 1.0
-    ) -> None:
+    def rounded(self, rect: pygame.typing.RectLike, radius: float, colour: Colour, alpha: float = 1.0) -> None:
         """Fill a rectangle with round corners."""
         box = pygame.FRect(rect)
         area = self.rect(box.x, box.y, box.width, box.height)

@@ -48,9 +48,7 @@ def shape(name: Shape, radius: float, colour: Colour, quarters: tuple[int, int] 
     return pygame.transform.smoothscale(sheet, (side, side))
 
 
-def _stroke(
-    sheet: pygame.Surface, colour: Colour, strokes: list[list[tuple[float, float]]], radius: float
-) -> None:
+def _stroke(sheet: pygame.Surface, colour: Colour, strokes: list[list[tuple[float, float]]], radius: float) -> None:
     width = max(_FACTOR, round(0.28 * radius))
     for points in strokes:
         for start, end in pairwise(points):
@@ -64,9 +62,7 @@ def rounded(size: tuple[int, int], radius: float, colour: Colour, width: int = 0
     """Return a rectangle with round corners: filled, or with an edge `width` pixels wide."""
     factor = 4 if size[0] * size[1] < 400_000 else 2
     sheet = _sheet((size[0] * factor, size[1] * factor), colour)
-    pygame.draw.rect(
-        sheet, colour, sheet.get_rect(), width * factor, border_radius=max(0, round(radius * factor))
-    )
+    pygame.draw.rect(sheet, colour, sheet.get_rect(), width * factor, border_radius=max(0, round(radius * factor)))
     return pygame.transform.smoothscale(sheet, size)
 
 

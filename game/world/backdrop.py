@@ -38,21 +38,26 @@ class Backdrop:
         ]
         self._layers.append((*paint_plain(size, plain), 1.0))
 
-    def draw(self, canvas: Canvas, camera: Camera, time: float, alpha: float = 1.0) -> None:
-        """Fill the view. `time` in seconds moves the stars' twinkling and nothing else."""
+    def draw(
+        self, canvas: Canvas, camera: Camera, time: float, alpha: float = 1.0, earth: tuple[float, float] = EARTH
+    ) -> None:
+        """Fill the view. `time` in seconds moves the stars' twinkling and nothing else.
+
+        `earth` is where the Earth's middle stands, in points.
+        """
         surface = canvas.surface
         across, down = camera.view(canvas.scale, alpha).shift
         surface.blit(self._sky, (0, 0))
         self._stars.draw(surface, (across, down), time)
-        self._draw_earth(surface, across, down)
+        self._draw_earth(surface, earth, across, down)
         margin = MARGIN * self.size[0]
         for sheet, top, depth in self._layers:
             surface.blit(sheet, (round(across * depth - margin), round(top + down * depth)))
 
-    def _draw_earth(self, surface: pygame.Surface, across: float, down: float) -> None:
+    def _draw_earth(self, surface: pygame.Surface, earth: tuple[float, float], across: float, down: float) -> None:
         unit = self.size[1] / 720
-        x = round(EARTH[0] * unit + across * _EARTH_DEPTH)
-        y = round(EARTH[1] * unit + down * _EARTH_DEPTH)
+        x = round(earth[0] * unit + across * _EARTH_DEPTH)
+        y = round(earth[1] * unit + down * _EARTH_DEPTH)
         for sprite, flags in ((self._air, pygame.BLEND_RGB_ADD), (self._disc, 0)):
             surface.blit(sprite, (x - sprite.get_width() // 2, y - sprite.get_height() // 2), special_flags=flags)
 

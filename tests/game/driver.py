@@ -21,7 +21,9 @@ class Driver:
         return type(self.top).__name__
 
     def frames(self, number: int = 1) -> bool:
-        return all([self.app.tick() for _ in range(number)])
+        for _ in range(number):
+            goes_on = self.app.tick()
+        return goes_on
 
     def post(self, event_type: int, **values: Any) -> bool:
         pygame.event.post(pygame.event.Event(event_type, values))
@@ -56,5 +58,5 @@ class Driver:
         self.post(pygame.MOUSEBUTTONUP, pos=self.to_window(points), button=1)
 
     def resize(self, size: tuple[int, int]) -> None:
-        pygame.display.set_mode(size, pygame.RESIZABLE)
-        self.post(pygame.VIDEORESIZE, size=size, w=size[0], h=size[1])
+        self.app.window.size = size
+        self.frames(10)  # until the window has settled

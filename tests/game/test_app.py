@@ -4,13 +4,14 @@ from pathlib import Path
 import pygame
 import pytest
 
-from game.app import LOG_NAME, App, NoDisplayError, log_to
+from game.app import LOG_NAME, App, log_to
 from game.context import Context
 from game.scene import Pop, Push, Quit
 from game.scenes.menu import Menu
 from game.scenes.pause import Pause
 from game.scenes.settings import SettingsScene
 from game.settings import Settings, SettingsFile
+from game.window import NoDisplayError
 from tests.game.driver import Driver
 
 SIZES = [(1280, 720), (1920, 1080), (1000, 800), (640, 360), (2000, 500)]
@@ -87,8 +88,7 @@ def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context
     game.app.close()
     again = open_game()
     assert getattr(again.app.context.settings, name) is not before
-    is_full = bool(pygame.display.get_surface().get_flags() & pygame.FULLSCREEN)
-    assert is_full == again.app.context.settings.full_screen
+    assert again.app.window.full_screen == again.app.context.settings.full_screen
 
 
 def test_colours_change_with_the_setting(open_game):
@@ -126,13 +126,13 @@ def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
 
 
 def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
-    size = pygame.display.get_surface().get_size()
+    size = game.app.window.size
     for _ in range(5):
         game.key(pygame.K_F11)
         assert context.settings.full_screen
         game.key(pygame.K_RETURN, pygame.KMOD_LALT)
         assert not context.settings.full_screen
-    assert pygame.display.get_surface().get_size() == size
+    assert game.app.window.size == size
     assert game.top_name == "Menu"
 
 
@@ -264,9 +264,7 @@ def test_no_display_is_a_clear_error(context: Context, monkeypatch):
         App(context)
 
 
-def test_user_folder_that_cannot_be_written_does_not_stop_the_game(
-    open_game, context: Context, tmp_path: Path
-):
+def test_user_folder_that_cannot_be_written_does_not_stop_the_game(open_game, context: Context, tmp_path: Path):
     context.user_dir = tmp_path / "file" / "inside"
     (tmp_path / "file").write_text("in the way")
     game = open_game(SettingsScene())
