@@ -108,12 +108,18 @@ class DeepQAgent:
         values: Floats = self.network.predict(self.scale(observation) if self.scale else observation)
         return values
 
-    def act(self, observation: Floats, epsilon: float | Floats = 0.0) -> Ints:
+    def act(self, observation: Floats, epsilon: float | Floats = 0.0, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, features): the best, or with chance `epsilon` a random one.
 
-        `epsilon` is one number, or (n,) to let some slots explore more than others.
+        `epsilon` is one number, or (n,) to let some slots explore more than others. Of the actions `held` (n,)
+        until now, those are kept that are worth as much as the best but for `config.steadiness`: engines that
+        flicker between two actions of nearly equal worth are no joy to watch.
         """
-        actions: Ints = self.q_values(observation).argmax(axis=1)
+        values = self.q_values(observation)
+        actions: Ints = values.argmax(axis=1)
+        if held is not None and self.config.steadiness > 0.0:
+            rows = np.arange(len(actions))
+            actions = np.where(values[rows, held] >= values[rows, actions] - self.config.steadiness, held, actions)
         if np.any(epsilon):
             explore = self.rng.random(len(actions)) < epsilon
             chances = self.action_chances

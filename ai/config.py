@@ -112,6 +112,8 @@ class Config:
                               "exploration", low=0.0, high=1.0, live=True)
 
     env: str = knob(LANDER, "What is learnt: our lander, or an environment of Gymnasium by its name.", "task")
+    steadiness: float = knob(0.01, "An action goes on while it is worth as much as the best, but for this.",
+                             "lander", low=0.0, high=1.0, live=True)
     num_envs: int = knob(256, "Landers at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps to a decision.", "lander", low=1, high=12)
     spawn: str = knob("practice", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
@@ -176,6 +178,7 @@ PRESETS: Final[dict[str, Config]] = {
         optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh", layer_normalisation=False,
         output_scale=1.0, replay_size=1500, replay_prune=1000, warm_up=64, mirror=False, success_pass=True,
         double=False, target_every=50, target_rate=1.0, fly_target=False, epsilon_decay=0.999,
-        epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, spawn=CURRICULUM, reward_scale=0.1,
+        epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0,
+        spawn=CURRICULUM, reward_scale=0.1,
     ),
 }  # fmt: skip

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 GOING_ON: Final = 0
 FAILED: Final = 2
-GYM: Final = Config(env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False)
+GYM: Final = Config(env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0)
 
 
 def gym_config(env: str) -> Config:

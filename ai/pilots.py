@@ -15,8 +15,8 @@ COAST: Final = 0
 class Pilot(Protocol):
     """Whoever chooses actions."""
 
-    def act(self, observation: Floats) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now, for whom it matters."""
 
 
 class ScriptedPilot:
@@ -25,7 +25,7 @@ class ScriptedPilot:
     It senses what the network senses, and nothing more.
     """
 
-    def act(self, observation: Floats) -> Ints:
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
         x, y, vx, vy, sin, cos, spin, *_ = (np.atleast_2d(observation) / OBSERVATION_SCALE).T
         angle = np.arctan2(sin, cos)
@@ -50,9 +50,9 @@ class LaggyPilot:
         self.pilot, self.rng, self.chance = pilot, rng, chance
         self._last: Ints | None = None
 
-    def act(self, observation: Floats) -> Ints:
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, 9)."""
-        fresh = self.pilot.act(observation)
+        fresh = self.pilot.act(observation, held=held)
         if self._last is None or self._last.shape != fresh.shape:
             self._last = fresh
         self._last = np.where(self.rng.random(fresh.shape) < self.chance, self._last, fresh)
@@ -69,9 +69,9 @@ class NoisyPilot:
     def __init__(self, pilot: Pilot, rng: np.random.Generator, chance: float = 0.15) -> None:
         self.pilot, self.rng, self.chance = pilot, rng, chance
 
-    def act(self, observation: Floats) -> Ints:
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, 9)."""
-        main, steer = np.divmod(self.pilot.act(observation), 3)
+        main, steer = np.divmod(self.pilot.act(observation, held=held), 3)
         flip, change = self.rng.random((2, *main.shape)) < self.chance
         main = np.where(flip, 1 - main, main)
         steer = np.where(change, (steer + self.rng.integers(1, 3, main.shape)) % 3, steer)
@@ -84,7 +84,7 @@ class SensorPilot:
     def __init__(self, margin: float = 0.1) -> None:
         self.margin = margin
 
-    def act(self, observation: Floats) -> Ints:
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
         x = np.atleast_2d(observation)[:, 0] / OBSERVATION_SCALE[0]
         return np.where(x > self.margin, 1, np.where(x < -self.margin, 2, 0)).astype(np.intp)
@@ -93,6 +93,6 @@ class SensorPilot:
 class NoPilot:
     """Hands off."""
 
-    def act(self, observation: Floats) -> Ints:
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""
         return np.zeros(len(np.atleast_2d(observation)), dtype=np.intp)

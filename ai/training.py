@@ -71,6 +71,7 @@ class Training:
         self._landed: deque[bool] = deque(maxlen=100)
         self._returns: deque[float] = deque(maxlen=100)
         self._earned = np.zeros(self.env.num_envs)
+        self._held = np.zeros(self.env.num_envs, dtype=np.intp)
 
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None) -> DeepQAgent:
         task = self.task
@@ -96,7 +97,7 @@ class Training:
         """Let every lander take one decision, learn from it, and evaluate if it is time."""
         agent, env = self.agent, self.env
         epsilon = self.epsilon
-        actions = agent.act(self.observation, self._spread(epsilon))
+        actions = agent.act(self.observation, self._spread(epsilon), self._held)
         result = env.step(actions)
         agent.remember(self.observation, actions, result, result.succeeded)
         self.observation = result.observation
@@ -104,6 +105,7 @@ class Training:
         if result.ended.any():
             self._finish(result)
             self.observation = env.reset(result.ended)
+        self._held = np.where(result.ended, 0, actions)
         agent.learn()
         evaluation = self._evaluate_if_due()
         count = max(1, len(self._landed))

@@ -112,7 +112,7 @@ class Flight:
     def _ask_network(self) -> int:
         if self._held_for == 0:
             assert self.network is not None
-            self._decision = int(self.network.act(self.observation)[0])
+            self._decision = int(self.network.act(self.observation, held=self.env.actions)[0])
         self._held_for = (self._held_for + 1) % DECISION_STEPS
         return self._decision
 
@@ -146,7 +146,7 @@ class Swarm:
             self.since_end[self.fresh] = 0
             self._actions[self.fresh] = 0
         if self._step % DECISION_STEPS == 0:
-            self._actions = self.flyer.act(self.observation)
+            self._actions = self.flyer.act(self.observation, held=self._actions)
         self._step += 1
         result = self.env.step(self._actions)
         self.observation = result.observation

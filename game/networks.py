@@ -15,16 +15,16 @@ SCRIPTED: Final = "scripted"
 class Flyer(Protocol):
     """Whatever can choose actions for a batch of landers."""
 
-    def act(self, observation: Floats) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now."""
 
 
 @runtime_checkable
 class Thinker(Protocol):
     """A flyer that can say what it thinks of every action."""
 
-    def act(self, observation: Floats) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now."""
 
     def q_values(self, observation: Floats) -> Floats:
         """Values (n, 6) for observations (n, 9)."""

@@ -10,7 +10,7 @@ class Always:
     def __init__(self, action):
         self.action = action
 
-    def act(self, observation):
+    def act(self, observation, *, held=None):
         return np.full(len(observation), self.action, dtype=np.intp)
 
 

@@ -19,7 +19,7 @@ class Counting:
     def __init__(self) -> None:
         self.asked = 0
 
-    def act(self, observation: np.ndarray) -> np.ndarray:
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
         self.asked += 1
         return np.full(len(observation), 3)
 
