@@ -153,15 +153,16 @@ class _Rows:
         return total
 
     def relax(self, velocity: Array, total: Array, wanted: Array, friction: Array) -> None:
-        """Bring these manifolds to rest, friction first: changes velocities and their `total` (3, m)."""
+        """Bring these manifolds to rest, friction last, so that it ends within its cone; adds to `total` (3, m)."""
         motion = velocity.take(self.index)
         speed = np.vecdot(self.jacobian, motion)
         change = np.empty_like(total)
-        cone = friction * (total[0] + total[1])
-        rub = np.minimum(np.maximum(total[2] - self.mass[2] * speed[2], -cone), cone)
+        pushes = self.push(wanted - speed[:2], total[:2])
+        np.subtract(pushes, total[:2], out=change[:2])
+        sliding = speed[2] + self.rub_coupling[0] * change[0] + self.rub_coupling[1] * change[1]
+        cone = friction * (pushes[0] + pushes[1])
+        rub = np.minimum(np.maximum(total[2] - self.mass[2] * sliding, -cone), cone)
         np.subtract(rub, total[2], out=change[2])
-        lacking = wanted - speed[:2] - self.rub_coupling * change[2]
-        np.subtract(self.push(lacking, total[:2]), total[:2], out=change[:2])
         total += change
         # A static body may stand in many rows at once; its response is zero, so any one of them may win.
         velocity[self.index] = motion + self.effect(change)

@@ -96,7 +96,7 @@ class ShapeTable:
         count = max([len(s.vertices) for s in shapes if isinstance(s, Polygon)], default=3)
         self.body = np.array(bodies, dtype=np.intp)
         self.fixed = ~dynamic[self.body]
-        self.is_circle = np.array([isinstance(s, Circle) for s in shapes])
+        self.is_circle = np.array([isinstance(s, Circle) for s in shapes], dtype=bool)
         self.radius = np.array([s.radius if isinstance(s, Circle) else 0.0 for s in shapes])
         self.centre = np.array([s.centroid for s in shapes]).reshape(-1, 2)
         self.reach = np.array([s.bounding_radius for s in shapes])

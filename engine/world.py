@@ -22,7 +22,7 @@ class World:
 
     Bodies live in fixed slots, the same in every world; `active` masks, not shorter lists, take one out.
     `gravity` may be reassigned at any time to an array (2,) or (batch, 2). After a step, `contacts` holds
-    what touched in it, with closing speeds and impulses.
+    what touched in it (or would have, but for 2 mm), with closing speeds and impulses.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class World:
         self,
         shape: Shape | Sequence[Shape],
         position: Point,
-        angle: float = 0.0,
+        angle: float | Sequence[float] | Array = 0.0,
         *,
         mass: float = 1.0,
         static: bool = False,
@@ -68,19 +68,29 @@ class World:
     ) -> Body:
         """Put a body of one or several shapes into every world, and return its handle.
 
-        `position` (2,) or (batch, 2) is where the centre of mass goes. Unless `centre_of_mass` says where it
-        is in the shapes' frame, it is their common centroid, and the shapes are shifted to have it at the
-        origin; a static body's shapes stay as given. Inertia (kg·m²) follows from shapes and mass unless
-        given. Drag coefficients: kg/s and kg/m, kg·m²/s and kg·m². Restitution or friction left out take the
-        other body's; if both are given, the larger restitution and the geometric mean of the frictions hold.
-        Bodies of the same non-zero group pass through each other. Raises ValueError for a mass that is not
-        positive and finite.
+        `position` (2,) or (batch, 2) is where the centre of mass goes, `angle` one or (batch,). Unless
+        `centre_of_mass` says where it is in the shapes' frame, it is their common centroid, and the shapes are
+        shifted to have it at the origin; a static body's shapes stay as given. Inertia (kg·m²) follows from
+        shapes and mass unless given. Drag coefficients: kg/s and kg/m, kg·m²/s and kg·m². Restitution or
+        friction left out take the other body's; if both are given, the larger restitution and the geometric
+        mean of the frictions hold. Bodies of the same non-zero group pass through each other. Raises ValueError
+        for a mass or inertia that is not positive and finite, and for what else has no physical sense.
         """
         shapes = list(shape) if isinstance(shape, Sequence) else [shape]
         if not shapes:
             raise ValueError("a body needs at least one shape")
         if not static and not (np.isfinite(mass) and mass > 0):
             raise ValueError(f"a body that can move needs a positive, finite mass, not {mass}")
+        if inertia is not None and not (np.isfinite(inertia) and inertia > 0):
+            raise ValueError(f"inertia must be positive and finite, not {inertia}")
+        drag = {
+            "linear_drag": linear_drag,
+            "quadratic_drag": quadratic_drag,
+            "angular_drag": angular_drag,
+            "angular_quadratic_drag": angular_quadratic_drag,
+        }
+        _refuse_outside(np.inf, friction=friction or 0.0, **drag)
+        _refuse_outside(1.0, restitution=restitution or 0.0)
         centroid, spread = mass_properties(shapes)
         origin = centroid if centre_of_mass is None else np.asarray(centre_of_mass, dtype=float)
         if static:
@@ -92,6 +102,8 @@ class World:
             inverse_mass = 1.0 / np.array([mass, mass, turning])
         pose = np.empty((self.batch, 3))
         pose[:, :2], pose[:, 2] = position, angle
+        if not np.isfinite(pose).all():
+            raise ValueError(f"position and angle must be finite, not {position} and {angle}")
         self.state.append(pose)
         self.params.append(
             inverse_mass=inverse_mass,
@@ -146,3 +158,10 @@ class World:
             self._detector.forget(body.index, worlds)
             if body.static:
                 self._detector.broad.forget_boxes()
+
+
+def _refuse_outside(most: float, **values: float) -> None:
+    """Raise ValueError if one of the values is not finite, or not from 0 to `most`."""
+    for name, value in values.items():
+        if not (np.isfinite(value) and 0 <= value <= most):
+            raise ValueError(f"{name} must be a number from 0 to {most}, not {value}")

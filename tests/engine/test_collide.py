@@ -1,0 +1,199 @@
+"""Manifolds by hand, and against brute force."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine import Circle, Polygon, collide
+
+BOX = Polygon.box(2.0, 2.0)
+DISC = Circle(1.0)
+
+
+def pose(x, y, angle=0.0):
+    return np.array([x, y, angle])
+
+
+def corners(shape, at):
+    cos, sin = np.cos(at[2]), np.sin(at[2])
+    return shape.vertices @ np.array([[cos, sin], [-sin, cos]]) + at[:2]
+
+
+def signed_distance(shape, at, point):
+    """How far `point` lies outside the shape, below 0 inside."""
+    if isinstance(shape, Circle):
+        return np.hypot(*(point - at[:2])) - shape.radius
+    start = corners(shape, at)
+    end = np.roll(start, -1, axis=0)
+    edge = end - start
+    normal = np.stack([edge[:, 1], -edge[:, 0]], axis=1) / np.hypot(*edge.T)[:, None]
+    heights = ((point - start) * normal).sum(axis=1)
+    if (heights <= 0).all():
+        return heights.max()
+    along = np.clip(((point - start) * edge).sum(axis=1) / (edge**2).sum(axis=1), 0, 1)
+    return np.hypot(*(start + edge * along[:, None] - point).T).min()
+
+
+def polygon_gap(a, at_a, b, at_b):
+    """Distance of two polygons by brute force over corners and edge crossings; below 0 if they overlap."""
+    one, two = corners(a, at_a), corners(b, at_b)
+    inside = min(*(signed_distance(b, at_b, p) for p in one), *(signed_distance(a, at_a, p) for p in two))
+    for (p, q), (r, s) in itertools.product(
+        zip(one, np.roll(one, -1, axis=0), strict=True), zip(two, np.roll(two, -1, axis=0), strict=True)
+    ):
+        d, e = q - p, s - r
+        turn = d[0] * e[1] - d[1] * e[0]
+        if abs(turn) > 1e-12:
+            t = ((r - p)[0] * e[1] - (r - p)[1] * e[0]) / turn
+            u = ((r - p)[0] * d[1] - (r - p)[1] * d[0]) / turn
+            if 0 < t < 1 and 0 < u < 1:
+                return min(inside, -1e-15)
+    return inside
+
+
+def convex(seed):
+    random = np.random.default_rng(seed)
+    angle = np.sort(random.uniform(0, 2 * np.pi, random.integers(3, 8)))
+    gaps = np.diff(np.append(angle, angle[0] + 2 * np.pi))
+    if gaps.max() > 3.0 or gaps.min() < 0.1:
+        return convex(seed + 10**7)
+    return Polygon(np.stack([np.cos(angle), np.sin(angle)], axis=1) * random.uniform(0.5, 1.5, 2))
+
+
+def test_box_on_box():
+    manifold = collide(BOX, pose(0, 0), BOX, pose(0.5, 1.9))
+    assert manifold.normal[0] == pytest.approx(np.array([0.0, 1.0]))
+    assert manifold.depth[0] == pytest.approx(np.array([0.1, 0.1]))
+    assert manifold.valid[0].all()
+    assert sorted(manifold.points[0].tolist()) == [pytest.approx([-0.5, 0.95]), pytest.approx([1.0, 0.95])]
+
+
+def test_box_beside_box():
+    manifold = collide(BOX, pose(0, 0), BOX, pose(-1.8, 0.4))
+    assert manifold.normal[0] == pytest.approx(np.array([-1.0, 0.0]))
+    assert manifold.depth[0] == pytest.approx(np.array([0.2, 0.2]))
+    assert sorted(manifold.points[0, :, 1]) == pytest.approx([-0.6, 1.0])
+
+
+def test_box_on_its_corner_has_one_point():
+    manifold = collide(BOX, pose(0, 0), BOX, pose(0.2, 0.9 + np.sqrt(2), np.pi / 4))
+    assert manifold.valid[0].sum() == 1
+    assert manifold.normal[0] == pytest.approx(np.array([0.0, 1.0]))
+    point = manifold.points[0][manifold.valid[0]][0]
+    assert point == pytest.approx(np.array([0.2, 0.95]))
+    assert manifold.depth[0][manifold.valid[0]] == pytest.approx([0.1])
+
+
+def test_a_slightly_tilted_box_has_two_points_of_unlike_depth():
+    manifold = collide(BOX, pose(0, 0), BOX, pose(0, 1.9, 0.02))
+    assert manifold.valid[0].all()
+    assert np.ptp(manifold.depth[0]) == pytest.approx(2 * np.sin(0.02), rel=0.02)
+
+
+@pytest.mark.parametrize("place", [(2.1, 0, 0), (0, -2.1, 0), (1.8, 1.8, np.pi / 4), (2.05, 2.05, 0)])
+def test_boxes_apart(place):
+    assert not collide(BOX, pose(0, 0), BOX, pose(*place)).valid.any()
+
+
+def test_box_and_disc_face_corner_and_inside():
+    above = collide(BOX, pose(0, 0), DISC, pose(0.3, 1.9))
+    assert above.normal[0] == pytest.approx(np.array([0.0, 1.0]))
+    assert above.depth[0, 0] == pytest.approx(0.1)
+    assert above.points[0, 0] == pytest.approx(np.array([0.3, 0.95]))
+    assert above.valid[0].tolist() == [True, False]
+
+    corner = collide(BOX, pose(0, 0), DISC, pose(1.6, 1.6))
+    assert corner.normal[0] == pytest.approx(np.array([1.0, 1.0]) / np.sqrt(2))
+    assert corner.depth[0, 0] == pytest.approx(1 - 0.6 * np.sqrt(2))
+
+    past_corner = collide(BOX, pose(0, 0), DISC, pose(1.8, 1.8))
+    assert not past_corner.valid.any()
+
+    inside = collide(BOX, pose(0, 0), DISC, pose(0.7, 0.1))
+    assert inside.normal[0] == pytest.approx(np.array([1.0, 0.0]))
+    assert inside.depth[0, 0] == pytest.approx(1.3)
+
+    on_face = collide(BOX, pose(0, 0), DISC, pose(0.1, 1.0))
+    assert on_face.normal[0] == pytest.approx(np.array([0.0, 1.0]))
+    assert on_face.depth[0, 0] == pytest.approx(1.0)
+
+
+def test_disc_and_disc():
+    manifold = collide(DISC, pose(0, 0), Circle(0.5), pose(0.0, 1.3))
+    assert manifold.normal[0] == pytest.approx(np.array([0.0, 1.0]))
+    assert manifold.depth[0, 0] == pytest.approx(0.2)
+    assert manifold.points[0, 0] == pytest.approx(np.array([0.0, 0.9]))
+    assert not collide(DISC, pose(0, 0), DISC, pose(1.5, 1.5)).valid.any()
+
+
+def test_discs_in_one_place_still_have_a_normal():
+    manifold = collide(DISC, pose(1, 1), DISC, pose(1, 1))
+    assert np.hypot(*manifold.normal[0]) == pytest.approx(1.0)
+    assert manifold.depth[0, 0] == pytest.approx(2.0)
+
+
+def test_the_margin_lets_a_gap_count():
+    for a, b, gap in [(BOX, BOX, 2.01), (BOX, DISC, 2.01), (DISC, DISC, 2.01)]:
+        assert not collide(a, pose(0, 0), b, pose(0, gap)).valid.any()
+        near = collide(a, pose(0, 0), b, pose(0, gap), margin=0.02)
+        assert near.valid[0, 0]
+        assert near.depth[0, 0] == pytest.approx(-0.01)
+
+
+def test_many_poses_at_once():
+    poses = np.array([[0, 1.9, 0], [5, 0, 0], [-1.9, 0, 0]], dtype=float)
+    many = collide(BOX, pose(0, 0), BOX, poses)
+    assert many.valid.any(axis=1).tolist() == [True, False, True]
+    for row in range(3):
+        one = collide(BOX, pose(0, 0), BOX, poses[row])
+        assert np.array_equal(one.points[0], many.points[row])
+        assert np.array_equal(one.normal[0], many.normal[row])
+
+
+@given(st.integers(0, 10**6), st.floats(-2.5, 2.5), st.floats(-2.5, 2.5), st.floats(-3, 3), st.floats(-3, 3))
+@settings(max_examples=300, deadline=None)
+def test_polygons_are_apart_if_and_only_if_brute_force_says_so(seed, x, y, turn_a, turn_b):
+    a, b = convex(seed), convex(seed + 1)
+    at_a, at_b = pose(0, 0, turn_a), pose(x, y, turn_b)
+    gap = polygon_gap(a, at_a, b, at_b)
+    there, back = collide(a, at_a, b, at_b), collide(b, at_b, a, at_a)
+    if abs(gap) > 1e-9:
+        assert there.valid.any() == back.valid.any() == (gap < 0)
+    if there.valid.any():
+        check_manifold(a, at_a, b, at_b, there)
+        assert back.depth[back.valid].max() == pytest.approx(there.depth[there.valid].max(), abs=6e-4)
+
+
+@given(st.integers(0, 10**6), st.floats(-2.5, 2.5), st.floats(-2.5, 2.5), st.floats(-3, 3), st.floats(0.1, 1))
+@settings(max_examples=150, deadline=None)
+def test_a_polygon_and_a_disc_are_apart_if_and_only_if_brute_force_says_so(seed, x, y, turn, radius):
+    a, b = convex(seed), Circle(radius)
+    at_a, at_b = pose(0, 0, turn), pose(x, y)
+    gap = signed_distance(a, at_a, at_b[:2]) - radius
+    there, back = collide(a, at_a, b, at_b), collide(b, at_b, a, at_a)
+    if abs(gap) > 1e-9:
+        assert there.valid.any() == (gap < 0)
+    assert np.array_equal(there.normal, -back.normal)
+    assert np.array_equal(there.depth, back.depth)
+    assert np.array_equal(there.points, back.points)
+    if there.valid.any():
+        assert there.depth[0, 0] == pytest.approx(-gap, abs=1e-9)
+        check_manifold(a, at_a, b, at_b, there)
+
+
+def check_manifold(a, at_a, b, at_b, manifold):
+    normal = manifold.normal[0]
+    deepest = manifold.depth[0][manifold.valid[0]].max()
+    assert np.hypot(*normal) == pytest.approx(1.0)
+    for point in manifold.points[0][manifold.valid[0]]:
+        assert signed_distance(a, at_a, point) <= 1e-6 + deepest / 2
+        assert signed_distance(b, at_b, point) <= 1e-6 + deepest / 2
+    # Moved apart along the normal by the depth they no longer overlap, and by less they still do: the least way out.
+    apart = at_b + np.append(normal * (deepest + 1e-3), 0.0)
+    still = at_b + np.append(normal * (deepest - 1e-3), 0.0)
+    assert not collide(a, at_a, b, apart).valid.any()
+    if deepest > 1e-3:
+        assert collide(a, at_a, b, still).valid.any()

@@ -1,0 +1,160 @@
+"""Slopes, sliding, rolling, conveyor belts: Coulomb's law in closed form."""
+
+import numpy as np
+import pytest
+
+from engine import DT, Circle, Polygon, World
+
+G = 9.81
+
+
+def slope(tilt, friction, shape=None, batch=1):
+    """A box (or `shape`) resting on a long incline that falls to the left; and the unit vector downhill."""
+    shape = shape or Polygon.box(1.0, 0.5)
+    world = World(gravity=(0.0, -G), batch=batch)
+    world.add(Polygon.box(200.0, 1.0), (0.0, 0.0), tilt, static=True, friction=friction)
+    up = np.array([-np.sin(tilt), np.cos(tilt)])
+    height = 0.5 + (shape.radius if isinstance(shape, Circle) else 0.25)
+    body = world.add(shape, up * height, tilt, mass=3.0, friction=friction)
+    return world, body, -np.array([np.cos(tilt), np.sin(tilt)])
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("share", [0.6, 0.95, 1.05, 1.4])
+def test_a_box_slides_if_and_only_if_tan_tilt_exceeds_mu(friction, share):
+    tilt = np.arctan(friction * share)
+    world, body, downhill = slope(tilt, friction)
+    for _ in range(60):
+        world.step()
+    early = body.velocity[0] @ downhill
+    for _ in range(120):
+        world.step()
+    late = body.velocity[0] @ downhill
+    if share < 1:
+        assert abs(late) < 1e-6
+        assert abs(body.angular_velocity[0]) < 1e-6
+    else:
+        acceleration = G * (np.sin(tilt) - friction * np.cos(tilt))
+        assert (late - early) / 2.0 == pytest.approx(acceleration, rel=1e-3)
+
+
+def test_thrown_uphill_it_turns_round_and_slides_down_slower():
+    tilt, friction = 0.6, 0.3
+    world, body, downhill = slope(tilt, friction)
+    world.step()
+    body.velocity = -4.0 * downhill
+    speeds = []
+    for _ in range(180):
+        world.step()
+        speeds.append(body.velocity[0] @ downhill)
+    change = np.diff(speeds) / DT
+    up, down = np.array(speeds[1:]) < -0.2, np.array(speeds[:-1]) > 0.2
+    assert change[up] == pytest.approx(G * (np.sin(tilt) + friction * np.cos(tilt)), rel=1e-3)
+    assert change[down] == pytest.approx(G * (np.sin(tilt) - friction * np.cos(tilt)), rel=1e-3)
+
+
+def test_thrown_uphill_on_a_rough_slope_it_stays_up_there():
+    world, body, downhill = slope(0.3, 0.6)
+    world.step()
+    body.velocity = -3.0 * downhill
+    for _ in range(120):
+        world.step()
+    place = body.position[0].copy()
+    for _ in range(300):
+        world.step()
+    assert body.position[0] == pytest.approx(place, abs=1e-4)
+    assert -place @ downhill == pytest.approx(9.0 / (2 * G * (np.sin(0.3) + 0.6 * np.cos(0.3))), rel=0.06)
+
+
+def test_a_disc_rolls_down_at_two_thirds():
+    tilt = 0.3
+    world, body, downhill = slope(tilt, 0.8, Circle(0.5))
+    for _ in range(60):
+        world.step()
+    early = body.velocity[0] @ downhill
+    for _ in range(60):
+        world.step()
+    speed = body.velocity[0] @ downhill
+    assert speed - early == pytest.approx(2 / 3 * G * np.sin(tilt), rel=1e-3)
+    assert body.angular_velocity[0] * 0.5 == pytest.approx(speed, rel=1e-3)
+
+
+def test_a_disc_on_a_slippery_slope_slides_and_spins_up():
+    tilt, friction = 0.8, 0.1
+    world, body, downhill = slope(tilt, friction, Circle(0.5))
+    for _ in range(60):
+        world.step()
+    early, spin = body.velocity[0] @ downhill, body.angular_velocity[0]
+    for _ in range(60):
+        world.step()
+    assert body.velocity[0] @ downhill - early == pytest.approx(G * (np.sin(tilt) - 0.1 * np.cos(tilt)), rel=2e-3)
+    assert body.angular_velocity[0] - spin == pytest.approx(2 * 0.1 * G * np.cos(tilt) / 0.5, rel=5e-3)
+
+
+def test_a_sliding_box_stops_after_v_squared_over_two_mu_g():
+    world = World(gravity=(0.0, -G))
+    world.add(Polygon.box(100.0, 1.0), (0.0, -0.5), static=True)
+    body = world.add(Polygon.box(1.0, 0.5), (0.0, 0.25), friction=0.4)
+    world.step()
+    body.velocity = (5.0, 0.0)
+    for _ in range(180):
+        world.step()
+    assert body.velocity[0] == pytest.approx(np.zeros(2), abs=1e-9)
+    assert body.position[0, 0] == pytest.approx(25 / (2 * 0.4 * G), rel=0.03)
+
+
+def test_friction_never_leaves_its_cone():
+    world = World(gravity=(0.0, -G), batch=20)
+    random = np.random.default_rng(2)
+    world.add(Polygon.box(100.0, 1.0), (0.0, -0.5), static=True, friction=0.5)
+    for i in range(4):
+        world.add(Polygon.box(1.0, 0.6), (0.2 * i, 0.4 + 0.7 * i), friction=0.5)
+    for body in world.bodies[1:]:
+        body.set(velocity=random.uniform(-3, 3, (20, 2)), angular_velocity=random.uniform(-2, 2, 20))
+    touched = 0
+    for _ in range(200):
+        world.step()
+        if world.contacts:
+            push, rub = world.contacts.impulse[:2], np.abs(world.contacts.impulse[2])
+            assert (push >= 0).all()
+            assert (rub <= world.contacts.friction * push.sum(axis=0) + 1e-12).all()
+            touched += len(world.contacts)
+    assert touched > 5000
+
+
+def test_a_moving_static_body_carries_a_box_along():
+    world = World(gravity=(0.0, -G), batch=2)
+    lift = world.add(Polygon.box(6.0, 1.0), (0.0, -0.5), static=True, friction=0.8)
+    box = world.add(Polygon.box(1.0, 1.0), (0.0, 0.5), mass=2.0)
+    lift.velocity = [[1.0, 0.5], [0.0, 0.0]]
+    for _ in range(120):
+        world.step()
+    assert lift.position == pytest.approx(np.array([[2.0, 0.5], [0.0, -0.5]]))
+    assert box.velocity == pytest.approx(np.array([[1.0, 0.5], [0.0, 0.0]]), abs=1e-6)
+    assert box.position[0] == pytest.approx(np.array([2.0, 1.5]), abs=0.15)
+    lift.velocity = (0.0, 0.0)
+    for _ in range(60):
+        world.step()
+    assert box.velocity == pytest.approx(np.zeros((2, 2)), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("pair", "friction"), [((0.2, 0.8), 0.4), ((0.3, None), 0.3), ((None, 0.3), 0.3), ((None, None), 0.5), ((0, 1), 0)]
+)
+def test_two_frictions_make_their_geometric_mean(pair, friction):
+    world = World(gravity=(0.0, -G))
+    world.add(Polygon.box(100.0, 1.0), (0.0, -0.5), static=True, friction=pair[0])
+    world.add(Polygon.box(1.0, 0.5), (0.0, 0.25), friction=pair[1])
+    world.step()
+    assert world.contacts.friction == pytest.approx([friction])
+
+
+@pytest.mark.parametrize(
+    ("pair", "bounce"), [((0.2, 0.8), 0.8), ((0.3, None), 0.3), ((None, 0.3), 0.3), ((None, None), 0.0)]
+)
+def test_of_two_restitutions_the_larger_holds(pair, bounce):
+    world = World(gravity=(0.0, -G))
+    world.add(Polygon.box(100.0, 1.0), (0.0, -0.5), static=True, restitution=pair[0])
+    world.add(Circle(0.25), (0.0, 0.25), restitution=pair[1])
+    world.step()
+    assert world.contacts.restitution == pytest.approx([bounce])

@@ -1,0 +1,157 @@
+"""Motion without contact, against closed forms."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine import DT, Circle, Polygon, World
+
+G = 1.62
+
+
+def run(world, steps):
+    for _ in range(steps):
+        world.step()
+
+
+def test_free_fall_is_semi_implicit_euler_exactly_and_the_parabola_nearly():
+    world = World(gravity=(0.0, -G))
+    body = world.add(Circle(0.5), (3.0, 100.0))
+    run(world, 300)
+    time = 300 * DT
+    assert body.velocity[0, 1] == pytest.approx(-G * time, rel=1e-12)
+    assert body.position[0, 1] == pytest.approx(100 - G * DT**2 * 300 * 301 / 2, rel=1e-12)
+    assert body.position[0, 1] == pytest.approx(100 - G * time**2 / 2, abs=G * time * DT / 2 + 1e-9)
+    assert body.position[0, 0] == 3.0
+
+
+def test_thrown_body_flies_the_parabola():
+    world = World(gravity=(0.0, -9.81))
+    body = world.add(Polygon.box(1, 1), (0.0, 0.0))
+    body.velocity = (7.0, 12.0)
+    time = np.arange(1, 121) * DT
+    path = []
+    for _ in time:
+        world.step()
+        path.append(body.position[0].copy())
+    path = np.array(path)
+    assert path[:, 0] == pytest.approx(7.0 * time)
+    assert path[:, 1] == pytest.approx(12.0 * time - 9.81 * time**2 / 2, abs=9.81 * time[-1] * DT / 2 + 1e-9)
+
+
+def test_gravity_may_differ_between_worlds_and_change():
+    world = World(batch=3)
+    body = world.add(Circle(1.0), (0, 0))
+    world.gravity = np.array([[0.0, -1.0], [0.0, -2.0], [3.0, 0.0]])
+    run(world, 60)
+    assert body.velocity == pytest.approx(world.gravity)
+    world.gravity = (0.0, 0.0)
+    run(world, 60)
+    assert body.velocity == pytest.approx(np.array([[0.0, -1.0], [0.0, -2.0], [3.0, 0.0]]))
+
+
+@pytest.mark.parametrize(("linear", "quadratic"), [(0.8, 0.0), (0.0, 0.3), (0.8, 0.3), (500.0, 0.0)])
+def test_terminal_speed_of_a_fall(linear, quadratic):
+    mass, g = 2.0, 9.81
+    world = World(gravity=(0.0, -g))
+    body = world.add(Circle(0.5), (0, 0), mass=mass, linear_drag=linear, quadratic_drag=quadratic)
+    run(world, 3000)
+    speed = -body.velocity[0, 1]
+    assert linear * speed + quadratic * speed**2 == pytest.approx(mass * g, rel=1e-7)
+
+
+@pytest.mark.parametrize(("linear", "quadratic"), [(0.8, 0.0), (0.0, 0.3), (0.8, 0.3)])
+def test_terminal_spin_under_a_torque(linear, quadratic):
+    world = World(gravity=(0.0, 0.0))
+    body = world.add(
+        Circle(0.5), (0, 0), mass=2.0, angular_drag=linear, angular_quadratic_drag=quadratic, linear_drag=9.0
+    )
+    for _ in range(3000):
+        body.apply_torque(1.5)
+        world.step()
+    spin = body.angular_velocity[0]
+    assert linear * spin + quadratic * spin**2 == pytest.approx(1.5, rel=1e-9)
+
+
+def test_linear_drag_slows_by_the_exponential():
+    world = World(gravity=(0.0, 0.0))
+    body = world.add(Circle(0.5), (0, 0), mass=2.0, linear_drag=0.5)
+    body.velocity = (6.0, 8.0)
+    run(world, 240)
+    assert np.hypot(*body.velocity[0]) == pytest.approx(10 * np.exp(-0.25 * 4.0), rel=3e-3)
+    assert body.velocity[0, 0] / body.velocity[0, 1] == pytest.approx(0.75)
+
+
+def test_quadratic_drag_slows_by_the_hyperbola_along_the_motion():
+    world = World(gravity=(0.0, 0.0))
+    body = world.add(Circle(0.5), (0, 0), mass=2.0, quadratic_drag=0.4)
+    body.velocity = (6.0, 8.0)
+    run(world, 240)
+    assert np.hypot(*body.velocity[0]) == pytest.approx(10 / (1 + 10 * 0.2 * 4.0), rel=2e-2)
+    assert body.velocity[0, 0] / body.velocity[0, 1] == pytest.approx(0.75)
+
+
+@given(st.floats(0, 1e6), st.floats(0, 1e6), st.floats(-100, 100))
+@settings(max_examples=30, deadline=None)
+def test_no_drag_can_turn_a_motion_round(linear, quadratic, speed):
+    world = World(gravity=(0.0, 0.0))
+    body = world.add(Circle(0.5), (0, 0), linear_drag=linear, quadratic_drag=quadratic, angular_drag=linear)
+    body.set(velocity=(speed, 0.0), angular_velocity=speed)
+    run(world, 3)
+    assert 0 <= body.velocity[0, 0] * np.sign(speed) <= abs(speed)
+    assert 0 <= body.angular_velocity[0] * np.sign(speed) <= abs(speed)
+
+
+def test_translation_and_rotation_are_damped_apart():
+    world = World(gravity=(0.0, 0.0))
+    slides = world.add(Circle(0.5), (0, 0), linear_drag=1.0, quadratic_drag=1.0)
+    spins = world.add(Circle(0.5), (9, 0), angular_drag=1.0, angular_quadratic_drag=1.0)
+    for body in (slides, spins):
+        body.set(velocity=(0.0, 1.0), angular_velocity=1.0)
+    run(world, 60)
+    assert slides.velocity[0, 1] < 0.5
+    assert slides.angular_velocity[0] == 1.0
+    assert spins.velocity[0, 1] == 1.0
+    assert spins.angular_velocity[0] < 0.5
+
+
+def test_torque_free_spin_keeps_its_speed():
+    world = World(gravity=(0.0, -G))
+    body = world.add(Polygon([(0, 0), (2, 0), (0.3, 0.7)]), (0, 0))
+    body.angular_velocity = 2.5
+    run(world, 1200)
+    assert body.angular_velocity[0] == 2.5
+    assert body.angle[0] == pytest.approx(2.5 * 20.0)
+    assert body.position[0, 0] == 0.0
+
+
+def test_a_force_off_the_centre_pushes_and_turns():
+    world = World(gravity=(0.0, 0.0), batch=2)
+    body = world.add(Polygon.box(2.0, 1.0), (5.0, 1.0), mass=3.0)
+    for _ in range(30):
+        body.apply_force((0.0, 6.0), point=body.position + np.array([0.5, 0.0]))
+        world.step()
+    assert body.velocity == pytest.approx(np.array([[0.0, 1.0]] * 2))
+    assert body.angular_velocity == pytest.approx(0.5 * 6.0 * 0.5 / (3.0 * (4 + 1) / 12))
+
+
+def test_forces_add_up_and_last_for_one_step():
+    world = World(gravity=(0.0, 0.0), batch=2)
+    body = world.add(Circle(1.0), (0, 0), mass=2.0)
+    body.apply_force((1.0, 0.0))
+    body.apply_force([[1.0, 0.0], [5.0, 0.0]])
+    body.apply_torque([1.0, -1.0])
+    run(world, 2)
+    assert body.velocity[:, 0] == pytest.approx(np.array([2.0, 6.0]) / 2.0 * DT)
+    assert body.angular_velocity == pytest.approx(np.array([1.0, -1.0]) / body.inertia * DT)
+
+
+def test_forces_do_not_move_a_static_body():
+    world = World(gravity=(0.0, -9.81))
+    body = world.add(Polygon.box(1, 1), (0, 0), static=True)
+    body.apply_force((100.0, 0.0), (3.0, 4.0))
+    run(world, 10)
+    assert not body.position.any()
+    assert not body.velocity.any()
+    assert body.mass == body.inertia == np.inf

@@ -1,0 +1,214 @@
+"""What a world promises besides physics: handles, masks, groups, refusals."""
+
+import numpy as np
+import pytest
+
+from engine import Circle, Polygon, Sprite, World
+
+BOX = Polygon.box(1.0, 1.0)
+
+
+def floor(batch=1, **settings):
+    world = World(gravity=(0.0, -9.81), batch=batch)
+    world.add(Polygon.box(20.0, 1.0), (0.0, -0.5), static=True, **settings)
+    return world
+
+
+def run(world, steps):
+    for _ in range(steps):
+        world.step()
+
+
+def test_an_empty_world_and_a_single_body():
+    world = World()
+    run(world, 3)
+    assert world.contacts is None
+    body = world.add(BOX, (0, 5))
+    run(world, 60)
+    assert world.contacts is None
+    assert body.velocity[0, 1] == pytest.approx(-1.62)
+
+
+def test_a_world_of_static_bodies():
+    world = floor()
+    world.add(BOX, (0, 0), static=True)
+    run(world, 3)
+    assert world.contacts is None
+
+
+@pytest.mark.parametrize("last", [True, False])
+def test_bodies_may_be_added_in_any_order(last):
+    def fill(order):
+        world = World(gravity=(0, -9.81), batch=2)
+        handles = {}
+        for name in order:
+            if name == "floor":
+                handles[name] = world.add(Polygon.box(20, 1), (0, -0.5), static=True)
+            elif name == "wall":
+                handles[name] = world.add(Polygon.box(1, 8), (2.5, 4), 0.1, static=True)
+            elif name == "ball":
+                handles[name] = world.add(Circle(0.4), (0.3, 2.5), restitution=0.5)
+            else:
+                handles[name] = world.add(BOX, (0, 1.0))
+        handles["ball"].velocity = [[3.0, 0.0], [1.0, 1.0]]
+        run(world, 100)
+        return handles
+
+    one = fill(["floor", "wall", "box", "ball"])
+    two = fill(["box", "floor", "ball", "wall"] if last else ["box", "wall", "ball", "floor"])
+    for name in one:
+        assert one[name].position == pytest.approx(two[name].position, abs=1e-6)
+        assert one[name].angle == pytest.approx(two[name].angle, abs=1e-6)
+
+
+def test_a_body_may_be_added_later():
+    world = floor(batch=2)
+    first = world.add(BOX, (0, 0.5))
+    run(world, 60)
+    place = first.position.copy()
+    second = world.add(BOX, [(0.0, 1.6), (3.0, 0.6)], [0.0, 0.1])
+    assert np.array_equal(first.position, place)
+    assert np.array_equal(second.position, [[0.0, 1.6], [3.0, 0.6]])
+    run(world, 240)
+    assert first.position == pytest.approx(place, abs=0.01)
+    assert second.position[:, 1] == pytest.approx([1.5, 0.5], abs=0.01)
+
+
+def test_setters_reach_the_worlds_of_a_mask():
+    world = floor(batch=3)
+    body = world.add(BOX, (0, 2))
+    body.set(position=(1.0, 5.0), angle=0.5, mask=np.array([True, False, False]))
+    body.set(velocity=[[1.0, 1.0], [2.0, 2.0]], angular_velocity=[3.0, 4.0], mask=np.array([False, True, True]))
+    assert body.position.tolist() == [[1.0, 5.0], [0.0, 2.0], [0.0, 2.0]]
+    assert body.angle.tolist() == [0.5, 0.0, 0.0]
+    assert body.velocity.tolist() == [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]
+    assert body.angular_velocity.tolist() == [0.0, 3.0, 4.0]
+    assert world.state.cos[:, body.index] == pytest.approx(np.cos([0.5, 0.0, 0.0]))
+
+
+def test_handles_cannot_be_written_through_by_accident():
+    body = World(batch=2).add(BOX, (0, 0))
+    for name in ("position", "angle", "velocity", "angular_velocity"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(body, name)[0] = 1.0
+
+
+def test_a_static_body_moved_by_hand_is_met_where_it_is():
+    world = World(gravity=(0.0, -9.81), batch=2)
+    plate = world.add(Polygon.box(4.0, 1.0), (0.0, -0.5), static=True)
+    box = world.add(BOX, (0.0, 0.5))
+    run(world, 10)
+    plate.set(position=(0.0, -3.5), angle=0.0, mask=np.array([False, True]))
+    run(world, 120)
+    assert box.position[:, 1] == pytest.approx([0.5, -2.5], abs=0.01)
+
+
+@pytest.mark.parametrize(("groups", "meet"), [((0, 0), True), ((1, 1), False), ((1, 2), True), ((0, 1), True)])
+def test_bodies_of_one_group_pass_through_each_other(groups, meet):
+    world = World(gravity=(0.0, 0.0))
+    left = world.add(Circle(0.5), (-2, 0), group=groups[0])
+    right = world.add(Circle(0.5), (2, 0), group=groups[1])
+    left.velocity, right.velocity = (4.0, 0.0), (-4.0, 0.0)
+    run(world, 120)
+    assert (left.position[0, 0] > right.position[0, 0]) == (not meet)
+
+
+def test_shapes_of_one_body_do_not_meet():
+    world = World(gravity=(0.0, 0.0))
+    world.add([BOX, Polygon.box(1.0, 1.0, (0.3, 0.0)), Circle(0.5)], (0, 0))
+    run(world, 5)
+    assert world.contacts is None
+
+
+def test_an_inactive_body_neither_moves_nor_touches():
+    world = floor(batch=2)
+    under = world.add(BOX, (0, 0.5))
+    over = world.add(BOX, (0, 1.5))
+    over.set(velocity=(1.0, 0.0))
+    over.active = [True, False]
+    under.active = [False, True]
+    run(world, 120)
+    assert over.active.tolist() == [True, False]
+    assert over.position[1].tolist() == [0.0, 1.5]
+    assert over.velocity[1].tolist() == [1.0, 0.0]
+    assert over.position[0, 1] == pytest.approx(0.5, abs=0.01)
+    assert under.position[0].tolist() == [0.0, 0.5]
+    assert under.position[1] == pytest.approx([0.0, 0.5], abs=0.01)
+
+
+def test_a_world_gone_to_nan_harms_no_other():
+    def toys(batch):
+        world = floor(batch)
+        world.add(BOX, (0, 0.6))
+        world.add(Circle(0.5), (0.2, 1.8))
+        return world
+
+    three, one = toys(3), toys(1)
+    three.bodies[1].set(position=(np.nan, 1.0), mask=np.array([True, False, False]))
+    three.bodies[2].set(velocity=(np.nan, 0.0), mask=np.array([False, False, True]))
+    run(three, 90)
+    run(one, 90)
+    assert three.state.pose[1].tobytes() == one.state.pose[0].tobytes()
+    assert np.isnan(three.state.pose[[0, 2]]).any(axis=(1, 2)).all()
+
+
+@pytest.mark.parametrize(
+    ("settings", "reason"),
+    [
+        ({"mass": 0.0}, "positive, finite mass"),
+        ({"mass": np.nan}, "positive, finite mass"),
+        ({"mass": -1.0}, "positive, finite mass"),
+        ({"inertia": 0.0}, "inertia"),
+        ({"linear_drag": -1.0}, "linear_drag"),
+        ({"angular_quadratic_drag": np.nan}, "angular_quadratic_drag"),
+        ({"friction": -0.1}, "friction"),
+        ({"restitution": 1.5}, "restitution"),
+        ({"position": (0.0, np.nan)}, "position"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(settings, reason):
+    world = World()
+    with pytest.raises(ValueError, match=reason):
+        world.add(BOX, **{"position": (0, 0), **settings})
+    assert world.bodies == []
+    assert world.state.pose.shape == (1, 0, 3)
+
+
+def test_no_shapes_and_no_worlds_are_refused():
+    with pytest.raises(ValueError, match="at least one shape"):
+        World().add([], (0, 0))
+    with pytest.raises(ValueError, match="batch"):
+        World(batch=0)
+
+
+def test_a_sprite_is_a_body_and_how_it_looks():
+    body = World().add(BOX, (1, 2))
+    sprite = Sprite(body, "crate", (1.0, 1.0), layer=3)
+    assert sprite.body.position.tolist() == [[1.0, 2.0]]
+    assert (sprite.image, sprite.size, sprite.layer) == ("crate", (1.0, 1.0), 3)
+
+
+def test_contacts_name_the_bodies_from_a_to_b():
+    world = floor()
+    world.add(BOX, (0, 0.5))
+    run(world, 2)
+    contacts = world.contacts
+    assert sorted(contacts.body[0].tolist()) == [0, 1]
+    upwards = contacts.manifold.normal[0, 1] * (contacts.body[0, 1] - contacts.body[0, 0])
+    assert upwards == pytest.approx(1.0)
+
+
+def test_stepping_on_from_a_copied_state_and_memory_repeats_the_flight():
+    world = floor(batch=2)
+    for i in range(4):
+        world.add(BOX, (0.2 * i, 0.6 + 1.1 * i), 0.1 * i)
+    run(world, 60)
+    state = {name: getattr(world.state, name).copy() for name in ("pose", "velocity", "cos", "sin")}
+    memory = world.detector.memory()
+    run(world, 60)
+    first = world.state.pose.copy()
+    for name, value in state.items():
+        setattr(world.state, name, value)
+    world.detector.recall_memory(memory)
+    run(world, 60)
+    assert world.state.pose.tobytes() == first.tobytes()
