@@ -1,0 +1,103 @@
+"""The floors: imports run down only, and nothing heavy is loaded before it is needed."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+STDLIB = set(sys.stdlib_module_names)
+PYGAME = {"pygame", "pygame_gui"}
+# What a single module may import besides, and only when it is used.
+LATE = {"ai.cli": {"tqdm"}, "ai.gym_task": {"gymnasium"}}
+
+
+def modules(folder):
+    return sorted(path for path in (ROOT / folder).rglob("*.py"))
+
+
+def imports(path, everywhere=True):
+    """Full names that a file imports: anywhere in it, or only when it is itself imported."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found = set()
+    nodes = [tree]
+    while nodes:
+        node = nodes.pop()
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: a relative import hides which floor it comes from"
+            found.update(f"{node.module}.{alias.name}" for alias in node.names)
+        elif everywhere or not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            nodes.extend(child for child in ast.iter_child_nodes(node) if not is_type_checking(node))
+    return found
+
+
+def is_type_checking(node):
+    return isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING"
+
+
+def is_within(name, packages):
+    return any(name == package or name.startswith(f"{package}.") for package in packages)
+
+
+def name_of(path):
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def assert_imports_only(path, packages):
+    strange = {name for name in imports(path) if name.split(".")[0] not in STDLIB and not is_within(name, packages)}
+    assert not strange, f"{path.relative_to(ROOT)} stands on a floor that knows nothing of {sorted(strange)}"
+
+
+@pytest.mark.parametrize("path", modules("engine"), ids=name_of)
+def test_the_engine_stands_on_numpy_alone(path):
+    assert_imports_only(path, {"engine", "numpy"})
+
+
+@pytest.mark.parametrize("path", modules("ai/nn"), ids=name_of)
+def test_the_network_library_stands_on_numpy_alone(path):
+    assert_imports_only(path, {"ai.nn", "numpy"})
+
+
+@pytest.mark.parametrize("path", [p for p in modules("ai") if "nn" not in p.parts], ids=name_of)
+def test_ai_stands_on_the_engine_and_the_network_library(path):
+    late = LATE.get(name_of(path), set())
+    assert_imports_only(path, {"ai", "engine", "numpy"} | late)
+    assert not [name for name in imports(path, everywhere=False) if is_within(name, late)]
+
+
+def test_only_the_game_imports_pygame():
+    others = [ROOT / "main.py", *modules("engine"), *modules("ai")]
+    assert not [name_of(path) for path in others if {name.split(".")[0] for name in imports(path)} & PYGAME]
+
+
+def test_main_imports_the_game_only_when_it_is_played():
+    assert not [name for name in imports(ROOT / "main.py", everywhere=False) if is_within(name, {"game"})]
+
+
+def loaded_by(names, suspects):
+    """Which of the suspects are in memory after these modules have been imported, one after another."""
+    program = f"""
+import importlib, sys
+for name in {names!r}:
+    importlib.import_module(name)
+    for suspect in {suspects!r} & set(sys.modules):
+        sys.exit(f"{{name}} loads {{suspect}}")
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
+    )
+    return done.stderr
+
+
+def test_importing_all_but_the_game_does_not_load_pygame():
+    names = ["main", "engine", *(name_of(path) for path in modules("ai"))]
+    assert loaded_by(names, PYGAME | {"tqdm", "gymnasium", "torch"}) == ""
+
+
+def test_the_engine_does_not_load_the_rest():
+    assert loaded_by([name_of(path) for path in modules("engine")], {"ai", "game", "main"}) == ""
+    assert loaded_by([name_of(path) for path in modules("ai/nn")], {"engine", "game", "ai.lander"}) == ""
