@@ -23,7 +23,7 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface
     width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
     warm = mix(DUSK, EMBER, 0.14)
     night = [
-        (0.0, mix(NIGHT0, (0, 0, 0), 0.35)),
+        (0.0, NIGHT0),
         (0.30, NIGHT0),
         (0.58, NIGHT1),
         (0.73, mix(NIGHT1, DUSK, 0.8)),
