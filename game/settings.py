@@ -80,9 +80,7 @@ class SettingsFile:
         aside = self.path.with_name(DAMAGED_NAME)
         try:
             self.path.replace(aside)
-            self.problem = (
-                f"The settings file was damaged and is kept as {aside.name}. These are the defaults."
-            )
+            self.problem = f"The settings file was damaged and is kept as {aside.name}. These are the defaults."
         except OSError:
             self.problem = "The settings file is damaged. These are the defaults."
 

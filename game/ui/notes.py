@@ -9,6 +9,7 @@ from game.ui.tokens import INK, SMALL, VIEW_SIZE
 
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
+_LONGEST: Final = 150
 
 
 class Notes:
@@ -20,6 +21,8 @@ class Notes:
 
     def show(self, text: str) -> None:
         """Show a message in place of the last one."""
+        if len(text) > _LONGEST:  # the end of a path or a reason says the most
+            text = text[: _LONGEST // 3] + " … " + text[-_LONGEST * 2 // 3 :]
         self._text, self._left = text, _STEPS_SHOWN
 
     def update(self) -> None:

@@ -29,7 +29,7 @@ def skip_without_a_screen() -> None:
 def screen(size: str = "1280x800x24") -> Iterator[str]:
     """A virtual screen on a free display; yields the display's name."""
     read_end, write_end = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write_end), "-screen", "0", size, "-nolisten", "tcp"]
+    command = ["Xvfb", "-displayfd", str(write_end), "-screen", "0", size, "-nolisten", "tcp", "-noreset"]
     server = subprocess.Popen(command, pass_fds=[write_end], stderr=subprocess.DEVNULL)
     os.close(write_end)
     try:
@@ -79,7 +79,7 @@ class Window:
 
     def picture(self) -> pygame.Surface:
         """What the window shows now."""
-        path = self.user_dir.parent / "seen.png"
+        path = self.user_dir.parent / "seen.bmp"  # ImageMagick takes seconds to pack a PNG
         subprocess.run(["import", "-window", self.id, str(path)], env=self._environment, check=True, timeout=20)
         return pygame.image.load(path)
 

@@ -1,0 +1,92 @@
+"""A real gamepad, as far as SDL can tell: plugged in, pressed and pulled out while the game runs."""
+
+import ctypes
+import gc
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pygame
+import pytest
+
+from tests.game.driver import Driver
+
+GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15
+
+
+class VirtualPads:
+    """SDL's own virtual devices, in the very library that pygame has loaded."""
+
+    def __init__(self, library: ctypes.CDLL) -> None:
+        self._sdl = library
+        self._sdl.SDL_JoystickOpen.restype = ctypes.c_void_p
+        self._sdl.SDL_JoystickSetVirtualButton.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint8]
+        self._sdl.SDL_JoystickSetVirtualAxis.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_int16]
+        self._handle: int | None = None
+
+    def plug_in(self) -> None:
+        index = self._sdl.SDL_JoystickAttachVirtual(GAME_CONTROLLER, AXES, BUTTONS, 0)
+        assert index >= 0
+        self._handle = self._sdl.SDL_JoystickOpen(index)
+
+    def press(self, button: int, down: bool = True) -> None:
+        self._sdl.SDL_JoystickSetVirtualButton(self._handle, button, int(down))
+
+    def push(self, axis: int, value: int) -> None:
+        self._sdl.SDL_JoystickSetVirtualAxis(self._handle, axis, value)
+
+    def pull_out_all(self) -> None:
+        for index in reversed(range(self._sdl.SDL_NumJoysticks())):
+            self._sdl.SDL_JoystickDetachVirtual(index)
+
+
+@pytest.fixture
+def pads(game: Driver) -> Iterator[VirtualPads]:
+    folder = Path(pygame.__file__).parent.parent / "pygame_ce.libs"
+    found = sorted(folder.glob("libSDL2-2*"))
+    if not found:
+        pytest.skip("this build of pygame has no SDL library of its own beside it")
+    pads = VirtualPads(ctypes.CDLL(str(found[0])))
+    yield pads
+    pads.pull_out_all()
+
+
+def test_a_pad_is_plugged_in_flown_with_and_pulled_out(game: Driver, pads: VirtualPads):
+    controls = game.app.context.controls
+    for _ in range(3):
+        pads.plug_in()
+        game.frames(2)
+        gc.collect()  # a pad that nobody holds on to would fall silent here
+        pads.press(pygame.CONTROLLER_BUTTON_A)
+        pads.push(pygame.CONTROLLER_AXIS_LEFTX, -30000)
+        game.frames(2)
+        assert controls.action == 4
+        assert controls.pad_in_use
+        pads.pull_out_all()
+        assert game.frames(2)
+        assert controls.action == 0
+
+
+def test_a_pad_leads_from_the_menu_to_settings_and_back(game: Driver, pads: VirtualPads):
+    pads.plug_in()
+    game.frames(2)
+
+    def tap(button: int) -> None:
+        for down in (True, False):
+            pads.press(button, down)
+            game.frames(2)
+
+    tap(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    tap(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    tap(pygame.CONTROLLER_BUTTON_A)
+    assert game.top_name == "SettingsScene"
+    tap(pygame.CONTROLLER_BUTTON_B)
+    assert game.top_name == "Menu"
+
+
+def test_two_games_one_after_the_other_hear_the_same_pad(open_game: Callable[..., Driver], pads: VirtualPads):
+    pads.plug_in()
+    again = open_game()
+    again.frames(2)
+    pads.press(pygame.CONTROLLER_BUTTON_A)
+    again.frames(2)
+    assert again.app.context.controls.main
