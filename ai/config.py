@@ -179,6 +179,6 @@ PRESETS: Final[dict[str, Config]] = {
         output_scale=1.0, replay_size=1500, replay_prune=1000, warm_up=64, mirror=False, success_pass=True,
         double=False, target_every=50, target_rate=1.0, fly_target=False, epsilon_decay=0.999,
         epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0,
-        spawn=CURRICULUM, reward_scale=0.1,
+        spawn=CURRICULUM, reward_scale=0.1, weights=RewardWeights(time=-0.1),
     ),
 }  # fmt: skip

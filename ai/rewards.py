@@ -25,7 +25,7 @@ class RewardWeights:
     tilt: float = -0.05  # per physics step tilted by more than 0.6 rad: 0.2 for a decision of four
     feet: float = 1.0  # per physics step with both feet down, thirty of them at the most
     engine: float = -0.02  # per physics step in which an engine fires
-    time: float = -0.1  # per physics step: hovering must not pay
+    time: float = -0.2  # per physics step: hovering must not pay
     terminal: float = 120.0  # for a landing; as much is lost by a crash or by leaving the area
 
 
