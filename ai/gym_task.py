@@ -107,7 +107,7 @@ class GymEnv:
         if ended:
             succeeded = self.threshold is not None and self.returns[slot] >= self.threshold
             self.outcome[slot] = SUCCESS if succeeded else FAILED
-            self.landings += succeeded
+            self.landings += int(succeeded)
         return total
 
 

@@ -232,6 +232,10 @@ class LanderEnv:
         self.place(mask, start)
         return self.observe()
 
+    def draw_from(self, slot: int, rng: np.random.Generator) -> None:
+        """Let one slot draw its flights from a stream of its own."""
+        self._rngs[slot] = rng
+
     def place(self, mask: Bools, start: Doubles) -> None:
         """Begin a flight in the slots of `mask` at rows x, y, vx, vy, angle, spin of `start`, in the world's frame."""
         self.lander.set(position=start[:, :2], velocity=start[:, 2:4], angle=start[:, 4],

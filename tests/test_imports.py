@@ -11,7 +11,9 @@ ROOT = Path(__file__).parents[1]
 STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
-LATE = {"ai.cli": {"tqdm"}, "ai.gym_task": {"gymnasium"}}
+LATE = {"ai.cli": {"tqdm"}, "ai.gym_task": {"gymnasium"}, "ai.gym_plugin": {"gymnasium"}}
+# What is there for the users of an extra alone.
+EXTRA = {"ai.gym_lander": {"gymnasium"}}
 
 
 def modules(folder):
@@ -65,7 +67,7 @@ def test_the_network_library_stands_on_numpy_alone(path):
 @pytest.mark.parametrize("path", [p for p in modules("ai") if "nn" not in p.parts], ids=name_of)
 def test_ai_stands_on_the_engine_and_the_network_library(path):
     late = LATE.get(name_of(path), set())
-    assert_imports_only(path, {"ai", "engine", "numpy"} | late)
+    assert_imports_only(path, {"ai", "engine", "numpy"} | late | EXTRA.get(name_of(path), set()))
     assert not [name for name in imports(path, everywhere=False) if is_within(name, late)]
 
 
@@ -94,7 +96,7 @@ for name in {names!r}:
 
 
 def test_importing_all_but_the_game_does_not_load_pygame():
-    names = ["main", "engine", *(name_of(path) for path in modules("ai"))]
+    names = ["main", "engine", *(name for path in modules("ai") if (name := name_of(path)) not in EXTRA)]
     assert loaded_by(names, PYGAME | {"tqdm", "gymnasium", "torch"}) == ""
 
 

@@ -1,0 +1,197 @@
+import json
+import sys
+import warnings
+
+import numpy as np
+import pytest
+
+from ai.agent import DeepQAgent
+from ai.gym_task import GymTask, gym_config
+from ai.nn import ModelFormatError
+from ai.runs import resume_run
+from ai.scaling import RunningScale
+from ai.training import Training
+from main import main
+
+
+def test_a_running_scale_is_the_scale_of_all_it_saw():
+    rng = np.random.default_rng(0)
+    seen = (rng.normal(size=(60, 3)) * [5.0, 0.01, 0.0] + [100.0, -1.0, 3.0]).astype(np.float32)
+    scale = RunningScale(3)
+    for part in (seen[:1], seen[1:20], seen[20:]):
+        scale.watch(part)
+    assert scale.mean == pytest.approx(seen.mean(axis=0, dtype=float))
+    scaled = scale(seen)
+    assert scaled.dtype == np.float32
+    assert scaled.mean(axis=0) == pytest.approx(0.0, abs=1e-3)
+    assert scaled.std(axis=0) == pytest.approx([1.0, 1.0, 0.0], abs=1e-3)
+    assert np.abs(scale(seen * 1000)).max() == 10.0
+    copy = RunningScale(3)
+    copy.load(json.loads(json.dumps(scale.to_json())))
+    assert np.array_equal(copy(seen), scaled)
+
+
+@pytest.mark.parametrize("arguments", [["train", "--env", "CartPole-v1", "--output", "run", "--seconds", "1"],
+                                       ["train", "--resume", "run", "--seconds", "1"],
+                                       ["evaluate", "--model", "run"]])  # fmt: skip
+def test_without_the_extra_one_line_names_the_command(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    if "--env" not in arguments:
+        pytest.importorskip("gymnasium")
+        train_cart_pole("run", 400)
+        capsys.readouterr()
+    monkeypatch.setitem(sys.modules, "gymnasium", None)
+    assert main(arguments) == 1
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert 'pip install "tranquility[gym]"' in told
+
+
+def train_cart_pole(folder, decisions, *more):
+    return main(["train", "--env", "CartPole-v1", "--decisions", str(decisions), "--output", str(folder), *more])
+
+
+def flat(parts):
+    """Every array of nested results by its path."""
+    if isinstance(parts, dict):
+        return {f"{key}/{path}": value for key, part in parts.items() for path, value in flat(part).items()}
+    if isinstance(parts, tuple):
+        return flat(dict(enumerate(parts)))
+    return {"": np.asarray(parts)}
+
+
+def assert_same(first, second):
+    first, second = flat(first), flat(second)
+    assert first.keys() == second.keys()
+    for path, value in first.items():
+        other = second[path]
+        assert (value.dtype, value.shape) == (other.dtype, other.shape), path
+        assert all(np.array_equal(one, two) for one, two in zip(value.ravel(), other.ravel(), strict=True)), path
+
+
+class TestLearningOthersEnvironments:
+    @pytest.fixture(autouse=True)
+    def _needs_gymnasium(self):
+        pytest.importorskip("gymnasium")
+
+    def test_cart_pole_is_learnt_kept_evaluated_and_gone_on_with(self, tmp_path, capsys):
+        run = tmp_path / "run"
+        assert train_cart_pole(run, 10_000, "--set", "epsilon_decisions=5000", "--set", "warm_up=500") == 0
+        assert "mean return" in capsys.readouterr().out
+        described = json.loads((run / "training.json").read_text())
+        assert described["env"] == "CartPole-v1"
+        assert described["evaluation"]["episodes"] == 100
+        assert main(["evaluate", "--model", str(run), "--episodes", "10", "--seed", "3", "--json"]) == 0
+        measured = json.loads(capsys.readouterr().out)
+        assert measured["mean_return"] > 150
+        assert measured["mean_length"] == measured["mean_return"]
+        assert 0 <= measured["success"] <= 1
+        resumed, best = resume_run(run), DeepQAgent.load(run)
+        assert resumed.agent.scale.to_json() == DeepQAgent.load(run / "last").scale.to_json()
+        assert np.array_equal(resumed.best_agent().q_values(np.ones(4)), best.q_values(np.ones(4)))
+        assert main(["train", "--resume", str(run), "--decisions", "10400"]) == 0
+        assert json.loads((run / "training.json").read_text())["decisions"] == 10_400
+        assert main(["evaluate", "--model", str(run), "--spawn", "hard"]) == 1
+        assert "--spawn is for the lander" in capsys.readouterr().err
+
+    def test_the_same_seed_gives_the_same_network(self):
+        runs = [Training(gym_config("CartPole-v1").changed(warm_up=64, updates=1), 5) for _ in range(2)]
+        for training in runs:
+            for _ in range(40):
+                training.advance()
+        first, second = (training.agent for training in runs)
+        assert first.train_count > 0
+        assert np.array_equal(first.online.values, second.online.values)
+        assert first.scale.to_json() == second.scale.to_json()
+
+    def test_the_contract_of_an_environment_holds(self):
+        env = GymTask(gym_config("CartPole-v1")).make_env(np.random.default_rng(0))
+        before = env.reset()
+        for _ in range(30):
+            result = env.step(np.ones(16, dtype=int))
+        assert result.terminated.all()
+        assert not result.succeeded.any()
+        assert not result.reward.any()
+        assert np.array_equal(env.step(np.zeros(16, dtype=int)).observation, result.observation)
+        some = np.arange(16) < 4
+        after = env.reset(some)
+        assert np.array_equal(after[4:], result.observation[4:])
+        assert not np.array_equal(after[:4], before[:4])
+        assert (env.step(np.zeros(16, dtype=int)).reward == some).all()
+
+    @pytest.mark.parametrize(
+        ("env", "message"),
+        [("Nowhere-v0", "Nowhere"), ("Pendulum-v1", "Discrete actions"), ("Blackjack-v1", "Box of observations")],
+    )
+    def test_what_cannot_be_learnt_is_said_in_a_line(self, env, message, tmp_path, capsys):
+        assert main(["train", "--env", env, "--output", str(tmp_path / "run"), "--seconds", "1"]) == 1
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1
+        assert message in told
+
+    def test_a_damaged_scale_is_named(self, tmp_path):
+        train_cart_pole(tmp_path / "run", 400)
+        described = tmp_path / "run" / "config.json"
+        values = json.loads(described.read_text())
+        values["scale"]["mean"] = [0.0]
+        described.write_text(json.dumps(values))
+        with pytest.raises(ModelFormatError, match="scale of observations"):
+            DeepQAgent.load(tmp_path / "run")
+
+
+class TestOurLanderForOthers:
+    @pytest.fixture(autouse=True)
+    def gymnasium(self):
+        gymnasium = pytest.importorskip("gymnasium")
+        import ai.gym_lander  # noqa: F401 - registers
+
+        return gymnasium
+
+    def test_gymnasiums_own_check_finds_nothing(self, gymnasium):
+        from gymnasium.utils.env_checker import check_env
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            check_env(gymnasium.make("tranquility/Lander-v0").unwrapped)
+
+    def test_the_same_seed_gives_the_same_flight(self, gymnasium):
+        def flight(env, seed):
+            steps, ended = [env.reset(seed=seed)], False
+            while not ended:
+                steps.append(env.step(3))
+                ended = steps[-1][2] or steps[-1][3]
+            return tuple(steps)
+
+        env = gymnasium.make("tranquility/Lander-v0", spawn="hard")
+        first = flight(env, 11)
+        assert_same(first, flight(gymnasium.make("tranquility/Lander-v0", spawn="hard"), 11))
+        assert not np.array_equal(first[0][0], flight(env, 12)[0][0])
+        assert_same(first, flight(env, 11))
+        assert first[-1][4] == {"outcome": 3, "is_success": False}
+
+    @pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+    def test_many_are_exactly_many_singles(self, gymnasium, mode):
+        mode = gymnasium.vector.AutoresetMode(mode)
+        ours = gymnasium.make_vec("tranquility/Lander-v0", 4, spawn="near", autoreset_mode=mode)
+        theirs = gymnasium.make_vec("tranquility/Lander-v0", 4, vectorization_mode="sync", spawn="near",
+                                    vector_kwargs={"autoreset_mode": mode})  # fmt: skip
+        assert ours.metadata["autoreset_mode"] is mode
+        rng = np.random.default_rng(0)
+        assert_same(ours.reset(seed=7), theirs.reset(seed=7))
+        flights = 0
+        for _ in range(150):
+            actions = rng.integers(0, 3, 4)  # coasting and turning: all crash, and soon
+            one, two = ours.step(actions), theirs.step(actions)
+            assert_same(one, two)
+            assert ours.observation_space.contains(one[0])
+            ended = one[2] | one[3]
+            flights += ended.sum()
+            if mode is gymnasium.vector.AutoresetMode.DISABLED and ended.any():
+                assert_same(*(envs.reset(options={"reset_mask": ended.copy()}) for envs in (ours, theirs)))
+        assert flights > 10
+
+    def test_the_deep_q_agent_takes_it_from_there(self):
+        training = Training(gym_config("tranquility/Lander-v0").changed(num_envs=2, warm_up=8, updates=1))
+        for _ in range(20):
+            training.advance()
+        assert training.agent.train_count > 0
