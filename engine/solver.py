@@ -183,15 +183,17 @@ def colour(slots: Ints, free: Bools) -> tuple[Ints, list[int]]:
     slots (m, 2) name the bodies and `free` (m, 2) says which can move. Each manifold takes the first colour
     that neither of its bodies has yet, so a world is solved in the same order alone and among others.
     """
-    used: dict[int, int] = {}  # one bit for each colour of a body's manifolds
-    chosen = np.empty(len(slots), dtype=np.intp)
-    for row, (a, b) in enumerate(np.where(free, slots, -1).tolist()):
-        busy = used.get(a, 0) | used.get(b, 0)
+    nobody = int(slots.max(initial=-1)) + 1
+    used = [0] * (nobody + 1)  # one bit for each colour of a body's manifolds
+    bits = []
+    for a, b in np.where(free, slots, nobody).tolist():
+        used_a, used_b = used[a], used[b]
+        busy = used_a | used_b
         bit = ~busy & (busy + 1)
-        chosen[row] = bit.bit_length()
-        for body in (a, b):
-            if body >= 0:
-                used[body] = used.get(body, 0) | bit
+        used[a], used[b] = used_a | bit, used_b | bit
+        used[nobody] = 0
+        bits.append(bit)
+    chosen = np.array([bit.bit_length() for bit in bits])
     order = np.argsort(chosen, kind="stable")
     return order, np.bincount(chosen).cumsum()[1:].tolist()
 
