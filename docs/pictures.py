@@ -1,0 +1,57 @@
+"""Take the README's pictures from the real game, played by the script.
+
+    python docs/pictures.py
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
+
+import sys
+from itertools import count
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pygame
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from game.app import App
+from game.context import Context
+from game.scene import Scene
+from game.scenes.menu import Menu
+from game.scenes.play import Play
+from game.scenes.watch import Watch
+from game.settings import Settings
+
+# Name, scene, and what is pressed at which frame until the picture is taken.
+PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
+    ("menu", Menu(), {}, 200),
+    ("play", Play(seed=12), {5: pygame.K_TAB}, 190),
+    ("watch", Watch(64, seed=3), {}, 260),
+)
+
+
+def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
+    """Play `scene` for so many frames and save what is then on the screen."""
+    with TemporaryDirectory() as folder:
+        ticks = count()
+        context = Context(Path(folder), Settings(), rng=np.random.default_rng(1))
+        app = App(context, scene, now=lambda: next(ticks) / 60, capped=False)
+        for frame in range(frames):
+            if frame in keys:
+                for kind in (pygame.KEYDOWN, pygame.KEYUP):
+                    pygame.event.post(pygame.event.Event(kind, key=keys[frame], mod=0))
+            app.tick()
+        pygame.image.save(app.canvas.surface, ROOT / "docs" / "images" / f"{name}.png")
+        app.close()
+
+
+if __name__ == "__main__":
+    for picture in PICTURES:
+        take(*picture)
