@@ -117,6 +117,8 @@ class Config:
     num_envs: int = knob(256, "Landers at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps to a decision.", "lander", low=1, high=12)
     spawn: str = knob("practice", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
+    care: float = knob(1.0, "While training, a touch may be only so hard, as a share of the real limits.",
+                       "lander", low=0.3, high=1.0)
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
     weights: RewardWeights = knob(_DEFAULT_WEIGHTS, "What each part of the reward pays.", "lander")  # noqa: RUF009

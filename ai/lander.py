@@ -7,7 +7,7 @@ the pad and scaled by `OBSERVATION_SCALE`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 from typing import Any, Final
 
@@ -65,6 +65,15 @@ class Limits:
     half_width: float = 22.0  # metres from the pad
     ceiling: float = 26.0  # metres
     time: float = 25.0  # seconds
+
+    def stricter(self, share: float) -> Limits:
+        """The same limits, but for touches only `share` as hard: who learns under them keeps a margin."""
+        return replace(
+            self,
+            touch_speed=share * self.touch_speed,
+            slide_speed=share * self.slide_speed,
+            touch_tilt=share * self.touch_tilt,
+        )
 
 
 @dataclass(frozen=True)

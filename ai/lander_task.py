@@ -11,6 +11,7 @@ from ai.agent import Symmetry
 from ai.config import CURRICULUM, Config
 from ai.env import Doubles, Floats
 from ai.lander import (
+    LIMITS,
     MIRROR_ACTIONS,
     MIRROR_FEATURES,
     MIRROR_SIGNS,
@@ -97,7 +98,8 @@ class LanderTask:
         """Make the landers to train with."""
         config = self.config
         spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
-        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.weights)
+        limits = LIMITS.stricter(config.care)
+        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, limits=limits, weights=config.weights)
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
         """Fly so many flights at once from random spawns."""
