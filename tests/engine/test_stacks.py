@@ -6,9 +6,16 @@ import pytest
 from engine import Circle, Polygon, World
 
 
-def ground(gravity, **settings):
-    world = World(gravity=(0.0, -gravity), **settings)
+def ground(gravity=9.81, batch=1):
+    world = World(gravity=(0.0, -gravity), batch=batch)
     world.add(Polygon.box(60.0, 1.0), (0.0, -0.5), static=True)
+    return world
+
+
+def moon_and_earth():
+    """A batch of two: what stands must stand on both."""
+    world = ground(batch=2)
+    world.gravity = np.array([[0.0, -1.62], [0.0, -9.81]])
     return world
 
 
@@ -29,9 +36,8 @@ def assert_stands(world, start, drift, speed=1e-3):
     assert overlap(world) < 0.01
 
 
-@pytest.mark.parametrize("gravity", [1.62, 9.81])
-def test_a_body_at_rest_stays_at_rest(gravity):
-    world = ground(gravity, batch=3)
+def test_a_body_at_rest_stays_at_rest():
+    world = moon_and_earth()
     world.add(Polygon.box(1.0, 1.0), (0.0, 0.499))
     world.add(Circle(0.5), (3.0, 0.499))
     world.add([Polygon.box(1.0, 0.2), Polygon.box(0.2, 1.0, (0.0, 0.6))], (6.0, 0.35))
@@ -42,21 +48,19 @@ def test_a_body_at_rest_stays_at_rest(gravity):
     assert abs(world.state.velocity).max() < 1e-9
 
 
-@pytest.mark.parametrize("gravity", [1.62, 9.81])
-def test_ten_boxes_stand_for_ten_seconds(gravity):
-    world = ground(gravity)
+def test_ten_boxes_stand_for_ten_seconds():
+    world = moon_and_earth()
     for row in range(10):
         world.add(Polygon.box(1.0, 1.0), (0.0, 0.5 + row), friction=0.5)
     start = world.state.pose.copy()
     run(world, 10)
     assert_stands(world, start, drift=0.06)
-    assert abs(world.state.pose[0, :, 0]).max() < 1e-3
-    assert abs(world.state.pose[0, :, 2]).max() < 1e-3
+    assert abs(world.state.pose[..., 0]).max() < 1e-3
+    assert abs(world.state.pose[..., 2]).max() < 1e-3
 
 
-@pytest.mark.parametrize("gravity", [1.62, 9.81])
-def test_ten_boxes_laid_unevenly_stand_for_ten_seconds(gravity):
-    world = ground(gravity)
+def test_ten_boxes_laid_unevenly_stand_for_ten_seconds():
+    world = moon_and_earth()
     for row in range(10):
         world.add(Polygon.box(1.0, 1.0), (0.06 * (-1) ** row + 0.02 * row, 0.5 + row), friction=0.6)
     start = world.state.pose.copy()
@@ -68,19 +72,18 @@ def test_ten_boxes_laid_unevenly_stand_for_ten_seconds(gravity):
     assert abs(world.state.velocity).max() < early
 
 
-@pytest.mark.parametrize("gravity", [1.62, 9.81])
-def test_a_pyramid_stands(gravity):
-    world = ground(gravity)
-    for row in range(6):
-        for i in range(6 - row):
-            world.add(Polygon.box(1.0, 1.0), (1.1 * (i - (5 - row) / 2), 0.5 + row), friction=0.5)
+def test_a_pyramid_stands():
+    world = moon_and_earth()
+    for row in range(5):
+        for i in range(5 - row):
+            world.add(Polygon.box(1.0, 1.0), (1.1 * (i - (4 - row) / 2), 0.5 + row), friction=0.5)
     start = world.state.pose.copy()
     run(world, 10)
     assert_stands(world, start, drift=0.06)
 
 
 def test_a_heavy_box_on_a_light_one():
-    world = ground(9.81)
+    world = ground()
     world.add(Polygon.box(1.0, 1.0), (0.0, 0.5), mass=1.0)
     world.add(Polygon.box(1.0, 1.0), (0.0, 1.5), mass=20.0)
     start = world.state.pose.copy()
@@ -89,7 +92,7 @@ def test_a_heavy_box_on_a_light_one():
 
 
 def test_a_leaning_tower_falls():
-    world = ground(9.81)
+    world = ground()
     for row in range(4):
         world.add(Polygon.box(1.0, 1.0), (0.45 * row, 0.5 + row))
     run(world, 4)
@@ -98,14 +101,14 @@ def test_a_leaning_tower_falls():
 
 def test_a_heap_comes_to_rest():
     random = np.random.default_rng(4)
-    world = ground(9.81)
+    world = ground()
     for side in (-1, 1):
         world.add(Polygon.box(1.0, 12.0), (side * 3.5, 5.5), static=True)
-    for i in range(18):
+    for i in range(14):
         place = (random.uniform(-2.5, 2.5), 1 + 0.5 * i)
         shape = Circle(random.uniform(0.25, 0.45)) if i % 4 == 0 else Polygon.box(*random.uniform(0.5, 1.1, 2))
         world.add(shape, place, random.uniform(0, 3), friction=0.5, angular_drag=0.02)
-    run(world, 12)
+    run(world, 10)
     assert abs(world.state.velocity).max() < 0.01
     assert overlap(world) < 0.02
     assert (abs(world.state.pose[0, 3:, 0]) < 3.0).all()
@@ -113,11 +116,11 @@ def test_a_heap_comes_to_rest():
 
 
 def test_more_manifolds_than_a_word_has_bits():
-    # A plank under a hundred balls: each needs a colour of its own, or some would not be held up.
-    world = ground(9.81)
-    world.add(Polygon.box(42.0, 0.4), (0.0, 0.2), mass=50.0)
-    for i in range(100):
-        world.add(Circle(0.18), (0.4 * (i - 49.5), 0.58), mass=0.2)
-    run(world, 1)
+    # A plank under eighty balls: each needs a colour of its own, or some would not be held up.
+    world = ground()
+    world.add(Polygon.box(34.0, 0.4), (0.0, 0.2), mass=50.0)
+    for i in range(80):
+        world.add(Circle(0.18), (0.4 * (i - 39.5), 0.58), mass=0.2)
+    run(world, 0.5)
     assert len(world.contacts.colour_ends) > 64
     assert world.state.pose[0, 2:, 1].min() > 0.56
