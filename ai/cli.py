@@ -33,6 +33,7 @@ def add_commands(commands: Any) -> None:
     train.add_argument("--resume", type=Path, metavar="DIR", help="go on with what an earlier run kept there")
     train.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
                        help="change a setting of the preset, such as --set n_step=5")  # fmt: skip
+    train.add_argument("--validation", type=int, metavar="N", help="episodes that choose the best network")
     train.set_defaults(run=_train)
 
     evaluate = commands.add_parser("evaluate", help="measure how well a network does")
@@ -56,6 +57,7 @@ def _train(arguments: argparse.Namespace) -> int:
     try:
         resumed = resume_run(arguments.resume) if arguments.resume else None
         training = resumed or Training(_config(arguments), arguments.seed)
+        training.validation_episodes = arguments.validation or training.validation_episodes
     except (ValueError, ImportError) as error:
         return _fail(str(error))
     clock = TrainingClock(arguments.seconds, arguments.decisions)

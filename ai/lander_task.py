@@ -86,7 +86,7 @@ class LanderTask:
     """Learn to land."""
 
     num_features, num_actions = NUM_FEATURES, NUM_ACTIONS
-    evaluate_every, validation_episodes, test_episodes = 50_000, 500, 1000
+    evaluate_every, validation_episodes, test_episodes = 100_000, 500, 1000
 
     def __init__(self, config: Config) -> None:
         self.config = config
