@@ -1,10 +1,9 @@
 """The lander for others to learn: as an environment of Gymnasium, one at a time or many. Needs the extra `gym`.
 
-    import ai.gym_lander
-    env = gymnasium.make("tranquility/Lander-v0")
-    envs = gymnasium.make_vec("tranquility/Lander-v0", num_envs=256)
+    env = gymnasium.make("ai.gym_lander:tranquility/Lander-v0")
+    envs = gymnasium.make_vec("ai.gym_lander:tranquility/Lander-v0", num_envs=256)
 
-The import is needed in a checkout only: an installed Tranquility is found by Gymnasium itself.
+The part before the colon imports this module, which registers the rest of the name.
 """
 
 from __future__ import annotations
@@ -19,10 +18,10 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from ai.env import Bools, Doubles, Floats, Ints, StepResult
-from ai.gym_plugin import register
 from ai.lander import NUM_ACTIONS, NUM_FEATURES, OBSERVATION_SCALE, LanderEnv
 from engine import DT
 
+LANDER_ID: Final = "tranquility/Lander-v0"
 # Metres, m/s, sine and cosine, rad/s, contacts: further than any flight gets before it ends.
 _REACH: Final = np.array([40.0, 40.0, 40.0, 40.0, 1.0, 1.0, 40.0, 1.0, 1.0])
 _HIGH: Final = (_REACH * OBSERVATION_SCALE).astype(np.float32)
@@ -124,4 +123,8 @@ def _marked(values: dict[str, Any], mask: Bools) -> dict[str, Any]:
     return values | {f"_{name}": mask.copy() for name in values}
 
 
-register()
+if LANDER_ID not in gymnasium.registry:
+    gymnasium.register(
+        LANDER_ID, entry_point="ai.gym_lander:GymLander", vector_entry_point="ai.gym_lander:GymLanders",
+        reward_threshold=170.0,
+    )  # fmt: skip

@@ -90,10 +90,8 @@ def theirs(seed: int) -> Iterator[tuple[float, int, float]]:
     import torch
     from stable_baselines3 import DQN
 
-    import ai.gym_lander  # noqa: F401 - registers
-
     torch.set_num_threads(1)
-    env = gymnasium.make("tranquility/Lander-v0", spawn="practice")
+    env = gymnasium.make("ai.gym_lander:tranquility/Lander-v0", spawn="practice")
     model = DQN("MlpPolicy", env, seed=seed, device="cpu", **TUNED)
     spent = 0.0
     while True:

@@ -13,6 +13,8 @@ from ai.scaling import RunningScale
 from ai.training import Training
 from main import main
 
+LANDER = "ai.gym_lander:tranquility/Lander-v0"
+
 
 def test_a_running_scale_is_the_scale_of_all_it_saw():
     rng = np.random.default_rng(0)
@@ -142,17 +144,14 @@ class TestLearningOthersEnvironments:
 class TestOurLanderForOthers:
     @pytest.fixture(autouse=True)
     def gymnasium(self):
-        gymnasium = pytest.importorskip("gymnasium")
-        import ai.gym_lander  # noqa: F401 - registers
-
-        return gymnasium
+        return pytest.importorskip("gymnasium")
 
     def test_gymnasiums_own_check_finds_nothing(self, gymnasium):
         from gymnasium.utils.env_checker import check_env
 
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            check_env(gymnasium.make("tranquility/Lander-v0").unwrapped)
+            check_env(gymnasium.make(LANDER).unwrapped)
 
     def test_the_same_seed_gives_the_same_flight(self, gymnasium):
         def flight(env, seed):
@@ -162,9 +161,9 @@ class TestOurLanderForOthers:
                 ended = steps[-1][2] or steps[-1][3]
             return tuple(steps)
 
-        env = gymnasium.make("tranquility/Lander-v0", spawn="hard")
+        env = gymnasium.make(LANDER, spawn="hard")
         first = flight(env, 11)
-        assert_same(first, flight(gymnasium.make("tranquility/Lander-v0", spawn="hard"), 11))
+        assert_same(first, flight(gymnasium.make(LANDER, spawn="hard"), 11))
         assert not np.array_equal(first[0][0], flight(env, 12)[0][0])
         assert_same(first, flight(env, 11))
         assert first[-1][4] == {"outcome": 3, "is_success": False}
@@ -172,8 +171,8 @@ class TestOurLanderForOthers:
     @pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
     def test_many_are_exactly_many_singles(self, gymnasium, mode):
         mode = gymnasium.vector.AutoresetMode(mode)
-        ours = gymnasium.make_vec("tranquility/Lander-v0", 4, spawn="near", autoreset_mode=mode)
-        theirs = gymnasium.make_vec("tranquility/Lander-v0", 4, vectorization_mode="sync", spawn="near",
+        ours = gymnasium.make_vec(LANDER, 4, spawn="near", autoreset_mode=mode)
+        theirs = gymnasium.make_vec(LANDER, 4, vectorization_mode="sync", spawn="near",
                                     vector_kwargs={"autoreset_mode": mode})  # fmt: skip
         assert ours.metadata["autoreset_mode"] is mode
         rng = np.random.default_rng(0)
@@ -191,7 +190,7 @@ class TestOurLanderForOthers:
         assert flights > 10
 
     def test_the_deep_q_agent_takes_it_from_there(self):
-        training = Training(gym_config("tranquility/Lander-v0").changed(num_envs=2, warm_up=8, updates=1))
+        training = Training(gym_config(LANDER).changed(num_envs=2, warm_up=8, updates=1))
         for _ in range(20):
             training.advance()
         assert training.agent.train_count > 0
