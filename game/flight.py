@@ -136,6 +136,7 @@ class Swarm:
         self.landed = self.lost = 0
         self.fresh: Bools = np.ones(count, dtype=bool)
         self._actions: Ints = np.zeros(count, dtype=np.intp)
+        self._slots: Ints = np.arange(count)
         self._step = 0
 
     def step(self) -> Bools:
@@ -145,8 +146,9 @@ class Swarm:
             self.observation = self.env.reset(self.fresh)
             self.since_end[self.fresh] = 0
             self._actions[self.fresh] = 0
-        if self._step % DECISION_STEPS == 0:
-            self._actions = self.flyer.act(self.observation, held=self._actions)
+        due = self._slots[-self._step % DECISION_STEPS :: DECISION_STEPS]  # in turns, for frames of equal cost
+        if len(due):
+            self._actions[due] = self.flyer.act(self.observation[due], held=self._actions[due])
         self._step += 1
         result = self.env.step(self._actions)
         self.observation = result.observation

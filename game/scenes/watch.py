@@ -142,7 +142,7 @@ class Watch:
         self.swarm = Swarm(count, self._seed, self._network.flyer)
         self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed), self._settings.reduced_motion)
         self._stage.blue[:] = 1.0
-        self._trails = Trails(self.swarm.env, keep=12 if count == 1 else 18)
+        self._trails = Trails(self.swarm.env)
         self._camera = Camera()
         self._mind = Mind()
         self._due = 0.0

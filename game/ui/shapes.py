@@ -15,6 +15,7 @@ from game.ui.tokens import Colour
 Shape = Literal["circle", "ring", "triangle", "triangle_down", "diamond", "tick", "cross", "check"]
 
 _FACTOR: Final = 8
+_LARGE_GLOW: Final = 64  # pixels
 # Corners on a circle of radius 1, y down.
 _POLYGONS: Final[dict[str, list[tuple[float, float]]]] = {
     "triangle": [(0.0, -0.9), (0.95, 0.75), (-0.95, 0.75)],
@@ -77,11 +78,13 @@ def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
 @lru_cache(maxsize=256)
 def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
     """Return light that fades out towards the radius, to be added; `level` is in 1/32."""
-    axis = np.arange(-radius, radius + 1) / max(radius, 1)
+    # A large one is so smooth that a small one, scaled up, does; an explosion needs a new one every few frames.
+    half = radius if radius < _LARGE_GLOW else radius // 4
+    axis = np.arange(-half, half + 1) / max(half, 1)
     distance = np.minimum(np.hypot(axis[:, None], axis[None, :]), 1.0)
     light = (1 - distance) ** 2.4 * level / 32
-    pixels = np.minimum(light[..., None] * np.array(colour), 255).astype(np.uint8)
-    return pygame.surfarray.make_surface(pixels)
+    surface = pygame.surfarray.make_surface(np.minimum(light[..., None] * np.array(colour), 255).astype(np.uint8))
+    return surface if half == radius else pygame.transform.smoothscale(surface, (2 * radius + 1, 2 * radius + 1))
 
 
 def forget() -> None:

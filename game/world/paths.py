@@ -18,7 +18,7 @@ from game.world.paint import mix
 
 _SPACING: Final = 0.62  # metres between dots
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
-_STRETCH: Final = 10  # points of a trail drawn in one colour
+_STRETCH: Final = 16  # points of a trail drawn in one colour
 
 
 def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6) -> None:
@@ -46,10 +46,11 @@ class _Trail:
 class Trails:
     """The ways of recent flights, fading; `follow` once after every step."""
 
-    def __init__(self, env: LanderEnv, keep: int = 24) -> None:
+    def __init__(self, env: LanderEnv, keep: int = 12) -> None:
         self._env = env
         self._open: list[list[tuple[float, float]]] = [[] for _ in range(env.num_envs)]
         self._done: deque[_Trail] = deque(maxlen=keep)
+        self._fade = 0.1 ** (1 / keep)
         self._step = 0
 
     def follow(self, fresh: Bools, ended: Bools) -> None:
@@ -73,7 +74,7 @@ class Trails:
     def draw(self, canvas: Canvas, view: View, shown: int) -> None:
         """Draw the trails of ended flights, newest brightest, and the one of slot `shown` so far."""
         for rank, trail in enumerate(reversed(self._done)):
-            strength = 0.55 * 0.9**rank * max(0.0, 1 - trail.age / 40)
+            strength = 0.55 * self._fade**rank * max(0.0, 1 - trail.age / 40)
             landed = trail.outcome == Outcome.LANDED
             colour = canvas.palette.good if landed else canvas.palette.warn
             if strength > 0.06:

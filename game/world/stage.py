@@ -149,7 +149,7 @@ class Stage:
             _blit_middle(canvas, pool, view, (aim, surface_height(self._env, aim) - 0.02), pygame.BLEND_RGB_ADD)
 
     def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
-        left = self.flash[slot] / _FLASH_STEPS
+        left = math.ceil(12 * self.flash[slot] / _FLASH_STEPS) / 12  # in steps, so that few glows are ever made
         if left > 0 and not self._calm:
             metre = view.pixels_per_metre / view.scale
             canvas.glow(view.points((x, y)).tolist(), 5.5 * metre, (255, 190, 120), 1.1 * left**2)
