@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
@@ -34,10 +35,10 @@ def _parser() -> argparse.ArgumentParser:
     screen = parser.add_mutually_exclusive_group()
     screen.add_argument("--windowed", dest="full_screen", action="store_false", default=None)
     screen.add_argument("--fullscreen", dest="full_screen", action="store_true", default=None)
-    if find_spec("ai.cli") is not None:
-        from ai.cli import add_commands
-
-        add_commands(parser.add_subparsers(title="commands without a window", metavar="COMMAND"))
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    for module in ("game.cli", "ai.cli"):
+        if find_spec(module) is not None:
+            import_module(module).add_commands(commands)
     return parser
 
 

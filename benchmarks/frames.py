@@ -33,6 +33,7 @@ from game.context import Context
 from game.scene import Scene
 from game.scenes.menu import Menu
 from game.scenes.pause import Pause
+from game.scenes.physics import Physics
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
 from game.scenes.watch import COUNTS, Watch
@@ -86,6 +87,11 @@ def main() -> int:
         ("play, network", lambda: Play(seed=4), (pygame.K_r, pygame.K_TAB)),
     ]
     rows += [(f"watch, {n}", lambda n=n: Watch(n, seed=4), ()) for n in COUNTS]
+    rows += [
+        ("physics, stack", Physics, (pygame.K_c,)),
+        ("physics, heap", lambda: Physics("heap"), ()),
+        ("physics, contacts", lambda: Physics("heap"), (pygame.K_c,)),
+    ]
     slow = False
     for name, make, keys in rows:
         spent = cost(make(), keys)

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from game.scene import Scene
 
 _HINTS: Final[dict[str, str]] = {
     "PYGAME_HIDE_SUPPORT_PROMPT": "1",
@@ -21,12 +25,13 @@ if sys.platform == "linux":
     _HINTS["SDL_FRAMEBUFFER_ACCELERATION"] = "0"
 
 
-def play(folder: Path | None = None, full_screen: bool | None = None) -> int:
+def play(folder: Path | None = None, full_screen: bool | None = None, begin: Callable[[], Scene] | None = None) -> int:
     """Open the window on the menu and play until it is closed. Returns the exit code.
 
     Args:
         folder: the player's folder, in place of the system's own choice.
         full_screen: overrides the setting.
+        begin: makes the scene that opens over the menu at once.
 
     """
     tell_sdl()
@@ -34,6 +39,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None) -> int:
     from game.app import App, log_to
     from game.assets import user_dir
     from game.context import Context
+    from game.scene import Push
     from game.settings import SettingsFile
     from game.window import NoDisplayError
 
@@ -50,6 +56,8 @@ def play(folder: Path | None = None, full_screen: bool | None = None) -> int:
         return 2
     if file.problem:
         context.note(file.problem)
+    if begin is not None:
+        app.scenes.apply(Push(begin()))
     return app.run()
 
 

@@ -45,6 +45,7 @@ MENU_LINE: Final = "A moon lander, and a neural network that learns to fly it."
 MENU: Final = {
     "play": ("Play", "Fly it yourself, and hand over whenever you like."),
     "watch": ("Watch", "See the network land, and what it thinks on the way down."),
+    "physics": ("Physics", "Stacks, slopes, impacts: the engine, to look into and take hold of."),
     "settings": ("Settings", "Screen, motion, colours, keys."),
     "quit": ("Quit", "Back to Earth."),
 }
@@ -163,3 +164,73 @@ INPUTS: Final = (
     "left foot",
     "right foot",
 )
+
+# The gallery of physics
+PHYSICS_TITLE: Final = "Physics"
+# The word for an exhibit, the law it shows, and that law in figures.
+EXHIBITS: Final = {
+    "stack": (
+        "Stack",
+        "The lowest contact carries all that stands on it. Throw the ball at a column, and see.",
+        "{count:.0f} boxes of 1 kg weigh {weight:.1f} N; the ground pushes back with {push:.1f} N.",
+    ),
+    "heap": (
+        "Heap",
+        "A hundred bodies fall, and every impact and every rub turns some of their energy into heat.",
+        "Of {first:.0f} J of height and motion, {left:.0f} J are left.",
+    ),
+    "slopes": (
+        "Slopes",
+        "A box slides where the slope is steeper than its friction holds: tan θ > μ.",
+        "tan {degrees:.0f}° = {tangent:.2f}; {slid:.0f} of 5 have slid.",
+    ),
+    "bounce": (
+        "Bounce",
+        "A ball comes back to e² of the height it fell from.",
+        "{restitution:.2f}² · {drop:.0f} m = {expected:.2f} m; that ball came back to {peak:.2f} m.",
+    ),
+    "impacts": (
+        "Impacts",
+        "Equal discs hand on their momentum whole: as many leave the row as have struck it.",
+        "Nothing is lost when e = 1: {first:.1f} J at first, {now:.1f} J now.",
+    ),
+    "drag": (
+        "Drag race",
+        "Drag grows with speed until it carries the weight; from there on a fall is even.",
+        "Linear, 1 kg: m·g / c = {terminal:.2f} m/s; it falls at {speed:.2f} m/s.",
+    ),
+    "spin": (
+        "Spin",
+        "Free of gravity, what turns goes on turning; a push beside the middle moves and turns alike.",
+        "{impulse:.1f} N·s gives both bars J / m = {pace:.2f} m/s; at {reach:.1f} m, r·J / I = {spin:.2f} rad/s too.",
+    ),
+}
+SLOPE_LABEL: Final = "{tangent:.2f} {sign} {friction:.2f}"
+BOUNCE_COLUMN: Final = "e = {restitution:.2f}"
+BOUNCE_MARK: Final = "{expected:.2f} m"
+BOUNCE_PEAK: Final = "{expected:.2f} m, was {peak:.2f}"
+DRAG_SPEED: Final = "{speed:.2f} m/s"
+DRAG_LANES: Final = {
+    "none": "no drag",
+    "linear": "linear, {mass:.0f} kg, up to {terminal:.2f} m/s",
+    "quadratic": "quadratic, {mass:.0f} kg, up to {terminal:.2f} m/s",
+}
+IMPACTS_RAIL: Final = "{struck} struck · {moving} move · {momentum:.1f} kg·m/s"
+SPIN_TURNING: Final = "ω {spin:.2f} rad/s · I·ω {momentum:.2f}"
+SPIN_BARS: Final = (
+    "pushed in the middle: {pace:.2f} m/s, {spin:.2f} rad/s",
+    "pushed near its end: {pace:.2f} m/s, {spin:.2f} rad/s",
+)
+PHYSICS_GRAVITY: Final = "Gravity"
+PHYSICS_GRAVITIES: Final = ("moon 1.62", "Earth 9.81")
+PHYSICS_CONTACTS: Final = "Contacts"
+PHYSICS_CONTACTS_WORDS: Final = ("hidden", "drawn")
+PHYSICS_STOPPED: Final = "Stopped"
+PHYSICS_DRAG: Final = "Take hold of anything with the mouse."
+BODIES: Final = "BODIES"
+CONTACT_POINTS: Final = "CONTACTS"
+KINETIC_ENERGY: Final = "IN MOTION"
+STEP_TIME: Final = "ONE STEP"
+HINT_NEXT_EXHIBIT: Final = "next"
+HINT_CONTACTS: Final = "contacts"
+HINT_RESTART_EXHIBIT: Final = "restart"

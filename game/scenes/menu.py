@@ -36,6 +36,12 @@ def _watch() -> Scene:
     return Watch()
 
 
+def _physics() -> Scene:
+    from game.scenes.physics import Physics
+
+    return Physics()
+
+
 def _settings() -> Scene:
     from game.scenes.settings import SettingsScene
 
@@ -46,6 +52,7 @@ def _settings() -> Scene:
 ROWS: Final[tuple[tuple[str, Callable[[], Scene] | None], ...]] = (
     ("play", _play),
     ("watch", _watch),
+    ("physics", _physics),
     ("settings", _settings),
     ("quit", None),
 )

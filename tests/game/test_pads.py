@@ -75,8 +75,8 @@ def test_a_pad_leads_from_the_menu_to_settings_and_back(game: Driver, pads: Virt
             pads.press(button, down)
             game.frames(2)
 
-    tap(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    tap(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    for _ in range(3):
+        tap(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     tap(pygame.CONTROLLER_BUTTON_A)
     assert game.top_name == "SettingsScene"
     tap(pygame.CONTROLLER_BUTTON_B)

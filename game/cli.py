@@ -1,0 +1,29 @@
+"""Commands that open the game on a screen other than the menu."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from game import texts
+
+
+def add_commands(commands: Any) -> None:
+    """Add `physics` to a parser's sub-commands."""
+    physics = commands.add_parser("physics", help="open the gallery of physics")
+    names = list(texts.EXHIBITS)
+    physics.add_argument("--exhibit", choices=names, default=names[0], help=f"what to begin with (default: {names[0]})")
+    physics.set_defaults(run=open_physics)
+
+
+def open_physics(arguments: argparse.Namespace) -> int:
+    """Open the window on the gallery; the menu lies behind it."""
+    from game.start import play
+
+    return play(arguments.user_dir, arguments.full_screen, begin=lambda: _physics(arguments.exhibit))
+
+
+def _physics(exhibit: str) -> Any:
+    from game.scenes.physics import Physics
+
+    return Physics(exhibit)

@@ -1,0 +1,24 @@
+"""The gallery of physics: small worlds, each with one law of the engine to be seen in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from game.exhibits.exhibit import Exhibit, Label, Piece
+from game.exhibits.falls import Bounce, DragRace, Slopes
+from game.exhibits.momentum import Impacts, Spin
+from game.exhibits.piles import Heap, Stack
+
+# One row an exhibit, by its name in `texts.EXHIBITS`; each is built for a gravity in m/s².
+EXHIBITS: Final[dict[str, Callable[[float], Exhibit]]] = {
+    "stack": Stack,
+    "heap": Heap,
+    "slopes": Slopes,
+    "bounce": Bounce,
+    "impacts": Impacts,
+    "drag": DragRace,
+    "spin": Spin,
+}
+
+__all__ = ["EXHIBITS", "Exhibit", "Label", "Piece"]

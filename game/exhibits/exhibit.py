@@ -1,0 +1,161 @@
+"""What every exhibit of the gallery is made of: a room, coloured bodies, and words that live with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from engine import DT, Body, Polygon, Shape, World
+from engine.shapes import Point
+from engine.vector import Array
+from game.ui.tokens import FAINT, MUTE, Colour
+
+# How much of the view's width can be seen above the ground without meeting the words at the top.
+CLEAR: Final = 0.35
+_WALL: Final = 4.0
+_WALL_HEIGHT: Final = 200.0
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A body, the shape it is seen as, in the body's own frame, and its colour."""
+
+    body: Body
+    shape: Shape
+    colour: Colour
+
+
+@dataclass(frozen=True)
+class Label:
+    """A few words in the world, centred on a place in metres, or at that offset from a body.
+
+    Attributes:
+        within: whether a limit is kept, shown by a mark beside the words; None for no mark.
+        fill: how much of a bar under the words is full, 0 to 1; None for no bar.
+        limit: where on that bar a tick stands.
+
+    """
+
+    text: str
+    place: tuple[float, float]
+    body: Body | None = None
+    within: bool | None = None
+    fill: float | None = None
+    limit: float | None = None
+
+
+class Exhibit:
+    """One law of the engine, in a room of its own: a floor at y = 0, and walls at the edges of the view.
+
+    A subclass builds its bodies in `build` and says in `figures` what the law predicts and what is measured.
+
+    Attributes:
+        width: metres across the view.
+        weightless: whether there is no gravity, whatever was chosen.
+        pieces: everything that is seen.
+        rules: lines at known heights or places, as start and end in metres.
+
+    """
+
+    width = 28.0
+    weightless = False
+
+    def __init__(self, gravity: float) -> None:
+        self.gravity = 0.0 if self.weightless else gravity
+        self.world = World((0.0, -self.gravity))
+        self.pieces: list[Piece] = []
+        self.rules: list[tuple[tuple[float, float], tuple[float, float]]] = []
+        self.steps = 0
+        side = self.width / 2 + _WALL / 2
+        self.floor = self.world.add(Polygon.box(2 * self.width, _WALL), (0.0, -_WALL / 2), static=True)
+        for x in (-side, side):
+            self.world.add(Polygon.box(_WALL, _WALL_HEIGHT), (x, _WALL_HEIGHT / 2), static=True)
+        self.build()
+
+    def build(self) -> None:
+        """Put the bodies in."""
+        raise NotImplementedError
+
+    def figures(self) -> dict[str, float]:
+        """Return what the exhibit's live line quotes, by the names it has there."""
+        raise NotImplementedError
+
+    def labels(self) -> list[Label]:
+        """Return the words that stand beside bodies now."""
+        return []
+
+    def prepare(self) -> None:
+        """Push what is to be pushed in the next step."""
+
+    def observe(self) -> None:
+        """Measure what is to be measured after a step."""
+
+    def step(self) -> None:
+        """Let 1/60 s pass."""
+        self.prepare()
+        self.world.step()
+        self.steps += 1
+        self.observe()
+
+    def add(self, shape: Shape, position: Point, colour: Colour = MUTE, **physics: Any) -> Body:
+        """Put a body in that is seen; `physics` is whatever `World.add` takes besides."""
+        body = self.world.add(shape, position, **physics)
+        self.pieces.append(Piece(body, self.world.shapes[-1], colour))
+        return body
+
+    def add_fixed(self, shape: Shape, position: Point) -> Body:
+        """Put a body in that nothing can move."""
+        return self.add(shape, position, FAINT, static=True)
+
+    # What can be measured in every exhibit
+
+    @property
+    def bodies(self) -> list[Body]:
+        """Bodies that forces can move."""
+        return [piece.body for piece in self.pieces if not piece.body.static]
+
+    @property
+    def poses(self) -> Array:
+        """x, y, angle of every body, (bodies, 3), to be kept."""
+        poses: Array = self.world.state.pose[0].copy()
+        return poses
+
+    @property
+    def kinetic_energy(self) -> float:
+        """Joules, of translation and rotation."""
+        inverse, velocity = self.world.params.inverse_mass, self.world.state.velocity[0]
+        moving = inverse[:, 0] > 0
+        return float((0.5 * velocity[moving] ** 2 / inverse[moving]).sum())
+
+    @property
+    def energy(self) -> float:
+        """Joules, kinetic and of height above the floor."""
+        masses = np.array([body.mass for body in self.bodies])
+        heights = np.array([body.position[0, 1] for body in self.bodies])
+        return self.kinetic_energy + self.gravity * float(masses @ heights)
+
+    @property
+    def contact_count(self) -> int:
+        """How many points touch."""
+        contacts = self.world.contacts
+        return int(contacts.manifold.valid.sum()) if contacts else 0
+
+    def push_between(self, a: Body, b: Body) -> float:
+        """Newtons with which two bodies pressed on each other in the last step."""
+        contacts = self.world.contacts
+        if contacts is None:
+            return 0.0
+        rows = (np.sort(contacts.body, axis=1) == sorted((a.index, b.index))).all(axis=1)
+        return float(contacts.impulse[:2, rows].sum()) / DT
+
+
+def height(body: Body) -> float:
+    """Metres of its centre above the floor."""
+    return float(body.position[0, 1])
+
+
+def speed(body: Body) -> float:
+    """Metres a second."""
+    return float(np.hypot(*body.velocity[0]))

@@ -1,0 +1,166 @@
+"""One body and one law: friction on a slope, bouncing, drag."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from engine import Body, Circle, Polygon
+from game import texts
+from game.exhibits.exhibit import Exhibit, Label, height, speed
+from game.ui.tokens import EMBER, INK, MUTE
+
+# Below the ground line, where names of columns stand; points become metres by an exhibit's width.
+_BELOW: Final = -0.014
+
+
+class Slopes(Exhibit):
+    """Five boxes on one slope: those slide whose coefficient of friction is less than tan θ."""
+
+    width = 32.0
+    degrees = 30.0
+    frictions = (0.2, 0.35, 0.5, 0.65, 0.8)
+    size = (1.4, 0.9)
+
+    def build(self) -> None:
+        """Lay the slipperiest lowest, so that none runs into another."""
+        slope = math.radians(self.degrees)
+        left, right = -11.0, 5.0
+        top = (right - left) * math.tan(slope)
+        corners = np.array([(left, 0.0), (right, 0.0), (left, top)])
+        self.slope = self.add_fixed(Polygon(corners), (0.0, 0.0))
+        along, away = np.array([-math.cos(slope), math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
+        self.boxes: list[Body] = []
+        for number, friction in enumerate(self.frictions):
+            place = np.array([right, 0.0]) + (3.4 + 3.3 * number) * along + self.size[1] / 2 * away
+            box = self.add(Polygon.box(*self.size), place, angle=-slope, friction=friction)
+            self.boxes.append(box)
+        self.places = [box.position[0].copy() for box in self.boxes]
+
+    def figures(self) -> dict[str, float]:
+        """Return the slope, its tangent, and how many boxes it has set in motion."""
+        tangent = math.tan(math.radians(self.degrees))
+        return {"degrees": self.degrees, "tangent": tangent, "slid": len(self.slid())}
+
+    def slid(self) -> set[float]:
+        """Coefficients of the boxes that are no longer where they were."""
+        moved = [np.hypot(*(box.position[0] - place)) > 0.1 for box, place in zip(self.boxes, self.places, strict=True)]
+        return {friction for friction, far in zip(self.frictions, moved, strict=True) if far}
+
+    def labels(self) -> list[Label]:
+        """Say by each box how steep it lies, and whether that is too steep for it."""
+        labels = []
+        for box, friction in zip(self.boxes, self.frictions, strict=True):
+            lean = (float(box.angle[0]) + math.pi / 4) % (math.pi / 2) - math.pi / 4  # on whichever side it lies
+            tangent = abs(math.tan(lean))
+            sign = ">" if tangent > friction else "<"
+            text = texts.SLOPE_LABEL.format(tangent=tangent, sign=sign, friction=friction)
+            labels.append(Label(text, (0.45, 1.0), box, within=tangent <= friction))
+        return labels
+
+
+class Bounce(Exhibit):
+    """Five balls from one height: each comes back to e² of it."""
+
+    width = 22.0
+    drop = 6.0
+    radius = 0.4
+    restitutions = (0.0, 0.25, 0.5, 0.75, 1.0)
+
+    def build(self) -> None:
+        """Hang up the balls, and mark where each will come back to."""
+        self.balls: list[Body] = []
+        for number, restitution in enumerate(self.restitutions):
+            x = self._column(number)
+            place = (x, self.drop + self.radius)
+            self.balls.append(self.add(Circle(self.radius), place, EMBER, restitution=restitution))
+            self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
+        self.peaks = np.zeros(len(self.balls))
+        self.bounced = np.zeros(len(self.balls), dtype=bool)
+
+    def observe(self) -> None:
+        """Note how high each ball has come since it first touched the floor."""
+        bottom = np.array([height(ball) for ball in self.balls]) - self.radius
+        self.bounced |= bottom <= 0.005
+        self.peaks = np.maximum(self.peaks, np.where(self.bounced, bottom, 0.0))
+
+    def figures(self) -> dict[str, float]:
+        """Return what the ball with e = 0.75 should come back to, and what it came back to."""
+        which = 3
+        restitution = self.restitutions[which]
+        return {
+            "restitution": restitution,
+            "drop": self.drop,
+            "expected": restitution**2 * self.drop,
+            "peak": float(self.peaks[which]),
+        }
+
+    def labels(self) -> list[Label]:
+        """Name the columns; beside each mark, the height it stands for and the one that was measured."""
+        labels = []
+        for number, restitution in enumerate(self.restitutions):
+            x, expected = self._column(number), restitution**2 * self.drop
+            labels.append(Label(texts.BOUNCE_COLUMN.format(restitution=restitution), (x, _BELOW * self.width)))
+            if restitution:
+                words = texts.BOUNCE_PEAK if self.bounced[number] else texts.BOUNCE_MARK
+                text = words.format(expected=expected, peak=self.peaks[number])
+                labels.append(Label(text, (x + 2.0, expected - 0.02)))
+        return labels
+
+    def _column(self, number: int) -> float:
+        return -8.4 + 4.0 * number
+
+
+class DragRace(Exhibit):
+    """Discs fall side by side with no drag, linear or quadratic drag: each has its own fastest fall."""
+
+    width = 40.0
+    top = 13.0
+    # Name of the column, mass, linear drag in kg/s, quadratic drag in kg/m.
+    lanes = (
+        ("none", 1.0, 0.0, 0.0),
+        ("linear", 1.0, 1.0, 0.0),
+        ("linear", 2.0, 1.0, 0.0),
+        ("quadratic", 1.0, 0.0, 0.5),
+        ("quadratic", 2.0, 0.0, 0.5),
+    )
+
+    def build(self) -> None:
+        """Hang the discs up in a row."""
+        self.discs: list[Body] = []
+        for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
+            colour = MUTE if not linear + quadratic else INK if linear else EMBER
+            disc = self.add(
+                Circle(0.42 * math.sqrt(mass)), (self._lane(number), self.top), colour,
+                mass=mass, linear_drag=linear, quadratic_drag=quadratic,
+            )  # fmt: skip
+            self.discs.append(disc)
+
+    def terminal(self, number: int) -> float:
+        """Metres a second at which drag carries the weight; infinite without drag."""
+        _, mass, linear, quadratic = self.lanes[number]
+        if linear:
+            return mass * self.gravity / linear
+        return math.sqrt(mass * self.gravity / quadratic) if quadratic else math.inf
+
+    def figures(self) -> dict[str, float]:
+        """Return the weight of the light disc with linear drag, its terminal speed, and its speed."""
+        return {"terminal": self.terminal(1), "speed": speed(self.discs[1])}
+
+    def labels(self) -> list[Label]:
+        """Put a gauge beside each disc, the terminal speed marked; name the lanes."""
+        labels = []
+        fastest = math.sqrt(2 * self.gravity * self.top)
+        for number, (disc, (name, mass, _, _)) in enumerate(zip(self.discs, self.lanes, strict=True)):
+            now, terminal = speed(disc), self.terminal(number)
+            limit = terminal / fastest if terminal < fastest else None
+            text = texts.DRAG_SPEED.format(speed=now)
+            labels.append(Label(text, (2.0, 0.1), disc, fill=min(1.0, now / fastest), limit=limit))
+            words = texts.DRAG_LANES[name].format(mass=mass, terminal=terminal)
+            labels.append(Label(words, (self._lane(number), _BELOW * self.width)))
+        return labels
+
+    def _lane(self, number: int) -> float:
+        return -15.2 + 7.2 * number

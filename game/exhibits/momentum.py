@@ -1,0 +1,111 @@
+"""What impacts and pushes hand on: momentum and angular momentum."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from engine import DT, Body, Circle, Polygon
+from game import texts
+from game.exhibits.exhibit import CLEAR, Exhibit, Label, speed
+from game.ui.tokens import EMBER, INK, MUTE
+
+_MOVES: Final = 0.05  # metres a second
+
+
+class Impacts(Exhibit):
+    """Discs in a row on smooth rails, struck by one, two and three others: as many leave as arrive.
+
+    The discs stand a hair apart, so that one impact follows the other; had they touched, all impacts would be
+    one problem with many answers, and the solver's would spread the motion over the row.
+    """
+
+    radius = 0.45
+    gap = 0.01
+    row = 6
+    pace = 3.0
+    rails = (6.4, 3.2, 0.0)
+
+    def build(self) -> None:
+        """Lay the rails, and set the strikers in motion."""
+        self.discs: list[list[Body]] = []
+        pitch = 2 * self.radius + self.gap
+        for number, rail in enumerate(self.rails):
+            if rail:
+                self.add_fixed(Polygon.box(self.width, 0.12), (0.0, rail - 0.06))
+            strikers = [self._disc(-7.0 - pitch * k, rail, self.pace) for k in reversed(range(number + 1))]
+            self.discs.append(strikers + [self._disc(pitch * k, rail, 0.0) for k in range(self.row)])
+        self.energy_at_first = self.kinetic_energy
+
+    def figures(self) -> dict[str, float]:
+        """Return the kinetic energy at first and now."""
+        return {"first": self.energy_at_first, "now": self.kinetic_energy}
+
+    def labels(self) -> list[Label]:
+        """Count over each rail those that struck and those that move."""
+        labels = []
+        for number, (rail, discs) in enumerate(zip(self.rails, self.discs, strict=True)):
+            moving = sum(speed(disc) > _MOVES for disc in discs)
+            momentum = sum(float(disc.velocity[0, 0]) * disc.mass for disc in discs)
+            text = texts.IMPACTS_RAIL.format(struck=number + 1, moving=moving, momentum=abs(momentum))
+            labels.append(Label(text, (9.6, rail + 1.5)))
+        return labels
+
+    def _disc(self, x: float, rail: float, pace: float) -> Body:
+        colour = EMBER if pace else MUTE
+        disc = self.add(Circle(self.radius), (x, rail + self.radius), colour, friction=0.0, restitution=1.0)
+        disc.velocity = (pace, 0.0)
+        return disc
+
+
+class Spin(Exhibit):
+    """Free of gravity: what turns goes on turning, and a push beside the middle moves and turns."""
+
+    weightless = True
+    momentum = 1.2  # kg·m²/s
+    impulse = 0.4  # N·s
+    reach = 1.2  # metres from the middle of a bar to where it is pushed
+    push_at = 30  # steps
+
+    def build(self) -> None:
+        """Set three bodies turning with one angular momentum; lay two bars ready for a push."""
+        ceiling = CLEAR * self.width
+        self.world.add(Polygon.box(self.width, 4.0), (0.0, ceiling + 2.0), static=True)
+        self.rules.append(((-self.width / 2, ceiling), (self.width / 2, ceiling)))
+        middle = ceiling / 2
+        self.turning = [
+            self.add(Circle(0.7), (-11.4, middle), EMBER, restitution=0.8),
+            self.add(Polygon.box(2.2, 2.2), (-7.6, middle), MUTE, restitution=0.8),
+            self.add(Polygon.box(3.6, 0.5), (-2.8, middle), INK, restitution=0.8),
+        ]
+        for body in self.turning:
+            body.angular_velocity = self.momentum / body.inertia
+        bar = Polygon.box(0.5, 3.0)
+        self.bars = [self.add(bar, (3.4, y), MUTE, restitution=0.8) for y in (middle + 2.6, middle - 2.4)]
+
+    def prepare(self) -> None:
+        """Push both bars alike: one in the middle, one near its end."""
+        if self.steps == self.push_at:
+            for bar, offset in zip(self.bars, (0.0, self.reach), strict=True):
+                bar.apply_force((self.impulse / DT, 0.0), bar.position[0] + (0.0, offset))
+
+    def figures(self) -> dict[str, float]:
+        """Return what a push of the same strength gives to both bars."""
+        spin = self.impulse * self.reach / self.bars[1].inertia
+        return {"impulse": self.impulse, "reach": self.reach, "pace": self.impulse / self.bars[1].mass, "spin": spin}
+
+    def angular_momenta(self) -> list[float]:
+        """kg·m²/s of the three that turn, each about its own middle."""
+        return [float(body.angular_velocity[0]) * body.inertia for body in self.turning]
+
+    def labels(self) -> list[Label]:
+        """Say how fast each turns, and how fast the bars go."""
+        labels = []
+        for body, momentum in zip(self.turning, self.angular_momenta(), strict=True):
+            text = texts.SPIN_TURNING.format(spin=float(body.angular_velocity[0]), momentum=momentum)
+            labels.append(Label(text, (0.0, -2.35), body))
+        for bar, text in zip(self.bars, texts.SPIN_BARS, strict=True):
+            pace, spin = speed(bar), float(np.abs(bar.angular_velocity[0]))
+            labels.append(Label(text.format(pace=pace, spin=spin), (3.7, 0.0), bar))
+        return labels

@@ -1,0 +1,301 @@
+"""The gallery of physics: small worlds to look into, take hold of, slow down and step through."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+import pygame
+
+from engine.vector import Array
+from game import hud, texts
+from game.context import Context
+from game.controls import Command, translate
+from game.exhibits import EXHIBITS, Label
+from game.grip import Grip
+from game.render import POINTS_PER_METRE, WORLD_WIDTH, View
+from game.scene import Pop, Push, Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.figures import write_figures
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.sky import NightSky
+from game.ui.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
+from game.ui.widgets import Choice
+from game.world.bodies import Outlines, body_at, draw_contacts, draw_grip
+
+GRAVITIES: Final = (1.62, 9.81)
+SPEEDS: Final = (0.25, 0.5, 1.0)
+_SPEED_WORDS: Final = ("×¼", "×½", "×1")
+_GROUND: Final = 604.0  # where y = 0 is seen, in points from the top
+_TABS: Final = (MARGIN, 50.0)
+_ROWS: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices, and how far to the next
+_ROW_HEIGHT: Final = 17.0
+_LABEL_WIDTH: Final = 84.0
+_GAP: Final = 24.0
+_COLUMNS: Final = (758.0, 880.0, 1002.0, 1124.0)
+_REACH: Final = 8.0  # points by which the mouse may miss a body
+_GAUGE: Final = 64.0
+_SMOOTHING: Final = 0.05
+
+
+class Physics:
+    """One exhibit at a time; `now` in seconds is what its steps are timed with."""
+
+    def __init__(self, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
+        self._names = list(EXHIBITS)
+        self._chosen = self._names.index(exhibit)
+        self._now = now
+        self._context: Context | None = None
+        self._gravity, self._speed = 0, SPEEDS.index(1.0)
+        self._due = 0.0
+        self._mouse = (-1.0, -1.0)
+        self.stopped = self.contacts_drawn = False
+        self.grip: Grip | None = None
+
+    def enter(self, context: Context) -> None:
+        """Build the choices and the first exhibit, or go on after a pause."""
+        if self._context is not None:
+            return
+        self._context = context
+        self._sky = NightSky(np.random.default_rng(7), ember=0.35, stars=90)
+        self._form = Form(context, on_back=Pop)
+        words = [texts.EXHIBITS[name][0] for name in self._names]
+        manager = self._form.manager
+        tabs = pygame.Rect(*_TABS, math.ceil(_width(words, TEXT)), 24)
+        self._tabs = self._form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
+        self._add_row(0, texts.PHYSICS_GRAVITY, texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity)
+        self._speeds = self._add_row(1, texts.WATCH_SPEED, _SPEED_WORDS, self._speed, self._choose_speed)
+        self._contacts = self._add_row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)
+        self.restart()
+
+    def exit(self) -> None:
+        """Let go of what is held."""
+        self.grip = None
+
+    def restart(self) -> None:
+        """Build the exhibit anew."""
+        self.exhibit = EXHIBITS[self._names[self._chosen]](GRAVITIES[self._gravity])
+        self._outlines = Outlines(self.exhibit.pieces)
+        self._poses = self._poses_before = self.exhibit.poses
+        self._due = self.step_time = 0.0
+        self.grip = None
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Take hold, stop, step, choose, pause."""
+        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
+            self._mouse = (float(event.pos[0]), float(event.pos[1]))
+            if self._handle_grip(event):
+                return None
+        if event.type == pygame.WINDOWFOCUSLOST:
+            self.grip = None
+        if _stops(event):
+            self.stopped = not self.stopped
+            return None
+        if event.type == pygame.KEYDOWN and event.key == pygame.K_c:
+            self._contacts.choose(1 - self._contacts.index)
+            return None
+        return self._obey(event)
+
+    def _obey(self, event: pygame.event.Event) -> Transition | None:
+        match translate(event):
+            case Command.PAUSE:
+                return self._pause()
+            case Command.STEP:
+                self.stopped = True
+                self._step()
+            case Command.RETRY:
+                self.restart()
+            case Command.NEXT | Command.PREVIOUS as command:
+                self._tabs.choose((self._chosen + (1 if command is Command.NEXT else -1)) % len(self._names))
+            case Command.SLOWER:
+                self._speeds.shift(-1)
+            case Command.FASTER:
+                self._speeds.shift(1)
+            case _:
+                return self._form.handle_event(event)
+        return None
+
+    def update(self) -> Transition | None:
+        """Take as many steps as the chosen speed makes due."""
+        if not self.stopped:
+            self._due += SPEEDS[self._speed]
+            while self._due >= 1:
+                self._due -= 1
+                self._step()
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the room, what is in it, and the words around it."""
+        between = 1.0 if self.stopped else min(1.0, self._due + alpha * SPEEDS[self._speed])
+        poses = self._poses_before + between * (self._poses - self._poses_before)
+        view = self._view(canvas.scale)
+        self._sky.draw(canvas)
+        self._draw_ground(canvas, view)
+        lit = self.grip.body.index if self.grip else self._hovered()
+        self._outlines.draw(canvas, view, poses, lit, held=self.grip is not None)
+        if self.contacts_drawn:
+            draw_contacts(canvas, view, self.exhibit.world, self.exhibit.gravity or GRAVITIES[0])
+        for label in self.exhibit.labels():
+            _draw_label(canvas, view, label, poses)
+        if self.grip:
+            place = self.grip.place(poses[self.grip.body.index])
+            x, y = view.points(place).tolist()
+            draw_grip(canvas, (x, y), self._mouse)
+        self._draw_words(canvas)
+
+    # The world
+
+    def _step(self) -> None:
+        before = self._now()
+        if self.grip:
+            self.grip.pull()
+        self.exhibit.step()
+        spent = self._now() - before
+        self.step_time += (spent - self.step_time) * (_SMOOTHING if self.step_time else 1.0)
+        self._poses_before, self._poses = self._poses, self.exhibit.poses
+
+    def _view(self, scale: float) -> View:
+        zoom = WORLD_WIDTH / self.exhibit.width
+        return View(scale, (0.0, (_GROUND - VIEW_SIZE[1] / 2) / (POINTS_PER_METRE * zoom)), zoom)
+
+    def _place(self, point: tuple[float, float]) -> Array:
+        return self._view(1.0).metres(point)
+
+    def _hovered(self) -> int | None:
+        """Body under the mouse, if the mouse is what is in use."""
+        assert self._context is not None
+        if not self._context.controls.mouse_in_use:
+            return None
+        piece = body_at(self.exhibit.pieces, self._poses, self._place(self._mouse), 0.0)
+        return piece.body.index if piece else None
+
+    def _handle_grip(self, event: pygame.event.Event) -> bool:
+        """Take hold of a body, pull it, let go; false if the mouse means something else."""
+        if self.grip:
+            self.grip.target = self._place(self._mouse)
+            if event.type == pygame.MOUSEBUTTONUP and event.button == 1:
+                self.grip = None
+            return True
+        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
+            return False
+        if any(widget.hover_point(*event.pos) for widget in self._form.widgets):
+            return False
+        place = self._place(self._mouse)
+        reach = _REACH * self.exhibit.width / VIEW_SIZE[0]
+        piece = body_at(self.exhibit.pieces, self._poses, place, reach)
+        if piece:
+            self.grip = Grip(piece.body, place)
+        return piece is not None
+
+    def _pause(self) -> Transition:
+        from game.scenes.pause import Pause
+
+        return Push(Pause(self, retry=self.restart))
+
+    # Choices
+
+    def _add_row(self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]) -> Choice:
+        x, y, pitch = _ROWS
+        box = pygame.Rect(x, y + row * pitch, math.ceil(_LABEL_WIDTH + _width(words, SMALL)), _ROW_HEIGHT)
+        manager = self._form.manager
+        return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
+
+    def _choose_exhibit(self, index: int) -> None:
+        self._chosen = index
+        self.restart()
+
+    def _choose_gravity(self, index: int) -> None:
+        self._gravity = index
+        self.restart()
+
+    def _choose_speed(self, index: int) -> None:
+        self._speed = index
+
+    def _show_contacts(self, index: int) -> None:
+        self.contacts_drawn = bool(index)
+
+    # The picture
+
+    def _draw_ground(self, canvas: Canvas, view: View) -> None:
+        width, height = VIEW_SIZE
+        canvas.fill(canvas.rect(0, _GROUND, width, height - _GROUND), NIGHT0, 0.55)
+        canvas.line((0, _GROUND), (width, _GROUND), MUTE, 1)
+        for start, end in self.exhibit.rules:
+            (left, y), (right, _) = view.points((start, end)).tolist()
+            canvas.line((left, y), (right, y), FAINT, 1)
+
+    def _draw_words(self, canvas: Canvas) -> None:
+        canvas.text(texts.PHYSICS_TITLE, (MARGIN, 38), size=SMALL, colour=MUTE)
+        _, law, live = texts.EXHIBITS[self._names[self._chosen]]
+        canvas.text(law, (MARGIN, 112), size=TEXT)
+        write_figures(canvas, live.format(**self.exhibit.figures()), (MARGIN, 136), size=SMALL + 1)
+        hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
+        self._form.draw(canvas)
+        assert self._context is not None
+        controls = self._context.controls
+        word = controls.word
+        hints = [
+            (word(Command.HANDOVER) if controls.pad_in_use else "Space",
+             texts.HINT_GO if self.stopped else texts.HINT_STOP),
+            (word(Command.STEP), texts.HINT_STEP),
+            (word(Command.NEXT), texts.HINT_NEXT_EXHIBIT),
+            ("C", texts.HINT_CONTACTS),
+            (word(Command.RETRY), texts.HINT_RESTART_EXHIBIT),
+            (word(Command.PAUSE), texts.HINT_PAUSE),
+        ]  # fmt: skip
+        if controls.pad_in_use:
+            del hints[3]
+        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True)
+        self._draw_state(canvas)
+
+    def _draw_state(self, canvas: Canvas) -> None:
+        """Say on the right that time stands still, or else what the mouse is for."""
+        right = VIEW_SIZE[0] - MARGIN
+        text = texts.PHYSICS_STOPPED if self.stopped else texts.PHYSICS_DRAG
+        colour = INK if self.stopped else HUMAN
+        canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right")
+
+    def _readouts(self) -> list[hud.Readout]:
+        exhibit = self.exhibit
+        return [
+            hud.Readout(texts.BODIES, str(len(exhibit.bodies)), ""),
+            hud.Readout(texts.CONTACT_POINTS, str(exhibit.contact_count), ""),
+            hud.Readout(texts.KINETIC_ENERGY, f"{exhibit.kinetic_energy:.1f}", "J"),
+            hud.Readout(texts.STEP_TIME, f"{1e3 * self.step_time:.1f}", "ms"),
+        ]
+
+
+def _stops(event: pygame.event.Event) -> bool:
+    """Whether the event stops time or lets it go on."""
+    if event.type == pygame.KEYDOWN:
+        return bool(event.key == pygame.K_SPACE)
+    return event.type == pygame.CONTROLLERBUTTONDOWN and translate(event) is Command.HANDOVER
+
+
+def _width(words: Sequence[str], size: float) -> float:
+    """Points that a row of words takes."""
+    return sum(typeface.width(word, size, "regular") + _GAP for word in words) - _GAP
+
+
+def _draw_label(canvas: Canvas, view: View, label: Label, poses: Array) -> None:
+    place = np.asarray(label.place)
+    if label.body is not None:
+        place = place + poses[label.body.index, :2]
+    x, y = view.points(place).tolist()
+    left, _ = write_figures(canvas, label.text, (x, y + 4), size=SMALL, centred=True)
+    palette = canvas.palette
+    if label.within is not None:
+        if label.within:
+            canvas.dot((left - 10, y), 2.5, palette.good)
+        else:
+            canvas.marker("triangle", (left - 10, y), 9, palette.warn)
+    if label.fill is not None:
+        canvas.bar((x - _GAUGE / 2, y + 11, _GAUGE, 2), label.fill, INK)
+    if label.limit is not None:
+        tick = x - _GAUGE / 2 + label.limit * _GAUGE
+        canvas.line((tick, y + 8), (tick, y + 16), INK)
