@@ -6,10 +6,10 @@ import json
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from ai.agent import DeepQAgent
-from ai.config import PRESETS
+from ai.config import PRESETS, Config
 from ai.nn import ModelFormatError, atomic_folder
 from ai.task import TEST_SEED
 from ai.training import Progress, Training
@@ -59,7 +59,7 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
     agent = training.agent
     described = {
         "env": training.config.env,
-        "preset": next((name for name, preset in PRESETS.items() if preset == training.config), "custom"),
+        **_nearest_preset(training.config),
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 1), "best": training.best.to_json(),
@@ -71,6 +71,17 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
         best.write(temporary)
         agent.write(temporary / LAST)
         (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+
+
+def _nearest_preset(config: Config) -> dict[str, Any]:
+    """Name the preset with the fewest settings different, and those settings."""
+    given = config.to_json()
+    changes = {
+        name: {key: value for key, value in given.items() if value != preset.to_json()[key]}
+        for name, preset in PRESETS.items()
+    }
+    nearest = min(changes, key=lambda name: len(changes[name]))
+    return {"preset": nearest, "changes": changes[nearest]}
 
 
 def resume_run(folder: str | Path) -> Training:

@@ -93,6 +93,11 @@ def test_a_run_is_kept_and_gone_on_with(tmp_path):
     save_run(training, tmp_path / "run", final=True)
     described = json.loads((tmp_path / "run" / "training.json").read_text())
     assert described["decisions"] == 240
+    assert described["preset"] == "modern"
+    assert described["changes"] == {
+        "hidden": [16], "batch_size": 16, "updates": 1, "warm_up": 32, "replay_size": 2000, "num_envs": 8,
+        "spawn": "near",
+    }  # fmt: skip
     assert described["evaluation"]["episodes"] == 1000
     resumed = resume_run(tmp_path / "run")
     assert np.array_equal(resumed.agent.online.values, training.agent.online.values)
