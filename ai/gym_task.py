@@ -18,7 +18,13 @@ if TYPE_CHECKING:
 
 GOING_ON: Final = 0
 FAILED: Final = 2
-GYM: Final = Config(env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0)
+# Found by trial on CartPole-v1 and LunarLander-v3; docs/environments.md has the measurements.
+GYM: Final = Config(
+    env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0,
+    learning_rate=2e-3, final_learning_rate=3e-4, horizon=400_000, discount=0.995, n_step=3, batch_size=128,
+    updates=4, replay_size=200_000, warm_up=5_000, epsilon_decisions=40_000, epsilon_end=0.05, epsilon_spread=0.7,
+    hidden=(64, 64), target_rate=0.005, reward_scale=0.01,
+)  # fmt: skip
 
 
 def gym_config(env: str) -> Config:
@@ -116,7 +122,7 @@ class GymTask:
 
     symmetry: Symmetry | None = None
     action_chances: Floats | None = None
-    evaluate_every, validation_episodes, test_episodes = 20_000, 20, 100
+    evaluate_every, validation_episodes, test_episodes = 20_000, 50, 100
 
     def __init__(self, config: Config) -> None:
         self.config = config
@@ -136,7 +142,11 @@ class GymTask:
         try:
             env: gymnasium.Env[Any, Any] = self._gymnasium.make(self.config.env, disable_env_checker=True)
         except (self._gymnasium.error.Error, ImportError) as error:
-            raise ValueError(f"{self.config.env}: {error}") from error
+            hint = ""
+            if isinstance(error, self._gymnasium.error.DependencyNotInstalled):
+                # The advice of the error itself would bring plain pygame, which breaks pygame-ce.
+                hint = ". Do not take Gymnasium's own extras; for Box2D, pip install box2d"
+            raise ValueError(f"{self.config.env}: {error}{hint}") from error
         return env
 
     def make_env(self, rng: np.random.Generator) -> GymEnv:

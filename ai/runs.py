@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent import DeepQAgent
-from ai.config import PRESETS, Config
+from ai.config import LANDER, PRESETS, Config
+from ai.gym_task import gym_config
 from ai.nn import ModelFormatError, atomic_folder
 from ai.task import TEST_SEED
 from ai.training import Progress, Training
@@ -76,9 +77,10 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
 def _nearest_preset(config: Config) -> dict[str, Any]:
     """Name the preset with the fewest settings different, and those settings."""
     given = config.to_json()
+    presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
     changes = {
         name: {key: value for key, value in given.items() if value != preset.to_json()[key]}
-        for name, preset in PRESETS.items()
+        for name, preset in presets.items()
     }
     nearest = min(changes, key=lambda name: len(changes[name]))
     return {"preset": nearest, "changes": changes[nearest]}

@@ -81,7 +81,7 @@ class TestLearningOthersEnvironments:
         assert train_cart_pole(run, 10_000, "--set", "epsilon_decisions=5000", "--set", "warm_up=500") == 0
         assert "mean return" in capsys.readouterr().out
         described = json.loads((run / "training.json").read_text())
-        assert described["env"] == "CartPole-v1"
+        assert (described["env"], described["preset"]) == ("CartPole-v1", "gym")
         assert described["evaluation"]["episodes"] == 100
         assert main(["evaluate", "--model", str(run), "--episodes", "10", "--seed", "3", "--json"]) == 0
         measured = json.loads(capsys.readouterr().out)
