@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 
@@ -49,24 +49,17 @@ class Symmetry:
         cell.action[:count] = self.actions[cell.action[:count]]
 
 
-class Policy(Protocol):
-    """Whatever can judge actions."""
-
-    def q_values(self, observation: Floats) -> Floats:
-        """Values (n, actions) for observations (n, features)."""
-
-
 class DeepQAgent:
     """Learns what each action is worth in each state, from its own flights.
 
-    `action_chances` (actions,) are the odds of random actions, uniform by default. All randomness comes from
-    `rng`.
+    The default sizes are the lander's. `action_chances` (actions,) are the odds of random actions, uniform by
+    default. All randomness comes from `rng`.
     """
 
     def __init__(
         self,
-        num_features: int,
-        num_actions: int,
+        num_features: int = 9,
+        num_actions: int = 6,
         config: Config | None = None,
         rng: np.random.Generator | None = None,
         *,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any
@@ -28,6 +29,7 @@ class Progress:
     """How a run stands after one decision of all landers, or whatever else learns."""
 
     decisions: int  # of single landers
+    steps: int  # of their physics: a decision is several
     updates: int
     episodes: int
     success_rate: float  # of the last 100 episodes, exploration included
@@ -36,6 +38,7 @@ class Progress:
     mean_q: float
     epsilon: float
     stage: int  # of the curriculum
+    steps_per_second: float  # over the last second or so, by the clock
     evaluation: Score | None = None  # when one was due
     best: Score | None = None
 
@@ -55,6 +58,7 @@ class Training:
     best_values: Floats | None = None
     best_scale: RunningScale | None = None
     seconds: float = 0.0  # spent, as whoever runs it counts them
+    clock: Callable[[], float] = time.monotonic
 
     def __post_init__(self) -> None:
         self.task = task_of(self.config)
@@ -70,6 +74,7 @@ class Training:
         self._evaluated = 0
         self._landed: deque[bool] = deque(maxlen=100)
         self._returns: deque[float] = deque(maxlen=100)
+        self._moments: deque[float] = deque(maxlen=100)
         self._earned = np.zeros(self.env.num_envs)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
 
@@ -110,9 +115,17 @@ class Training:
         evaluation = self._evaluate_if_due()
         count = max(1, len(self._landed))
         return Progress(
-            agent.decisions, agent.train_count, self.episodes, sum(self._landed) / count,
-            sum(self._returns) / count, agent.loss, agent.mean_q, epsilon, env.stage, evaluation, self.best,
+            agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
+            sum(self._landed) / count, sum(self._returns) / count, agent.loss, agent.mean_q, epsilon, env.stage,
+            self._pace(), evaluation, self.best,
         )  # fmt: skip
+
+    def _pace(self) -> float:
+        """Physics steps a second, by the moments of the last hundred decisions."""
+        self._moments.append(self.clock())
+        spent = self._moments[-1] - self._moments[0]
+        steps = (len(self._moments) - 1) * self.env.num_envs * self.config.frame_skip
+        return steps / spent if spent > 0 else 0.0
 
     def _finish(self, result: StepResult) -> None:
         ended = result.ended

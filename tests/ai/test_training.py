@@ -50,10 +50,17 @@ def test_evaluating_changes_nothing_about_the_training():
 def test_progress_counts_what_happened():
     training, progress = advanced(SMALL, 80)
     assert progress.decisions == 80 * 8
+    assert progress.steps == 80 * 8 * 4
     assert progress.updates == training.agent.train_count
     assert progress.episodes == training.episodes > 0
     assert 0.0 <= progress.success_rate <= 1.0
     assert progress.epsilon == pytest.approx(linear(1.0, 0.05, 79 * 8, SMALL.epsilon_decisions))
+
+
+def test_progress_tells_the_pace_by_the_clock_it_is_given():
+    moments = iter(range(1000))
+    _, progress = advanced(SMALL, 10, clock=lambda: 0.5 * next(moments))
+    assert progress.steps_per_second == 8 * 4 / 0.5
 
 
 def test_the_generator_takes_changed_knobs():
