@@ -55,6 +55,7 @@ class Exhibit:
         width: metres across the view.
         weightless: whether there is no gravity, whatever was chosen.
         pieces: everything that is seen.
+        bodies: what forces can move.
         rules: lines at known heights or places, as start and end in metres.
 
     """
@@ -66,6 +67,7 @@ class Exhibit:
         self.gravity = 0.0 if self.weightless else gravity
         self.world = World((0.0, -self.gravity))
         self.pieces: list[Piece] = []
+        self.bodies: list[Body] = []
         self.rules: list[tuple[tuple[float, float], tuple[float, float]]] = []
         self.steps = 0
         side = self.width / 2 + _WALL / 2
@@ -103,6 +105,8 @@ class Exhibit:
         """Put a body in that is seen; `physics` is whatever `World.add` takes besides."""
         body = self.world.add(shape, position, **physics)
         self.pieces.append(Piece(body, self.world.shapes[-1], colour))
+        if not body.static:
+            self.bodies.append(body)
         return body
 
     def add_fixed(self, shape: Shape, position: Point) -> Body:
@@ -110,11 +114,6 @@ class Exhibit:
         return self.add(shape, position, FAINT, static=True)
 
     # What can be measured in every exhibit
-
-    @property
-    def bodies(self) -> list[Body]:
-        """Bodies that forces can move."""
-        return [piece.body for piece in self.pieces if not piece.body.static]
 
     @property
     def poses(self) -> Array:
@@ -132,9 +131,9 @@ class Exhibit:
     @property
     def energy(self) -> float:
         """Joules, kinetic and of height above the floor."""
-        masses = np.array([body.mass for body in self.bodies])
-        heights = np.array([body.position[0, 1] for body in self.bodies])
-        return self.kinetic_energy + self.gravity * float(masses @ heights)
+        inverse, heights = self.world.params.inverse_mass[:, 0], self.world.state.pose[0, :, 1]
+        moving = inverse > 0
+        return self.kinetic_energy + self.gravity * float((heights[moving] / inverse[moving]).sum())
 
     @property
     def contact_count(self) -> int:

@@ -107,5 +107,5 @@ class Spin(Exhibit):
             labels.append(Label(text, (0.0, -2.35), body))
         for bar, text in zip(self.bars, texts.SPIN_BARS, strict=True):
             pace, spin = speed(bar), float(np.abs(bar.angular_velocity[0]))
-            labels.append(Label(text.format(pace=pace, spin=spin), (3.7, 0.0), bar))
+            labels.append(Label(text.format(pace=pace, spin=spin), (0.0, -1.95), bar))
         return labels

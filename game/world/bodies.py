@@ -16,7 +16,7 @@ from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, INK, NET, NIGHT1, Colour
 from game.world.paint import mix
 
-_ROUND: Final = 36  # corners of a disc
+_ROUND: Final = 28  # corners of a disc
 _MARK: Final = np.array([(0.45, 0.0), (0.82, 0.0)])  # on a disc of radius 1, so that its turning is seen
 _EDGE: Final = 1.2  # points
 _FILL: Final = 0.26
@@ -38,25 +38,27 @@ class Outlines:
         self._body = np.repeat([piece.body.index for piece in pieces], lengths)
         ends = np.cumsum(lengths).tolist()
         self._spans = list(zip([0, *ends[:-1]], ends, strict=True))
+        self._colours = [_colours(piece.colour, _FILL) for piece in pieces]
 
     def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool) -> None:
         """Draw every piece at its pose (bodies, 3); the one of body `lit` brighter, and in amber if `held`."""
         x, y, angle = poses[self._body].T
         places = rotate(self._corners, np.cos(angle), np.sin(angle)) + np.stack([x, y], axis=1)
-        pixels: list[tuple[float, float]] = view.pixels(places).tolist()
+        pixels = view.pixels(places)
         width = max(1, canvas.px(_EDGE))
         surface = canvas.surface
-        for piece, (start, end) in zip(self.pieces, self._spans, strict=True):
-            edge, share = piece.colour, _FILL
+        for piece, (start, end), colours in zip(self.pieces, self._spans, self._colours, strict=True):
+            edge, fill, mark = colours
             if piece.body.index == lit:
-                edge, share = (HUMAN if held else mix(edge, INK, 0.6)), _LIT
-            corners = pixels[start:end]
+                edge, fill, mark = _colours(HUMAN if held else mix(edge, INK, 0.6), _LIT)
+            # Piece by piece: thousands of pairs alive at once would set Python's garbage collector going.
+            corners = pixels[start:end].tolist()
             if isinstance(piece.shape, Circle):
                 *corners, inner, outer = corners
-            pygame.draw.polygon(surface, mix(NIGHT1, edge, share), corners)
+            pygame.draw.polygon(surface, fill, corners)
             _draw_edge(surface, edge, corners, width)
             if isinstance(piece.shape, Circle):
-                pygame.draw.aaline(surface, mix(NIGHT1, edge, 0.75), inner, outer, width)
+                pygame.draw.aaline(surface, mark, inner, outer, width)
 
 
 def draw_contacts(canvas: Canvas, view: View, world: World, weight: float) -> None:
@@ -83,8 +85,8 @@ def draw_contacts(canvas: Canvas, view: View, world: World, weight: float) -> No
     middle = view.points(middle)
     _draw_lines(canvas, middle - rub, middle + rub, faint)
     _draw_lines(canvas, points - reach, points + reach, NET)
-    for point in points.tolist():
-        canvas.dot(point, 1.6, NET)
+    for x, y in zip(*points.T.tolist(), strict=True):
+        canvas.dot((x, y), 1.6, NET)
 
 
 def draw_grip(canvas: Canvas, start: tuple[float, float], end: tuple[float, float]) -> None:
@@ -113,6 +115,11 @@ def body_at(pieces: Sequence[Piece], poses: Array, place: Array, reach: float) -
     return best
 
 
+def _colours(edge: Colour, share: float) -> tuple[Colour, Colour, Colour]:
+    """Of the edge, the inside, and the mark that shows the turning."""
+    return edge, mix(NIGHT1, edge, share), mix(NIGHT1, edge, 0.75)
+
+
 def _outline(piece: Piece) -> Array:
     shape = piece.shape
     if not isinstance(shape, Circle):
@@ -131,6 +138,7 @@ def _draw_edge(surface: pygame.Surface, colour: Colour, corners: list[tuple[floa
 
 
 def _draw_lines(canvas: Canvas, starts: Array, ends: Array, colour: Colour) -> None:
-    scale, width = canvas.scale, max(1, canvas.px(1.0))
-    for start, end in zip((starts * scale).tolist(), (ends * scale).tolist(), strict=True):
-        pygame.draw.aaline(canvas.surface, colour, start, end, width)
+    width = max(1, canvas.px(1.0))
+    columns = np.concatenate([starts, ends], axis=1).T * canvas.scale
+    for left, top, right, bottom in zip(*columns.tolist(), strict=True):
+        pygame.draw.aaline(canvas.surface, colour, (left, top), (right, bottom), width)
