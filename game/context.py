@@ -27,7 +27,7 @@ class Context:
         models_dir: the shipped networks.
         assets_dir: the shipped data.
         rng: the source of every random choice.
-        note: shows a short message at the foot of the window for a few seconds.
+        note: shows a short message near the top of the window for a few seconds.
         apply_settings: makes the window follow the settings, and saves them.
 
     """

@@ -12,7 +12,7 @@ import pygame
 from ai.lander import LanderEnv
 from game import texts
 from game.ui.canvas import Canvas, Point
-from game.ui.hints import draw_hints
+from game.ui.hints import draw_hints, hints_width
 from game.ui.tokens import (
     FAINT,
     FIGURE,
@@ -162,28 +162,34 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
 
 @dataclass(frozen=True)
 class Card:
-    """How a flight ended: good or not, why, and its figures as label, value, unit."""
+    """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better."""
 
     good: bool
     title: str
     reason: str
     figures: tuple[tuple[str, str, str], ...]
     human: float
+    advice: str = ""
 
 
 CARD: Final = pygame.Rect(400, 136, 480, 264)
+_ADVICE_ROW: Final = 24
 
 
-def draw_card(canvas: Canvas, card: Card, keys: list[tuple[str, str]], shown: float) -> None:
-    """Draw the outcome card, `shown` 0 to 1 of the way in."""
+def draw_card(canvas: Canvas, card: Card, keys: list[tuple[str, str]], shown: float, advise: bool) -> None:
+    """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted."""
     drop = 10 * (1 - shown)
     left, top, width = CARD.left + 32, CARD.top - drop, CARD.width - 64
-    canvas.panel((CARD.left, top, CARD.width, CARD.height))
+    lower = _ADVICE_ROW if advise and card.advice else 0
+    canvas.panel((CARD.left, top, CARD.width, CARD.height + lower))
     colour = canvas.palette.good if card.good else canvas.palette.warn
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
     canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
     canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
     canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK)
+    if lower:
+        canvas.text(card.advice, (left, top + 110), size=SMALL, colour=MUTE)
+    top += lower
     column = width / len(card.figures)
     for number, (label, value, unit) in enumerate(card.figures):
         x = left + number * column
@@ -195,13 +201,19 @@ def draw_card(canvas: Canvas, card: Card, keys: list[tuple[str, str]], shown: fl
     draw_hints(canvas, keys, (left, top + 244))
 
 
-def draw_opening(canvas: Canvas, keys: Sequence[tuple[str, str]], line: str) -> None:
-    """Say in the middle, while the craft hangs still, how it is flown and that a touch begins it."""
+def draw_opening(
+    canvas: Canvas, keys: Sequence[tuple[str, str]], line: str, paths: Sequence[tuple[str, Colour]]
+) -> None:
+    """Say in the middle, while the craft hangs still, how it is flown and what the dotted paths are."""
     middle = VIEW_SIZE[0] / 2
-    canvas.text(line, (middle, 96), size=TEXT, colour=MUTE, align="centre")
-    # As wide as `draw_hints` sets them: 8 from a key to its meaning, 24 to the next.
-    width = sum(canvas.text_width(text, size=SMALL) for pair in keys for text in pair) + 32 * len(keys) - 24
-    draw_hints(canvas, keys, (middle - width / 2, 124))
+    canvas.text(line, (middle, 122), size=TEXT, colour=MUTE, align="centre")
+    draw_hints(canvas, keys, (middle - hints_width(canvas, keys, TEXT) / 2, 150), size=TEXT)
+    gap, dots = 32, 30
+    x = middle - (sum(canvas.text_width(text, size=SMALL) + dots for text, _ in paths) + gap * (len(paths) - 1)) / 2
+    for text, colour in paths:
+        for number in range(3):
+            canvas.dot((x + 4 + 8 * number, 174), 1.5, colour)
+        x = canvas.text(text, (x + dots, 178), size=SMALL, colour=MUTE).right + gap
 
 
 def _draw_mark(canvas: Canvas, place: Point, within: bool) -> None:

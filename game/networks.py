@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol, runtime_checkable
 
 from ai.env import Floats, Ints
+from ai.lander import NUM_ACTIONS, NUM_FEATURES
+from game import texts
 
 DEFAULT: Final = "modern"
 SCRIPTED: Final = "scripted"
+_PARTS: Final = ("config.json", "online", "target")  # a folder without any of them never was a network
+_log = logging.getLogger("tranquility")
 
 
 class Flyer(Protocol):
@@ -40,17 +45,25 @@ class Network:
 
 
 def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
-    """Return every folder that claims to hold a lander's network, by name; the player's own come last."""
+    """Return every folder that claims to hold a lander's network, by name; the player's own come last.
+
+    A player's network of the same name as another one is told apart, not left out.
+    """
     found: dict[str, Path] = {}
     for parent in (models_dir / "lander", user_dir / "models"):
         try:
-            inside = sorted(path for path in parent.iterdir() if path.is_dir() and not path.name.startswith("."))
+            inside = sorted(path for path in parent.iterdir() if _claims(path))
         except OSError:
             continue
         # The default one comes first, whatever its letter.
         for path in sorted(inside, key=lambda path: path.name != DEFAULT):
-            found.setdefault(path.name, path)
+            taken = path.name in found or path.name == SCRIPTED
+            found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = path
     return found
+
+
+def _claims(path: Path) -> bool:
+    return not path.name.startswith(".") and any((path / part).exists() for part in _PARTS)
 
 
 def load(name: str, folder: Path) -> Network:
@@ -59,11 +72,20 @@ def load(name: str, folder: Path) -> Network:
     from ai.nn import ModelFormatError
 
     try:
-        return Network(name, DeepQAgent.load(folder))
+        agent = DeepQAgent.load(folder)
     except ModelFormatError as error:
         return Network(name, problem=error.problems[0] if error.problems else str(error))
     except OSError as error:
         return Network(name, problem=error.strerror or str(error))
+    except Exception as error:  # anything may lie in a player's folder, and none of it may end the game
+        _log.exception("reading %s", folder)
+        return Network(name, problem=f"{type(error).__name__}: {error}")
+    if (agent.num_features, agent.num_actions) != (NUM_FEATURES, NUM_ACTIONS):
+        return Network(name, problem=texts.NETWORK_ELSEWHERE.format(
+            features=agent.num_features, actions=agent.num_actions,
+            lander_features=NUM_FEATURES, lander_actions=NUM_ACTIONS,
+        ))  # fmt: skip
+    return Network(name, agent)
 
 
 def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:

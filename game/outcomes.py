@@ -23,7 +23,8 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
         reason = crash_reason(env, slot)
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
-    return Card(outcome is Outcome.LANDED, title, reason, tuple(figures), human)
+    advice = texts.ADVICE.get(Cause(int(env.cause[slot])).name, "")
+    return Card(outcome is Outcome.LANDED, title, reason, tuple(figures), human, advice)
 
 
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:

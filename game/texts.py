@@ -56,7 +56,7 @@ SETTINGS: Final = {
     "full_screen": ("Full screen", "F11 or Alt + Enter at any time."),
     "reduced_motion": ("Reduced motion", "No shaking, no easing, a still sky."),
     "colour_safe": ("Colours for every eye", "Good and beyond limits, told apart without red and green."),
-    "show_hints": ("Hints", "The keys, and a word of advice, while you fly."),
+    "show_hints": ("Hints", "The keys while you fly, and a word of advice after a crash."),
 }
 SWATCH_GOOD: Final = "within limits"
 SWATCH_WARN: Final = "beyond limits"
@@ -79,6 +79,7 @@ KEYS: Final = (
 PAUSE_TITLE: Final = "Paused"
 PAUSE_RESUME: Final = "Resume"
 PAUSE_RETRY: Final = "Retry"
+PAUSE_NEW_STARTS: Final = "New starts"
 PAUSE_SETTINGS: Final = "Settings"
 PAUSE_LEAVE: Final = "Leave"
 
@@ -105,6 +106,14 @@ CAUSES: Final = {
     "SLIDING": "Slid across the ground at {value} m/s; {limit} is the limit.",
     "TILTED": "Tilted {value}° at contact; {limit}° is the limit.",
 }
+# A word of advice on the card of a crash
+ADVICE: Final = {
+    "HULL": "Level out early; below four metres, steer in short taps.",
+    "TERRAIN": "The amber dots end where you come down: push them onto the pad.",
+    "HARD": "Brake early and evenly: keep the descent green below five metres.",
+    "SLIDING": "Lean against the drift and fire, then level out before you touch.",
+    "TILTED": "Counter a turn before it is finished: the craft goes on turning.",
+}
 TIME: Final = "TIME"
 FUEL: Final = "FUEL"
 TOUCHDOWN: Final = "TOUCHDOWN"
@@ -119,6 +128,8 @@ FREE_FLIGHT: Final = "Free flight"
 WITH_NETWORK: Final = "with the {name} network"
 ALONE: Final = "on your own"
 BEGIN: Final = "The moon waits for your first touch."
+PATH_YOURS: Final = "where you drift, hands off"
+PATH_NETWORK: Final = "where the network would fly"
 FLIGHT_KEYS: Final = (("↑", "main engine"), ("←", "turn left"), ("→", "turn right"))
 FLIGHT_KEYS_PAD: Final = (("A", "main engine"), ("stick", "turn"))
 NO_NETWORK: Final = "No network to hand over to: {problem}"
@@ -128,6 +139,13 @@ HINT_PAUSE: Final = "pause"
 HINT_AGAIN: Final = "same start"
 HINT_NEW: Final = "new start"
 CARD_FIRST: Final = {True: "fly on", False: "try again"}
+
+# Networks
+NETWORK_YOURS: Final = "{name} (yours)"
+NETWORK_ELSEWHERE: Final = (
+    "made for something else than this lander: {features} inputs and {actions} actions, "
+    "where it has {lander_features} and {lander_actions}"
+)
 
 # Watch
 WATCH_TITLE: Final = "Watch"
@@ -140,7 +158,7 @@ WATCH_COUNTS: Final = "{landed} landed  ·  {lost} lost"
 WATCH_MODEL: Final = "Flown by"
 WATCH_COUNT: Final = "Landers"
 WATCH_SPEED: Final = "Speed"
-WATCH_DAMAGED: Final = "{name} (damaged)"
+WATCH_UNFIT: Final = "{name} (unfit)"
 WATCH_PROBLEM: Final = "{name} cannot fly: {problem}"
 WATCH_STOPPED: Final = "Stopped"
 HINT_STOP: Final = "stop"

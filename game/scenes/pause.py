@@ -27,11 +27,14 @@ class Pause:
     Args:
         below: the scene to show; it is not advanced.
         retry: begins the scene below anew; without it there is no such word.
+        retry_word: what that is called there.
 
     """
 
-    def __init__(self, below: Scene, retry: Callable[[], None] | None = None) -> None:
-        self._below, self._retry = below, retry
+    def __init__(
+        self, below: Scene, retry: Callable[[], None] | None = None, retry_word: str = texts.PAUSE_RETRY
+    ) -> None:
+        self._below, self._retry, self._retry_word = below, retry, retry_word
         self._picture: pygame.Surface | None = None
 
     def enter(self, context: Context) -> None:
@@ -41,7 +44,7 @@ class Pause:
         self._picture = None
         rows: list[tuple[str, Callable[[], Transition | None]]] = [(texts.PAUSE_RESUME, Pop)]
         if self._retry:
-            rows.append((texts.PAUSE_RETRY, self._begin_anew))
+            rows.append((self._retry_word, self._begin_anew))
         rows += [(texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
         for number, (label, press) in enumerate(rows):
             box = (MARGIN, _FIRST_WORD + number * _LINE, 200, _LINE)

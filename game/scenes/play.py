@@ -13,12 +13,13 @@ from game.clock import STEP
 from game.context import Context
 from game.controls import Command, translate
 from game.flight import Flight, Hand, coast_path
+from game.forecast import Forecast
 from game.outcomes import outcome_card
 from game.render import Camera
 from game.scene import Push, Transition
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints
-from game.ui.tokens import HUMAN, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
 from game.world.backdrop import landscape
 from game.world.pad import draw_pad
 from game.world.paths import draw_dotted
@@ -95,12 +96,14 @@ class Play:
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
         if self._waits():
+            self._look_ahead()
             return None
         flight = self.flight
         was_over = flight.over
         if not was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = hud.flight_readouts(flight.env)
         flight.step(self._controls.action)
+        self._look_ahead()
         ended = np.array([flight.over and not was_over])
         self._stage.follow(np.array([flight.hand is Hand.NETWORK]), ended)
         if not self._settings.reduced_motion:
@@ -110,9 +113,6 @@ class Play:
             self._since_end += 1
             if self._card is None:
                 self._card = outcome_card(flight.env, flight.share)
-                self._path = np.empty((0, 2))
-        elif self._steps % _PATH_EVERY == 1:
-            self._path = coast_path(flight.env)
         return None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -126,11 +126,13 @@ class Play:
         centre = (float(env.pad[0, 0]), float(env.pad[0, 1]))
         draw_pad(canvas, view, centre, float(env.pad_width[0]), self._time)
         draw_dotted(canvas, view, self._path, HUMAN)
+        if self._forecast and not flight.over:
+            draw_dotted(canvas, view, self._forecast.path, NET)
         self._stage.draw_lander(canvas, view, pose)
         self._stage.draw_dust(canvas, view, alpha)
         self._draw_hud(canvas)
         if self._card is not None and self._card_shown > 0:
-            hud.draw_card(canvas, self._card, self._card_keys(), self._card_shown)
+            hud.draw_card(canvas, self._card, self._card_keys(), self._card_shown, self._settings.show_hints)
 
     # The flight
 
@@ -140,6 +142,16 @@ class Play:
             self._time += STEP
         self._away += self._away > 0
         self._sweep += (1.0 - self._sweep) * (1.0 if self._settings.reduced_motion else _SWEEP)
+
+    def _look_ahead(self) -> None:
+        """Predict where the craft goes if nobody touches anything, and where the network would take it."""
+        if self.flight.over:
+            self._path = np.empty((0, 2))
+            return
+        if self._steps % _PATH_EVERY == 0 and not self.waiting:
+            self._path = coast_path(self.flight.env)
+        if self._forecast:
+            self._forecast.follow(self.flight.env)
 
     def _waits(self) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
@@ -159,6 +171,7 @@ class Play:
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
         self._path = coast_path(self.flight.env)
+        self._forecast = Forecast(self._network.flyer) if self._network.flyer else None
         self._sweep = 1.0
         self._steps = self._since_end = 0
 
@@ -202,18 +215,20 @@ class Play:
         network = self._network
         flown = texts.WITH_NETWORK.format(name=network.name) if network.flyer else texts.ALONE
         hud.draw_corner(canvas, texts.FREE_FLIGHT, flown)
-        if network.problem:
-            problem = texts.NO_NETWORK.format(problem=network.problem)
-            canvas.text(problem, (VIEW_SIZE[0] / 2, 78), size=SMALL, colour=MUTE, align="centre")
         hud.draw_readouts(canvas, self._readouts)
-        word = self._controls.word
         if self.waiting:
             keys = texts.FLIGHT_KEYS_PAD if self._controls.pad_in_use else texts.FLIGHT_KEYS
-            hud.draw_opening(canvas, keys, texts.BEGIN)
+            paths = [(texts.PATH_YOURS, HUMAN), *([(texts.PATH_NETWORK, NET)] if network.flyer else [])]
+            hud.draw_opening(canvas, keys, texts.BEGIN, paths)
+        if self._settings.show_hints:
+            self._draw_hints(canvas)
+
+    def _draw_hints(self, canvas: Canvas) -> None:
+        word = self._controls.word
         hints = [(word(Command.PAUSE), texts.HINT_PAUSE)]
-        if network.flyer:
-            meaning = texts.HINT_TAKE_BACK if network_flies else texts.HINT_HAND_OVER
-            hints.insert(0, (word(Command.HANDOVER), meaning))
+        if self._network.flyer:
+            taken = self.flight.hand is Hand.NETWORK
+            hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
         draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
 
     def _card_keys(self) -> list[tuple[str, str]]:

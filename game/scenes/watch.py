@@ -24,7 +24,7 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
-from game.ui.widgets import Choice
+from game.ui.widgets import CHOICE_GAP, Choice
 from game.world.backdrop import landscape
 from game.world.pad import draw_pad
 from game.world.paths import Trails
@@ -37,7 +37,9 @@ _SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smal
 _ROW: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices, and how far to the next
 _ROW_HEIGHT: Final = 17.0
 _LABEL_WIDTH: Final = 84.0
-_GAP: Final = 24.0
+_WIDEST: Final = 452.0  # of a row: the pad begins there
+_LONGEST_NAME: Final = 24
+_LONGEST_PROBLEM: Final = 110
 _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
@@ -180,7 +182,7 @@ class Watch:
     def _pause(self) -> Transition:
         from game.scenes.pause import Pause
 
-        return Push(Pause(self, retry=self._begin_anew))
+        return Push(Pause(self, self._begin_anew, texts.PAUSE_NEW_STARTS))
 
     # Choices
 
@@ -188,15 +190,16 @@ class Watch:
         self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
     ) -> Choice:
         x, y, pitch = _ROW
-        width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + _GAP for word in words) - _GAP
-        box = pygame.Rect(x, y + row * pitch, math.ceil(width), _ROW_HEIGHT)
+        width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + CHOICE_GAP for word in words) - CHOICE_GAP
+        box = pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
         manager = self._form.manager
         return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
 
     def _words(self) -> list[str]:
         return [
-            network.name if network.flyer else texts.WATCH_DAMAGED.format(name=network.name)
+            name if network.flyer else texts.WATCH_UNFIT.format(name=name)
             for network in self._networks
+            for name in [_shortened(network.name)]
         ]
 
     def _choose_network(self, index: int) -> None:
@@ -240,14 +243,19 @@ class Watch:
         crowd = texts.WATCH_ONE if count == 1 else texts.WATCH_MANY.format(count=count)
         hud.draw_corner(canvas, texts.WATCH_TITLE, crowd)
         scripted = self._network.name == networks.SCRIPTED
-        flies = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=self._network.name)
+        flies = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=_shortened(self._network.name))
         hud.draw_hand(canvas, texts.WATCH_STOPPED if self.stopped else flies, NET)
         self._draw_counts(canvas)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], (758, 880, 1002, 1124))
         if self.problem:
-            canvas.marker("cross", (MARGIN + 5, _ROW[1] - 14), 9, canvas.palette.warn)
-            canvas.text(self.problem, (MARGIN + 18, _ROW[1] - 10), size=SMALL, colour=canvas.palette.warn)
+            middle, problem = VIEW_SIZE[0] / 2, _shortened(self.problem, _LONGEST_PROBLEM)
+            box = canvas.text(problem, (middle, 84), size=SMALL, colour=canvas.palette.warn, align="centre")
+            canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
         self._form.draw(canvas)
+        if self._settings.show_hints:
+            self._draw_hints(canvas)
+
+    def _draw_hints(self, canvas: Canvas) -> None:
         assert self._context is not None
         word = self._context.controls.word
         pad = self._context.controls.pad_in_use
@@ -272,3 +280,7 @@ class Watch:
         canvas.text(texts.WATCH_LANDED, (figure.right + 6, 118), size=SMALL, colour=MUTE)
         counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
         canvas.text(counts, (MARGIN, 140), size=SMALL, colour=MUTE, tabular=True)
+
+
+def _shortened(text: str, most: int = _LONGEST_NAME) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Final
 
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, MUTE, SMALL
+
+_GAPS: Final = 8.0, 24.0  # from a key to its meaning, from there to the next key
 
 
 def draw_hints(
@@ -14,14 +17,20 @@ def draw_hints(
     position: tuple[float, float],
     *,
     from_right: bool = False,
+    size: float = SMALL,
 ) -> None:
     """Write pairs of a key and its meaning on one baseline, starting (or ending) at the position."""
     pairs = list(hints)
-    gaps = 8.0, 24.0
-    if from_right:
-        widths = [canvas.text_width(text, size=SMALL) for pair in pairs for text in pair]
-        position = (position[0] - sum(widths) - len(pairs) * sum(gaps) + gaps[1], position[1])
     x, y = position
+    if from_right:
+        x -= hints_width(canvas, pairs, size)
     for key, meaning in pairs:
-        x += canvas.text(key, (x, y), size=SMALL, colour=INK, weight="medium").width + gaps[0]
-        x += canvas.text(meaning, (x, y), size=SMALL, colour=MUTE).width + gaps[1]
+        x += canvas.text(key, (x, y), size=size, colour=INK, weight="medium").width + _GAPS[0]
+        x += canvas.text(meaning, (x, y), size=size, colour=MUTE).width + _GAPS[1]
+
+
+def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = SMALL) -> float:
+    """Return how wide `draw_hints` will be."""
+    keys = sum(canvas.text_width(key, size=size, weight="medium") for key, _ in hints)
+    meanings = sum(canvas.text_width(meaning, size=size) for _, meaning in hints)
+    return keys + meanings + len(hints) * sum(_GAPS) - _GAPS[1]

@@ -1,4 +1,4 @@
-"""Short messages at the foot of the window."""
+"""Short messages near the top of the window, where no screen has figures or choices of its own."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from game.ui.tokens import INK, SMALL, VIEW_SIZE
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
 _LONGEST: Final = 150
+_TOP: Final = 68
 
 
 class Notes:
@@ -36,5 +37,5 @@ class Notes:
         alpha = min(1.0, self._left / _STEPS_FADING)
         width = canvas.text_width(self._text, size=SMALL)
         middle = VIEW_SIZE[0] / 2
-        canvas.panel((middle - width / 2 - 16, 664, width + 32, 32))
-        canvas.text(self._text, (middle, 684), size=SMALL, colour=INK, align="centre", alpha=alpha)
+        canvas.panel((middle - width / 2 - 16, _TOP, width + 32, 32))
+        canvas.text(self._text, (middle, _TOP + 20), size=SMALL, colour=INK, align="centre", alpha=alpha)

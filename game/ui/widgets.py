@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import accumulate, pairwise
 from typing import Final
 
 import pygame
@@ -21,6 +22,7 @@ from game.ui.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
 from game.ui.typeface import Weight
 
 OnPress = Callable[[], Transition | None]
+CHOICE_GAP: Final = 24  # between the words of a choice
 _EASE: Final = 0.22
 
 
@@ -269,7 +271,10 @@ class Slider(Widget):
 
 
 class Choice(Widget):
-    """One of a few words in a row; a line under the chosen one."""
+    """One of a few words in a row; a line under the chosen one.
+
+    Words that do not fit into the box go on further pages, one of which is shown at a time, between arrows.
+    """
 
     def __init__(
         self,
@@ -285,9 +290,19 @@ class Choice(Widget):
     ) -> None:
         super().__init__(manager, box, label)
         self.options, self.index, self._on_change, self._size = options, index, on_change, size
-        self._lefts = [self.box.left + label_width]
-        for option in options:
-            self._lefts.append(self._lefts[-1] + typeface.width(option, size, "regular") + 24)
+        left = self.box.left + label_width
+        widths = [typeface.width(option, size, "regular") for option in options]
+        room = self.box.right - left
+        if sum(widths) + CHOICE_GAP * (len(widths) - 1) > room + 1:
+            left, room = left + CHOICE_GAP, room - 2 * CHOICE_GAP
+        self._pages = _pages(widths, room)
+        self._lefts = [left + place for page in self._pages for place in accumulate(
+            (widths[number] + CHOICE_GAP for number in page[:-1]), initial=0.0
+        )]  # fmt: skip
+
+    @property
+    def _page(self) -> range:
+        return next(page for page in self._pages if self.index in page)
 
     def choose(self, index: int) -> None:
         """Take an option by its number."""
@@ -302,8 +317,13 @@ class Choice(Widget):
         if self.ringed or not self.box.collidepoint(x, self.box.centery):
             self.choose((self.index + 1) % len(self.options))
             return
-        starts = [number for number, left in enumerate(self._lefts[:-1]) if left - 12 <= x]
-        self.choose(starts[-1] if starts else self.index)
+        page = self._page
+        if page.stop < len(self.options) and x > self.box.right - CHOICE_GAP:
+            self.choose(page.stop)
+        elif page.start and self._lefts[page.start] - CHOICE_GAP <= x < self._lefts[page.start] - 4:
+            self.choose(page.start - 1)
+        else:
+            self.choose(max((number for number in page if self._lefts[number] - 12 <= x), default=self.index))
 
     def shift(self, direction: int) -> bool:
         """Take the option to the left or right."""
@@ -315,12 +335,28 @@ class Choice(Widget):
         super().paint(canvas)
         baseline = self.box.centery + 0.36 * self._size
         canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint())
-        for number, option in enumerate(self.options):
+        page = self._page
+        if page.start:
+            canvas.text("‹", (self._lefts[page.start] - 16, baseline), size=self._size, colour=INK)
+        if page.stop < len(self.options):
+            canvas.text("›", (self.box.right, baseline), size=self._size, colour=INK, align="right")
+        for number in page:
             chosen = number == self.index
             left, colour = self._lefts[number], INK if chosen else MUTE
-            box = canvas.text(option, (left, baseline), size=self._size, colour=colour)
+            box = canvas.text(self.options[number], (left, baseline), size=self._size, colour=colour)
             if chosen:
                 canvas.line((left, baseline + 8), (left + box.width, baseline + 8), NET, 2)
+
+
+def _pages(widths: Sequence[float], room: float) -> list[range]:
+    """Return which words, by number, stand together on a page; a page has one word at least."""
+    starts, x = [0], 0.0
+    for number, width in enumerate(widths):
+        if x and x + width > room:
+            starts.append(number)
+            x = 0.0
+        x += width + CHOICE_GAP
+    return [range(start, stop) for start, stop in pairwise([*starts, len(widths)])]
 
 
 def mix(a: Colour, b: Colour, fraction: float) -> Colour:

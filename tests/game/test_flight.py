@@ -3,11 +3,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.lander import LIMITS, PARAMS, Cause, LanderEnv, Outcome
+from ai.agent import DeepQAgent
+from ai.lander import LIMITS, NUM_ACTIONS, NUM_FEATURES, PARAMS, Cause, LanderEnv, Outcome
 from ai.pilots import ScriptedPilot
 from game import networks, texts
 from game.assets import MODELS_DIR
 from game.flight import DECISION_STEPS, Flight, Hand, Swarm, coast_path
+from game.forecast import Forecast
 from game.outcomes import outcome_card
 
 STANDING = PARAMS.pad_top + PARAMS.stand
@@ -158,8 +160,11 @@ def test_networks_are_listed_with_what_is_wrong_with_them(tmp_path: Path):
     models, user = tmp_path / "models", tmp_path / "user"
     assert [n.name for n in networks.available(models, user)] == ["modern", "scripted"]
     assert "missing" in networks.available(models, user)[0].problem
-    (models / "lander" / "broken").mkdir(parents=True)
-    (user / "models" / "mine").mkdir(parents=True)
+    for folder in (models / "lander" / "broken", user / "models" / "mine"):
+        folder.mkdir(parents=True)
+        (folder / "config.json").write_text("{}")
+    (user / "models" / "pictures").mkdir()
+    (user / "models" / "notes.txt").touch()
     found = {network.name: network for network in networks.available(models, user)}
     assert list(found) == ["modern", "broken", "mine", "scripted"]
     assert all(found[name].flyer is None and found[name].problem for name in ("modern", "broken", "mine"))
@@ -175,3 +180,35 @@ def test_the_shipped_network_lands():
     for _ in range(1600):
         swarm.step()
     assert swarm.landed > 0.9 * (swarm.landed + swarm.lost)
+
+
+def test_whatever_lies_in_the_players_folder_is_named_and_never_raises(tmp_path: Path):
+    folder = tmp_path / "models"
+    DeepQAgent(4, 2).save(folder / "cartpole")
+    DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(folder / "modern")
+    DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(folder / "cut")
+    (folder / "cut" / "optimizer.npz").write_bytes((folder / "cut" / "optimizer.npz").read_bytes()[:200])
+    DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(tmp_path / "shipped" / "lander" / "modern")
+    found = {network.name: network for network in networks.available(tmp_path / "shipped", tmp_path)}
+    assert found["cartpole"].flyer is None
+    assert "4 inputs and 2 actions" in found["cartpole"].problem
+    assert found["cut"].flyer is None
+    assert found["cut"].problem
+    assert found["modern"].flyer is not None
+    assert found["modern (yours)"].flyer is not None
+
+
+def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
+    alone, watched = Flight(7, ScriptedPilot()), Flight(7, ScriptedPilot())
+    forecast = Forecast(ScriptedPilot())
+    for flight in (alone, watched):
+        flight.hand_over()
+    while not alone.over:
+        alone.step(0)
+        watched.step(0)
+        forecast.follow(watched.env)
+        if len(alone.recording.actions) == 120:
+            assert abs(forecast.path[-1, 0] - watched.env.pad[0, 0]) < watched.env.pad_width[0] / 2
+            assert forecast.path[-1, 1] - watched.env.pad[0, 1] - PARAMS.stand < 0.5
+    assert watched.recording == alone.recording
+    assert np.array_equal(watched.poses.now, alone.poses.now)

@@ -8,11 +8,12 @@ import pytest
 
 from ai.lander import PARAMS, Outcome
 from ai.pilots import ScriptedPilot
-from game import networks
+from game import networks, texts
 from game.assets import MODELS_DIR
 from game.context import Context
 from game.flight import Hand
 from game.scenes.play import Play
+from game.ui.canvas import Canvas
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]
@@ -245,3 +246,30 @@ def test_draw_changes_nothing(open_game: Open, flown_by):
         driver.top.draw(driver.app.canvas, 0.5)
         pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
     assert np.array_equal(*pictures)
+
+
+@pytest.mark.parametrize("hints", [True, False])
+def test_hints_come_with_the_setting_and_go_with_it(open_game: Open, flown_by, monkeypatch, hints: bool):
+    flown_by(ScriptedPilot())
+    driver = open_game(Play(seed=4))
+    driver.app.context.settings.show_hints = hints
+    written: list[str] = []
+    monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
+    driver.frames(1)
+    assert texts.FLIGHT_KEYS[0][1] in written  # the keys that fly are told on the first screen in any case
+    assert (texts.HINT_HAND_OVER in written) is hints
+    start_at(scene(driver), 0.0, 2.6, 0.0, -6.0, 0.0, 0.0)
+    driver.frames(120)
+    assert texts.OUTCOMES["CRASHED"][0] in written
+    assert (texts.ADVICE["HARD"] in written) is hints
+
+
+def test_the_networks_way_is_drawn_in_its_colour_if_there_is_one(open_game: Open, flown_by):
+    flown_by(ScriptedPilot())
+    driver = open_game(Play(seed=4))
+    driver.frames(200)
+    assert len(scene(driver)._forecast.path) > 5
+    flown_by(None)
+    driver = open_game(Play(seed=4))
+    driver.frames(2)
+    assert scene(driver)._forecast is None

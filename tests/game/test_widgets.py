@@ -8,10 +8,10 @@ import pytest
 
 from game.context import Context
 from game.scene import Pop, Transition
-from game.ui import focus
+from game.ui import focus, typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
-from game.ui.widgets import Choice, Slider, Toggle, Word
+from game.ui.widgets import CHOICE_GAP, Choice, PointsManager, Slider, Toggle, Word
 from tests.game.driver import Driver
 
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
@@ -207,3 +207,27 @@ def test_texts_are_kept_and_forgotten_with_the_size(tmp_path: Path):
     assert typeface.render("kept", 15.0, "regular", (232, 236, 244))[0] is first
     canvas.attach(pygame.Surface((1920, 1080)))
     assert typeface.render.cache_info().currsize == 0
+
+
+def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
+    names = [f"network {number}" for number in range(30)]
+    choice = Choice(PointsManager(), (64, 250, 400, 20), "", names, 0, lambda _: None)
+    pages = choice._pages
+    assert [number for page in pages for number in page] == list(range(30))
+    for page in pages:
+        last = choice._lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
+        assert last <= 464 - CHOICE_GAP + 1
+
+    def click(x: float) -> None:
+        choice.ui_manager.mouse_position = (int(x), 260)
+        choice.press()
+
+    click(460)
+    assert choice.index == pages[1].start
+    click(choice._lefts[pages[1][1]] + 3)
+    assert choice.index == pages[1][1]
+    click(choice._lefts[pages[1].start] - 14)
+    assert choice.index == pages[0][-1]
+    for _ in range(40):
+        choice.shift(1)
+    assert choice.index == 29
