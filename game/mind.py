@@ -15,6 +15,7 @@ from game.ui.canvas import Canvas
 from game.ui.tokens import LABEL, LINE, MUTE, SMALL, TEXT
 
 PANEL: Final = pygame.Rect(984, 84, 260, 426)
+_COVER: Final = 0.92  # landers fly past behind it, and its small words are to be read all the same
 _EASE: Final = 0.3
 _LEAST_SPAN: Final = 0.05  # values closer together than this count as equal
 
@@ -47,7 +48,7 @@ class Mind:
     def draw(self, canvas: Canvas) -> None:
         """Draw the panel."""
         left, top, width = PANEL.left + 20, PANEL.top, PANEL.width - 40
-        canvas.panel(PANEL)
+        canvas.panel(PANEL, _COVER)
         title = texts.MIND_TITLE if self.thinks else texts.MIND_SCRIPTED_TITLE
         canvas.text(title, (left, top + 34), size=TEXT)
         rows = list(zip(ACTION_NAMES, self._bars.tolist(), strict=True))

@@ -100,7 +100,7 @@ class Menu:
         for word, line in self._lines:
             if word.warmth > 0.02:
                 place = (MARGIN + 176, word.baseline)
-                canvas.text(line, place, size=TEXT, colour=MUTE, alpha=word.warmth)
+                canvas.text(line, place, size=TEXT, alpha=word.warmth)  # in ink: the dawn is bright
         self._draw_hints(canvas)
 
     @property

@@ -234,9 +234,9 @@ class Canvas:
         edge = shapes.rounded(area.size, radius * self.scale, colour, max(1, self.px(width)))
         self._blit(edge, area.topleft, alpha)
 
-    def panel(self, rect: pygame.typing.RectLike) -> None:
+    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
         """Draw the one translucent box there is."""
-        self.rounded(rect, 8, PANEL, PANEL_ALPHA)
+        self.rounded(rect, 8, PANEL, alpha)
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""
