@@ -76,7 +76,8 @@ class Bounce(Exhibit):
             x = self._column(number)
             place = (x, self.drop + self.radius)
             self.balls.append(self.add(Circle(self.radius), place, EMBER, restitution=restitution))
-            self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
+            if restitution:
+                self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
         self.peaks = np.zeros(len(self.balls))
         self.bounced = np.zeros(len(self.balls), dtype=bool)
 
