@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -266,7 +268,7 @@ class DeepQAgent:
         try:
             with np.load(folder / OPTIMIZER_FILE, allow_pickle=False) as state:
                 agent.optimizer.load_state(dict(state))
-        except (OSError, ValueError, KeyError, EOFError) as error:
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
             problems.append(f"{OPTIMIZER_FILE}: {error}")
         if problems:
             raise ModelFormatError(folder, problems)

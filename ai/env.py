@@ -9,6 +9,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+# What a network reads and writes is float32, what physics does is float64.
 Floats = NDArray[np.floating[Any]]
 Doubles = NDArray[np.floating[Any]]
 Bools = NDArray[np.bool_]

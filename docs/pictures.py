@@ -1,6 +1,6 @@
 """Take the README's pictures from the real game, played by the script.
 
-    python docs/pictures.py
+python -m docs.pictures
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 
-import sys
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,8 +18,6 @@ import numpy as np
 import pygame
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-
 from game.app import App
 from game.context import Context
 from game.scene import Scene

@@ -188,6 +188,7 @@ def damaged(config):
         "no network": lambda f: (f / "online" / "config.json").unlink(),
         "no target": lambda f: next((f / "target").glob("*.npy")).write_bytes(b"x"),
         "optimizer": lambda f: (f / "optimizer.npz").write_bytes(b"PK"),
+        "half an optimizer": lambda f: (f / "optimizer.npz").write_bytes((f / "optimizer.npz").read_bytes()[:200]),
     }
 
 

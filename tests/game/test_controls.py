@@ -39,9 +39,7 @@ def test_held_keys_make_the_action(keys, action):
 def test_losing_focus_lets_go_of_everything():
     controls = Controls()
     hold(controls, pygame.K_SPACE, pygame.K_LEFT)
-    send(
-        controls, pygame.CONTROLLERAXISMOTION, instance_id=3, axis=pygame.CONTROLLER_AXIS_LEFTX, value=-32768
-    )
+    send(controls, pygame.CONTROLLERAXISMOTION, instance_id=3, axis=pygame.CONTROLLER_AXIS_LEFTX, value=-32768)
     send(controls, pygame.WINDOWFOCUSLOST)
     assert controls.action == 0
 
