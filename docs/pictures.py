@@ -22,6 +22,7 @@ from game.app import App
 from game.context import Context
 from game.scene import Scene
 from game.scenes.menu import Menu
+from game.scenes.physics import Physics
 from game.scenes.play import Play
 from game.scenes.watch import Watch
 from game.settings import Settings
@@ -29,8 +30,9 @@ from game.settings import Settings
 # Name, scene, and what is pressed at which frame until the picture is taken.
 PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("menu", Menu(), {}, 200),
-    ("play", Play(seed=12), {5: pygame.K_TAB}, 190),
+    ("play", Play(seed=12), {5: pygame.K_TAB}, 170),
     ("watch", Watch(64, seed=3), {}, 260),
+    ("physics", Physics("heap"), {60: pygame.K_c}, 400),
 )
 
 

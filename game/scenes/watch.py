@@ -40,6 +40,7 @@ _LABEL_WIDTH: Final = 84.0
 _WIDEST: Final = 452.0  # of a row: the pad begins there
 _LONGEST_NAME: Final = 24
 _LONGEST_PROBLEM: Final = 110
+_CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
 _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
@@ -144,7 +145,7 @@ class Watch:
         self.swarm = Swarm(count, self._seed, self._network.flyer)
         self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed), self._settings.reduced_motion)
         self._stage.blue[:] = 1.0
-        self._trails = Trails(self.swarm.env)
+        self._trails = Trails(self.swarm.env, keep=12 if self.swarm.env.num_envs < _CROWD else 5)
         self._camera = Camera()
         self._mind = Mind()
         self._due = 0.0
