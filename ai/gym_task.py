@@ -122,7 +122,7 @@ class GymTask:
 
     symmetry: Symmetry | None = None
     action_chances: Floats | None = None
-    evaluate_every, validation_episodes, test_episodes = 20_000, 50, 100
+    evaluate_every, validation_episodes, test_episodes = 40_000, 100, 100
 
     def __init__(self, config: Config) -> None:
         self.config = config
