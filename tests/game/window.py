@@ -21,6 +21,8 @@ _NEEDED = ("Xvfb", "xdotool", "import")
 
 def skip_without_a_screen() -> None:
     missing = [tool for tool in _NEEDED if shutil.which(tool) is None]
+    if missing and os.environ.get("TRANQUILITY_WINDOW_TESTS") == "required":
+        pytest.fail(f"these tests may not skip here, and need {', '.join(missing)}")
     if missing:
         pytest.skip(f"needs {', '.join(missing)} to open and see a real window")
 
