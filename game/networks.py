@@ -25,11 +25,8 @@ class Flyer(Protocol):
 
 
 @runtime_checkable
-class Thinker(Protocol):
+class Thinker(Flyer, Protocol):
     """A flyer that can say what it thinks of every action."""
-
-    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now."""
 
     def q_values(self, observation: Floats) -> Floats:
         """Values (n, 6) for observations (n, 9)."""
