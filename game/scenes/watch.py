@@ -145,7 +145,7 @@ class Watch:
         self.swarm = Swarm(count, self._seed, self._network.flyer)
         self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed), self._settings.reduced_motion)
         self._stage.blue[:] = 1.0
-        self._trails = Trails(self.swarm.env, keep=12 if self.swarm.env.num_envs < _CROWD else 5)
+        self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._camera = Camera()
         self._mind = Mind()
         self._due = 0.0
@@ -160,7 +160,7 @@ class Watch:
         swarm = self.swarm
         ended = swarm.step()
         self._stage.follow(np.ones(swarm.env.num_envs, bool), ended)
-        self._trails.follow(swarm.fresh, ended)
+        self._trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
         self._mind.follow(swarm.flyer, swarm.observation[self.shown], int(swarm.env.actions[self.shown]))
         if swarm.env.num_envs == 1 and not self._settings.reduced_motion:
             self._camera.follow(swarm.env.position[0])

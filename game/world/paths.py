@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles
-from ai.lander import LanderEnv, Outcome
+from ai.env import Bools, Doubles, Ints
+from ai.lander import Outcome
 from game.render import View
 from game.ui.canvas import Canvas
 from game.ui.tokens import NET, Colour
@@ -44,30 +44,31 @@ class _Trail:
 
 
 class Trails:
-    """The ways of recent flights, fading; `follow` once after every step."""
+    """The ways of recent flights of `count` landers, fading; `follow` once after every step.
 
-    def __init__(self, env: LanderEnv, keep: int = 12) -> None:
-        self._env = env
-        self._open: list[list[tuple[float, float]]] = [[] for _ in range(env.num_envs)]
+    A point is kept every `stride` steps, and the last `keep` flights that ended stay to be seen.
+    """
+
+    def __init__(self, count: int, keep: int = 12, stride: int = _TRAIL_STRIDE) -> None:
+        self._open: list[list[tuple[float, float]]] = [[] for _ in range(count)]
         self._done: deque[_Trail] = deque(maxlen=keep)
         self._fade = 0.1 ** (1 / keep)
+        self._stride = stride
         self._step = 0
 
-    def follow(self, fresh: Bools, ended: Bools) -> None:
-        """Note where the landers are; `fresh` ones began anew, `ended` ones ended just now."""
+    def follow(self, position: Doubles, outcome: Ints, fresh: Bools, ended: Bools) -> None:
+        """Note positions (n, 2) and outcomes (n,); `fresh` flights began anew, `ended` ones ended just now."""
         for slot in np.flatnonzero(fresh):
             self._open[slot] = []
         self._step += 1
-        if self._step % _TRAIL_STRIDE == 0:
-            for way, place, outcome in zip(
-                self._open, self._env.position.tolist(), self._env.outcome.tolist(), strict=True
-            ):
-                if outcome == Outcome.FLYING:
+        if self._step % self._stride == 0:
+            for way, place, state in zip(self._open, position.tolist(), outcome.tolist(), strict=True):
+                if state == Outcome.FLYING:
                     way.append(place)
         for slot in np.flatnonzero(ended):
-            points = [*self._open[slot], self._env.position[slot].tolist()]
+            points = [*self._open[slot], position[slot].tolist()]
             if len(points) > 1:
-                self._done.append(_Trail(np.array(points), int(self._env.outcome[slot])))
+                self._done.append(_Trail(np.array(points), int(outcome[slot])))
         for trail in self._done:
             trail.age += 1 / 60
 

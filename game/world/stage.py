@@ -101,18 +101,11 @@ class Stage:
 
     def draw_fires(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
         """Draw the fire of those whose main engine burns."""
-        lit = shown & (self.thrust[:, 0] > 0.25)
-        angle = poses[lit, 2]
-        nozzles = _middles(poses[lit], size)
-        nozzles += size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-        metre = view.pixels_per_metre * size
-        fires = plumes(NET_PLUME, metre, angle, view.pixels(nozzles), self._flicker // 2)
-        canvas.surface.fblits(fires, pygame.BLEND_RGB_ADD)
+        draw_fires(canvas, view, poses[shown & (self.thrust[:, 0] > 0.25)], self._flicker, size)
 
     def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
         """Draw the landers themselves."""
-        middles = view.pixels(_middles(poses[shown], size))
-        canvas.surface.fblits(art.sprites(view.pixels_per_metre * size, poses[shown, 2], middles))
+        draw_crowd(canvas, view, poses[shown], size)
 
     def draw_dust(self, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw dust, sparks and fragments."""
@@ -202,6 +195,21 @@ def draw_craft(
     owner = mix(HUMAN, NET, round(blue * 8) / 8)
     canvas.glow(tip, 0.45 * metre / canvas.scale, owner, 1.0)
     canvas.dot(tip, max(1.0, 0.07 * metre / canvas.scale), mix(owner, (255, 255, 255), 0.35))
+
+
+def draw_fires(canvas: Canvas, view: View, poses: Doubles, flicker: int, size: float) -> None:
+    """Draw the main engines' fire of landers at poses (n, 3), small and in one go."""
+    angle = poses[:, 2]
+    nozzles = _middles(poses, size)
+    nozzles += size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+    fires = plumes(NET_PLUME, view.pixels_per_metre * size, angle, view.pixels(nozzles), flicker // 2)
+    canvas.surface.fblits(fires, pygame.BLEND_RGB_ADD)
+
+
+def draw_crowd(canvas: Canvas, view: View, poses: Doubles, size: float) -> None:
+    """Draw landers at poses (n, 3), small and in one go, each standing on its feet."""
+    middles = view.pixels(_middles(poses, size))
+    canvas.surface.fblits(art.sprites(view.pixels_per_metre * size, poses[:, 2], middles))
 
 
 def stand(x: float, y: float, angle: float, size: float) -> tuple[float, float]:

@@ -122,13 +122,13 @@ def test_particles_move_in_update_and_never_in_draw(canvas: Canvas):
 def test_everything_draws_and_draws_alike_twice(canvas: Canvas, count: int):
     env = LanderEnv(count, 3, frame_skip=1)
     env.reset()
-    stage, trails = Stage(env, np.random.default_rng(0)), Trails(env)
+    stage, trails = Stage(env, np.random.default_rng(0)), Trails(count)
     nobody = np.zeros(count, bool)
     for _ in range(90):
         env.step(np.full(count, 4))
         stage.follow(~nobody, nobody)
-        trails.follow(nobody, nobody)
-    trails.follow(nobody, ~nobody)
+        trails.follow(env.position, env.outcome, nobody, nobody)
+    trails.follow(env.position, env.outcome, nobody, ~nobody)
     view = Camera().view(canvas.scale)
     poses = np.concatenate([env.position, env.angle[:, None]], axis=1)
     pictures = []
