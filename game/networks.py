@@ -13,7 +13,8 @@ from game import texts
 
 DEFAULT: Final = "modern"
 SCRIPTED: Final = "scripted"
-_PARTS: Final = ("config.json", "online", "target")  # a folder without any of them never was a network
+PLAYERS: Final = "models"  # in the player's folder: the networks of their own
+PARTS: Final = ("config.json", "online", "target")  # a folder without any of them never was a network
 _log = logging.getLogger("tranquility")
 
 
@@ -47,7 +48,7 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
     A player's network of the same name as another one is told apart, not left out.
     """
     found: dict[str, Path] = {}
-    for parent in (models_dir / "lander", user_dir / "models"):
+    for parent in (models_dir / "lander", user_dir / PLAYERS):
         try:
             inside = sorted(path for path in parent.iterdir() if _claims(path))
         except OSError:
@@ -60,7 +61,7 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
 
 
 def _claims(path: Path) -> bool:
-    return not path.name.startswith(".") and any((path / part).exists() for part in _PARTS)
+    return not path.name.startswith(".") and any((path / part).exists() for part in PARTS)
 
 
 def load(name: str, folder: Path) -> Network:

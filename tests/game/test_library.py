@@ -1,0 +1,324 @@
+import json
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.agent import DeepQAgent
+from ai.config import Config
+from ai.runs import resume_run, save_run
+from ai.training import Training
+from game import library as module
+from game import networks
+from game.library import Library, LibraryError, is_valid_name, read_run
+
+SMALL = Config(hidden=(8,), num_envs=4, warm_up=16, replay_size=100, batch_size=16)
+DESCRIBED = {
+    "env": "lander", "preset": "modern", "changes": {"care": 0.8}, "seed": 3, "decisions": 5000, "updates": 9,
+    "episodes": 7, "landings": 2, "seconds": 61.5, "best": {"success": 0.75, "mean_return": 1.0},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("trained") / "run"
+    training = Training(SMALL, seed=5)
+    training.task.validation_episodes = 4
+    training.advance()
+    save_run(training, folder)
+    return folder
+
+
+@pytest.fixture
+def library(tmp_path: Path) -> Library:
+    return Library(tmp_path / "user")
+
+
+def add(library: Library, name: str, **described: object) -> Path:
+    """A folder that looks like a run, for what never reads a network."""
+    folder = library.folder / name
+    for part in ("online", "target", "last"):
+        (folder / part).mkdir(parents=True)
+    (folder / "config.json").write_text("{}")
+    (folder / "training.json").write_text(json.dumps({**DESCRIBED, **described}))
+    return folder
+
+
+def names(library: Library) -> list[str]:
+    return sorted(run.name for run in library.runs())
+
+
+def test_a_run_is_described_by_its_small_file(library: Library, trained: Path):
+    shutil.copytree(trained, library.folder / "first")
+    (run,) = library.runs()
+    assert (run.name, run.folder, run.problem) == ("first", library.folder / "first", "")
+    assert (run.seed, run.decisions, run.resumable) == (5, 4, True)
+    assert run.preset in {"modern", "classic"}
+    assert run.changes >= 5
+    assert run.success is not None
+    assert run.saved > 1e9
+
+
+def test_a_player_without_a_folder_has_no_runs(library: Library):
+    assert library.runs() == []
+    assert library.problem == ""
+    assert library.rescued() is None
+    assert library.undo_delete() is None
+
+
+def test_the_latest_comes_first(library: Library):
+    for age, name in enumerate(("new", "older", "oldest")):
+        os.utime(add(library, name) / "training.json", (2e9 - age, 2e9 - age))
+    assert [run.name for run in library.runs()] == ["new", "older", "oldest"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "{", "[]", '"run"', "[" * 100_000, '{"env": "lander"}', json.dumps({**DESCRIBED, "decisions": "many"}),
+     json.dumps({**DESCRIBED, "seconds": None}), json.dumps({**DESCRIBED, "best": 3}),
+     json.dumps({**DESCRIBED, "decisions": float("inf")}), json.dumps({**DESCRIBED, "changes": 1})],
+)  # fmt: skip
+def test_a_damaged_run_is_listed_with_its_problem_and_can_go_anywhere(library: Library, text: str, tmp_path: Path):
+    (add(library, "hurt") / "training.json").write_text(text)
+    (run,) = library.runs()
+    assert run.problem == "training.json is damaged"
+    assert library.export("hurt", tmp_path / "out").is_dir()
+    library.rename("hurt", "still hurt")
+    library.delete("still hurt")
+    assert library.runs() == []
+
+
+@pytest.mark.parametrize("part", ["training.json", "config.json", "online", "target"])
+def test_what_is_missing_is_named(library: Library, part: str):
+    path = add(library, "torn") / part
+    path.rmdir() if path.is_dir() else path.unlink()
+    (run,) = library.runs()
+    assert run.problem == f"{part} is missing"
+
+
+def test_a_network_for_something_else_is_named_as_such(library: Library):
+    add(library, "pole", env="CartPole-v1")
+    assert "CartPole-v1" in library.runs()[0].problem
+
+
+def test_bytes_that_are_no_text_are_survived(library: Library):
+    (add(library, "noise") / "training.json").write_bytes(np.random.default_rng(0).bytes(500))
+    assert library.runs()[0].problem
+
+
+def test_what_is_no_run_is_not_listed(library: Library):
+    add(library, "run")
+    add(library, ".hidden")
+    (library.folder / "holiday pictures").mkdir()
+    (library.folder / "notes.txt").write_text("")
+    assert names(library) == ["run"]
+
+
+@pytest.mark.parametrize("name", ["moon 2", "a", "x" * 40, "v1.2_final-b", "Zoë", "console", "com10", "2026-08-02"])
+def test_good_names(name: str):
+    assert is_valid_name(name)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", "   ", "x" * 41, "a/b", "a\\b", "..", ".hidden", "a.", " a", "a ", "a\nb", "a\0b", "CON", "nul.txt", "Com1",
+     "lpt9.tar.gz", "what?", "a:b", "*", "<b>", "tab\tbed", "“quoted”"],
+)  # fmt: skip
+def test_bad_names_are_refused_in_words(library: Library, name: str):
+    add(library, "run")
+    assert not is_valid_name(name)
+    with pytest.raises(LibraryError) as refusal:
+        library.rename("run", name)
+    assert str(refusal.value).endswith(".")
+    assert names(library) == ["run"]
+
+
+def test_rename(library: Library):
+    add(library, "old")
+    assert library.rename("old", "new").folder == library.folder / "new"
+    assert library.rename("new", "NEW").name == "NEW"
+    assert library.rename("NEW", "NEW").name == "NEW"
+    assert names(library) == ["NEW"]
+
+
+def test_a_name_that_is_taken_is_refused_and_both_runs_stay(library: Library):
+    add(library, "one", seed=1)
+    add(library, "Two", seed=2)
+    (library.folder / "three").mkdir()  # whatever lies there, it is not ours to replace
+    for taken in ("Two", "two", "TWO", "three"):
+        with pytest.raises(LibraryError, match=r"already"):
+            library.rename("one", taken)
+        with pytest.raises(LibraryError, match=r"already"):
+            library.new_folder(taken)
+    assert {run.name: run.seed for run in library.runs()} == {"one": 1, "Two": 2}
+
+
+@pytest.mark.parametrize("name", ["gone", "..", ".", "../user", ".training", "/"])
+def test_nothing_outside_the_library_is_touched(library: Library, name: str):
+    add(library, "run")
+    add(library, ".training")
+    for attempt in (library.delete, library.export, lambda name: library.rename(name, "taken away")):
+        with pytest.raises(LibraryError, match="not there"):
+            attempt(name)
+    assert names(library) == ["run"]
+
+
+def test_a_free_name_is_valid_and_nobodys(library: Library):
+    assert library.free_name("Moon") == "Moon"
+    add(library, "moon")
+    assert library.free_name("Moon") == "Moon 2"
+    add(library, "Moon 2")
+    assert library.free_name("Moon") == "Moon 3"
+    for suggestion in ("", "...", "a/b:c", "CON", "x" * 60, "\0", " .x. "):
+        assert is_valid_name(library.free_name(suggestion)), suggestion
+    add(library, "y" * 40)
+    assert library.free_name("y" * 40) == "y" * 38 + " 2"
+
+
+def test_what_was_deleted_comes_back_the_latest_first(library: Library):
+    for name in ("one", "two"):
+        add(library, name)
+        library.delete(name)
+    assert names(library) == []
+    for name in ("two", "one"):
+        restored = library.undo_delete()
+        assert restored is not None
+        assert restored.name == name
+    assert library.undo_delete() is None
+    assert names(library) == ["one", "two"]
+
+
+def test_an_undo_beside_a_newer_run_of_that_name_keeps_both(library: Library):
+    add(library, "run", seed=1)
+    library.delete("run")
+    add(library, "run", seed=2)
+    library.undo_delete()
+    assert {run.name: run.seed for run in library.runs()} == {"run": 2, "run 2": 1}
+
+
+def test_the_trash_does_not_grow_for_ever(library: Library):
+    for number in range(12):
+        add(library, "run", seed=number)
+        library.delete("run")
+    back = []
+    while restored := library.undo_delete():
+        back.append(restored.seed)
+    assert back == [11, 10, 9, 8, 7, 6, 5, 4]
+
+
+def test_an_export_is_a_whole_run_and_replaces_nothing(library: Library, trained: Path, tmp_path: Path):
+    shutil.copytree(trained, library.folder / "mine")
+    copies = [library.export("mine", tmp_path / "Documents" / "Tranquility") for _ in range(2)]
+    assert [copy.name for copy in copies] == ["mine", "mine 2"]
+    for copy in copies:
+        assert resume_run(copy).seed == 5
+    assert sorted(path.name for path in copies[0].parent.iterdir()) == ["mine", "mine 2"]
+
+
+def test_without_a_folder_an_export_goes_to_the_documents(
+    library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(module.platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
+    add(library, "run")
+    assert library.export("run") == tmp_path / "Documents" / "Tranquility" / "run"
+
+
+@pytest.mark.parametrize(
+    "error",
+    [OSError(28, "No space left on device"), shutil.Error([("a", "b", "[Errno 28] No space left on device")])],
+)
+def test_a_full_disk_is_said_and_leaves_nothing_half_done(
+    library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: OSError
+):
+    add(library, "run")
+
+    def full(source: Path, target: Path) -> None:
+        target.mkdir()
+        raise error
+
+    monkeypatch.setattr(module.shutil, "copytree", full)
+    with pytest.raises(LibraryError, match=r"run could not be exported: .*No space left on device"):
+        library.export("run", tmp_path / "out")
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_a_disk_that_takes_nothing_is_said(library: Library, monkeypatch: pytest.MonkeyPatch):
+    add(library, "run")
+
+    def refuse(self: Path, target: Path) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "rename", refuse)
+    for attempt in (lambda: library.rename("run", "other"), lambda: library.delete("run")):
+        with pytest.raises(LibraryError, match="Permission denied"):
+            attempt()
+    assert names(library) == ["run"]
+
+
+def test_a_library_that_is_a_file_is_said(tmp_path: Path):
+    (tmp_path / "models").write_text("")
+    library = Library(tmp_path)
+    assert library.runs() == []
+    assert str(tmp_path) in library.problem
+
+
+def test_an_import_copies_a_run_under_a_free_name(library: Library, trained: Path, tmp_path: Path):
+    for name in ("run", "run 2"):
+        assert library.import_folder(trained).name == name
+    assert trained.is_dir()
+    (tmp_path / "empty").mkdir()
+    for strange in (tmp_path / "empty", tmp_path / "nowhere", trained / "config.json"):
+        with pytest.raises(LibraryError, match="no folder with a network"):
+            library.import_folder(strange)
+
+
+def test_what_had_no_name_when_the_game_died_can_be_kept(library: Library, trained: Path):
+    shutil.copytree(trained, library.unsaved)
+    assert library.runs() == []
+    rescued = library.rescued()
+    assert rescued is not None
+    assert rescued.decisions == 4
+    add(library, "taken")
+    with pytest.raises(LibraryError, match="already"):
+        library.keep_rescued("taken")
+    assert library.keep_rescued(rescued.name).resumable
+    assert library.rescued() is None
+    assert names(library) == sorted([rescued.name, "taken"])
+
+
+def test_what_had_no_name_can_be_let_go_and_brought_back(library: Library):
+    add(library, ".training", seed=9)
+    library.discard_rescued()
+    library.discard_rescued()
+    assert library.rescued() is None
+    restored = library.undo_delete()
+    assert restored is not None
+    assert restored.seed == 9
+
+
+@pytest.mark.parametrize("name", ["run", ".training"])
+def test_a_save_that_was_stopped_between_its_renames_is_put_back(library: Library, name: str):
+    add(library, f".{name}.old", seed=4)
+    found = library.rescued() if name.startswith(".") else next(iter(library.runs()), None)
+    assert found is not None
+    assert found.seed == 4
+
+
+def test_the_library_and_the_networks_agree(library: Library, trained: Path, tmp_path: Path):
+    shutil.copytree(trained, library.folder / "mine")
+    shutil.copytree(trained, library.folder / "classic")
+    shutil.copytree(trained, library.unsaved)
+    shutil.copytree(trained, tmp_path / "shipped" / "lander" / "classic")
+    folders = networks.folders(tmp_path / "shipped", library.folder.parent)
+    assert {run.folder for run in library.runs()} <= set(folders.values())
+    assert len(folders) == 3
+
+
+def test_a_shipped_network_reads_as_a_run_that_cannot_go_on(tmp_path: Path):
+    agent = DeepQAgent(config=SMALL)
+    agent.save(tmp_path / "shipped")
+    (tmp_path / "shipped" / "training.json").write_text(json.dumps(DESCRIBED))
+    run = read_run(tmp_path / "shipped")
+    assert (run.name, run.problem, run.resumable) == ("shipped", "", False)
