@@ -45,8 +45,17 @@ class Backdrop:
 
         `earth` is where the Earth's middle stands, in points.
         """
-        surface = canvas.surface
-        across, down = camera.view(canvas.scale, alpha).shift
+        self.paint(canvas.surface, camera.view(canvas.scale, alpha).shift, time, earth)
+
+    def paint(
+        self,
+        surface: pygame.Surface,
+        shift: tuple[float, float] = (0.0, 0.0),
+        time: float = 0.0,
+        earth: tuple[float, float] = EARTH,
+    ) -> None:
+        """Fill a surface of this backdrop's size, the near world moved by `shift` pixels."""
+        across, down = shift
         surface.blit(self._sky, (0, 0))
         self._stars.draw(surface, (across, down), time)
         self._draw_earth(surface, earth, across, down)
