@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import zlib
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 from zipfile import BadZipFile
@@ -80,17 +81,23 @@ class DeepQAgent:
         self.decisions = 0
         self.train_count = 0
         self.loss = self.mean_q = 0.0
-        self._start_memory()
+        self._n_step = NStep(self.config.n_step, self.config.discount)
+        self._episodes = Episodes()
 
-    def _start_memory(self) -> None:
+    @cached_property
+    def replay(self) -> ReplayBuffer:
+        """All transitions of late; made when first asked for, since a network that only flies needs none."""
         config = self.config
         buffer = PrioritisedReplayBuffer if config.prioritised else ReplayBuffer
-        self.replay = buffer(config.replay_size, self.num_features, config.replay_prune)
-        if isinstance(self.replay, PrioritisedReplayBuffer):
-            self.replay.exponent = config.priority_exponent
-        self.successes = ReplayBuffer(max(1500, config.replay_size // 10), self.num_features)
-        self._n_step = NStep(config.n_step, config.discount)
-        self._episodes = Episodes()
+        replay = buffer(config.replay_size, self.num_features, config.replay_prune)
+        if isinstance(replay, PrioritisedReplayBuffer):
+            replay.exponent = config.priority_exponent
+        return replay
+
+    @cached_property
+    def successes(self) -> ReplayBuffer:
+        """Transitions of flights that ended well."""
+        return ReplayBuffer(max(1500, self.config.replay_size // 10), self.num_features)
 
     @property
     def network(self) -> NeuralNetwork:
