@@ -54,9 +54,9 @@ class Config:
 
     # fmt: off
     learning_rate: float = knob(2e-3, "How far each step moves the weights.",
-                                "learning", low=1e-5, high=1e-1, log=True, live=True)
+                                "learning", low=1e-5, high=1.0, log=True, live=True)
     final_learning_rate: float = knob(3e-4, "What the learning rate falls to, in a straight line over the horizon.",
-                                      "learning", low=1e-6, high=1e-1, log=True, live=True)
+                                      "learning", low=1e-6, high=1.0, log=True, live=True)
     discount: float = knob(0.985, "How much a reward one decision later is worth: γ.",
                            "learning", low=0.8, high=0.9999, live=True)
     n_step: int = knob(10, "How many rewards are summed before the network's own estimate takes over.",

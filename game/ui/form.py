@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final, TypeVar
 
 import pygame
@@ -29,7 +30,12 @@ class Form:
     """Widgets are made with `form.manager` and added in the order in which Tab visits them.
 
     A scene passes on `handle_event` and `update` and returns what they return; what a widget's callback
-    returns comes out of one of the two. `on_back` answers Escape, or the pad's B.
+    returns comes out of one of the two. `on_back` answers Escape, or the pad's B. A scene that has commands of
+    its own looks at `typing` before it takes an event, or at `used` after it has passed the event on.
+
+    Attributes:
+        used: whether the last event meant something to a widget, or moved the focus.
+
     """
 
     def __init__(self, context: Context, on_back: OnPress | None = None) -> None:
@@ -38,6 +44,12 @@ class Form:
         self._context, self._on_back = context, on_back
         self._index = 0
         self._held_steps = 0
+        self.used = False
+
+    @property
+    def typing(self) -> bool:
+        """Whether letters are being typed into a widget: every key and button is the form's, then."""
+        return self.focused is not None and self.focused.typing
 
     @property
     def focused(self) -> Widget | None:
@@ -49,14 +61,35 @@ class Form:
         self.widgets.append(widget)
         return widget
 
+    def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
+        """Take some neighbours away and put others in their place; the focus stays where it can, or near."""
+        focused = self.focused
+        place = self.widgets.index(old[0]) if old else len(self.widgets)
+        for widget in old:
+            self.widgets.remove(widget)
+            widget.kill()  # type: ignore[no-untyped-call]
+        self.widgets[place:place] = new
+        if focused in self.widgets:
+            self.focus(focused)
+        else:
+            self._index = max(0, min(self._index, place + max(0, len(new) - 1), len(self.widgets) - 1))
+
     def focus(self, widget: Widget) -> None:
         """Move the focus."""
         self._index = self.widgets.index(widget)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Take one event; the mouse's are in points."""
+        self.used = True
         if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             return self._handle_mouse(event)
+        if event.type == pygame.MOUSEWHEEL:
+            under = next((w for w in self.widgets if w.hover_point(*self.manager.mouse_position)), None)
+            self.used = under is not None and under.scroll(event.y)
+            return None
+        widget = self.focused
+        if widget and widget.take(event):
+            return _outcome(widget)
         command = translate(event)
         if command is None and presses_main(event):
             command = Command.CONFIRM
@@ -65,11 +98,13 @@ class Form:
             self._index = (self._index + tab) % max(1, len(self.widgets))
         elif command in _ARROWS:
             self._move(command)
-        elif command is Command.CONFIRM and self.focused:
+        elif command is Command.CONFIRM and widget:
             self._show_focus()
-            return self.focused.press()
+            return widget.press()
         elif command in (Command.BACK, Command.PAUSE) and self._on_back:
             return self._on_back()
+        else:
+            self.used = False
         return None
 
     def update(self) -> Transition | None:
@@ -87,16 +122,13 @@ class Form:
             widget.paint(canvas)
 
     def _handle_mouse(self, event: pygame.event.Event) -> Transition | None:
+        moves = event.type == pygame.MOUSEMOTION and self.typing  # who types is not to lose the place to a nudge
         for index, widget in enumerate(self.widgets):
-            if widget.hover_point(*event.pos) and not any(other.held for other in self.widgets):
+            if widget.hover_point(*event.pos) and not moves and not any(other.held for other in self.widgets):
                 self._index = index
         self._show_focus()
-        self.manager.process_events(event)
-        for widget in self.widgets:
-            if widget.outcome is not None:
-                outcome, widget.outcome = widget.outcome, None
-                return outcome
-        return None
+        self.used = self.manager.process_events(event)
+        return next((outcome for widget in self.widgets if (outcome := _outcome(widget)) is not None), None)
 
     def _move(self, command: Command) -> None:
         if not self.widgets:
@@ -106,7 +138,7 @@ class Form:
             self._index = focus.neighbour([w.box for w in self.widgets], self._index, direction)
 
     def _repeat(self) -> None:
-        steer = self._context.controls.steer
+        steer = 0 if self.typing else self._context.controls.steer
         self._held_steps = self._held_steps + 1 if steer else 0
         since = self._held_steps - _REPEAT_AFTER
         if since >= 0 and since % _REPEAT_EVERY == 0 and self.focused:
@@ -116,6 +148,12 @@ class Form:
         for index, widget in enumerate(self.widgets):
             widget.focused = index == self._index
             widget.ringed = not self._context.controls.mouse_in_use
+
+
+def _outcome(widget: Widget) -> Transition | None:
+    """Return what a widget's callback has returned meanwhile, once."""
+    outcome, widget.outcome = widget.outcome, None
+    return outcome
 
 
 def _tab(event: pygame.event.Event) -> int:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from itertools import accumulate, pairwise
 from typing import Final
 
 import pygame
@@ -16,13 +15,13 @@ from pygame_gui import UIManager
 from pygame_gui.core import UIElement
 
 from game.scene import Transition
-from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
 from game.ui.typeface import Weight
+from game.ui.words import GAP as CHOICE_GAP
+from game.ui.words import WordRow
 
 OnPress = Callable[[], Transition | None]
-CHOICE_GAP: Final = 24  # between the words of a choice
 _EASE: Final = 0.22
 
 
@@ -52,6 +51,7 @@ class Widget(UIElement):
 
     Attributes:
         focused: whether the form's focus is here.
+        typing: whether letters are for this widget alone, and no commands.
         warmth: 0 to 1, follows `focused` gently.
         ringed: whether a ring is drawn around the widget in focus; not while a mouse is in use.
 
@@ -60,7 +60,7 @@ class Widget(UIElement):
     def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
         super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)
         self.label = label
-        self.focused = self.ringed = self.held = False
+        self.focused = self.typing = self.ringed = self.held = False
         self.warmth = 0.0
         self.outcome: Transition | None = None
 
@@ -79,6 +79,14 @@ class Widget(UIElement):
 
     def drag(self, x: float) -> None:
         """Follow the mouse while its button is held."""
+
+    def take(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
+        """Take a key or a pad's button before the form does, being in focus; false leaves it to the form."""
+        return False
+
+    def scroll(self, rows: int) -> bool:  # noqa: ARG002
+        """Follow the mouse's wheel, positive towards the beginning; false if there is nothing to scroll."""
+        return False
 
     def process_event(self, event: pygame.event.Event) -> bool:
         """Be pressed by the mouse: down and up again on the widget."""
@@ -189,8 +197,7 @@ class Toggle(Widget):
         canvas.text(self.label, (box.left, baseline), colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         if self._hint:
             canvas.text(self._hint, (box.left, baseline + 21), size=SMALL, colour=MUTE)
-        canvas.pill((box.right - 32, middle - 8, 32, 16), mix(FAINT, NET, self._slid))
-        canvas.dot((box.right - 24 + 16 * self._slid, middle), 5.5, INK)
+        draw_switch(canvas, (box.right - 32, middle - 8, 32, 16), self._slid)
 
 
 class Slider(Widget):
@@ -287,22 +294,11 @@ class Choice(Widget):
         *,
         label_width: float = 0,
         size: float = TEXT,
+        gap: float = CHOICE_GAP,
     ) -> None:
         super().__init__(manager, box, label)
         self.options, self.index, self._on_change, self._size = options, index, on_change, size
-        left = self.box.left + label_width
-        widths = [typeface.width(option, size, "regular") for option in options]
-        room = self.box.right - left
-        if sum(widths) + CHOICE_GAP * (len(widths) - 1) > room + 1:
-            left, room = left + CHOICE_GAP, room - 2 * CHOICE_GAP
-        self._pages = _pages(widths, room)
-        self._lefts = [left + place for page in self._pages for place in accumulate(
-            (widths[number] + CHOICE_GAP for number in page[:-1]), initial=0.0
-        )]  # fmt: skip
-
-    @property
-    def _page(self) -> range:
-        return next(page for page in self._pages if self.index in page)
+        self.row = WordRow(options, self.box.left + label_width, self.box.right, size, gap)
 
     def choose(self, index: int) -> None:
         """Take an option by its number."""
@@ -316,14 +312,8 @@ class Choice(Widget):
         x = self.ui_manager.get_mouse_position()[0]
         if self.ringed or not self.box.collidepoint(x, self.box.centery):
             self.choose((self.index + 1) % len(self.options))
-            return
-        page = self._page
-        if page.stop < len(self.options) and x > self.box.right - CHOICE_GAP:
-            self.choose(page.stop)
-        elif page.start and self._lefts[page.start] - CHOICE_GAP <= x < self._lefts[page.start] - 4:
-            self.choose(page.start - 1)
         else:
-            self.choose(max((number for number in page if self._lefts[number] - 12 <= x), default=self.index))
+            self.choose(self.row.at(x, self.index))
 
     def shift(self, direction: int) -> bool:
         """Take the option to the left or right."""
@@ -335,28 +325,15 @@ class Choice(Widget):
         super().paint(canvas)
         baseline = self.box.centery + 0.36 * self._size
         canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint())
-        page = self._page
-        if page.start:
-            canvas.text("‹", (self._lefts[page.start] - 16, baseline), size=self._size, colour=INK)
-        if page.stop < len(self.options):
-            canvas.text("›", (self.box.right, baseline), size=self._size, colour=INK, align="right")
-        for number in page:
-            chosen = number == self.index
-            left, colour = self._lefts[number], INK if chosen else MUTE
-            box = canvas.text(self.options[number], (left, baseline), size=self._size, colour=colour)
-            if chosen:
-                canvas.line((left, baseline + 8), (left + box.width, baseline + 8), NET, 2)
+        self.row.paint(canvas, baseline, self.index)
 
 
-def _pages(widths: Sequence[float], room: float) -> list[range]:
-    """Return which words, by number, stand together on a page; a page has one word at least."""
-    starts, x = [0], 0.0
-    for number, width in enumerate(widths):
-        if x and x + width > room:
-            starts.append(number)
-            x = 0.0
-        x += width + CHOICE_GAP
-    return [range(start, stop) for start, stop in pairwise([*starts, len(widths)])]
+def draw_switch(canvas: Canvas, rect: tuple[float, float, float, float], slid: float, colour: Colour = NET) -> None:
+    """Draw a switch whose knob has slid from off, 0, to on, 1."""
+    left, top, width, height = rect
+    canvas.pill(rect, mix(FAINT, colour, slid))
+    half = height / 2
+    canvas.dot((left + half + (width - height) * slid, top + half), half - 2.5, INK)
 
 
 def mix(a: Colour, b: Colour, fraction: float) -> Colour:

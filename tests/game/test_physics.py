@@ -61,7 +61,7 @@ def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
     gallery.key(pygame.K_n)
     assert name(gallery) == "stack"
     tabs = scene(gallery)._tabs
-    gallery.click((tabs._lefts[3] + 4, tabs.box.centery))
+    gallery.click((tabs.row.lefts[3] + 4, tabs.box.centery))
     assert name(gallery) == "bounce"
     gallery.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
     assert name(gallery) == "impacts"

@@ -63,7 +63,7 @@ def test_arrows_choose_how_many_and_the_same_starts_stay(watching: Driver):
 
 def test_the_mouse_chooses_words_and_landers(watching: Driver):
     choice = scene(watching)._count_choice
-    watching.click((choice._lefts[1] + 4, choice.box.centery))
+    watching.click((choice.row.lefts[1] + 4, choice.box.centery))
     assert scene(watching).swarm.env.num_envs == 16
     scene(watching).stopped = True
     positions = scene(watching).swarm.env.position

@@ -212,10 +212,10 @@ def test_texts_are_kept_and_forgotten_with_the_size(tmp_path: Path):
 def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
     names = [f"network {number}" for number in range(30)]
     choice = Choice(PointsManager(), (64, 250, 400, 20), "", names, 0, lambda _: None)
-    pages = choice._pages
+    pages = choice.row.pages
     assert [number for page in pages for number in page] == list(range(30))
     for page in pages:
-        last = choice._lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
+        last = choice.row.lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
         assert last <= 464 - CHOICE_GAP + 1
 
     def click(x: float) -> None:
@@ -224,9 +224,9 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
 
     click(460)
     assert choice.index == pages[1].start
-    click(choice._lefts[pages[1][1]] + 3)
+    click(choice.row.lefts[pages[1][1]] + 3)
     assert choice.index == pages[1][1]
-    click(choice._lefts[pages[1].start] - 14)
+    click(choice.row.lefts[pages[1].start] - 14)
     assert choice.index == pages[0][-1]
     for _ in range(40):
         choice.shift(1)

@@ -1,0 +1,80 @@
+"""A few words in a row with a line under the chosen one; what does not fit stands on further pages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import accumulate, pairwise
+from typing import Final
+
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, MUTE, NET, Colour
+
+GAP: Final = 24  # between two words
+_ARROW: Final = 24  # room for one on either side
+
+
+class WordRow:
+    """Words from `left` to `right`, in points. One page is shown at a time, between arrows.
+
+    Attributes:
+        pages: which words, by number, stand on each page.
+        lefts: where each word begins.
+
+    """
+
+    def __init__(self, words: Sequence[str], left: float, right: float, size: float, gap: float = GAP) -> None:
+        self.words, self._size, self._gap, self._right = words, size, gap, right
+        widths = [typeface.width(word, size, "regular") for word in words]
+        room = right - left
+        if sum(widths) + gap * (len(widths) - 1) > room + 1:
+            left, room = left + _ARROW, room - 2 * _ARROW
+        self.pages = _pages(widths, room, gap)
+        self.lefts = [left + place for page in self.pages for place in accumulate(
+            (widths[number] + gap for number in page[:-1]), initial=0.0
+        )]  # fmt: skip
+
+    def _page(self, chosen: int) -> range:
+        return next(page for page in self.pages if chosen in page)
+
+    def at(self, x: float, chosen: int) -> int:
+        """Return the number of the word at x, or where an arrow there leads to, on the page of the chosen one."""
+        page = self._page(chosen)
+        if page.stop < len(self.words) and x > self._right - _ARROW:
+            return page.stop
+        if page.start and self.lefts[page.start] - _ARROW <= x < self.lefts[page.start] - 4:
+            return page.start - 1
+        return max((number for number in page if self.lefts[number] - self._gap / 2 <= x), default=chosen)
+
+    def paint(
+        self,
+        canvas: Canvas,
+        baseline: float,
+        chosen: int,
+        *,
+        ink: Colour = INK,
+        line: Colour = NET,
+        drop: float = 8.0,
+    ) -> None:
+        """Draw the page of the chosen word; the line under it is `drop` points below the baseline."""
+        page, size = self._page(chosen), self._size
+        if page.start:
+            canvas.text("‹", (self.lefts[page.start] - 16, baseline), size=size, colour=INK)
+        if page.stop < len(self.words):
+            canvas.text("›", (self._right, baseline), size=size, colour=INK, align="right")
+        for number in page:
+            left, colour = self.lefts[number], ink if number == chosen else MUTE
+            box = canvas.text(self.words[number], (left, baseline), size=size, colour=colour)
+            if number == chosen:
+                canvas.line((left, baseline + drop), (left + box.width, baseline + drop), line, 2)
+
+
+def _pages(widths: Sequence[float], room: float, gap: float) -> list[range]:
+    """Return which words, by number, stand together on a page; a page has one word at least."""
+    starts, x = [0], 0.0
+    for number, width in enumerate(widths):
+        if x and x + width > room:
+            starts.append(number)
+            x = 0.0
+        x += width + gap
+    return [range(start, stop) for start, stop in pairwise([*starts, len(widths)])]
