@@ -274,3 +274,23 @@ LIBRARY_NOT_RESTORED: Final = "{name} could not be brought back: {reason}"
 LIBRARY_NOT_EXPORTED: Final = "{name} could not be exported: {reason}"
 LIBRARY_NOT_IMPORTED: Final = "{name} could not be copied here: {reason}"
 LIBRARY_NOT_KEPT: Final = "{name} could not be kept: {reason}"
+
+# Charts, the reward strip and the drawing of the network
+CHART_SECONDS: Final = "{:.0f} s"
+CHART_EMPTY: Final = "nothing to show yet"
+
+# Flying against a ghost
+DUEL: Final = "Side by side"
+DUEL_RIVAL: Final = "against {name}"
+DUEL_BEGIN: Final = "{name} starts when you do, and touches nothing."
+HINT_LEAVE: Final = "leave"
+RIVAL_RESULTS: Final = {
+    "FLYING": "still flying",
+    "LANDED": "landed",
+    "CRASHED": "crashed",
+    "OUT_OF_BOUNDS": "left the area",
+    "TIMED_OUT": "ran out of time",
+}
+RIVAL_AFTER: Final = "landed {seconds} s after you"
+RIVAL_BEFORE: Final = "landed {seconds} s before you"
+RIVAL_TOGETHER: Final = "landed together with you"

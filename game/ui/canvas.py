@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from typing import Literal
 
 import pygame
@@ -67,6 +68,17 @@ class Canvas:
         """Return the pixels of a rectangle; neighbours in points stay neighbours in pixels."""
         left, top = self.px(x), self.px(y)
         return pygame.Rect(left, top, self.px(x + width) - left, self.px(y + height) - top)
+
+    def sheet(self, width: float, height: float) -> Canvas:
+        """Return a canvas of that size on a transparent surface of its own, to be drawn once and blitted often.
+
+        Glows and translucent lines need something below them, and do not come out on it.
+        """
+        sheet = copy(self)
+        sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
+        sheet.offset = (0, 0)
+        sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
+        return sheet
 
     def to_points(self, window_position: Point) -> Point:
         """Turn a position in the window's pixels, such as the mouse's, into points."""

@@ -1,0 +1,189 @@
+"""The numbers behind a chart: limits, ticks, thinning, smoothing, and how much of each pixel a line covers.
+
+All arrays; no surfaces. Columns and rows are pixels of the plot, counted from its top left pixel's middle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+Numbers = npt.NDArray[np.floating[Any]]
+Limits = tuple[float, float]
+
+_WILD: Final = 100.0  # a range so many times wider than the middle half of its values is cut
+_KEPT: Final = 10.0  # middle halves that stay on either side of it then
+_STEPS: Final = (1.0, 2.0, 2.5, 5.0, 10.0)
+_ROUNDING: Final = 1e-9
+_THOUSANDS: Final = ((1e6, "M"), (1e3, "k"))
+
+
+def compact(value: float, digits: int = 3) -> str:
+    """Write a number in about five characters: 0.0210, 118, 12.3k, 1.2e30, –."""
+    if not math.isfinite(value):
+        return "–"
+    size = abs(value)
+    if size and (size < 10.0 ** (1 - digits) / 10 or size >= 1e9):
+        text = f"{value:.1e}".replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
+    else:
+        text = _in_thousands(value, digits)
+    return text.replace("-", "−")
+
+
+def _in_thousands(value: float, digits: int) -> str:
+    for unit, letter in _THOUSANDS:
+        if abs(value) >= 10 * unit:
+            return f"{value / unit:#.{digits}g}".rstrip(".") + letter
+    if abs(value) >= 10 ** (digits - 1):
+        return f"{value:.0f}"
+    return f"{value:#.{digits}g}" if value else "0"
+
+
+def round_number(value: float) -> str:
+    """Write a round number, such as a grid line's, as short as can be."""
+    if abs(value) >= 1e9 or 0 < abs(value) < 1e-4:
+        return compact(value).replace(".0e", "e")
+    for unit, letter in _THOUSANDS:
+        if abs(value) >= 10 * unit:
+            return f"{value / unit:.4g}{letter}".replace("-", "−")
+    return f"{value:.6g}".replace("-", "−")
+
+
+def robust_range(values: Numbers) -> Limits | None:
+    """Return the least and the greatest of the finite values, or None if there are none.
+
+    If a few have exploded, so that all others would lie in one line, the range ends before these.
+    """
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return None
+    low, high = float(finite.min()), float(finite.max())
+    first, third = (float(one) for one in np.quantile(finite, (0.25, 0.75)))
+    middle = third - first
+    if middle > 0 and high / _WILD - low / _WILD > middle:
+        return max(low, first - _KEPT * middle), min(high, third + _KEPT * middle)
+    return low, high
+
+
+def grid(low: float, high: float, most: int = 4) -> Numbers:
+    """Return round numbers at even steps that enclose low to high: the grid lines, two to `most` of them."""
+    low, high = max(low, -1e300), min(high, 1e300)
+    if high / 2 - low / 2 <= 1e-9 * max(abs(low), abs(high)):
+        pad = max(abs(low), abs(high)) / 10 or 1.0
+        low, high = low - pad, high + pad
+    wide = (high - low) / (most - 1)
+    power = 10.0 ** math.floor(math.log10(wide))
+    for step in (power * factor for factor in (*_STEPS, 20.0, 50.0)):
+        first, last = math.floor(low / step + _ROUNDING), math.ceil(high / step - _ROUNDING)
+        if last - first < most:
+            break
+    return np.arange(first, last + 1) * step
+
+
+def thinned(x: Numbers, y: Numbers, x_range: Limits, count: int) -> npt.NDArray[np.intp]:
+    """Return which points to keep, at most about `count`: of each stretch of x the lowest and the highest."""
+    kept = np.flatnonzero(np.isfinite(y) & (x >= x_range[0]) & (x <= x_range[1]))
+    if len(kept) <= count:
+        return kept
+    stretches = max(1, count // 2)
+    stretch = ((x[kept] - x_range[0]) * (stretches / (x_range[1] - x_range[0]))).astype(np.intp)
+    order = np.lexsort((y[kept], np.minimum(stretch, stretches - 1)))
+    ends = np.flatnonzero(np.diff(stretch[order])) + 1
+    lowest, highest = np.concatenate([[0], ends]), np.concatenate([ends - 1, [len(order) - 1]])
+    return np.unique(kept[order[np.concatenate([lowest, highest])]])
+
+
+def trace(x: Numbers, y: Numbers, x_range: Limits, columns: int, radius: int) -> Numbers:
+    """Return the smoothed value in each pixel column, (columns,); NaN beyond the data and in its gaps.
+
+    A local linear fit over `radius` columns to either side (Fan and Gijbels 1996): unlike an average it does
+    not lag, and it does not bend at the ends. Values between two points lie on the line between them, unless
+    a value that is not finite lies there too.
+    """
+    at = np.rint((x - x_range[0]) * ((columns - 1) / max(x_range[1] - x_range[0], 1e-300)))
+    inside = (at >= 0) & (at < columns)
+    column, values = at[inside].astype(np.intp), y[inside]
+    finite = np.isfinite(values)
+    count = np.bincount(column[finite], np.ones(finite.sum()), minlength=columns)
+    total = np.bincount(column[finite], values[finite], minlength=columns)
+    filled = np.flatnonzero(count)
+    if not len(filled):
+        return np.full(columns, np.nan)
+    smooth = _local_line(count, total, min(radius, (columns - 1) // 2))[filled]
+    smooth = np.clip(smooth, values[finite].min(), values[finite].max())
+    every = np.arange(columns)
+    line = np.interp(every, filled, smooth, left=np.nan, right=np.nan)
+    missing = np.setdiff1d(column[~finite], filled)
+    if len(missing):
+        stretch = np.searchsorted(filled, every)
+        broken = np.isin(stretch, np.searchsorted(filled, missing))
+        broken[filled] = False
+        line[broken] = np.nan
+    return line
+
+
+def _local_line(count: Numbers, total: Numbers, radius: int) -> Numbers:
+    """Fit a line around each column, near ones weighing most; return its height there. Empty: anything."""
+    away = np.arange(-radius, radius + 1, dtype=float)
+    weight = (1 - (away / (radius + 1)) ** 2) ** 2
+    s0, s1, s2 = (np.convolve(count, weight * away**power, mode="same") for power in range(3))
+    t0, t1 = (np.convolve(total, weight * away**power, mode="same") for power in range(2))
+    spread = s0 * s2 - s1 * s1
+    mean = t0 / np.maximum(s0, 1e-300)
+    fit: Numbers = np.where(spread > 1e-6 * s0 * s0, (s2 * t0 - s1 * t1) / np.where(spread > 0, spread, 1.0), mean)
+    return fit
+
+
+def stroke(heights: Numbers, rows: int, width: float, dash: Sequence[float] = ()) -> Numbers:
+    """Return how far a line covers each pixel, (rows, columns) in 0 to 1.
+
+    `heights` (columns,) are rows, NaN where there is no line; `width` and `dash` (on, off, ...) are pixels.
+    """
+    middle = np.asarray(heights, np.float32)
+    before, after = np.roll(middle, 1), np.roll(middle, -1)
+    before[0], after[-1] = np.nan, np.nan
+    left = np.where(np.isnan(before), middle, (before + middle) / 2)
+    right = np.where(np.isnan(after), middle, (after + middle) / 2)
+    low, high = np.minimum(np.minimum(left, right), middle), np.maximum(np.maximum(left, right), middle)
+    rise = high - low
+    thick = width * np.sqrt(1 + rise**2)  # seen from above, a steep line is a thick one
+    ramp = np.maximum(rise, 1.0)
+    most = np.minimum(thick / ramp, 1.0)
+    if dash:
+        most = most * _dashes(middle, dash)
+    reach = (thick + ramp) / 2
+    cover = np.abs(np.arange(rows, dtype=np.float32)[:, None] - (low + high) / 2)
+    np.subtract(reach, cover, out=cover)
+    cover /= ramp
+    np.minimum(cover, most, out=cover)
+    np.nan_to_num(cover, copy=False, nan=0.0)
+    return np.maximum(cover, 0.0, out=cover)
+
+
+def _dashes(heights: Numbers, dash: Sequence[float]) -> Numbers:
+    """Return how far each column is within a dash, going along the line."""
+    steps = np.nan_to_num(np.abs(np.diff(heights, prepend=heights[:1])))
+    along = np.cumsum(np.hypot(1.0, steps)) % sum(dash)
+    within = np.zeros(len(along))
+    start = 0.0
+    for on, off in zip(dash[::2], dash[1::2], strict=True):
+        reach = np.minimum(along - start, start + on - along) + 0.5
+        within = np.maximum(within, np.clip(reach, 0.0, 1.0))
+        start += on + off
+    return within
+
+
+def specks(columns: Numbers, heights: Numbers, size: tuple[int, int], radius: float) -> Numbers:
+    """Return how far dots cover each pixel, (rows, columns) in 0 to 1; `size` is columns, rows."""
+    reach = math.ceil(radius + 0.5)
+    near = np.arange(-reach, reach + 1)
+    across, down = (each.ravel() for each in np.meshgrid(near, near))
+    column, row = np.rint(columns).astype(np.intp)[:, None] + across, np.rint(heights).astype(np.intp)[:, None] + down
+    cover = np.clip(radius + 0.5 - np.hypot(column - columns[:, None], row - heights[:, None]), 0.0, 1.0)
+    inside = (column >= 0) & (column < size[0]) & (row >= 0) & (row < size[1])
+    flat = np.bincount((row * size[0] + column)[inside], cover[inside], minlength=size[0] * size[1])
+    return np.minimum(flat, 1.0).reshape(size[1], size[0])
