@@ -108,6 +108,12 @@ LIMITS: Final = Limits()
 PARAMS: Final = LanderParams()
 
 
+def engines_switched(held: Ints, actions: Ints) -> Ints:
+    """How many engines, of main and jets, go on or off between two actions, each (n,)."""
+    switched: Ints = ((held >= 3) != (actions >= 3)) * 1 + ((held % 3) != (actions % 3))
+    return switched
+
+
 class LanderEnv:
     """`num_envs` landers, each in a world of its own, flown together.
 
@@ -264,7 +270,7 @@ class LanderEnv:
             raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
         if not self._started:
             raise RuntimeError("reset() must come before the first step()")
-        self.actions = actions.astype(np.intp)
+        held, self.actions = self.actions, actions.astype(np.intp)
         flying = self.outcome == Outcome.FLYING
         before = self._situation()
         flown, tilted, feet = self.steps.copy(), np.zeros_like(self.steps), self._feet_steps.copy()
@@ -279,6 +285,7 @@ class LanderEnv:
         flown = self.steps - flown
         change = Change(
             before, self._situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
+            switched=flying * engines_switched(held, self.actions),
             feet_down=np.minimum(self._feet_steps, FEET_STEPS_PAID) - np.minimum(feet, FEET_STEPS_PAID),
             landed=ended & (self.outcome == Outcome.LANDED),
             lost=ended & ((self.outcome == Outcome.CRASHED) | (self.outcome == Outcome.OUT_OF_BOUNDS)),

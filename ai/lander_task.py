@@ -19,6 +19,7 @@ from ai.lander import (
     NUM_FEATURES,
     LanderEnv,
     Outcome,
+    engines_switched,
 )
 from ai.pilots import Pilot
 from ai.spawns import Curriculum
@@ -67,7 +68,7 @@ def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", fram
     while (flying := env.outcome == Outcome.FLYING).any():
         held, actions = env.actions, env.actions.copy()
         actions[flying] = pilot.act(observation[flying], held=held[flying])
-        switches += int(((actions >= 3) != (held >= 3)).sum() + ((actions % 3) != (held % 3)).sum())
+        switches += int(engines_switched(held, actions).sum())
         result = env.step(actions)
         observation = result.observation
         returns += result.reward

@@ -25,6 +25,7 @@ class RewardWeights:
     tilt: float = -0.05  # per physics step tilted by more than 0.6 rad: 0.2 for a decision of four
     feet: float = 1.0  # per physics step with both feet down, thirty of them at the most
     engine: float = -0.02  # per physics step in which an engine fires
+    switch: float = 0.0  # per engine that goes on or off at a decision: jets that flicker are no joy to watch
     time: float = -0.2  # per physics step: hovering must not pay
     terminal: float = 120.0  # for a landing; as much is lost by a crash or by leaving the area
 
@@ -48,6 +49,7 @@ class Change:
     flown: Ints  # physics steps flown
     fired: Ints  # of these, with an engine on
     tilted: Ints  # of these, tilted too far
+    switched: Ints  # engines that went on or off as it began
     feet_down: Ints  # of these, with both feet down, as far as they are paid
     landed: Bools  # ended by a landing in this decision
     lost: Bools  # ended by a crash, or out of bounds, in this decision
@@ -70,6 +72,7 @@ REWARDS: Final[dict[str, Callable[[Change, RewardWeights], Doubles]]] = {
     "tilt": lambda c, w: w.tilt * c.tilted,
     "feet": lambda c, w: w.feet * c.feet_down,
     "engine": lambda c, w: w.engine * c.fired,
+    "switch": lambda c, w: w.switch * c.switched,
     "time": lambda c, w: w.time * c.flown,
     "terminal": lambda c, w: w.terminal * (c.landed.astype(float) - c.lost),
 }

@@ -19,6 +19,7 @@ Spawn = Callable[[np.random.Generator], Doubles]
 _MIDDLE: Final = np.array([0.0, 14.5, 0.0, -1.0, 0.0, 0.0])
 _REACH: Final = np.array([15.0, 5.5, 3.0, 2.0, np.radians(35), 0.5])
 _HARD_REACH: Final = np.array([15.0, 5.5, 3.0, 2.0, np.radians(90), 1.0])
+_WIDE_REACH: Final = np.array([17.0, 6.5, 4.0, 2.5, np.radians(50), 0.8])
 _EASY: Final = np.array([0.0, 4.0, 0.0, -0.3, 0.0, 0.0])
 _EASY_REACH: Final = np.array([1.0, 0.5, 0.3, 0.2, 0.05, 0.05])
 _NEAR: Final = np.array([0.0, 4.5, 0.0, -0.4, 0.0, 0.0])
@@ -58,6 +59,14 @@ def _practice(rng: np.random.Generator) -> Doubles:
     return SPAWNS["graded" if kind < 0.5 else "random"](rng)
 
 
+def _thorough(rng: np.random.Generator) -> Doubles:
+    """Practice for a long run: half of the flights begin a little beyond what will be asked."""
+    kind = rng.random()
+    if kind < 0.2:
+        return SPAWNS["near"](rng)
+    return SPAWNS["graded" if kind < 0.4 else "wide"](rng)
+
+
 SPAWNS: Final[dict[str, Spawn]] = {
     "fixed": _at(8.0),
     "higher": _at(12.0),
@@ -66,7 +75,9 @@ SPAWNS: Final[dict[str, Spawn]] = {
     "graded": _graded,
     "random": _around(_MIDDLE, _REACH),
     "hard": _around(_MIDDLE, _HARD_REACH),
+    "wide": _around(_MIDDLE, _WIDE_REACH),
     "practice": _practice,
+    "thorough": _thorough,
 }
 
 
