@@ -1,11 +1,13 @@
 """A neural network library on NumPy: layers, costs, optimizers and a folder format, every gradient by hand.
 
-To read it in building order: parameter, activations, costs, layers, optimizers, storage, network.
+To read it in building order: parameter, activations, costs, layers, images, dropout, optimizers, storage, network.
 """
 
 from ai.nn.activations import Activation, ActivationFunctions
-from ai.nn.costs import Cost, CostFunctions
+from ai.nn.costs import Cost, CostFunctions, softmax
+from ai.nn.dropout import DropoutLayer
 from ai.nn.folder import atomic_folder, recover_folder
+from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation
 from ai.nn.network import NeuralNetwork
 from ai.nn.optimizers import OPTIMIZERS, SGD, Adam, Momentum, Optimizer
@@ -20,12 +22,16 @@ __all__ = [
     "ActivationLayer",
     "Adam",
     "Array",
+    "ConvolutionLayer",
     "Cost",
     "CostFunctions",
+    "DropoutLayer",
     "DuelingLayer",
+    "FlattenLayer",
     "FullyConnectedLayer",
     "Layer",
     "LayerNormalisation",
+    "MaxPoolingLayer",
     "ModelFormatError",
     "Momentum",
     "NeuralNetwork",
@@ -33,4 +39,5 @@ __all__ = [
     "Parameter",
     "atomic_folder",
     "recover_folder",
+    "softmax",
 ]

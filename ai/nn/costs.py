@@ -30,6 +30,7 @@ class Cost:
     derivative: CostFunction
     name: str | None = None
     options: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}), hash=False)
+    logits: bool = False  # predictions are logarithms of odds, and `softmax` makes probabilities of them
 
     @classmethod
     def of(cls, function: CostFunction, derivative: CostFunction | None = None) -> Self:
@@ -86,11 +87,47 @@ class CostFunctions:
 
         return Cost(function, derivative, "huber", MappingProxyType({"delta": delta}))
 
+    @staticmethod
+    def use_softmax_cross_entropy() -> Cost:
+        """Cross-entropy -Σ target · log softmax(prediction), averaged over the batch (Bridle 1990).
+
+        Targets are probabilities, (batch, classes): one-hot rows, or smoothed ones. Predictions are logits:
+        the network ends without an activation, and `softmax` of its outputs are its probabilities.
+        """
+
+        def function(prediction: Array, target: Array) -> float:
+            logits = _shifted(prediction)
+            logarithms = logits - np.log(np.exp(logits).sum(axis=-1, keepdims=True))
+            return -float(np.vdot(target, logarithms)) / _batch(logits)
+
+        def derivative(prediction: Array, target: Array) -> Array:
+            target = np.asarray(target)
+            error: Array = softmax(prediction) * target.sum(axis=-1, keepdims=True)
+            error -= target
+            return error / _batch(error)
+
+        return Cost(function, derivative, "softmax_cross_entropy", logits=True)
+
+
+def softmax(logits: Array) -> Array:
+    """Return probabilities over the last axis, exp(logit) / Σ exp(logit), for logits of any size."""
+    probabilities: Array = np.exp(_shifted(logits))
+    probabilities /= probabilities.sum(axis=-1, keepdims=True)
+    return probabilities
+
 
 COSTS: dict[str, Callable[..., Cost]] = {
     "mse": CostFunctions.use_mse,
     "huber": CostFunctions.use_huber,
+    "softmax_cross_entropy": CostFunctions.use_softmax_cross_entropy,
 }
+
+
+def _shifted(logits: Array) -> Array:
+    """Return logits of which the largest is 0: softmax is the same, and nothing can overflow."""
+    logits = np.asarray(logits)
+    shifted: Array = logits - logits.max(axis=-1, keepdims=True)
+    return shifted
 
 
 def _batch(outputs: Array) -> int:

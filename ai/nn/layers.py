@@ -15,10 +15,11 @@ from ai.nn.activations import Activation, Function
 from ai.nn.parameter import INITIALISATIONS, Array, Parameter
 
 MAX_SIZE = 1 << 20  # a config.json that asks for more outputs than this is damaged
+ImageShape = tuple[int, int, int]  # height, width, channels
 
 
 class Layer(ABC):
-    """One step of a network, on arrays of shape (batch, values).
+    """One step of a network, on arrays of shape (batch, values), or images (batch, height, width, channels).
 
     `forward_propagate` and `backward_propagate` write into arrays that are kept while the batch size stays
     the same, so what they return lasts until their next call. `predict` returns a new array, and also takes
@@ -26,8 +27,8 @@ class Layer(ABC):
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
-    inputs: int | None = None  # values per example; None: any number, and as many come out
-    outputs: int | None = None
+    inputs: int | ImageShape | None = None  # of an example; None: of any shape, and as many come out
+    outputs: int | ImageShape | None = None
     shapes: Mapping[str, tuple[int, ...]] = {}  # of the parameters
     initialisation: str | None = "constant"  # None: as suits the activation that follows
     rng: np.random.Generator | None = None
@@ -76,7 +77,7 @@ class FullyConnectedLayer(Layer):
     `rng`, or else from the network's.
     """
 
-    settings = ("inputs", "outputs")
+    settings: tuple[str, ...] = ("inputs", "outputs")
 
     def __init__(
         self,
@@ -90,8 +91,8 @@ class FullyConnectedLayer(Layer):
     ) -> None:
         if initialisation not in (None, *INITIALISATIONS):
             raise ValueError(f"initialisation is one of {', '.join(INITIALISATIONS)}, not {initialisation!r}")
-        self.inputs = _checked_size("inputs", inputs)
-        self.outputs = _checked_size("outputs", outputs)
+        self.inputs = checked_size("inputs", inputs)
+        self.outputs = checked_size("outputs", outputs)
         self.shapes = {"weights": (self.inputs, self.outputs), "bias": (self.outputs,)}
         self.initialisation = initialisation
         self.scale = scale
@@ -222,7 +223,7 @@ class LayerNormalisation(Layer):
     def __init__(self, size: int, *, epsilon: float = 1e-5, dtype: npt.DTypeLike = np.float32) -> None:
         if not 0 < epsilon < 1:
             raise ValueError(f"epsilon is a small positive number, not {epsilon}")
-        self.size = self.inputs = self.outputs = _checked_size("size", size)
+        self.size = self.inputs = self.outputs = checked_size("size", size)
         self.shapes = {"gain": (size,), "bias": (size,)}
         self.epsilon = epsilon
         self.dtype = dtype
@@ -281,23 +282,20 @@ class LayerNormalisation(Layer):
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
 
 
-LAYERS: dict[str, type[Layer]] = {
-    "FullyConnectedLayer": FullyConnectedLayer,
-    "DuelingLayer": DuelingLayer,
-    "ActivationLayer": ActivationLayer,
-    "LayerNormalisation": LayerNormalisation,
-}
-
-
 def check_fit(before: list[Layer], layer: Layer) -> None:
-    """Raise ValueError if a layer does not take as many values as the layers before it give."""
+    """Raise ValueError if a layer does not take what the layers before it give."""
     given = next((one.outputs for one in reversed(before) if one.outputs is not None), None)
     if None not in (given, layer.inputs) and given != layer.inputs:
         kind = type(layer).__name__
-        raise ValueError(f"{kind} takes {layer.inputs} values, the layer before gives {given}")
+        raise ValueError(f"{kind} takes {_said(layer.inputs)}, the layer before gives {_said(given)}")
 
 
-def _checked_size(name: str, size: int) -> int:
+def _said(shape: int | ImageShape | None) -> str:
+    return "images of {} x {} x {}".format(*shape) if isinstance(shape, tuple) else f"{shape} values"
+
+
+def checked_size(name: str, size: int) -> int:
+    """Return a size as a plain int; raises ValueError if it is none."""
     if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= MAX_SIZE:
         raise ValueError(f"{name} is a whole number from 1 to {MAX_SIZE}, not {size!r}")
     return int(size)

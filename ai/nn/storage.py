@@ -14,8 +14,10 @@ import numpy.typing as npt
 
 from ai.nn.activations import ACTIVATIONS, Activation
 from ai.nn.costs import COSTS, Cost
+from ai.nn.dropout import DropoutLayer
 from ai.nn.folder import CONFIG, recover_folder
-from ai.nn.layers import LAYERS, Layer, check_fit
+from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
+from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, check_fit
 from ai.nn.parameter import Array, Parameter
 
 T = TypeVar("T")
@@ -23,6 +25,16 @@ T = TypeVar("T")
 FORMAT = "tranquility network"
 VERSION = 1
 DTYPES = ("float32", "float64")
+LAYERS: dict[str, type[Layer]] = {
+    "FullyConnectedLayer": FullyConnectedLayer,
+    "DuelingLayer": DuelingLayer,
+    "ActivationLayer": ActivationLayer,
+    "LayerNormalisation": LayerNormalisation,
+    "DropoutLayer": DropoutLayer,
+    "ConvolutionLayer": ConvolutionLayer,
+    "MaxPoolingLayer": MaxPoolingLayer,
+    "FlattenLayer": FlattenLayer,
+}
 
 
 class ModelFormatError(ValueError):

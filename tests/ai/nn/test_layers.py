@@ -11,15 +11,20 @@ from hypothesis.extra.numpy import arrays
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
+    ConvolutionLayer,
     CostFunctions,
+    DropoutLayer,
     DuelingLayer,
+    FlattenLayer,
     FullyConnectedLayer,
     LayerNormalisation,
+    MaxPoolingLayer,
     NeuralNetwork,
+    softmax,
 )
 from ai.nn.activations import ACTIVATIONS
 from ai.nn.costs import COSTS
-from ai.nn.layers import LAYERS
+from ai.nn.storage import LAYERS
 
 INPUTS, OUTPUTS, BATCH = 5, 4, 6
 
@@ -33,14 +38,24 @@ ACTIVATION_ROWS = {
 COST_ROWS = {
     "mse": CostFunctions.use_mse(),
     "huber": CostFunctions.use_huber(0.7),
+    "softmax_cross_entropy": CostFunctions.use_softmax_cross_entropy(),
     "plain pair": (lambda p, t: np.sum((p - t) ** 4), lambda p, t: 4 * (p - t) ** 3),
 }
-# Each makes a layer that takes INPUTS values.
+# Each makes a layer that takes INPUTS values, or images.
 LAYER_ROWS = {
     "FullyConnectedLayer": lambda: FullyConnectedLayer(INPUTS, OUTPUTS),
     "DuelingLayer": lambda: DuelingLayer(INPUTS, OUTPUTS),
     "LayerNormalisation": lambda: LayerNormalisation(INPUTS),
     "ActivationLayer": lambda: ActivationLayer(*ActivationFunctions.use_sigmoid()),
+    "DropoutLayer without loss": lambda: DropoutLayer(0),
+    "ConvolutionLayer": lambda: ConvolutionLayer((5, 4, 2), filters=3, kernel=3),
+    "ConvolutionLayer padded": lambda: ConvolutionLayer((5, 4, 2), filters=3, kernel=3, padding=1),
+    "ConvolutionLayer strided": lambda: ConvolutionLayer((6, 5, 2), filters=3, kernel=3, stride=2, padding=2),
+    "ConvolutionLayer even": lambda: ConvolutionLayer((3, 6, 1), filters=2, kernel=2, stride=3),
+    "ConvolutionLayer of one pixel": lambda: ConvolutionLayer((3, 2, 4), filters=2, kernel=1),
+    "MaxPoolingLayer": lambda: MaxPoolingLayer((6, 4, 2)),
+    "MaxPoolingLayer of odd size": lambda: MaxPoolingLayer((7, 8, 2), size=3),
+    "FlattenLayer": lambda: FlattenLayer((3, 2, 2)),
 }
 
 
@@ -48,11 +63,28 @@ def network_with(layer, activation=None, cost=None, dtype=np.float64):
     """Put the layer between two others, so that its input error matters too."""
     rng = np.random.default_rng(3)
     network = NeuralNetwork(*(cost or CostFunctions.use_mse()), rng=rng, dtype=dtype)
-    network.add_layer(FullyConnectedLayer(3, INPUTS, scale=3.0)).add_layer(layer)
+    if isinstance(layer.inputs, tuple):
+        height, width, channels = layer.inputs
+        network.add_layer(ConvolutionLayer((height, width, 3), filters=channels, kernel=1, scale=3.0))
+    else:
+        network.add_layer(FullyConnectedLayer(3, INPUTS, scale=3.0))
+    network.add_layer(layer)
     network.add_layer(ActivationLayer(*(activation or ActivationFunctions.use_tanh())))
-    network.add_layer(FullyConnectedLayer(layer.outputs or INPUTS, 2))
+    if isinstance(layer.outputs, tuple):
+        network.add_layer(FlattenLayer(layer.outputs))
+    network.add_layer(FullyConnectedLayer(network.layers[-1].outputs or layer.outputs or INPUTS, 2))
     network.values += 0.1 * rng.normal(size=network.values.shape)  # biases and gains that are not 0 or 1
     return network
+
+
+def examples(network, count, seed):
+    inputs = network.layers[0].inputs
+    return np.random.default_rng(seed).normal(size=(count, *(inputs if isinstance(inputs, tuple) else (inputs,))))
+
+
+def examples_of(layer, count, seed):
+    shape = layer.inputs if isinstance(layer.inputs, tuple) else (INPUTS,)
+    return np.random.default_rng(seed).normal(size=(count, *shape))
 
 
 def numerical_gradient(function, values, step=1e-6):
@@ -68,18 +100,21 @@ def numerical_gradient(function, values, step=1e-6):
 
 
 def test_the_tables_are_complete():
-    assert set(LAYER_ROWS) == set(LAYERS)
+    assert {name.split()[0] for name in LAYER_ROWS} == set(LAYERS)
     assert set(ACTIVATION_ROWS) == {*ACTIVATIONS, "plain pair"}
     assert set(COST_ROWS) == {*COSTS, "plain pair"}
 
 
 @pytest.mark.parametrize(
-    ("layer", "activation", "cost"), list(itertools.product(LAYER_ROWS, ACTIVATION_ROWS, COST_ROWS))
+    ("layer", "activation", "cost"),
+    [
+        *((layer, "tanh", "mse") for layer in LAYER_ROWS),
+        *itertools.product(("FullyConnectedLayer", "MaxPoolingLayer"), ACTIVATION_ROWS, COST_ROWS),
+    ],
 )
 def test_gradients_are_exact(layer, activation, cost):
     network = network_with(LAYER_ROWS[layer](), ACTIVATION_ROWS[activation], COST_ROWS[cost])
-    rng = np.random.default_rng(5)
-    x, y = rng.normal(size=(BATCH, 3)), rng.normal(size=(BATCH, 2))
+    x, y = examples(network, BATCH, 5), np.random.default_rng(6).normal(size=(BATCH, 2))
     prediction = network.forward_propagate(x)
     network.backward_propagate(network.cost.derivative(prediction, y))
     expected = numerical_gradient(lambda: network.cost(network.predict(x), y), network.values)
@@ -90,19 +125,19 @@ def test_gradients_are_exact(layer, activation, cost):
 def test_a_layer_alone_returns_its_input_error(name):
     layer = LAYER_ROWS[name]()
     layer.dtype = np.float64
-    rng = np.random.default_rng(7)
-    x = rng.normal(size=(BATCH, INPUTS))
-    error = rng.normal(size=layer.predict(x).shape)
+    x = examples_of(layer, BATCH, 7)
+    error = np.random.default_rng(8).normal(size=layer.predict(x).shape)
     layer.forward_propagate(x)
     input_error = layer.backward_propagate(error).copy()
     expected = numerical_gradient(lambda: np.sum(layer.predict(x) * error), x.reshape(-1))
+    assert input_error.shape == x.shape
     np.testing.assert_allclose(input_error.ravel(), expected, rtol=1e-6, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", LAYER_ROWS)
 def test_a_batch_equals_its_examples(name):
     network = network_with(LAYER_ROWS[name](), dtype=np.float32)
-    x = np.random.default_rng(1).normal(size=(BATCH, 3)).astype(np.float32)
+    x = examples(network, BATCH, 1).astype(np.float32)
     batch = network.predict(x)
     assert batch.dtype == np.float32
     for one, expected in zip(x, batch, strict=True):
@@ -112,15 +147,27 @@ def test_a_batch_equals_its_examples(name):
 
 
 @pytest.mark.parametrize("name", LAYER_ROWS)
+def test_the_order_in_memory_does_not_matter(name):
+    layer = LAYER_ROWS[name]()
+    x = examples_of(layer, BATCH, 1).astype(np.float32)
+    error = layer.predict(x).copy()
+    turned_x, turned_error = np.array(x, order="F"), np.array(error, order="F")
+    np.testing.assert_allclose(layer.predict(turned_x), layer.predict(x), rtol=1e-5, atol=1e-6)
+    layer.forward_propagate(x)
+    expected = layer.backward_propagate(error).copy()
+    layer.forward_propagate(turned_x)
+    np.testing.assert_allclose(layer.backward_propagate(turned_error), expected, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
 def test_predict_leaves_no_trace(name):
     network, undisturbed = network_with(LAYER_ROWS[name]()), network_with(LAYER_ROWS[name]())
-    rng = np.random.default_rng(2)
-    x, error = rng.normal(size=(BATCH, 3)), rng.normal(size=(BATCH, 2))
+    x, error = examples(network, BATCH, 2), np.random.default_rng(3).normal(size=(BATCH, 2))
     for one in (network, undisturbed):
         one.forward_propagate(x)
     before = network.values.copy()
-    network.predict(rng.normal(size=(BATCH, 3)))
-    network.predict(rng.normal(size=(2, 3)))
+    network.predict(examples(network, BATCH, 4))
+    network.predict(examples(network, 2, 5))
     for one in (network, undisturbed):
         one.backward_propagate(error)
     np.testing.assert_array_equal(network.gradients, undisturbed.gradients)
@@ -130,11 +177,10 @@ def test_predict_leaves_no_trace(name):
 @pytest.mark.parametrize("name", LAYER_ROWS)
 def test_batch_sizes_may_alternate(name):
     network = network_with(LAYER_ROWS[name]())
-    rng = np.random.default_rng(4)
-    kept = network.predict(rng.normal(size=(BATCH, 3)))
+    kept = network.predict(examples(network, BATCH, 4))
     copied = kept.copy()
     for size in (BATCH, 1, 9, BATCH):
-        x, error = rng.normal(size=(size, 3)), rng.normal(size=(size, 2))
+        x, error = examples(network, size, 5), np.random.default_rng(6).normal(size=(size, 2))
         fresh = network_with(LAYER_ROWS[name]())
         for one in (network, fresh):
             one.forward_propagate(x)
@@ -146,8 +192,8 @@ def test_batch_sizes_may_alternate(name):
 @pytest.mark.parametrize("name", LAYER_ROWS)
 def test_neither_pass_changes_what_it_is_given(name):
     layer = LAYER_ROWS[name]()
-    x = np.random.default_rng(6).normal(size=(BATCH, INPUTS)).astype(np.float32)
-    error = layer.predict(x)
+    x = examples_of(layer, BATCH, 6).astype(np.float32)
+    error = layer.predict(x).copy()
     given_x, given_error = x.copy(), error.copy()
     layer.forward_propagate(x)
     layer.backward_propagate(error)
@@ -186,7 +232,8 @@ def test_costs_are_summed_over_outputs_and_averaged_over_the_batch(name):
     p, t = np.array([[0.3, -2.0], [1.0, 0.5]]), np.array([[0.0, 0.0], [1.5, 0.1]])
     examples = [function(p[[i]], t[[i]]) for i in (0, 1)]
     assert function(p, t) == pytest.approx(np.mean(examples))
-    assert examples[0] == pytest.approx(function(p[[0], :1], t[[0], :1]) + function(p[[0], 1:], t[[0], 1:]))
+    if name != "softmax_cross_entropy":  # of which the outputs are parts of one
+        assert examples[0] == pytest.approx(function(p[[0], :1], t[[0], :1]) + function(p[[0], 1:], t[[0], 1:]))
     np.testing.assert_allclose(derivative(p, t)[0], derivative(p[[0]], t[[0]])[0] / 2)
     np.testing.assert_allclose(derivative(p[0], t[0]), derivative(p[[0]], t[[0]])[0])
 
@@ -195,6 +242,25 @@ def test_costs_have_the_textbook_values():
     p, t = np.array([[1.0, 3.0]]), np.array([[0.5, 0.0]])
     assert CostFunctions.use_mse()(p, t) == pytest.approx(0.25 + 9.0)
     assert CostFunctions.use_huber(1.0)(p, t) == pytest.approx(0.125 + 2.5)
+    cost, logits = CostFunctions.use_softmax_cross_entropy(), np.log([[0.7, 0.2, 0.1]]) + 5
+    assert cost(logits, [[0, 1, 0]]) == pytest.approx(-np.log(0.2))
+    assert cost(logits, [[0.5, 0.5, 0]]) == pytest.approx(-(np.log(0.7) + np.log(0.2)) / 2)
+    np.testing.assert_allclose(softmax(logits), [[0.7, 0.2, 0.1]])
+    np.testing.assert_allclose(cost.derivative(logits, [[0, 1, 0]]), [[0.7, -0.8, 0.1]])
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_cross_entropy_survives_large_logits(dtype):
+    cost = CostFunctions.use_softmax_cross_entropy()
+    logits, target = np.array([[1e4, 0, -1e4], [0, 1e4, 0]], dtype), np.array([[0, 1, 0], [0, 1, 0]], dtype)
+    assert cost(logits, target) == pytest.approx(1e4 / 2)
+    np.testing.assert_array_equal(cost.derivative(logits, target), [[0.5, -0.5, 0], [0, 0, 0]])
+    assert cost.derivative(logits, target).dtype == softmax(logits).dtype == dtype
+    np.testing.assert_array_equal(softmax(logits[0]), [1, 0, 0])
+
+
+def test_only_cross_entropy_takes_logits():
+    assert {name for name, make in COSTS.items() if make().logits} == {"softmax_cross_entropy"}
 
 
 def test_dueling_streams_are_told_apart():
@@ -276,6 +342,10 @@ def test_sizes_are_checked(size):
         (FullyConnectedLayer, (size, 2)),
         (DuelingLayer, (2, size)),
         (LayerNormalisation, (size,)),
+        (FlattenLayer, ((3, size, 3),)),
+        (ConvolutionLayer, ((3, 3, 3), size, 3)),
+        (ConvolutionLayer, ((3, 3, 3), 2, size)),
+        (MaxPoolingLayer, ((3, 3, 3), size)),
     ):
         with pytest.raises(ValueError, match="whole number"):
             make(*sizes)

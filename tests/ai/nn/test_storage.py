@@ -1,6 +1,7 @@
 """Saving whole or not at all, and naming what is wrong on the way back."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -10,15 +11,19 @@ from hypothesis import strategies as st
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
+    ConvolutionLayer,
     CostFunctions,
+    DropoutLayer,
     DuelingLayer,
+    FlattenLayer,
     FullyConnectedLayer,
     LayerNormalisation,
+    MaxPoolingLayer,
     ModelFormatError,
     NeuralNetwork,
     atomic_folder,
 )
-from ai.nn.layers import LAYERS
+from ai.nn.storage import LAYERS
 
 X = np.random.default_rng(0).normal(size=(7, 3))
 
@@ -33,8 +38,19 @@ def every_layer(seed=0, dtype=np.float32):
         .add_layer(ActivationLayer(*ActivationFunctions.use_sigmoid()))
         .add_layer(DuelingLayer(4, 2))
     )
-    assert {type(layer).__name__ for layer in network.layers} == set(LAYERS)
+    assert {type(layer) for layer in [*network.layers, *image_layers().layers]} == set(LAYERS.values())
     return network
+
+
+def image_layers():
+    return (
+        NeuralNetwork(*CostFunctions.use_softmax_cross_entropy())
+        .add_layer(ConvolutionLayer((6, 5, 2), filters=3, kernel=3, stride=1, padding=1))
+        .add_layer(MaxPoolingLayer((6, 5, 3), size=2))
+        .add_layer(DropoutLayer(0.25))
+        .add_layer(FlattenLayer((3, 2, 3)))
+        .add_layer(FullyConnectedLayer(18, 2))
+    )
 
 
 @pytest.fixture
@@ -76,6 +92,47 @@ def test_the_folder_can_be_read_by_a_person(saved):
     assert config["layers"][2]["activation"] == {"name": "leaky_relu", "slope": 0.3}
     arrays = {entry["file"] for layer in config["layers"] for entry in layer["arrays"].values()}
     assert {path.name for path in saved.iterdir()} == arrays | {"config.json"}
+
+
+def test_a_network_for_images_comes_back(tmp_path):
+    network = image_layers()
+    network.save(tmp_path / "model")
+    config = json.loads((tmp_path / "model" / "config.json").read_text())
+    sizes = {"inputs": [6, 5, 2], "filters": 3, "kernel": 3, "stride": 1, "padding": 1}
+    assert config["cost"] == {"name": "softmax_cross_entropy"}
+    assert config["layers"][0].items() >= {"type": "ConvolutionLayer", **sizes}.items()
+    assert config["layers"][0]["arrays"]["weights"]["shape"] == [18, 3]
+    assert config["layers"][2] == {"type": "DropoutLayer", "rate": 0.25, "arrays": {}}
+    loaded, x = NeuralNetwork.load(tmp_path / "model"), np.random.default_rng(0).normal(size=(4, 6, 5, 2))
+    for one in (loaded, network.copy()):
+        np.testing.assert_array_equal(one.predict(x), network.predict(x))
+        assert [layer.arguments() for layer in one.layers] == [layer.arguments() for layer in network.layers]
+    assert loaded.cost.logits
+
+
+IMAGE_DAMAGES = {
+    "too few sizes": (0, {"inputs": [6, 5]}, "height, width, channels"),
+    "no sizes": (0, {"inputs": {"height": 6}}, "height, width, channels"),
+    "size as text": (0, {"inputs": [6, "5", 2]}, "width"),
+    "huge image": (0, {"inputs": [1 << 20, 1 << 20, 1]}, "height · width · channels"),
+    "huge kernel": (0, {"kernel": 1 << 10}, "does not fit"),
+    "wide padding": (0, {"padding": 3}, "padding"),
+    "stride none": (0, {"stride": None}, "stride"),
+    "other filters": (0, {"filters": 4}, "layer-0-weights.npy"),
+    "other image": (1, {"inputs": [6, 5, 1]}, "6 x 5 x 3"),
+    "pool as large as a house": (1, {"size": 30}, "between 2"),
+    "everything dropped": (2, {"rate": 1.0}, "rate of dropout"),
+    "other values": (3, {"inputs": [3, 2, 2]}, "3 x 2 x 2"),
+}
+
+
+@pytest.mark.parametrize("name", IMAGE_DAMAGES)
+def test_damage_to_layers_for_images_is_named(tmp_path, name):
+    index, change, message = IMAGE_DAMAGES[name]
+    image_layers().save(tmp_path / "model")
+    edit(lambda config: config["layers"][index].update(change))(tmp_path / "model")
+    with pytest.raises(ModelFormatError, match=re.escape(message)):
+        NeuralNetwork.load(tmp_path / "model")
 
 
 def test_a_save_replaces_the_old_folder(saved):

@@ -1,0 +1,42 @@
+"""Dropout: a network that cannot lean on any one value."""
+
+import numpy as np
+
+from ai.nn.layers import Layer
+from ai.nn.parameter import Array
+
+
+class DropoutLayer(Layer):
+    """Sets each value to 0 with probability `rate` while training, and divides the others by 1 - rate.
+
+    After Srivastava et al. 2014, inverted: sums keep their mean, so that `predict` has nothing to do. What is
+    dropped comes from a generator of the network's, so the same program drops the same. Raises ValueError for
+    a rate outside 0 ≤ rate < 1.
+    """
+
+    settings = ("rate",)
+
+    def __init__(self, rate: float = 0.5) -> None:
+        if isinstance(rate, bool) or not isinstance(rate, int | float) or not 0 <= rate < 1:
+            raise ValueError(f"the rate of dropout is at least 0 and less than 1, not {rate!r}")
+        self.rate = rate
+        self.factors: Array = np.empty(0)
+        self.output: Array = self.factors
+
+    def forward_propagate(self, input_data: Array) -> Array:
+        """Return what is kept, enlarged, and 0 elsewhere."""
+        self.rng = self.rng or np.random.default_rng(0)
+        if self.output.shape != input_data.shape or self.output.dtype != input_data.dtype:
+            self.factors, self.output, self.error = (np.empty_like(input_data) for _ in range(3))
+        # Drawn in the order that images have in memory; what is small does not mind.
+        drawn = self.rng.random(input_data.shape[::-1], np.float32).T
+        np.multiply(drawn >= self.rate, 1 / (1 - self.rate), out=self.factors, casting="same_kind")
+        return np.multiply(input_data, self.factors, out=self.output)
+
+    def predict(self, input_data: Array) -> Array:
+        """Return the input as it is."""
+        return input_data
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return the error of what was kept, enlarged alike, and 0 elsewhere."""
+        return np.multiply(output_error, self.factors, out=self.error)
