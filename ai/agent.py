@@ -214,6 +214,17 @@ class DeepQAgent:
             self._follow()
         return errors
 
+    def change(self, config: Config) -> None:
+        """Take over the live knobs of another configuration."""
+        self.config = config
+        self._n_step.discount = config.discount
+
+    def go_back(self, values: Floats, scale: RunningScale | None) -> None:
+        """Let both networks have those values again, (parameters,); the optimizer starts afresh."""
+        self.online.values = self.target.values = values
+        self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
+        self.scale = scale
+
     def _follow(self) -> None:
         """Move the target network towards the online one."""
         rate = self.config.target_rate

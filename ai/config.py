@@ -5,8 +5,9 @@ A field's metadata hold a sentence of help, its group, its range, and whether it
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import Field, asdict, dataclass, field, fields, replace
+from dataclasses import Field, asdict, astuple, dataclass, field, fields, replace
 from typing import Any, Final
 
 import numpy as np
@@ -121,7 +122,7 @@ class Config:
                        "lander", low=0.3, high=1.0)
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
-    weights: RewardWeights = knob(_DEFAULT_WEIGHTS, "What each part of the reward pays.", "lander")  # noqa: RUF009
+    weights: RewardWeights = knob(_DEFAULT_WEIGHTS, "What each part of the reward pays.", "lander", live=True)  # noqa: RUF009
     # fmt: on
 
     def __post_init__(self) -> None:
@@ -164,6 +165,8 @@ def _problem(item: Field[Any], value: Any) -> str | None:
         return f"{item.name} is {'' if item.type == 'bool' else 'not '}a yes or no, and was {value!r}"
     if item.type == "int" and not isinstance(value, int | np.integer):
         return f"{item.name} is a whole number, not {value!r}"
+    if item.type == "RewardWeights" and not _pays(value):
+        return f"{item.name} are finite numbers, one for each part of the reward, not {value!r}"
     if described["low"] is not None:
         numbers = value if isinstance(value, tuple) else (value,)
         if not numbers or not all(
@@ -171,6 +174,13 @@ def _problem(item: Field[Any], value: Any) -> str | None:
         ):
             return f"{item.name} lies between {described['low']:g} and {described['high']:g}, not {value!r}"
     return None
+
+
+def _pays(weights: Any) -> bool:
+    """Whether these are weights of a reward that can be reckoned with."""
+    return isinstance(weights, RewardWeights) and all(
+        isinstance(weight, int | float) and math.isfinite(weight) for weight in astuple(weights)
+    )
 
 
 PRESETS: Final[dict[str, Config]] = {

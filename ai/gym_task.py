@@ -10,7 +10,7 @@ import numpy as np
 
 from ai.agent import Symmetry
 from ai.config import Config
-from ai.env import SUCCESS, Bools, Doubles, Floats, Ints, StepResult
+from ai.env import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.pilots import Pilot
 
 if TYPE_CHECKING:
@@ -152,6 +152,10 @@ class GymTask:
     def make_env(self, rng: np.random.Generator) -> GymEnv:
         """Make the environments to train with."""
         return self._env(self.config.num_envs, rng)
+
+    def change(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
+        """Take over the live knobs of another configuration."""
+        self.config = config
 
     def _env(self, num_envs: int, rng: np.random.Generator) -> GymEnv:
         return GymEnv(self._make, num_envs, rng, self.threshold, self.config.frame_skip)

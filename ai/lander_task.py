@@ -9,7 +9,7 @@ import numpy as np
 
 from ai.agent import Symmetry
 from ai.config import CURRICULUM, Config
-from ai.env import Doubles, Floats
+from ai.env import Doubles, Env, Floats
 from ai.lander import (
     LIMITS,
     MIRROR_ACTIONS,
@@ -92,8 +92,7 @@ class LanderTask:
     def __init__(self, config: Config) -> None:
         self.config = config
         self.symmetry: Symmetry | None = LANDER_SYMMETRY
-        main = config.random_main
-        self.action_chances: Floats | None = np.array([1 - main] * 3 + [main] * 3) / 3
+        self.action_chances: Floats | None = _action_chances(config)
 
     def make_env(self, rng: np.random.Generator) -> LanderEnv:
         """Make the landers to train with."""
@@ -102,6 +101,13 @@ class LanderTask:
         limits = LIMITS.stricter(config.care)
         return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, limits=limits, weights=config.weights)
 
+    def change(self, config: Config, env: Env) -> None:
+        """Take over the live knobs of another configuration, here and in the landers."""
+        self.config = config
+        self.action_chances = _action_chances(config)
+        if isinstance(env, LanderEnv):
+            env.weights = config.weights
+
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
         """Fly so many flights at once from random spawns."""
         return evaluate(pilot, episodes, seed, "random", self.config.frame_skip)
@@ -109,3 +115,8 @@ class LanderTask:
     def read_score(self, values: dict[str, Any]) -> Evaluation:
         """Read what `Evaluation.to_json` gave."""
         return Evaluation(**values)
+
+
+def _action_chances(config: Config) -> Floats:
+    main = config.random_main
+    return np.array([1 - main] * 3 + [main] * 3) / 3

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from ai.agent import DeepQAgent
 from ai.config import LANDER, PRESETS, Config
 from ai.gym_task import gym_config
+from ai.history import History
 from ai.nn import ModelFormatError, atomic_folder
 from ai.task import TEST_SEED
 from ai.training import Progress, Training
@@ -48,6 +50,38 @@ class TrainingClock:
         return due
 
 
+@dataclass(frozen=True)
+class Snapshot:
+    """All that is kept of a run, as it was at one moment: may be saved while training goes on."""
+
+    described: dict[str, Any]
+    best: DeepQAgent
+    last: DeepQAgent
+    history: History | None
+
+    def save(self, folder: str | Path) -> None:
+        """Write it, whole or not at all; raises OSError if the disk does not take it."""
+        with atomic_folder(folder) as temporary:
+            self.best.write(temporary)
+            self.last.write(temporary / LAST)
+            if self.history is not None:
+                self.history.write(temporary)
+            (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
+
+
+def snapshot(training: Training, history: History | None = None) -> Snapshot:
+    """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best."""
+    agent = training.agent
+    described = {
+        "env": training.config.env,
+        **_nearest_preset(training.config),
+        "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
+        "episodes": training.episodes, "landings": training.env.landings,
+        "seconds": round(training.seconds, 1), "best": training.best.to_json() if training.best else None,
+    }  # fmt: skip
+    return Snapshot(described, training.best_agent(), training.last_agent(), history and history.copy())
+
+
 def save_run(training: Training, folder: str | Path, final: bool = False) -> None:
     """Keep the best network of a run, and what is needed to go on with it, whole or not at all.
 
@@ -56,22 +90,11 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
     """
     if training.best is None:
         training.evaluate()
-    assert training.best is not None
-    agent = training.agent
-    described = {
-        "env": training.config.env,
-        **_nearest_preset(training.config),
-        "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
-        "episodes": training.episodes, "landings": training.env.landings,
-        "seconds": round(training.seconds, 1), "best": training.best.to_json(),
-    }  # fmt: skip
-    best = training.best_agent()
+    kept = snapshot(training)
     if final:
-        described["evaluation"] = training.task.evaluate(best, training.task.test_episodes, TEST_SEED).to_json()
-    with atomic_folder(folder) as temporary:
-        best.write(temporary)
-        agent.write(temporary / LAST)
-        (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+        score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
+        kept.described["evaluation"] = score.to_json()
+    kept.save(folder)
 
 
 def _nearest_preset(config: Config) -> dict[str, Any]:
@@ -93,11 +116,12 @@ def resume_run(folder: str | Path) -> Training:
     try:
         described = json.loads((folder / TRAINING_FILE).read_text(encoding="utf-8"))
         training = Training(last.config, int(described["seed"]))
-        training.best = training.task.read_score(described["best"])
+        if described["best"] is not None:
+            training.best = training.task.read_score(described["best"])
+            training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = int(described["episodes"]), int(described["landings"])
         training.seconds = float(described["seconds"])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error!r}"]) from error
-    training.best_values, training.best_scale = best.network.values.copy(), best.scale
     training.agent.take_over(last)
     return training

@@ -57,6 +57,9 @@ class Task(Protocol):
     def make_env(self, rng: np.random.Generator) -> Env:
         """Make the environment to train in."""
 
+    def change(self, config: Config, env: Env) -> None:
+        """Take over the live knobs of another configuration, here and in an environment that `make_env` made."""
+
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Score:
         """Measure a pilot over so many episodes, which follow from `seed`."""
 

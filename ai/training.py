@@ -14,6 +14,7 @@ import numpy as np
 from ai.agent import DeepQAgent
 from ai.config import Config
 from ai.env import Env, Floats, StepResult
+from ai.flights import Flights
 from ai.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
 from ai.scaling import RunningScale
 from ai.schedule import geometric, linear
@@ -39,6 +40,8 @@ class Progress:
     epsilon: float
     stage: int  # of the curriculum
     steps_per_second: float  # over the last second or so, by the clock
+    shares: tuple[float, ...]  # of the same that ended in outcome 1, 2, 3 and 4
+    parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
     evaluation: Score | None = None  # when one was due
     best: Score | None = None
 
@@ -59,6 +62,7 @@ class Training:
     best_scale: RunningScale | None = None
     seconds: float = 0.0  # spent, as whoever runs it counts them
     clock: Callable[[], float] = time.monotonic
+    witness: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
 
     def __post_init__(self) -> None:
         self.task = task_of(self.config)
@@ -72,10 +76,8 @@ class Training:
         self.observation = self.env.reset()
         self.episodes = 0
         self._evaluated = 0
-        self._landed: deque[bool] = deque(maxlen=100)
-        self._returns: deque[float] = deque(maxlen=100)
         self._moments: deque[float] = deque(maxlen=100)
-        self._earned = np.zeros(self.env.num_envs)
+        self.flights = Flights(self.env.num_envs)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
 
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None) -> DeepQAgent:
@@ -100,24 +102,26 @@ class Training:
 
     def advance(self) -> Progress:
         """Let every lander take one decision, learn from it, and evaluate if it is time."""
-        agent, env = self.agent, self.env
+        agent, env, flights = self.agent, self.env, self.flights
         epsilon = self.epsilon
         actions = agent.act(self.observation, self._spread(epsilon), self._held)
         result = env.step(actions)
         agent.remember(self.observation, actions, result, result.succeeded)
         self.observation = result.observation
-        self._earned += result.reward
+        flights.add(result)
+        if self.witness is not None:
+            self.witness(result)
         if result.ended.any():
-            self._finish(result)
+            self.episodes += int(result.ended.sum())
+            flights.finish(result)
             self.observation = env.reset(result.ended)
         self._held = np.where(result.ended, 0, actions)
         agent.learn()
         evaluation = self._evaluate_if_due()
-        count = max(1, len(self._landed))
         return Progress(
             agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
-            sum(self._landed) / count, sum(self._returns) / count, agent.loss, agent.mean_q, epsilon, env.stage,
-            self._pace(), evaluation, self.best,
+            flights.success, flights.mean_return, agent.loss, agent.mean_q, epsilon, env.stage, self._pace(),
+            flights.shares, flights.parts, evaluation, self.best,
         )  # fmt: skip
 
     def _pace(self) -> float:
@@ -127,12 +131,12 @@ class Training:
         steps = (len(self._moments) - 1) * self.env.num_envs * self.config.frame_skip
         return steps / spent if spent > 0 else 0.0
 
-    def _finish(self, result: StepResult) -> None:
-        ended = result.ended
-        self.episodes += int(ended.sum())
-        self._landed.extend(result.succeeded[ended].tolist())
-        self._returns.extend(self._earned[ended].tolist())
-        self._earned[ended] = 0.0
+    def change(self, config: Config) -> None:
+        """Take over the live knobs of another configuration; it must have all others in common with this one."""
+        self.config = config
+        self.task.change(config, self.env)
+        self.agent.change(config)
+        self.agent.action_chances = self.task.action_chances
 
     def _evaluate_if_due(self) -> Score | None:
         if not self.evaluate_every or self.agent.decisions - self._evaluated < self.evaluate_every:
@@ -154,8 +158,15 @@ class Training:
         agent = self._new_agent(self.agent.config)
         values = self.agent.network.values if self.best_values is None else self.best_values
         agent.online.values = agent.target.values = values
-        agent.scale = self.agent.scale if self.best_values is None else self.best_scale
+        agent.scale = deepcopy(self.agent.scale if self.best_values is None else self.best_scale)
         agent.decisions, agent.train_count = self.agent.decisions, self.agent.train_count
+        return agent
+
+    def last_agent(self) -> DeepQAgent:
+        """Return an agent as the one that learns is now, without its memories; it stays as it is."""
+        agent = self._new_agent(self.agent.config)
+        agent.take_over(self.agent)
+        agent.scale = deepcopy(self.agent.scale)
         return agent
 
 
@@ -165,4 +176,4 @@ def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Co
     while True:
         changed = yield training.advance()
         if changed is not None:
-            training.agent.config = changed
+            training.change(changed)

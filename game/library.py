@@ -82,7 +82,7 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
 
 
 def _figures(described: dict[str, Any]) -> dict[str, Any]:
-    success = described["best"]["success"]
+    success = described["best"]["success"] if described["best"] else None  # a young run has not been tried yet
     return {
         "preset": str(described["preset"]), "changes": len(described["changes"]), "seed": int(described["seed"]),
         "decisions": int(described["decisions"]), "seconds": float(described["seconds"]),

@@ -1,0 +1,216 @@
+"""What is told of a training run as it goes on, and kept of it: points of its curves, checkpoints, turned knobs."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from copy import copy
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Final
+from zipfile import BadZipFile
+
+import numpy as np
+
+from ai.env import Doubles, Floats
+from ai.nn import ModelFormatError
+from ai.rewards import REWARDS
+
+COLUMNS: Final = (
+    "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
+    "steps_per_second",
+)  # fmt: skip
+SHARES: Final = ("landed", "crashed", "out_of_bounds", "timed_out")  # in the order of ai.lander.Outcome
+PARTS: Final = tuple(REWARDS)
+HISTORY_FILE: Final = "history.npz"
+CAPACITY: Final = 4000  # points
+MOST_CHECKPOINTS: Final = 200
+_VERSION: Final = 1
+
+
+@dataclass(frozen=True)
+class Point:
+    """How a run stood after one decision. Rates, shares and parts are of the last hundred flights."""
+
+    may_thin: ClassVar = True  # of those that nobody has fetched, every other may be dropped
+
+    seconds: float  # of training, pauses left out
+    decisions: float
+    episodes: float
+    success: float
+    mean_return: float
+    loss: float
+    mean_q: float
+    epsilon: float
+    stage: float
+    steps_per_second: float
+    landed: float = 0.0
+    crashed: float = 0.0
+    out_of_bounds: float = 0.0
+    timed_out: float = 0.0
+    parts: tuple[float, ...] = (0.0,) * len(PARTS)  # what each part of the reward has paid per flight, as in PARTS
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """The network that flew at one moment of a run; `ai.live.agent_of` makes an agent of it."""
+
+    seconds: float
+    decisions: int
+    success: float
+    values: Floats  # (parameters,) float32
+    scale: dict[str, Any] | None = None  # of the observations, as RunningScale.to_json gives it
+
+
+@dataclass(frozen=True)
+class Alteration:
+    """A knob that was turned during the run."""
+
+    decisions: int
+    name: str
+    before: Any
+    after: Any
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What the network did on its own, in flights that neither train it nor will judge it."""
+
+    decisions: int
+    success: float
+    mean_return: float
+    best: bool  # of the run so far
+
+
+Entry = Point | Checkpoint | Alteration | Validation
+_NUMBERS: Final = (*COLUMNS, *SHARES)
+_COLUMN: Final = {name: column for column, name in enumerate((*_NUMBERS, *PARTS))}
+
+
+class History:
+    """What charts show of a run. Memory is bounded: when full, every other point goes, evenly along the run.
+
+    `history["success"]` is a column of the points, (n,); `history.parts` (n, len(PARTS)). Both are views: they
+    are as the run was when asked for, until the next `append`.
+    """
+
+    def __init__(self) -> None:
+        self.checkpoints: list[Checkpoint] = []
+        self.alterations: list[Alteration] = []
+        self.validations: list[Validation] = []
+        self._table: Doubles = np.empty((CAPACITY, len(_COLUMN)))
+        self._length = 0
+        self._stride = 1  # how many points told for one kept
+        self._told = 0
+
+    @property
+    def points(self) -> Doubles:
+        """All points, (n, columns): COLUMNS, SHARES and PARTS."""
+        return self._table[: self._length]
+
+    @property
+    def parts(self) -> Doubles:
+        """What each part of the reward has paid per flight, (n, len(PARTS))."""
+        return self.points[:, -len(PARTS) :]
+
+    def __getitem__(self, name: str) -> Doubles:
+        """Return one column, (n,), by a name of COLUMNS, SHARES or PARTS."""
+        return self.points[:, _COLUMN[name]]
+
+    def append(self, entry: Entry) -> None:
+        """Take note of whatever a run tells."""
+        match entry:
+            case Point():
+                self._append_point(entry)
+            case Checkpoint():
+                self.checkpoints.append(entry)
+                if len(self.checkpoints) > MOST_CHECKPOINTS:
+                    del self.checkpoints[1:-1:2]
+            case Alteration():
+                self.alterations.append(entry)
+            case Validation():
+                self.validations.append(entry)
+
+    def _append_point(self, point: Point) -> None:
+        # The latest point is always the last row; the next takes its place, unless its number is on the stride.
+        if self._length == 0 or (self._told - 1) % self._stride == 0:
+            if self._length == CAPACITY:
+                self._thin()
+            self._length += 1
+        row = self._table[self._length - 1]
+        row[: len(_NUMBERS)] = [getattr(point, name) for name in _NUMBERS]
+        row[len(_NUMBERS) :] = point.parts
+        self._told += 1
+
+    def _thin(self) -> None:
+        kept = self._table[: self._length : 2].copy()
+        self._table[: len(kept)] = kept
+        self._length = len(kept)
+        self._stride *= 2
+
+    def checkpoint_at(self, decisions: float) -> Checkpoint | None:
+        """Return the last checkpoint up to that moment, or the first; None without any."""
+        earlier = [checkpoint for checkpoint in self.checkpoints if checkpoint.decisions <= decisions]
+        return earlier[-1] if earlier else self.checkpoints[0] if self.checkpoints else None
+
+    def copy(self) -> History:
+        """Return one that stays as it is while this one goes on; the checkpoints' networks are shared."""
+        twin = copy(self)
+        twin._table = self._table.copy()
+        twin.checkpoints, twin.alterations = self.checkpoints.copy(), self.alterations.copy()
+        twin.validations = self.validations.copy()
+        return twin
+
+    def write(self, folder: Path) -> None:
+        """Write the history into a run's folder; raises OSError if the disk does not take it."""
+        described = {
+            "version": _VERSION, "columns": list(_COLUMN), "stride": self._stride, "told": self._told,
+            "alterations": [asdict(alteration) for alteration in self.alterations],
+            "validations": [asdict(validation) for validation in self.validations],
+            "checkpoints": [
+                {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.scale}
+                for each in self.checkpoints
+            ],
+        }  # fmt: skip
+        values = [checkpoint.values for checkpoint in self.checkpoints]
+        np.savez(
+            folder / HISTORY_FILE, allow_pickle=False, described=np.array(json.dumps(described)), points=self.points,
+            values=np.array(values, dtype=np.float32) if values else np.empty((0, 0), dtype=np.float32),
+        )  # fmt: skip
+
+    @classmethod
+    def read(cls, folder: str | Path) -> History:
+        """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
+        file = Path(folder) / HISTORY_FILE
+        history = cls()
+        try:
+            with np.load(file, allow_pickle=False) as arrays:
+                history._restore(json.loads(str(arrays["described"])), arrays["points"], arrays["values"])
+        except FileNotFoundError:
+            return cls()
+        except (OSError, ValueError, KeyError, TypeError, EOFError, MemoryError, BadZipFile, zlib.error) as error:
+            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error or type(error).__name__}"]) from error
+        return history
+
+    def _restore(self, described: dict[str, Any], points: Doubles, values: Floats) -> None:
+        """Take over what was read; raises KeyError, TypeError or ValueError where it makes no sense."""
+        if described["version"] != _VERSION:
+            raise ValueError(f"version {described['version']!r}, not {_VERSION}")
+        if points.ndim != 2 or points.shape[1] != len(described["columns"]) or len(points) > CAPACITY:
+            raise ValueError(f"points of shape {points.shape}")
+        self._length, self._stride, self._told = len(points), int(described["stride"]), int(described["told"])
+        if self._stride < 1 or self._told < self._length:
+            raise ValueError(f"{self._length} points of {self._told}, at a stride of {self._stride}")
+        # By name, so that a run from before a part was added can still be looked at.
+        self.points[...] = 0.0
+        for column, name in enumerate(described["columns"]):
+            if name in _COLUMN:
+                self.points[:, _COLUMN[name]] = points[:, column]
+        if not np.isfinite(values).all():
+            raise ValueError("checkpoints that are not finite")
+        self.checkpoints = [
+            Checkpoint(**told, values=row.astype(np.float32))
+            for told, row in zip(described["checkpoints"], values, strict=True)
+        ]
+        self.alterations = [Alteration(**told) for told in described["alterations"]]
+        self.validations = [Validation(**told) for told in described["validations"]]

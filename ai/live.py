@@ -1,0 +1,342 @@
+"""A lander training that can be looked into and steered while it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, fields, replace
+from operator import attrgetter
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ai.agent import DeepQAgent
+from ai.config import Config
+from ai.env import Floats, Ints, StepResult
+from ai.history import PARTS, Alteration, Checkpoint, Entry, History, Point, Validation
+from ai.lander import NUM_ACTIONS, NUM_FEATURES, LanderEnv
+from ai.runs import resume_run, snapshot
+from ai.scaling import RunningScale
+from ai.training import Progress, Training
+
+POINT_DECISIONS: Final = 256  # at least so many between two points
+INSIGHT_SECONDS: Final = 0.25
+KEEP_SECONDS: Final = 10.0
+REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
+NOTHING_PAID: Final = (0.0,) * len(PARTS)
+CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
+
+
+@dataclass(frozen=True)
+class Begun:
+    """The first word of a run: what it is made with, which for a resumed run is what it was begun with."""
+
+    config: Config
+    seed: int
+    decisions: int  # so far; 0 for a new run
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """All landers after one decision, before those whose flight has ended begin a new one."""
+
+    newest_only: ClassVar = True
+
+    position: NDArray[np.float32]  # (n, 2) metres, centre of mass
+    angle: NDArray[np.float32]  # (n,) radians
+    action: NDArray[np.int8]  # (n,) as flown in this decision
+    outcome: NDArray[np.int8]  # (n,) of ai.lander.Outcome
+    earned: NDArray[np.float32]  # (n,) what the flight has earned so far
+    decisions: int
+
+
+@dataclass(frozen=True, eq=False)
+class Insight:
+    """The network that learns, from within. A few times a second."""
+
+    newest_only: ClassVar = True
+
+    values: Floats  # (parameters,) float32 of the online network
+    gradients: Floats  # (parameters,) of its last learning step
+    observation: Floats  # (9,) what the lander in slot CAREFUL senses now
+    decisions: int
+
+
+@dataclass(frozen=True)
+class Change:
+    """Turn a live knob, by its field's name in Config; "weights.time" is one part of the reward's weights."""
+
+    name: str
+    value: Any
+
+
+@dataclass(frozen=True)
+class Save:
+    """Save the run, as it is now, to a folder."""
+
+    folder: Path
+
+
+@dataclass(frozen=True)
+class Revert:
+    """Let the networks be again what they were at a checkpoint of the history; time does not go back."""
+
+    decisions: int
+
+
+@dataclass(frozen=True)
+class Saved:
+    """What became of a save; no problem means that it is on the disk, whole."""
+
+    folder: Path
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A command that could not be carried out, and why. Nothing has changed."""
+
+    command: Change | Revert
+    problem: str
+
+
+Message = Begun | Sight | Insight | Point | Checkpoint | Validation | Alteration | Saved | Refused
+Command = Change | Save | Revert
+
+
+def live(
+    config: Config, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None
+) -> Generator[tuple[Message, ...], Command | None, None]:
+    """Train landers without end; every turn is one decision of all landers, and yields what there is to tell.
+
+    The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
+    without a decision, and yields the answer. The run saves itself to `keep` now and then and when it is closed.
+    With `resume`, it goes on from a saved run, with the settings, seed and history of that.
+
+    Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's,
+    and FloatingPointError, which names the learning step and the likely cause, when the numbers run away.
+    """
+    if resume is None:
+        run = _LiveRun(Training(config, seed), History(), keep)
+    else:
+        run = _LiveRun(resume_run(resume), History.read(resume), keep)
+    try:
+        told = run.begin()
+        while True:
+            command = yield told
+            told = run.advance() if command is None else run.carry_out(command)
+    except FloatingPointError:
+        run.rewind()
+        raise
+    finally:
+        run.end()
+
+
+def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
+    """Return an agent that flies as the run did at that checkpoint; raises ValueError if the sizes differ."""
+    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, config)
+    if agent.online.values.shape != checkpoint.values.shape:
+        raise ValueError(
+            f"the checkpoint has {len(checkpoint.values)} parameters, the network {len(agent.online.values)}"
+        )
+    agent.go_back(checkpoint.values, _scale_of(agent, checkpoint))
+    agent.decisions = checkpoint.decisions
+    return agent
+
+
+def turned(config: Config, name: str, value: Any) -> Config:
+    """Return the configuration with one live knob turned, named as in Change; raises ValueError if it can't be."""
+    name, _, part = name.partition(".")
+    knobs = {knob.name: knob.metadata["live"] for knob in fields(Config)}
+    if name not in knobs or (part and (name, part in vars(config.weights)) != ("weights", True)):
+        raise ValueError(f"there is no setting called {name}{part and '.'}{part}")
+    if not knobs[name]:
+        raise ValueError(f"{name} cannot change while a run goes on")
+    return config.changed(**{name: replace(config.weights, **{part: value}) if part else value})
+
+
+class _LiveRun:
+    """A Training, what has been told of it, and where it is kept."""
+
+    def __init__(self, training: Training, history: History, keep: Path | None) -> None:
+        if not isinstance(training.env, LanderEnv):
+            raise ValueError(f"only landers can be looked into, not {training.config.env}")
+        self.training, self.history, self.env = training, history, training.env
+        training.witness = self._see
+        self._sight = self._seen(self.env.outcome)
+        self._folder = keep
+        self._kept = training.agent.decisions
+        self._keep_at = training.clock() + KEEP_SECONDS
+        self._insight_at = 0.0
+        self._point_at = 0
+        self._checkpoint_at = training.agent.decisions + self._checkpoint_every
+        self._trouble = ""
+        self._writer = ThreadPoolExecutor(max_workers=1)
+        self._writing: Future[None] | None = None
+        self._told: list[Message] = []
+
+    @property
+    def _checkpoint_every(self) -> int:
+        """Decisions between checkpoints: sparser as the run gets longer, so that the first hours keep them all."""
+        return max(40 * self.env.num_envs, 2_500, self.training.agent.decisions // 50)
+
+    def begin(self) -> tuple[Message, ...]:
+        """Say how the run begins."""
+        training = self.training
+        self._told = [Begun(training.config, training.seed, training.agent.decisions), self._sight, self._insight()]
+        if not self.history.checkpoints:
+            self._note(self._checkpoint(0.0))
+        return self._flush()
+
+    def advance(self) -> tuple[Message, ...]:
+        """Let every lander take one decision; return what there is to tell of it."""
+        training = self.training
+        before = training.clock()
+        progress = training.advance()
+        now = training.clock()
+        training.seconds += now - before
+        self._told.append(self._sight)
+        if now >= self._insight_at:
+            self._insight_at = now + INSIGHT_SECONDS
+            self._told.append(self._insight())
+        if progress.decisions >= self._point_at:
+            self._point_at = progress.decisions + POINT_DECISIONS
+            self._note(self._point(progress))
+        if (score := progress.evaluation) is not None:
+            best = score is progress.best
+            self._note(Validation(progress.decisions, score.success or 0.0, score.mean_return, best))
+        if progress.decisions >= self._checkpoint_at:
+            self._note(self._checkpoint(progress.success_rate))
+            self._checkpoint_at = progress.decisions + self._checkpoint_every
+        if self._folder is not None:
+            self._keep_if_due(self._folder, now)
+        return self._flush()
+
+    def carry_out(self, command: Command) -> tuple[Message, ...]:
+        """Do what is asked, without a decision; return the answer."""
+        match command:
+            case Change():
+                self._change(command)
+            case Revert():
+                self._revert(command)
+            case Save(folder):
+                self._told.append(Saved(folder, self._save(folder)))
+        return self._flush()
+
+    def rewind(self) -> None:
+        """Let the networks be what they were at the last checkpoint, when numbers have run away since."""
+        self._go_back(self.history.checkpoints[-1])
+
+    def end(self) -> None:
+        """Keep what has not been kept, and wait until it is on the disk."""
+        if self._folder is not None and self._kept != self.training.agent.decisions:
+            self._save(self._folder)
+        self._writer.shutdown()
+
+    def _flush(self) -> tuple[Message, ...]:
+        told, self._told = tuple(self._told), []
+        return told
+
+    def _note(self, entry: Entry) -> None:
+        self.history.append(entry)
+        self._told.append(entry)
+
+    def _see(self, result: StepResult) -> None:
+        self._sight = self._seen(result.outcome)
+
+    def _seen(self, outcome: Ints) -> Sight:
+        env, training = self.env, self.training
+        return Sight(
+            env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
+            outcome.astype(np.int8), training.flights.earned.astype(np.float32), training.agent.decisions,
+        )  # fmt: skip
+
+    def _insight(self) -> Insight:
+        agent = self.training.agent
+        return Insight(
+            agent.online.values.copy(), agent.online.gradients.copy(), self.training.observation[CAREFUL].copy(),
+            agent.decisions,
+        )  # fmt: skip
+
+    def _point(self, progress: Progress) -> Point:
+        landed, crashed, out_of_bounds, timed_out = progress.shares
+        return Point(
+            self.training.seconds, progress.decisions, progress.episodes, progress.success_rate,
+            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, progress.stage,
+            progress.steps_per_second, landed, crashed, out_of_bounds, timed_out, progress.parts or NOTHING_PAID,
+        )  # fmt: skip
+
+    def _checkpoint(self, success: float) -> Checkpoint:
+        agent = self.training.agent
+        values = agent.network.values.copy()
+        if not np.isfinite(values).all():
+            raise FloatingPointError(
+                f"the network was not finite after learning step {agent.train_count}; "
+                f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
+            )
+        scale = agent.scale.to_json() if agent.scale else None
+        return Checkpoint(self.training.seconds, agent.decisions, success, values, scale)
+
+    def _change(self, command: Change) -> None:
+        before = self.training.config
+        try:
+            self.training.change(turned(before, command.name, command.value))
+        except ValueError as error:
+            self._told.append(Refused(command, str(error)))
+            return
+        decisions, read = self.training.agent.decisions, attrgetter(command.name)
+        self._note(Alteration(decisions, command.name, read(before), read(self.training.config)))
+
+    def _revert(self, command: Revert) -> None:
+        checkpoint = self.history.checkpoint_at(command.decisions)
+        if checkpoint is None:
+            self._told.append(Refused(command, "this run has no checkpoints yet"))
+            return
+        self._go_back(checkpoint)
+        self._note(Alteration(self.training.agent.decisions, REVERTED, None, checkpoint.decisions))
+        self._told.append(self._insight())
+
+    def _go_back(self, checkpoint: Checkpoint) -> None:
+        agent = self.training.agent
+        agent.go_back(checkpoint.values, _scale_of(agent, checkpoint))
+
+    def _keep_if_due(self, folder: Path, now: float) -> None:
+        """Start a save in a thread when it is time, and tell when one did not succeed."""
+        if self._writing is not None and self._writing.done():
+            trouble = _trouble(self._writing)
+            if trouble and trouble != self._trouble:
+                self._told.append(Saved(folder, trouble))
+            self._trouble, self._writing = trouble, None
+        if self._writing is None and now >= self._keep_at:
+            self._keep_at = now + KEEP_SECONDS
+            self._writing = self._write(folder)
+
+    def _write(self, folder: Path) -> Future[None]:
+        if folder == self._folder:
+            self._kept = self.training.agent.decisions
+        return self._writer.submit(snapshot(self.training, self.history).save, folder)
+
+    def _save(self, folder: Path) -> str:
+        """Save, wait until it is done, and return what went wrong."""
+        return _trouble(self._write(folder))
+
+
+def _scale_of(agent: DeepQAgent, checkpoint: Checkpoint) -> RunningScale | None:
+    if checkpoint.scale is None:
+        return None
+    scale = RunningScale(agent.num_features)
+    scale.load(checkpoint.scale)
+    return scale
+
+
+def _trouble(writing: Future[None]) -> str:
+    """Wait for a save, and return why it failed, if it did."""
+    try:
+        writing.result()
+    except OSError as error:
+        return error.strerror or str(error)
+    except ValueError as error:
+        return str(error)
+    return ""
