@@ -278,11 +278,23 @@ LIBRARY_NOT_KEPT: Final = "{name} could not be kept: {reason}"
 # Charts, the reward strip and the drawing of the network
 CHART_SECONDS: Final = "{:.0f} s"
 CHART_EMPTY: Final = "nothing to show yet"
+NET_ALL: Final = "{total} units"
+NET_SOME: Final = "{shown} of {total}"
+NET_UNIT: Final = "layer {layer}, unit {unit}"
+NET_VALUE: Final = "value"
+NET_BIAS: Final = "bias"
+NET_DAMAGED: Final = ": damaged"
+# What blue edges and orange ones mean
+NET_LEGEND: Final = {
+    "weights": ("adds", "takes away"),
+    "activations": ("adds now", "takes away"),
+    "gradients": ("raised", "lowered"),
+}
 
 # Flying against a ghost
 DUEL: Final = "Side by side"
 DUEL_RIVAL: Final = "against {name}"
-DUEL_BEGIN: Final = "{name} starts when you do, and touches nothing."
+DUEL_BEGIN: Final = "The ghost of {name} starts when you do."
 HINT_LEAVE: Final = "leave"
 RIVAL_RESULTS: Final = {
     "FLYING": "still flying",

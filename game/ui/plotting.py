@@ -108,8 +108,8 @@ def trace(x: Numbers, y: Numbers, x_range: Limits, columns: int, radius: int) ->
     inside = (at >= 0) & (at < columns)
     column, values = at[inside].astype(np.intp), y[inside]
     finite = np.isfinite(values)
-    count = np.bincount(column[finite], np.ones(finite.sum()), minlength=columns)
-    total = np.bincount(column[finite], values[finite], minlength=columns)
+    count = np.bincount(column[finite], minlength=columns).astype(float)
+    total = np.bincount(column[finite], values[finite], minlength=columns).astype(float)
     filled = np.flatnonzero(count)
     if not len(filled):
         return np.full(columns, np.nan)

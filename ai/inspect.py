@@ -1,0 +1,78 @@
+"""Looking into a network: what each stage computes, how the stages are linked, and which units have died."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, NeuralNetwork
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """What leads from one stage of units to the next.
+
+    Of a dueling layer, these are the effective weights, from the units before it straight to the Q-values.
+    """
+
+    weights: Array  # (inputs, outputs)
+    bias: Array  # (outputs,)
+    gradient: Array  # (inputs, outputs) of the weights, as the last backward pass left it
+
+
+def traces(network: NeuralNetwork, observation: npt.ArrayLike) -> list[Array]:
+    """Return the values of each stage of units for one observation (inputs,), or for a batch of them.
+
+    First what the lowest fully connected layer is given, then what becomes of each fully connected layer's
+    outputs after normalisation and activation; the last is what the network answers. Nothing is kept in the
+    network, and numbers that are not finite pass through.
+    """
+    data: Array = np.asarray(observation, network.dtype)
+    stages = []
+    with np.errstate(all="ignore"):
+        for layer in network.layers:
+            if _links(layer):
+                stages.append(data)
+            data = layer.predict(data)
+    return [*stages, data]
+
+
+def links(network: NeuralNetwork) -> list[Link]:
+    """Return what links each of the stages of `traces` to the next; views of the network where that is possible."""
+    network.values  # noqa: B018 - packs the parameters, which makes their gradients views of the flat vector
+    found = []
+    for layer in network.layers:
+        if not _links(layer):
+            continue
+        weights, bias = layer.parameters
+        link = Link(weights.value, bias.value, weights.gradient)
+        if isinstance(layer, DuelingLayer):
+            with np.errstate(all="ignore"):
+                link = Link(*(part @ layer.mixture for part in (link.weights, link.bias, link.gradient)))
+        found.append(link)
+    return found
+
+
+def dead_units(network: NeuralNetwork, observations: npt.ArrayLike) -> float:
+    """Return the share of rectified units, 0 to 1, that answer none of the observations (n, inputs).
+
+    Such a unit passes no gradient either: unless its inputs change, it never learns again. 0 for a network
+    without rectified units, and without observations.
+    """
+    data: Array = np.atleast_2d(np.asarray(observations, network.dtype))
+    units = dead = 0
+    with np.errstate(all="ignore"):
+        for layer in network.layers if data.size else ():
+            data = layer.predict(data)
+            if isinstance(layer, ActivationLayer) and layer.activation.name == "relu":
+                silent = ~data.reshape(len(data), -1).any(axis=0)
+                units += silent.size
+                dead += int(silent.sum())
+    return dead / units if units else 0.0
+
+
+def _links(layer: Layer) -> bool:
+    """Say whether a layer links units with units: a convolution links images."""
+    return isinstance(layer, FullyConnectedLayer) and not isinstance(layer.inputs, tuple)
