@@ -172,16 +172,33 @@ class Card:
     advice: str = ""
 
 
+@dataclass(frozen=True)
+class Rival:
+    """What became of another one from the same start; a figure it does not have is left out."""
+
+    name: str
+    result: str
+    figures: dict[str, tuple[str, str]]  # value and unit by label
+
+
 CARD: Final = pygame.Rect(400, 136, 480, 264)
 _ADVICE_ROW: Final = 24
+_RIVAL_ROWS: Final = 54
 
 
-def draw_card(canvas: Canvas, card: Card, keys: list[tuple[str, str]], shown: float, advise: bool) -> None:
-    """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted."""
+def draw_card(
+    canvas: Canvas,
+    card: Card,
+    keys: list[tuple[str, str]],
+    shown: float,
+    advise: bool,
+    rival: Rival | None = None,
+) -> None:
+    """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted, and a rival's figures."""
     drop = 10 * (1 - shown)
     left, top, width = CARD.left + 32, CARD.top - drop, CARD.width - 64
     lower = _ADVICE_ROW if advise and card.advice else 0
-    canvas.panel((CARD.left, top, CARD.width, CARD.height + lower))
+    canvas.panel((CARD.left, top, CARD.width, CARD.height + lower + (_RIVAL_ROWS if rival else 0)))
     colour = canvas.palette.good if card.good else canvas.palette.warn
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
     canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
@@ -196,9 +213,25 @@ def draw_card(canvas: Canvas, card: Card, keys: list[tuple[str, str]], shown: fl
         canvas.text(label, (x, top + 122), size=LABEL, colour=MUTE, weight="medium")
         figure = canvas.text(value, (x, top + 149), size=TITLE, weight="light", tabular=True)
         canvas.text(unit, (figure.right + 4, top + 149), size=LABEL, colour=MUTE)
+    if rival:
+        _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 176), width)
+        top += _RIVAL_ROWS
     draw_share(canvas, left, top + 188, width, card.human)
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
     draw_hints(canvas, keys, (left, top + 244))
+
+
+def _draw_rival(canvas: Canvas, rival: Rival, labels: Sequence[str], corner: Point, width: float) -> None:
+    """Draw a rival's name, result and figures, in the columns of your own."""
+    left, top = corner
+    canvas.dot((left + 4, top - 4), 4, NET)
+    canvas.text(rival.name, (left + 16, top), size=SMALL, colour=NET)
+    canvas.text(rival.result, (left + width, top), size=SMALL, colour=INK, align="right")
+    column = width / len(labels)
+    for number, label in enumerate(labels):
+        value, unit = rival.figures.get(label, ("–", ""))
+        figure = canvas.text(value, (left + number * column, top + 25), size=TEXT, weight="light", tabular=True)
+        canvas.text(unit, (figure.right + 4, top + 25), size=LABEL, colour=MUTE)
 
 
 def draw_opening(

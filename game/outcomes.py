@@ -12,19 +12,22 @@ from game.hud import Card
 def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
     """Return the card of a flight that has ended; `human` is the person's share of it."""
     outcome = Outcome(int(env.outcome[slot]))
-    speed, _, _ = env.impact[slot].tolist()
-    figures = [(texts.TIME, f"{float(env.time[slot]):.1f}", "s"), (texts.FUEL, f"{float(env.fuel[slot]):.1f}", "s")]
-    if outcome in (Outcome.LANDED, Outcome.CRASHED):
-        figures.append((texts.TOUCHDOWN, f"{speed:.1f}", "m/s"))
-    away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))
-    figures.append((texts.FROM_MIDDLE, f"{away:.1f}", "m"))
     title, reason = texts.OUTCOMES[outcome.name]
     if outcome is Outcome.CRASHED:
         reason = crash_reason(env, slot)
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
     advice = texts.ADVICE.get(Cause(int(env.cause[slot])).name, "")
-    return Card(outcome is Outcome.LANDED, title, reason, tuple(figures), human, advice)
+    return Card(outcome is Outcome.LANDED, title, reason, flight_figures(env, slot), human, advice)
+
+
+def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str], ...]:
+    """Return the figures of a flight that has ended: label, value, unit."""
+    figures = [(texts.TIME, f"{float(env.time[slot]):.1f}", "s"), (texts.FUEL, f"{float(env.fuel[slot]):.1f}", "s")]
+    if env.outcome[slot] in (Outcome.LANDED, Outcome.CRASHED):
+        figures.append((texts.TOUCHDOWN, f"{float(env.impact[slot, 0]):.1f}", "m/s"))
+    away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))
+    return (*figures, (texts.FROM_MIDDLE, f"{away:.1f}", "m"))
 
 
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:

@@ -14,9 +14,10 @@ from game.context import Context
 from game.controls import Command, translate
 from game.flight import Flight, Hand, coast_path
 from game.forecast import Forecast
+from game.ghost import Ghost
 from game.outcomes import outcome_card
 from game.render import Camera
-from game.scene import Push, Transition
+from game.scene import Pop, Push, Transition
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints
 from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
@@ -36,14 +37,16 @@ _AWAY_STEPS: Final = 10
 class Play:
     """One flight after another. `seed` fixes the first; the others are drawn from the context's chance.
 
+    A `rival` flies the same starts beside the player, as a ghost that goes by `rival_name`.
+
     Attributes:
         flight: the flight on the screen.
         waiting: whether it still hangs in the sky for the pilot's first touch.
 
     """
 
-    def __init__(self, seed: int | None = None) -> None:
-        self._seed = seed
+    def __init__(self, seed: int | None = None, rival: networks.Flyer | None = None, rival_name: str = "") -> None:
+        self._seed, self._rival, self._rival_name = seed, rival, rival_name
         self._context: Context | None = None
         self.waiting, self._let_go = True, False
         self._time = 0.0
@@ -77,7 +80,7 @@ class Play:
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         match translate(event):
             case Command.PAUSE:
-                return self._pause()
+                return Pop() if self._leaves else self._pause()
             case Command.HANDOVER:
                 self._hand_over()
             case Command.RETRY:
@@ -103,6 +106,8 @@ class Play:
         if not was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = hud.flight_readouts(flight.env)
         flight.step(self._controls.action)
+        if self._ghost:
+            self._ghost.step()
         self._look_ahead()
         ended = np.array([flight.over and not was_over])
         self._stage.follow(np.array([flight.hand is Hand.NETWORK]), ended)
@@ -128,11 +133,14 @@ class Play:
         draw_dotted(canvas, view, self._path, HUMAN)
         if self._forecast and not flight.over:
             draw_dotted(canvas, view, self._forecast.path, NET)
+        if self._ghost:
+            self._ghost.draw(canvas, view, alpha)
         self._stage.draw_lander(canvas, view, pose)
         self._stage.draw_dust(canvas, view, alpha)
         self._draw_hud(canvas)
         if self._card is not None and self._card_shown > 0:
-            hud.draw_card(canvas, self._card, self._card_keys(), self._card_shown, self._settings.show_hints)
+            rival = self._ghost.row(env) if self._ghost else None
+            hud.draw_card(canvas, self._card, self._card_keys(), self._card_shown, self._settings.show_hints, rival)
 
     # The flight
 
@@ -164,6 +172,7 @@ class Play:
     def _begin(self, seed: int) -> None:
         self.waiting, self._let_go = True, False
         self.flight = Flight(seed, self._network.flyer)
+        self._ghost = Ghost(self._rival, self._rival_name, seed) if self._rival else None
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
         self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
@@ -171,7 +180,8 @@ class Play:
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
         self._path = coast_path(self.flight.env)
-        self._forecast = Forecast(self._network.flyer) if self._network.flyer else None
+        ahead = None if self._ghost else self._network.flyer  # beside a ghost, one blue path is enough
+        self._forecast = Forecast(ahead) if ahead else None
         self._sweep = 1.0
         self._steps = self._since_end = 0
 
@@ -191,6 +201,11 @@ class Play:
             self._begin(self._new_seed())
         else:
             self.retry()
+
+    @property
+    def _leaves(self) -> bool:
+        """Whether Escape goes straight back: from a duel that has not begun or is over, nothing is lost."""
+        return self._ghost is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
         from game.scenes.pause import Pause
@@ -212,20 +227,30 @@ class Play:
         network_flies = self.flight.hand is Hand.NETWORK
         text = texts.NETWORK_FLIES if network_flies else texts.YOU_FLY
         hud.draw_hand(canvas, text, NET if network_flies else HUMAN, self._sweep)
-        network = self._network
-        flown = texts.WITH_NETWORK.format(name=network.name) if network.flyer else texts.ALONE
-        hud.draw_corner(canvas, texts.FREE_FLIGHT, flown)
+        if self._ghost:
+            hud.draw_corner(canvas, texts.DUEL, texts.DUEL_RIVAL.format(name=self._ghost.name))
+        else:
+            network = self._network
+            flown = texts.WITH_NETWORK.format(name=network.name) if network.flyer else texts.ALONE
+            hud.draw_corner(canvas, texts.FREE_FLIGHT, flown)
         hud.draw_readouts(canvas, self._readouts)
         if self.waiting:
-            keys = texts.FLIGHT_KEYS_PAD if self._controls.pad_in_use else texts.FLIGHT_KEYS
-            paths = [(texts.PATH_YOURS, HUMAN), *([(texts.PATH_NETWORK, NET)] if network.flyer else [])]
-            hud.draw_opening(canvas, keys, texts.BEGIN, paths)
+            self._draw_opening(canvas)
         if self._settings.show_hints:
             self._draw_hints(canvas)
 
+    def _draw_opening(self, canvas: Canvas) -> None:
+        keys = texts.FLIGHT_KEYS_PAD if self._controls.pad_in_use else texts.FLIGHT_KEYS
+        line, paths = texts.BEGIN, [(texts.PATH_YOURS, HUMAN)]
+        if self._ghost:
+            line = texts.DUEL_BEGIN.format(name=self._ghost.name)
+        if self._forecast:
+            paths.append((texts.PATH_NETWORK, NET))
+        hud.draw_opening(canvas, keys, line, paths)
+
     def _draw_hints(self, canvas: Canvas) -> None:
         word = self._controls.word
-        hints = [(word(Command.PAUSE), texts.HINT_PAUSE)]
+        hints = [(word(Command.PAUSE), texts.HINT_LEAVE if self._leaves else texts.HINT_PAUSE)]
         if self._network.flyer:
             taken = self.flight.hand is Hand.NETWORK
             hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
