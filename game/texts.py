@@ -306,3 +306,87 @@ RIVAL_RESULTS: Final = {
 RIVAL_AFTER: Final = "landed {seconds} s after you"
 RIVAL_BEFORE: Final = "landed {seconds} s before you"
 RIVAL_TOGETHER: Final = "landed together with you"
+
+# The knobs of a training run: fields of ai.config.Config by name; one without a word here is called by its name
+KNOBS: Final = {
+    "learning_rate": "Learning rate",
+    "final_learning_rate": "Learning rate, last",
+    "discount": "Discount γ",
+    "n_step": "n-step return",
+    "batch_size": "Batch",
+    "updates": "Steps per decision",
+    "optimizer": "Optimizer",
+    "cost": "Cost",
+    "gradient_clip": "Gradient clip",
+    "horizon": "Horizon",
+    "hidden": "Hidden layers",
+    "activation": "Activation",
+    "layer_normalisation": "Normalise layers",
+    "dueling": "Dueling",
+    "normalise_inputs": "Normalise inputs",
+    "output_scale": "Output scale",
+    "replay_size": "Replay",
+    "replay_prune": "Forget at once",
+    "warm_up": "Warm-up",
+    "prioritised": "Prioritised",
+    "priority_exponent": "Priority exponent",
+    "importance_exponent": "Importance exponent",
+    "mirror": "Mirror",
+    "success_pass": "Success pass",
+    "success_batch_size": "Success batch",
+    "double": "Double",
+    "target_every": "Target sync every",
+    "target_rate": "Target rate τ",
+    "fly_target": "Fly the target",
+    "epsilon_start": "ε at first",
+    "epsilon_end": "ε at last",
+    "epsilon_decay": "ε decay",
+    "epsilon_decisions": "ε falls over",
+    "epsilon_spread": "ε spread",
+    "random_main": "Random main engine",
+    "steadiness": "Steadiness",
+    "num_envs": "Landers",
+    "frame_skip": "Steps per choice",
+    "spawn": "Spawns",
+    "care": "Care",
+    "reward_scale": "Reward scale",
+    "weights": "Reward",
+    "seed": "Seed",
+}
+KNOB_PAGES: Final = {
+    "learning": "Learning",
+    "network": "Network",
+    "memory": "Memory",
+    "target": "Target",
+    "exploration": "Exploration",
+    "lander": "Lander",
+    "reward": "Reward",
+}
+KNOB_WORDS: Final = {"sgd": "plain", "mse": "squared", "relu": "ReLU", "leaky_relu": "leaky"}
+KNOB_SWITCH: Final = ("off", "on")
+# The parts of the reward: what each is called, and what it pays
+KNOB_WEIGHTS: Final = {
+    "distance": ("Distance", "Paid for each 0.1 m nearer to the middle of the pad; taken back on the way out."),
+    "speed": ("Speed", "Paid for each 0.1 m/s slower; taken back for each faster."),
+    "alignment": ("Alignment", "For being upright above the middle of the pad, less and less up to 3 m or 0.5 rad."),
+    "tilt": ("Tilt", "For each physics step leaning more than 0.6 rad. Negative: it costs."),
+    "feet": ("Feet", "For each physics step with both feet down, thirty at most."),
+    "engine": ("Engine", "For each physics step with an engine on. Negative: fuel costs."),
+    "time": ("Time", "For each physics step. Negative: hovering must not pay."),
+    "terminal": ("Terminal", "For a landing; as much is lost by a crash or by leaving the area."),
+}
+KNOB_SEED: Final = "What chance begins with: the same seed and the same knobs give the same network."
+KNOBS_NEW_RUN: Final = "takes a new run"
+KNOBS_BACK_TO: Final = "back to {value}"
+KNOBS_CLICK: Final = "Click its name"
+KNOBS_CHANGED: Final = "changed"
+KNOBS_STARTS_ANEW: Final = "Starts anew"
+KNOBS_MORE: Final = "{first} and {count} more"
+KNOBS_APPLY: Final = "Apply"
+KNOBS_UNDO: Final = "Undo"
+KNOBS_PUT_ASIDE: Final = "Your knobs"
+KNOBS_PUT_ASIDE_LINE: Final = "were put aside for {name}."
+PRESETS: Final = {
+    "modern": ("Modern", "The fastest learner we could build: in a minute or two, it lands."),
+    "classic": ("Classic", "Deep Q-learning as one first meets it: slow, and never quite steady."),
+}

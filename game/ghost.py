@@ -1,0 +1,112 @@
+"""A ghost: another pilot who flies the same start beside a flight, and touches nothing."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Doubles
+from ai.lander import LanderEnv, Outcome
+from game import texts
+from game.flight import Flight
+from game.hud import Rival
+from game.networks import Flyer
+from game.outcomes import flight_figures
+from game.render import View
+from game.ui.canvas import Canvas
+from game.ui.tokens import NET
+from game.world import lander as art
+from game.world.flame import NET_PLUME, plume
+from game.world.paths import Trails
+
+_FIRE: Final = 0.5  # of full thrust: a ghost's flame must not be taken for one's own
+_BODY: Final = 0.30  # how much of a ghost covers what lies behind it, and of its rim
+_RIM: Final = 0.9
+_FADED: Final = 0.55  # of both, once it has crashed
+_NO_SLOT: Final = np.zeros(1, bool)
+
+
+class Ghost:
+    """A rival's flight from the spawn of `seed`, in an environment of its own; `step` once for every step of yours."""
+
+    def __init__(self, rival: Flyer, name: str, seed: int) -> None:
+        self.name = name
+        self.flight = Flight(seed, rival)
+        self.flight.hand_over()
+        self._trail = Trails(1, keep=1)
+
+    def step(self) -> None:
+        """Let the rival fly 1/60 s."""
+        flight = self.flight
+        was_over = flight.over
+        flight.step(0)
+        ended = np.array([flight.over and not was_over])
+        self._trail.follow(flight.env.position, flight.env.outcome, _NO_SLOT, ended)
+
+    def row(self, yours: LanderEnv) -> Rival:
+        """Return what the outcome card says of the rival beside a flight of yours that has ended."""
+        env = self.flight.env
+        figures = {label: (value, unit) for label, value, unit in flight_figures(env)} if self.flight.over else {}
+        return Rival(self.name, _result(yours, env), figures)
+
+    def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
+        """Draw the way it came and its shape, with a blue rim."""
+        self._trail.draw(canvas, view, 0)
+        flight = self.flight
+        pose = flight.poses.at(alpha)[0]
+        if not flight.over and flight.env.actions[0] >= 3:
+            _draw_fire(canvas, view, pose, int(flight.env.steps[0]))
+        x, y = view.pixels(pose[:2]).tolist()
+        degrees, halves = round(math.degrees(pose[2])) % 360, (int(x % 1 * 2), int(y % 1 * 2))
+        sprite = _phantom(view.pixels_per_metre, degrees, halves, flight.outcome is Outcome.CRASHED)
+        half = sprite.get_width() // 2
+        canvas.surface.blit(sprite, (math.floor(x) - half, math.floor(y) - half))
+
+
+def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
+    """Say how the rival did, and where both have landed, who was first."""
+    outcome = Outcome(int(theirs.outcome[0]))
+    if not (outcome is Outcome.LANDED and yours.outcome[0] == outcome):
+        return texts.RIVAL_RESULTS[outcome.name]
+    behind = float(theirs.time[0] - yours.time[0])
+    if abs(behind) < 0.05:
+        return texts.RIVAL_TOGETHER
+    return (texts.RIVAL_AFTER if behind > 0 else texts.RIVAL_BEFORE).format(seconds=f"{abs(behind):.1f}")
+
+
+def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
+    x, y, angle = pose.tolist()
+    fire = plume(NET_PLUME, view.pixels_per_metre, angle, _FIRE, step // 2)
+    if fire:
+        sheet, (left, top) = fire
+        reach = art.NOZZLE[1]
+        nozzle = view.pixels((x - reach * math.sin(angle), y + reach * math.cos(angle))).tolist()
+        corner = (round(nozzle[0]) - left, round(nozzle[1]) - top)
+        canvas.surface.blit(sheet, corner, special_flags=pygame.BLEND_RGB_ADD)
+
+
+@lru_cache(maxsize=512)
+def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
+    """Return the lander as glass: its shades in blue, seen through, and a line of light around it."""
+    craft = art.sprite(pixels_per_metre, math.radians(degrees), halves[0] / 2, halves[1] / 2)
+    phantom = craft.copy()
+    cover = pygame.surfarray.array_alpha(craft).astype(float) / 255
+    reach = max(1, round(pixels_per_metre / 24))
+    grown = cover
+    for _ in range(reach):
+        wide = np.pad(grown, 1)
+        grown = np.max([wide[1:-1, 1:-1], wide[:-2, 1:-1], wide[2:, 1:-1], wide[1:-1, :-2], wide[1:-1, 2:]], axis=0)
+    rim = np.clip(grown - cover, 0, 1)[..., None]
+    colour = pygame.surfarray.pixels3d(phantom)
+    shade = 0.4 * colour + 0.6 * np.array(NET)
+    colour[:] = (shade + rim * (NET - shade)).astype(np.uint8)
+    del colour
+    alpha = pygame.surfarray.pixels_alpha(phantom)
+    strength = _FADED if wrecked else 1.0
+    alpha[:] = (255 * strength * np.maximum(_BODY * cover, _RIM * rim[..., 0])).astype(np.uint8)
+    del alpha
+    return phantom
