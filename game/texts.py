@@ -286,9 +286,21 @@ NET_BIAS: Final = "bias"
 NET_DAMAGED: Final = ": damaged"
 # What blue edges and orange ones mean
 NET_LEGEND: Final = {
-    "weights": ("adds", "takes away"),
-    "activations": ("adds now", "takes away"),
+    "weights": ("positive", "negative"),
+    "activations": ("adds", "takes away"),
     "gradients": ("raised", "lowered"),
+}
+STRIP_LABEL: Final = "WHAT A FLIGHT IS PAID FOR"
+# Parts of the reward: the word, and what it is
+REWARD_PARTS: Final = {
+    "distance": ("distance", "For coming nearer to the middle of the pad; going away costs as much."),
+    "speed": ("speed", "For growing slower; growing faster costs as much."),
+    "alignment": ("alignment", "For hanging upright above the pad; leaving that place costs as much."),
+    "tilt": ("tilt", "Charged while leaning further than 34 degrees."),
+    "feet": ("feet", "For each moment with both feet on the pad, half a second at most."),
+    "engine": ("engine", "Charged for each moment an engine fires: fuel."),
+    "time": ("time", "Charged for each moment in the air: hovering must not pay."),
+    "terminal": ("the end", "For a landing; a crash or leaving the area costs as much."),
 }
 
 # Flying against a ghost
@@ -390,3 +402,12 @@ PRESETS: Final = {
     "modern": ("Modern", "The fastest learner we could build: in a minute or two, it lands."),
     "classic": ("Classic", "Deep Q-learning as one first meets it: slow, and never quite steady."),
 }
+
+# Whatever works in a process of its own
+WORKER_RAISED: Final = "It stopped: {reason}."
+WORKER_NOT_STARTED: Final = "It could not be started: {reason}."
+WORKER_KILLED: Final = "Its process was killed ({signal}); perhaps the machine ran out of memory."
+WORKER_SIGNAL: Final = "Its process was ended by {signal}."
+WORKER_EXITED: Final = "Its process ended all of a sudden, with exit code {code}."
+WORKER_SILENT: Final = "Its process has not answered for {seconds:.0f} s, and was ended."
+WORKER_NONSENSE: Final = "Its process said something that makes no sense: {reason}."
