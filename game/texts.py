@@ -299,6 +299,7 @@ REWARD_PARTS: Final = {
     "tilt": ("tilt", "Charged while leaning further than 34 degrees."),
     "feet": ("feet", "For each moment with both feet on the pad, half a second at most."),
     "engine": ("engine", "Charged for each moment an engine fires: fuel."),
+    "switch": ("switching", "Charged for each engine that goes on or off: flicker."),
     "time": ("time", "Charged for each moment in the air: hovering must not pay."),
     "terminal": ("the end", "For a landing; a crash or leaving the area costs as much."),
 }
@@ -411,3 +412,70 @@ WORKER_SIGNAL: Final = "Its process was ended by {signal}."
 WORKER_EXITED: Final = "Its process ended all of a sudden, with exit code {code}."
 WORKER_SILENT: Final = "Its process has not answered for {seconds:.0f} s, and was ended."
 WORKER_NONSENSE: Final = "Its process said something that makes no sense: {reason}."
+
+# The sabotage lab: what is taken away, what to look out for, and what was measured (modern, seeds 0 and 1)
+SABOTAGE: Final = "Sabotage…"
+SABOTAGE_HEADING: Final = "Take one part away from {name}"
+SABOTAGE_LEAVE: Final = "Back"
+SABOTAGES: Final = {
+    "no_target": (
+        "No target",
+        "No slower copy to aim at: the targets move with every step. Watch the loss, and mean Q.",
+        "Hardly missed here: both seeds landed 99% after 100,000 decisions. The other parts carry it.",
+    ),
+    "no_replay": (
+        "No replay",
+        "It learns from the newest memories alone, and may forget the rest. Watch the share that lands.",
+        "It came later: 93% and more after 150,000 decisions with one seed, after 250,000 with the other.",
+    ),
+    "no_shaping": (
+        "No shaping",
+        "Only the end of a flight pays: nothing tells it that it comes closer. Watch for the first landing.",
+        "It hovered, and landed nothing in 350,000 decisions. Then one seed reached 95%, the other 14%.",
+    ),
+    "no_exploration": (
+        "No exploration",
+        "Never a random action. Watch whether it finds the ground by itself.",
+        "Luck: one seed landed 98% after 150,000 decisions, the other hovered for 300,000.",
+    ),
+    "rate_times_100": (
+        "Rate ×100",
+        "Every step goes a hundred times too far. Watch mean Q fall to what a crash costs.",
+        "It never learned: 98% crashed after half a million decisions, and a whole layer was dead.",
+    ),
+    "no_n_step": (
+        "1-step returns",
+        "News of a landing travels back one decision at a time. Watch how late success comes.",
+        "30% to 42% after 250,000 decisions, 76% to 98% after 500,000.",
+    ),
+    "one_lander": (
+        "One lander",
+        "The same learning, fed by one lander. Watch the number of decisions.",
+        "8,000 decisions in 25 seconds, where 256 landers take 500,000; it landed once.",
+    ),
+    "uniform_actions": (
+        "Uniform chance",
+        "Random actions fire the main engine half the time: more than gravity. Watch them hover.",
+        "Luck: one seed landed 99% after 100,000 decisions, the other hovered first and took 200,000.",
+    ),
+    "short_sight": (
+        "Short sight",
+        "With γ = 0.8, a landing one second away is worth 4% of itself. Watch the last metres.",
+        "It never got there: 4% and 8% landed after half a million decisions, and most crashed.",
+    ),
+    "no_practice": (
+        "No practice",
+        "Every flight begins high up, none near the pad. Watch for the first landing.",
+        "Luck: one seed landed 97% after 150,000 decisions, the other parked in the sky for 450,000.",
+    ),
+    "plain_steps": (
+        "Plain steps",
+        "Gradient steps as they are, in place of Adam's. Watch the share that lands.",
+        "It falls and crashes: not one of 200 flights landed, even after half a million decisions.",
+    ),
+    "no_normalisation": (
+        "Raw layers",
+        "What goes into a layer may grow or shrink as it likes. Watch how steady success is.",
+        "Later and shakier: 36% and 52% after 100,000 decisions, where modern has 98% and 80%.",
+    ),
+}

@@ -189,13 +189,8 @@ class Chart:
         start, end = self._x_range
         shown = [run.y[(run.x >= start) & (run.x <= end)] for run in self._runs]
         span = plotting.robust_range(np.concatenate(shown)) if shown else None
-        if span is None:
-            return
-        low, high = self._goal
-        lines = plotting.grid(*span)
-        roomy = (lines[-1] - lines[0]) < 0.6 * (high - low)
-        if roomy or span[0] < low or span[1] > high:  # a range that still fits stays: axes must not flicker
-            self._lines = lines
+        if span is not None:
+            self._lines = plotting.steady_grid(span, self._lines)
 
     def mark(self, x: float | None, caption: str = "") -> None:
         """Let an upright line stand at x, with a dot on the current run's curve and a caption; None for none."""

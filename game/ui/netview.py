@@ -18,8 +18,8 @@ import pygame
 from ai.inspect import Link, links, traces
 from ai.nn import NeuralNetwork
 from game import texts
-from game.ui import plotting
-from game.ui.canvas import Canvas, Point
+from game.ui import plotting, typeface
+from game.ui.canvas import Align, Canvas, Point
 from game.ui.tokens import EMBER, FAINT, INK, LABEL, LINE, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
 
 Show = Literal["weights", "activations", "gradients"]
@@ -36,6 +36,7 @@ _LOYALTY: Final = 1.5  # how much stronger a unit must be than one that is shown
 _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
 _FLOW: Final = 1 / 90  # of an edge that a pulse travels in a sixtieth of a second
 _MOST_PULSES: Final = 26
+_ROOMY: Final = 36.0  # points between units, from which on their values are written beside them
 _GOLDEN: Final = 0.618034
 
 
@@ -216,9 +217,12 @@ class NetView:
     @property
     def _sides(self) -> tuple[float, float]:
         """Room for the names on the left and on the right."""
-        wide = 0.56 * self._name_size
-        left, right = (max((len(name) for name in names), default=0) for names in (self.inputs, self.outputs))
-        return (wide * left + 12 if left else 8.0), (wide * right + 16 if right else 8.0)
+        size = self._name_size
+        left, right = (
+            max((typeface.width(name, size, "regular") + 10 for name in names), default=4.0)
+            for names in (self.inputs, self.outputs)
+        )
+        return left, right
 
     @property
     def _radius(self) -> float:
@@ -274,7 +278,8 @@ class NetView:
         if self._hovered:
             strength = 0.35 + 0.65 * edge.size if touched else 0.25 * strength
         wide = 0.7 + 1.3 * edge.size * min(1.0, self.box.height / 300)
-        start, end = (_moved(point, shift) for point in self._ends(edge))
+        half = 0.5 / light.scale  # a line runs through the middles of pixels, a dot lies between them
+        start, end = (_moved(_moved(point, shift), (-half, -half)) for point in self._ends(edge))
         light.line(start, end, _dimmed(ADDS if edge.positive else TAKES, strength), wide)
 
     def _brightness(self, column: int) -> Numbers:
@@ -319,16 +324,18 @@ class NetView:
         names = self.inputs if number == 0 else self.outputs if number == last else ()
         best = self._best() if number == last else None
         size = self._name_size
+        roomy = self.box.height / len(column.units) > _ROOMY and bool(np.isfinite(column.values).any())
+        align: Align
         for place, unit in enumerate(column.units.tolist()):
             if unit >= len(names):
                 break
             x, y = _moved(self._centre(number, place), shift)
-            colour = NET if place == best else MUTE
-            gap = self._radius + 6
-            if number == 0:
-                signs.text(names[unit], (x - gap, y + 0.36 * size), size=size, colour=colour, align="right")
-            else:
-                signs.text(names[unit], (x + gap, y + 0.36 * size), size=size, colour=colour)
+            gap, align = (-self._radius - 6, "right") if number == 0 else (self._radius + 6, "left")
+            where, y = x + gap, y + 0.36 * size - (7 if roomy else 0)
+            signs.text(names[unit], (where, y), size=size, colour=NET if place == best else MUTE, align=align)
+            if roomy:
+                figure = plotting.compact(float(column.values[place]))
+                signs.text(figure, (where, y + 15), size=size, colour=INK, align=align, tabular=True)
         if len(column.units) < column.total or 0 < number < last:
             shown = len(column.units)
             words = texts.NET_ALL if shown == column.total else texts.NET_SOME
@@ -341,10 +348,11 @@ class NetView:
             middle = _moved(self.box.center, shift)
             signs.text(texts.CHART_EMPTY, middle, size=SMALL, colour=MUTE, align="centre")
             return
-        x, y = 8.0, self.box.height + 8 - 3
-        for colour, word in zip((ADDS, TAKES), texts.NET_LEGEND[self._show], strict=True):
-            signs.pill((x, y - 5, 9, 2), colour)
-            x = signs.text(word, (x + 13, y), size=LABEL - 1, colour=MUTE).right + 9
+        y, (adds, takes) = self.box.height + 8 - 3, texts.NET_LEGEND[self._show]
+        signs.pill((8, y - 5, 9, 2), ADDS)
+        signs.text(adds, (21, y), size=LABEL - 1, colour=MUTE)
+        word = signs.text(takes, (self.box.width + 8, y), size=LABEL - 1, colour=MUTE, align="right")
+        signs.pill((word.left - 13, y - 5, 9, 2), TAKES)
 
     def _draw_pulses(self, canvas: Canvas) -> None:
         """Let light run backwards along the edges that learning moves most."""
@@ -353,7 +361,9 @@ class NetView:
             (x0, y0), (x1, y1) = self._ends(edge)
             place = (x1 + (x0 - x1) * along, y1 + (y0 - y1) * along)
             alpha = (0.35 + 0.65 * edge.size) * min(1.0, 6 * along, 6 * (1 - along))
-            canvas.dot(place, max(1.3, 0.45 * self._radius), ADDS if edge.positive else TAKES, alpha)
+            colour, radius = ADDS if edge.positive else TAKES, max(1.4, 0.4 * self._radius)
+            canvas.glow(place, 4 * radius, colour, 0.5 * alpha)
+            canvas.dot(place, radius, colour, alpha)
 
     def _draw_readout(self, canvas: Canvas, number: int, place: int) -> None:
         column = self.columns[number]

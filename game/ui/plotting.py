@@ -84,6 +84,14 @@ def grid(low: float, high: float, most: int = 4) -> Numbers:
     return np.arange(first, last + 1) * step
 
 
+def steady_grid(span: Limits, before: Numbers | None) -> Numbers:
+    """Return grid lines for a range: the ones from before while they hold it and do not leave it small."""
+    lines = grid(*span)
+    if before is None or span[0] < before[0] or span[1] > before[-1]:
+        return lines
+    return lines if lines[-1] - lines[0] < 0.6 * (before[-1] - before[0]) else before
+
+
 def thinned(x: Numbers, y: Numbers, x_range: Limits, count: int) -> npt.NDArray[np.intp]:
     """Return which points to keep, at most about `count`: of each stretch of x the lowest and the highest."""
     kept = np.flatnonzero(np.isfinite(y) & (x >= x_range[0]) & (x <= x_range[1]))
