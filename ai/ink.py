@@ -106,7 +106,8 @@ def _clean(canvas: npt.ArrayLike) -> Image:
     if not math.isfinite(peak):
         peak = drawn.max(initial=1.0, where=np.isfinite(drawn))
         drawn = np.nan_to_num(drawn, nan=0.0, posinf=peak, neginf=0.0)
-    return np.clip(drawn / peak if peak > 1 else drawn, 0.0, 1.0)
+    clean: Image = np.clip(drawn / peak if peak > 1 else drawn, 0.0, 1.0)
+    return clean
 
 
 def _box(image: Image) -> tuple[slice, slice] | None:
@@ -127,7 +128,8 @@ def _middle_of(box: tuple[slice, slice] | None) -> tuple[float, float]:
 def _resample(image: Image, middle: tuple[float, float], pitch: float, count: int) -> Image:
     """Return (count, count) cells, each `pitch` pixels of `image` wide, around a point in it; nothing lies outside."""
     down, across = (_weights(size, at, pitch, count) for size, at in zip(image.shape, middle, strict=True))
-    return np.clip(down @ image @ across.T, 0.0, 1.0)
+    cells: Image = np.clip(down @ image @ across.T, 0.0, 1.0)
+    return cells
 
 
 def _weights(size: int, middle: float, pitch: float, count: int) -> Image:
@@ -139,10 +141,11 @@ def _weights(size: int, middle: float, pitch: float, count: int) -> Image:
     pixels = np.arange(size)
     if pitch >= 1:
         covered = np.clip(edges[:, None] - pixels, 0.0, 1.0)
-        return (np.diff(covered, axis=0) / pitch).astype(np.float32)
+        return np.asarray(np.diff(covered, axis=0) / pitch, np.float32)
     x = np.abs((edges[:-1] + pitch / 2)[:, None] - (pixels + 0.5))
     near, far = (1.5 * x - 2.5) * x * x + 1, ((2.5 - 0.5 * x) * x - 4) * x + 2
-    return np.where(x < 1, near, np.where(x < 2, far, 0.0)).astype(np.float32)
+    weights: Image = np.where(x < 1, near, np.where(x < 2, far, 0.0)).astype(np.float32)
+    return weights
 
 
 def _with_stroke_width(ink: npt.NDArray[np.bool_], frame: int | None) -> tuple[Image, float]:

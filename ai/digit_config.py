@@ -1,0 +1,126 @@
+"""Every choice in teaching a network to read digits, as one dataclass, and the presets; like `ai.config`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Final
+
+import numpy as np
+
+from ai.config import field_problem, knob
+from ai.ink import SIDE
+from ai.nn import (
+    OPTIMIZERS,
+    ActivationLayer,
+    ConvolutionLayer,
+    DropoutLayer,
+    FlattenLayer,
+    FullyConnectedLayer,
+    MaxPoolingLayer,
+    NeuralNetwork,
+)
+from ai.nn.activations import ACTIVATIONS
+from ai.nn.costs import COSTS
+
+
+@dataclass(frozen=True)
+class DigitConfig:
+    """One training run. The defaults are the `modern` preset."""
+
+    # fmt: off
+    learning_rate: float = knob(1e-3, "How far each step moves the weights, at most.",
+                                "learning", low=1e-5, high=1.0, log=True, live=True)
+    final_learning_rate: float = knob(1e-6, "What the learning rate falls to, along half a cosine.",
+                                      "learning", low=1e-7, high=1.0, log=True, live=True)
+    warm_up: float = knob(0.5, "Epochs over which the learning rate rises from 0.", "learning", low=0.0, high=10.0)
+    epochs: int = knob(20, "How often every training image is seen.", "learning", low=1, high=1000)
+    batch_size: int = knob(50, "How many images each step learns from.", "learning", low=1, high=5000)
+    optimizer: str = knob("adam", "How a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
+    cost: str = knob("softmax_cross_entropy", "How a wrong answer is measured.", "learning", choices=tuple(COSTS))
+    smoothing: float = knob(0.05, "Share of each label given to all digits alike: less certainty, fewer slips.",
+                            "learning", low=0.0, high=0.5, live=True)
+    averaging: float = knob(0.998, "What is kept is a moving average of the weights, this slow; 0 for the last.",
+                            "learning", low=0.0, high=0.9999)
+    held_out: int = knob(5_000, "Training images that are never learnt from, to choose by.",
+                         "learning", low=0, high=30_000)
+
+    filters: tuple[int, ...] = knob((32, 64), "Filters of each convolution, each followed by pooling; or none.",
+                                    "network", low=1, high=256)
+    convolutions: bool = knob(True, "Look at images through small windows that slide over them.", "network")
+    kernel: int = knob(5, "Pixels along a window.", "network", low=1, high=9)
+    hidden: tuple[int, ...] = knob((128,), "Units in each hidden layer.", "network", low=1, high=2048)
+    activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
+    output_activation: bool = knob(False, "Bend the outputs as well.", "network")
+    dropout: float = knob(0.3, "Share of hidden values left out of each step.", "network", low=0.0, high=0.9)
+
+    augmentation: float = knob(1.0, "How far images are bent, slanted and turned before they are learnt from.",
+                               "images", low=0.0, high=2.0, live=True)
+    original: float = knob(0.1, "Share of images that are shown as they are.", "images", low=0.0, high=1.0, live=True)
+    # fmt: on
+
+    def __post_init__(self) -> None:
+        problems = [said for item in fields(self) if (said := field_problem(item, getattr(self, item.name)))]
+        if problems:
+            raise ValueError("; ".join(problems))
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values, for a file."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, values: Mapping[str, Any]) -> DigitConfig:
+        """Read what `to_json` wrote; unknown names and values out of range raise ValueError."""
+        unknown = sorted(set(values) - {item.name for item in fields(cls)})
+        if unknown:
+            raise ValueError(f"unknown settings: {', '.join(unknown)}")
+        try:
+            given: dict[str, Any] = {
+                k: tuple(value) if isinstance(value, list) else value for k, value in values.items()
+            }
+            return cls(**given)
+        except TypeError as error:
+            raise ValueError(f"settings cannot be read: {error}") from error
+
+    def changed(self, **values: Any) -> DigitConfig:
+        """Return a copy with some fields changed, checked like any other."""
+        return replace(self, **values)
+
+
+DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {
+    "modern": DigitConfig(),
+    "classic": DigitConfig(
+        learning_rate=3e-3, cost="mse", smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
+        output_activation=True, dropout=0.0, augmentation=0.8, original=0.1, epochs=60, batch_size=100,
+    ),
+}  # fmt: skip
+
+
+def build_digit_network(config: DigitConfig, rng: np.random.Generator) -> NeuralNetwork:
+    """Build the network of a configuration: images (28, 28, 1) or rows of 784 in, ten outputs."""
+    network = NeuralNetwork(*COSTS[config.cost](), rng=rng)
+
+    def activation() -> ActivationLayer:
+        return ActivationLayer(*ACTIVATIONS[config.activation]())
+
+    values = SIDE * SIDE
+    if config.convolutions:
+        shape = (SIDE, SIDE, 1)
+        for filters in config.filters:
+            convolution = ConvolutionLayer(shape, filters, config.kernel)
+            pooling = MaxPoolingLayer(convolution.outputs)
+            network.add_layer(convolution).add_layer(pooling).add_layer(activation())
+            shape = pooling.outputs
+        flatten = FlattenLayer(shape)
+        network.add_layer(flatten)
+        values = flatten.outputs
+    for units in config.hidden:
+        if config.dropout:
+            network.add_layer(DropoutLayer(config.dropout))
+        network.add_layer(FullyConnectedLayer(values, units))
+        network.add_layer(activation())
+        values = units
+    network.add_layer(FullyConnectedLayer(values, 10))
+    if config.output_activation:
+        network.add_layer(activation())
+    return network
