@@ -24,6 +24,7 @@ from ai.nn import (
     ModelFormatError,
     NeuralNetwork,
     atomic_folder,
+    recover_folder,
 )
 from ai.nn.activations import ACTIVATIONS
 from ai.nn.costs import COSTS
@@ -265,6 +266,7 @@ class DeepQAgent:
     def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> DeepQAgent:
         """Read what `save` wrote. Raises ModelFormatError, which names everything that is wrong."""
         folder = Path(folder)
+        recover_folder(folder)
         described = _read_description(folder)
         try:
             config = Config.from_json(described["config"])

@@ -103,6 +103,9 @@ class History:
         self._stride = 1  # how many points told for one kept
         self._told = 0
 
+    def __len__(self) -> int:
+        return self._length
+
     @property
     def points(self) -> Doubles:
         """All points, (n, columns): COLUMNS, SHARES and PARTS."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import asdict, dataclass
 from typing import Any, Final
 
@@ -61,6 +62,19 @@ class Evaluation:
 
 def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
     """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
+    going = trial(pilot, episodes, seed, spawn, frame_skip)
+    while True:
+        try:
+            next(going)
+        except StopIteration as done:
+            evaluation: Evaluation = done.value
+            return evaluation
+
+
+def trial(
+    pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4
+) -> Generator[None, None, Evaluation]:
+    """Do what `evaluate` does one decision at a time, for whoever has other things to do in between."""
     env = LanderEnv(episodes, seed, spawn, frame_skip)
     observation = env.reset()
     returns: Doubles = np.zeros(episodes)
@@ -72,6 +86,7 @@ def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", fram
         result = env.step(actions)
         observation = result.observation
         returns += result.reward
+        yield
     share = {outcome: float((env.outcome == outcome).mean()) for outcome in Outcome}
     landed = env.outcome == Outcome.LANDED
     return Evaluation(

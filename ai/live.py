@@ -4,22 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
+from itertools import repeat
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ai.agent import DeepQAgent
 from ai.config import Config
-from ai.env import Floats, Ints, StepResult
+from ai.env import Ints, StepResult
 from ai.history import PARTS, Alteration, Checkpoint, Entry, History, Point, Validation
 from ai.lander import NUM_ACTIONS, NUM_FEATURES, LanderEnv
+from ai.lander_task import Evaluation, trial
+from ai.messages import Begun, Change, Command, Insight, Message, Refused, Revert, Save, Saved, Sight
 from ai.runs import resume_run, snapshot
 from ai.scaling import RunningScale
+from ai.task import VALIDATION_SEED
 from ai.training import Progress, Training
+
+__all__ = [
+    "CAREFUL", "REVERTED", "Begun", "Change", "Insight", "Refused", "Revert", "Save", "Saved", "Sight", "agent_of",
+    "live", "turned",
+]  # fmt: skip
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
 INSIGHT_SECONDS: Final = 0.25
@@ -27,83 +35,6 @@ KEEP_SECONDS: Final = 10.0
 REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
-
-
-@dataclass(frozen=True)
-class Begun:
-    """The first word of a run: what it is made with, which for a resumed run is what it was begun with."""
-
-    config: Config
-    seed: int
-    decisions: int  # so far; 0 for a new run
-
-
-@dataclass(frozen=True, eq=False)
-class Sight:
-    """All landers after one decision, before those whose flight has ended begin a new one."""
-
-    newest_only: ClassVar = True
-
-    position: NDArray[np.float32]  # (n, 2) metres, centre of mass
-    angle: NDArray[np.float32]  # (n,) radians
-    action: NDArray[np.int8]  # (n,) as flown in this decision
-    outcome: NDArray[np.int8]  # (n,) of ai.lander.Outcome
-    earned: NDArray[np.float32]  # (n,) what the flight has earned so far
-    decisions: int
-
-
-@dataclass(frozen=True, eq=False)
-class Insight:
-    """The network that learns, from within. A few times a second."""
-
-    newest_only: ClassVar = True
-
-    values: Floats  # (parameters,) float32 of the online network
-    gradients: Floats  # (parameters,) of its last learning step
-    observation: Floats  # (9,) what the lander in slot CAREFUL senses now
-    decisions: int
-
-
-@dataclass(frozen=True)
-class Change:
-    """Turn a live knob, by its field's name in Config; "weights.time" is one part of the reward's weights."""
-
-    name: str
-    value: Any
-
-
-@dataclass(frozen=True)
-class Save:
-    """Save the run, as it is now, to a folder."""
-
-    folder: Path
-
-
-@dataclass(frozen=True)
-class Revert:
-    """Let the networks be again what they were at a checkpoint of the history; time does not go back."""
-
-    decisions: int
-
-
-@dataclass(frozen=True)
-class Saved:
-    """What became of a save; no problem means that it is on the disk, whole."""
-
-    folder: Path
-    problem: str = ""
-
-
-@dataclass(frozen=True)
-class Refused:
-    """A command that could not be carried out, and why. Nothing has changed."""
-
-    command: Change | Revert
-    problem: str
-
-
-Message = Begun | Sight | Insight | Point | Checkpoint | Validation | Alteration | Saved | Refused
-Command = Change | Save | Revert
 
 
 def live(
@@ -157,6 +88,26 @@ def turned(config: Config, name: str, value: Any) -> Config:
     return config.changed(**{name: replace(config.weights, **{part: value}) if part else value})
 
 
+class _Trial:
+    """The validation flights of a network as it is now, a few decisions at a time."""
+
+    def __init__(self, training: Training) -> None:
+        assert training.validation_episodes is not None
+        self.agent = training.last_agent()
+        self.score: Evaluation | None = None
+        self._flights = trial(self.agent, training.validation_episodes, VALIDATION_SEED, "random",
+                              training.config.frame_skip)  # fmt: skip
+
+    def go_on(self, decisions: int | None = None) -> bool:
+        """Take so many decisions, or all that are left; whether it is done."""
+        try:
+            for _ in range(decisions) if decisions else repeat(None):
+                next(self._flights)
+        except StopIteration as done:
+            self.score = done.value
+        return self.score is not None
+
+
 class _LiveRun:
     """A Training, what has been told of it, and where it is kept."""
 
@@ -165,6 +116,9 @@ class _LiveRun:
             raise ValueError(f"only landers can be looked into, not {training.config.env}")
         self.training, self.history, self.env = training, history, training.env
         training.witness = self._see
+        training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
+        self._trial: _Trial | None = None
+        self._tried = 0
         self._sight = self._seen(self.env.outcome)
         self._folder = keep
         self._kept = training.agent.decisions
@@ -195,6 +149,7 @@ class _LiveRun:
         training = self.training
         before = training.clock()
         progress = training.advance()
+        self._try_the_network()
         now = training.clock()
         training.seconds += now - before
         self._told.append(self._sight)
@@ -204,9 +159,6 @@ class _LiveRun:
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self._note(self._point(progress))
-        if (score := progress.evaluation) is not None:
-            best = score is progress.best
-            self._note(Validation(progress.decisions, score.success or 0.0, score.mean_return, best))
         if progress.decisions >= self._checkpoint_at:
             self._note(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
@@ -222,6 +174,7 @@ class _LiveRun:
             case Revert():
                 self._revert(command)
             case Save(folder):
+                self._finish_trial()
                 self._told.append(Saved(folder, self._save(folder)))
         return self._flush()
 
@@ -278,6 +231,25 @@ class _LiveRun:
             )
         scale = agent.scale.to_json() if agent.scale else None
         return Checkpoint(self.training.seconds, agent.decisions, success, values, scale)
+
+    def _try_the_network(self) -> None:
+        """Fly a little of the validation flights, if it is time for them; the networks are those of `Training`."""
+        training = self.training
+        if training.agent.decisions - self._tried >= training.task.evaluate_every:
+            self._finish_trial()
+            self._tried = training.agent.decisions
+            self._trial = _Trial(training)
+        elif self._trial is not None and self._trial.go_on(1 + self.env.num_envs // 256):
+            self._finish_trial()
+
+    def _finish_trial(self) -> None:
+        if self._trial is None:
+            return
+        trial, self._trial = self._trial, None
+        trial.go_on()
+        assert trial.score is not None
+        best = self.training.consider(trial.score, trial.agent)
+        self._note(Validation(trial.agent.decisions, trial.score.success, trial.score.mean_return, best))
 
     def _change(self, command: Change) -> None:
         before = self.training.config

@@ -79,7 +79,9 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 1), "best": training.best.to_json() if training.best else None,
     }  # fmt: skip
-    return Snapshot(described, training.best_agent(), training.last_agent(), history and history.copy())
+    return Snapshot(
+        described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
+    )
 
 
 def save_run(training: Training, folder: str | Path, final: bool = False) -> None:

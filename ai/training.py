@@ -148,10 +148,15 @@ class Training:
         """Try the validation episodes, and keep the network if it is the best so far."""
         assert self.validation_episodes is not None
         score = self.task.evaluate(self.agent, self.validation_episodes, VALIDATION_SEED)
-        if score.better_than(self.best):
-            self.best, self.best_values = score, self.agent.network.values.copy()
-            self.best_scale = deepcopy(self.agent.scale)
+        self.consider(score, self.agent)
         return score
+
+    def consider(self, score: Score, agent: DeepQAgent) -> bool:
+        """Keep an agent's network if its score is the best so far, and say whether it is."""
+        best = score.better_than(self.best)
+        if best:
+            self.best, self.best_values, self.best_scale = score, agent.network.values.copy(), deepcopy(agent.scale)
+        return best
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
