@@ -56,4 +56,8 @@ def _open_game(arguments: argparse.Namespace) -> int:
 
 
 if __name__ == "__main__":
+    if getattr(sys, "frozen", False):  # a packaged program is its own interpreter, also for the processes it starts
+        from multiprocessing import freeze_support
+
+        freeze_support()
     sys.exit(main())

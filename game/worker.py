@@ -22,6 +22,7 @@ from game.worker_process import Bundle, Function, serve
 
 PATIENCE: Final = 30.0  # seconds without an answer after which a process counts as hung
 STOP_SECONDS: Final = 3.0  # to come to an end when asked
+CREDIT: Final = 2  # bundles asked for ahead: with one, every other turn would pass while the request is under way
 _LONGEST_FRAME: Final = 0.25  # what counts of the time between two polls: the rest, the window itself was away
 _LONGEST_BUNDLE: Final = 1 << 29  # bytes; no process that is in its right mind tells more at once
 _log = logging.getLogger("tranquility")
@@ -51,7 +52,8 @@ class Worker:
         self.problem = ""
         self.patience = PATIENCE
         self.clock: Callable[[], float] = time.monotonic
-        self._paused = self._asked = self._heard = self._lost = False
+        self._paused = self._heard = self._lost = False
+        self._wanted = 0  # bundles asked for and not yet come
         self._over: State | None = None
         self._deadline: float | None = None  # for it to have ended by itself
         self._silence = 0.0
@@ -102,7 +104,7 @@ class Worker:
             self._look_after(now)
         if self._over is not None:
             self._clear_up(now)
-        elif not self._asked:
+        else:
             self._ask()
         return told
 
@@ -145,8 +147,9 @@ class Worker:
             self._let_go()
 
     def _ask(self) -> None:
-        self._asked, self._silence = True, 0.0
-        self._order("ask")
+        if self._wanted < CREDIT:
+            self._order("ask", CREDIT - self._wanted)
+            self._wanted = CREDIT
 
     def _order(self, name: str, value: Any = None) -> None:
         if self._over is None:
@@ -155,7 +158,7 @@ class Worker:
     def _hear(self, told: Bundle | Exception | None) -> list[Any]:
         """Take in one thing the process said; None is the end of the line."""
         if isinstance(told, Bundle):
-            self._asked, self._heard = False, True
+            self._wanted, self._heard, self._silence = self._wanted - 1, True, 0.0
             if told.ended and self._over is None:
                 if told.trace:
                     _log.error("in the worker:\n%s", told.trace)

@@ -123,7 +123,8 @@ class _Service:
         self._steps = 0  # to be taken in spite of the pause
         self._period = 0.0  # seconds from turn to turn
         self._due = 0.0  # when the next turn is
-        self._asked: float | None = None  # when the window asked for what there is to tell
+        self._wanted = 0  # bundles that the window has asked for
+        self._since = 0.0  # when it last asked, or was told something
         Thread(target=_listen, args=(connection, self._orders), daemon=True).start()
 
     def run(self, turns: Turns) -> None:
@@ -150,14 +151,15 @@ class _Service:
         return max(0.0, self._due - now) if self._period else 0.0
 
     def _answer(self) -> None:
-        if self._asked is not None and (self.waiting or time.monotonic() - self._asked >= HEARTBEAT):
-            self._asked = None
+        if self._wanted and (self.waiting or time.monotonic() - self._since >= HEARTBEAT):
+            self._wanted -= 1
+            self._since = time.monotonic()
             self._connection.send(Bundle(self.waiting.take(MOST_AT_ONCE)))
 
     def _follow_orders(self, turns: Turns) -> None:
         """Do all that has been ordered; with no turn due, wait for an order, for a while or as long as it takes."""
         patience = self._seconds_to_turn(time.monotonic())
-        if self._asked is not None:
+        if self._wanted:
             patience = HEARTBEAT if patience is None else min(patience, HEARTBEAT)
         with suppress(Empty):
             self._follow(self._orders.get(timeout=patience) if patience != 0.0 else self._orders.get_nowait(), turns)
@@ -166,8 +168,9 @@ class _Service:
 
     def _follow(self, order: Order, turns: Turns) -> None:
         match order:
-            case "ask", _:
-                self._asked = time.monotonic()
+            case "ask", bundles:
+                self._wanted += bundles
+                self._since = time.monotonic()
             case "command", command:
                 self.waiting.add(turns.send(command))
             case "pause", _:
