@@ -45,6 +45,7 @@ MENU_LINE: Final = "A moon lander, and a neural network that learns to fly it."
 MENU: Final = {
     "play": ("Play", "Fly it yourself, and hand over whenever you like."),
     "watch": ("Watch", "See the network land, and what it thinks on the way down."),
+    "train": ("Train", "Teach a network from nothing, and see it learn."),
     "physics": ("Physics", "Stacks, slopes, impacts: the engine, to look into and take hold of."),
     "settings": ("Settings", "Screen, motion, colours, keys."),
     "quit": ("Quit", "Back to Earth."),
@@ -381,10 +382,11 @@ KNOB_SWITCH: Final = ("off", "on")
 KNOB_WEIGHTS: Final = {
     "distance": ("Distance", "Paid for each 0.1 m nearer to the middle of the pad; taken back on the way out."),
     "speed": ("Speed", "Paid for each 0.1 m/s slower; taken back for each faster."),
-    "alignment": ("Alignment", "For being upright above the middle of the pad, less and less up to 3 m or 0.5 rad."),
+    "alignment": ("Alignment", "For being upright above the middle of the pad, falling to 0 at 3 m or 0.5 rad."),
     "tilt": ("Tilt", "For each physics step leaning more than 0.6 rad. Negative: it costs."),
     "feet": ("Feet", "For each physics step with both feet down, thirty at most."),
     "engine": ("Engine", "For each physics step with an engine on. Negative: fuel costs."),
+    "switch": ("Switching", "For each engine that goes on or off at a decision. Negative: flickering costs."),
     "time": ("Time", "For each physics step. Negative: hovering must not pay."),
     "terminal": ("Terminal", "For a landing; as much is lost by a crash or by leaving the area."),
 }
@@ -479,3 +481,40 @@ SABOTAGES: Final = {
         "Later and shakier: 36% and 52% after 100,000 decisions, where modern has 98% and 80%.",
     ),
 }
+
+# Train: the scene
+SWARM_BEST: Final = "best"
+SWARM_LUCKIEST: Final = "luckiest"
+TRAIN_TITLE: Final = "Watch it learn"
+TRAIN_LINE: Final = "Press Start: a swarm that falls like stones learns to land."
+TRAIN_FIGURES: Final = "{count} landers at once · {seconds:.0f} s · {decisions:,} decisions"
+TRAIN_LANDED: Final = "% of the last 100 landed"
+TRAIN_START: Final = "Start"
+TRAIN_PAUSE: Final = "Pause"
+TRAIN_RESUME: Final = "Go on"
+TRAIN_STEP: Final = "Step"
+TRAIN_SAVE: Final = "Save run"
+TRAIN_PACES: Final = ("×1", "×4", "full")
+TRAIN_RUNS: Final = "Your networks"
+TRAIN_DUEL: Final = "Fly against it"
+TRAIN_INSIDE: Final = ("The network, live", "What it is paid")
+TRAIN_CHARTS: Final = {
+    "success": "LANDED, %",
+    "mean_return": "RETURN",
+    "loss": "LOSS",
+    "mean_q": "MEAN Q",
+    "epsilon": "EXPLORATION ε",
+    "stage": "STAGE",
+}
+TRAIN_THIS: Final = "this run"
+TRAIN_RUN: Final = "run {number}"
+TRAIN_CHECKPOINT: Final = "checkpoint {seconds:.0f} s"
+TRAIN_RIVAL: Final = "checkpoint {seconds:.0f} s"
+TRAIN_NO_CHECKPOINT: Final = "There is nothing to fly against yet: press Start first."
+TRAIN_NOTHING: Final = "There is nothing to save yet: press Start first."
+TRAIN_NAME: Final = "{preset} run"
+TRAIN_NAMING: Final = "What shall this network be called?"
+TRAIN_SAVED: Final = "Saved as {name}: fly with it, or watch it."
+TRAIN_NOT_SAVED: Final = "Not saved: {problem}"
+NAMING_KEEP: Final = "Keep"
+NAMING_LEAVE: Final = "Cancel"

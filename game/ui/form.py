@@ -8,7 +8,7 @@ from typing import Final, TypeVar
 import pygame
 
 from game.context import Context
-from game.controls import Command, presses_main, translate
+from game.controls import Command, Controls, presses_main, translate
 from game.scene import Transition
 from game.ui import focus
 from game.ui.canvas import Canvas
@@ -52,6 +52,11 @@ class Form:
         return self.focused is not None and self.focused.typing
 
     @property
+    def controls(self) -> Controls:
+        """What is held, and which device is in use."""
+        return self._context.controls
+
+    @property
     def focused(self) -> Widget | None:
         """The widget in focus."""
         return self.widgets[self._index] if self.widgets else None
@@ -62,12 +67,13 @@ class Form:
         return widget
 
     def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
-        """Take some neighbours away and put others in their place; the focus stays where it can, or near."""
+        """Put widgets in the place of some neighbours; the focus stays where it can, or near."""
         focused = self.focused
         place = self.widgets.index(old[0]) if old else len(self.widgets)
         for widget in old:
             self.widgets.remove(widget)
-            widget.kill()  # type: ignore[no-untyped-call]
+            if widget not in new:
+                widget.kill()  # type: ignore[no-untyped-call]
         self.widgets[place:place] = new
         if focused in self.widgets:
             self.focus(focused)

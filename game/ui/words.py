@@ -55,6 +55,7 @@ class WordRow:
         ink: Colour = INK,
         line: Colour = NET,
         drop: float = 8.0,
+        thickness: float = 2.0,
     ) -> None:
         """Draw the page of the chosen word; the line under it is `drop` points below the baseline."""
         page, size = self._page(chosen), self._size
@@ -66,7 +67,7 @@ class WordRow:
             left, colour = self.lefts[number], ink if number == chosen else MUTE
             box = canvas.text(self.words[number], (left, baseline), size=size, colour=colour)
             if number == chosen:
-                canvas.line((left, baseline + drop), (left + box.width, baseline + drop), line, 2)
+                canvas.line((left, baseline + drop), (left + box.width, baseline + drop), line, thickness)
 
 
 def _pages(widths: Sequence[float], room: float, gap: float) -> list[range]:

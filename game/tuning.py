@@ -1,0 +1,165 @@
+"""What the player has chosen for a training run: what holds, what waits for a new run, and the way back.
+
+What may change while a run goes on changes at once. What takes a new run waits until it is applied or undone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from ai.config import PRESETS, Config
+from ai.sabotage import SABOTAGES, sabotaged
+from game import texts
+from game.dials import dials
+
+SEED: Final = "seed"
+Named = tuple[str, str]  # a preset, and what it was sabotaged by or nothing
+
+
+class Tuning:
+    """A configuration and a seed in the hands of the player.
+
+    `on_change` hears of each knob that holds another value now, by name; `on_restart` is asked for a new run with
+    what was applied.
+
+    Attributes:
+        config: what holds; what waits is not in it.
+        seed: the same of the seed.
+        draft: what the knobs show, with what waits.
+        named: the preset, or the sabotage of one, that this is or began as.
+        running: whether a run goes on.
+        problem: why the last value was refused.
+        put_aside: what a preset has taken the place of, until the next change.
+
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        seed: int,
+        on_change: Callable[[str, Any], None],
+        on_restart: Callable[[Config, int], None],
+    ) -> None:
+        self.dials = {dial.name: dial for dial in dials()}
+        self._on_change, self._on_restart = on_change, on_restart
+        self.running = False
+        self.set_config(config, seed)
+
+    def set_config(self, config: Config, seed: int) -> None:
+        """Hold a configuration that came from elsewhere; nobody is told."""
+        self.config = self.draft = config
+        self.seed = self.draft_seed = seed
+        self.named = self._named_held = nearest(config)
+        self.problem = ""
+        self.put_aside: tuple[Config, Named] | None = None
+
+    def set_running(self, running: bool) -> None:
+        """A run has begun, or is over: without one, nothing has to wait."""
+        self.running, self.put_aside = running, None
+        if not running:
+            self._hold(self.draft, self.draft_seed)
+
+    @property
+    def home(self) -> Config:
+        """The preset that this began as, whole."""
+        return PRESETS[self.named[0]]
+
+    @property
+    def changed(self) -> bool:
+        """Whether this is not what its name says."""
+        return self.draft != config_of(self.named)
+
+    @property
+    def waiting(self) -> list[str]:
+        """Which knobs wait for a new run, by name."""
+        return self._different(self.draft, self.config) + [SEED] * (self.draft_seed != self.seed)
+
+    def turn(self, name: str, value: Any) -> None:
+        """Turn a knob; an impossible value changes nothing, and `problem` says why."""
+        self.problem, self.put_aside = "", None
+        if name == SEED:
+            self.draft_seed = value
+            self._hold(self.config, self.seed if self.running else value)
+            return
+        dial = self.dials[name]
+        try:
+            draft = dial.write(self.draft, value)
+            held = dial.write(self.config, value) if dial.live or not self.running else self.config
+        except ValueError as error:
+            self.problem = str(error).replace(dial.field, dial.label, 1)
+            return
+        self.draft = draft
+        self._hold(held, self.seed)
+
+    def load(self, named: Named) -> None:
+        """Take a preset or a sabotage whole; knobs that were turned can be had back."""
+        aside = (self.draft, self.named) if self.changed else None
+        self.problem = ""
+        self._propose(config_of(named), named)
+        self.put_aside = None if self.waiting else aside
+
+    def apply(self) -> None:
+        """Ask for a new run with what waits."""
+        self.config, self.seed, self._named_held = self.draft, self.draft_seed, self.named
+        self._on_restart(self.config, self.seed)
+
+    def undo(self) -> None:
+        """Go back to what holds, or to what a preset has taken the place of."""
+        aside, self.put_aside, self.problem = self.put_aside, None, ""
+        if aside:
+            self._propose(*aside)
+        else:
+            self.draft, self.draft_seed, self.named = self.config, self.seed, self._named_held
+
+    def _propose(self, config: Config, named: Named) -> None:
+        """Take a whole configuration: at once if that can be, or to wait for a new run."""
+        self.draft, self.named = config, named
+        if not self.running or all(self.dials[name].live for name in self._different(config, self.config)):
+            self._hold(config, self.seed)
+
+    def _hold(self, config: Config, seed: int) -> None:
+        """Let these hold from now on, and tell of all that is different."""
+        names = self._different(config, self.config)
+        reseeded = seed != self.seed
+        self.config, self.seed = config, seed
+        if config == self.draft:
+            self._named_held = self.named
+        for name in names:
+            self._on_change(name, self.dials[name].read(config))
+        if reseeded:
+            self._on_change(SEED, seed)
+
+    def _different(self, a: Config, b: Config) -> list[str]:
+        return [name for name, dial in self.dials.items() if dial.read(a) != dial.read(b)]
+
+
+def config_of(named: Named) -> Config:
+    """Return what a name stands for."""
+    base, sabotage = named
+    return sabotaged(PRESETS[base], sabotage) if sabotage else PRESETS[base]
+
+
+def nearest(config: Config) -> Named:
+    """Return the preset, or the sabotage of one, with the fewest fields different; a preset if it is as near."""
+    every: list[Named] = [(base, "") for base in PRESETS]
+    every += [(base, sabotage) for base in PRESETS for sabotage in SABOTAGES]
+    given = config.to_json()
+
+    def distance(named: Named) -> int:
+        other = config_of(named).to_json()
+        return sum(given[name] != other[name] for name in given)
+
+    return min(every, key=distance)
+
+
+def word(named: Named) -> str:
+    """Return what the player reads for it."""
+    base, sabotage = named
+    return texts.SABOTAGES[sabotage][0] if sabotage else texts.PRESETS.get(base, (base.capitalize(), ""))[0]
+
+
+def sentence(named: Named) -> str:
+    """Return what there is to say about it."""
+    base, sabotage = named
+    return texts.SABOTAGES[sabotage][1] if sabotage else texts.PRESETS.get(base, ("", ""))[1]

@@ -1,0 +1,288 @@
+"""One row of the panel of knobs: a label, a track or a switch or words, a figure.
+
+Blue changes a run as it goes on. Grey and hollow takes a new run. An amber dot marks what the player has changed;
+R, the pad's X, or a click on the name brings back what the preset says, where a tick stands on the track.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+import pygame
+
+from game import texts
+from game.controls import Command, translate
+from game.dials import Dial, figure
+from game.scene import Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.entry import Entry, digits, draw_line
+from game.ui.tokens import FAINT, HUMAN, INK, MUTE, NET, PANEL, SMALL, Colour
+from game.ui.widgets import PointsManager, Widget, draw_switch, mix
+from game.ui.words import WordRow
+
+MARGIN: Final = 16  # left of the label, for the dot
+_TRACK: Final = (142.0, 62.0)  # from the label to the track, from the track to the right end
+_GAP: Final = 14.0  # between words
+_LONGEST_SEED: Final = 9  # digits
+
+
+class Knob(Widget):
+    """What all kinds share. The panel owns the value: `turn` asks for another, `display` brings it back here.
+
+    Attributes:
+        value: what is shown.
+        home: what the preset says.
+        waits: whether the value is yet to be applied.
+
+    """
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, dial: Dial, turn: Callable[[Dial, Any], None]
+    ) -> None:
+        super().__init__(manager, box, dial.label)
+        self.dial, self.help = dial, dial.help
+        self.value: Any = None
+        self.home: Any = None
+        self.waits = False
+        self._turn = turn
+        self._named = False  # the mouse was pressed on the name
+
+    def display(self, value: Any, home: Any, *, waits: bool) -> None:
+        """Show what the panel says."""
+        self.value, self.home, self.waits = value, home, waits
+
+    @property
+    def live(self) -> bool:
+        """Whether a run may go on while this is turned."""
+        return self.dial.live
+
+    @property
+    def changed(self) -> bool:
+        """Whether the value is not the preset's."""
+        return bool(self.value != self.home)
+
+    @property
+    def track(self) -> tuple[float, float]:
+        """From where to where it can be turned, in points."""
+        return self.box.left + MARGIN + _TRACK[0], self.box.right - _TRACK[1]
+
+    @property
+    def colour(self) -> Colour:
+        """Blue, grey for what takes a new run, amber for what waits."""
+        return HUMAN if self.waits else NET if self.live else MUTE
+
+    def turn(self, value: Any) -> None:
+        """Ask for another value."""
+        if value != self.value:
+            self._turn(self.dial, value)
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Go back to the preset's value."""
+        if self.changed and translate(event) is Command.RETRY:
+            self.turn(self.home)
+            return True
+        return False
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Keep a press on the name apart from one on the track."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            self._named = self.hover_point(*event.pos) and event.pos[0] < self.track[0] - 10
+            if self._named:
+                return True
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._named:
+            self._named = False
+            if self.hover_point(*event.pos) and self.changed:
+                self.turn(self.home)
+            return True
+        return super().process_event(event)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the ring of the focus, the dot of a change and the label."""
+        draw_row(canvas, self, changed=self.changed)
+
+    def write(self, canvas: Canvas, written: str) -> None:
+        """Write a figure at the right end."""
+        canvas.text(
+            written, (self.box.right, self.box.centery + 4.5),
+            size=SMALL, colour=self.colour, align="right", tabular=True,
+        )  # fmt: skip
+
+
+class SliderKnob(Knob):
+    """A number, on one of the stops of its track."""
+
+    def _at(self, value: Any) -> float:
+        """How far along the track a value stands, 0 to 1: stops are equally far from each other."""
+        stops = np.abs(np.array(self.dial.stops, dtype=float))  # they rise, or fall below 0
+        return float(np.interp(abs(value), stops, np.linspace(0.0, 1.0, len(stops))))
+
+    def shift(self, direction: int) -> bool:
+        """Go to the next stop."""
+        last = len(self.dial.stops) - 1
+        place = self._at(self.value) * last
+        stop = int(np.floor(place + 1e-6)) + 1 if direction > 0 else int(np.ceil(place - 1e-6)) - 1
+        self.turn(self.dial.stops[min(max(stop, 0), last)])
+        return True
+
+    def drag(self, x: float) -> None:
+        """Go to the stop nearest to the mouse; the preset's own value is one as well."""
+        left, right = self.track
+        fraction = min(max((x - left) / (right - left), 0.0), 1.0)
+        last = len(self.dial.stops) - 1
+        stop = self.dial.stops[round(fraction * last)]
+        home = self._at(self.home)
+        self.turn(self.home if abs(home - fraction) < min(0.4 / last, 0.02) else stop)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw track, tick, handle and figure."""
+        super().paint(canvas)
+        left, right = self.track
+        middle, width = self.box.centery, right - left
+        fraction, home = self._at(self.value), left + self._at(self.home) * width
+        canvas.line((home, middle - 5), (home, middle + 5), MUTE, 1, 0.8)
+        canvas.bar((left, middle - 1, width, 2), fraction, self.colour)
+        handle, radius = (left + fraction * width, middle), 5 + self.warmth
+        canvas.dot(handle, radius, INK if self.live else mix(MUTE, INK, self.warmth))
+        if not self.live:
+            canvas.dot(handle, radius - 1.6, PANEL)
+        self.write(canvas, figure(self.value))
+
+
+class SwitchKnob(Knob):
+    """On or off."""
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, dial: Dial, turn: Callable[[Dial, Any], None]
+    ) -> None:
+        super().__init__(manager, box, dial, turn)
+        self._slid: float | None = None
+
+    def press(self) -> None:
+        """Change to the other state."""
+        self.turn(not self.value)
+
+    def shift(self, direction: int) -> bool:
+        """Left is off, right is on."""
+        self.turn(direction > 0)
+        return True
+
+    def ease(self, at_once: bool) -> None:
+        """Let the switch slide."""
+        super().ease(at_once)
+        target = float(self.value)
+        at_once = at_once or self._slid is None
+        self._slid = target if at_once else (self._slid or 0.0) + 0.3 * (target - (self._slid or 0.0))
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the switch and its state."""
+        super().paint(canvas)
+        left, middle = self.track[0], self.box.centery
+        slid = float(self.value) if self._slid is None else self._slid
+        draw_switch(canvas, (left, middle - 7, 26, 14), slid, self.colour)
+        if not self.live:
+            canvas.dot((left + 7 + 12 * slid, middle), 2.6, mix(FAINT, self.colour, slid))
+        state = texts.KNOB_SWITCH[bool(self.value)]
+        canvas.text(state, (self.box.right, middle + 4.5), size=SMALL, align="right",
+                    colour=self.colour if self.value else MUTE)  # fmt: skip
+
+
+class WordsKnob(Knob):
+    """One of a few words."""
+
+    values: tuple[Any, ...] = ()
+    row: WordRow
+
+    def display(self, value: Any, home: Any, *, waits: bool) -> None:
+        """Show what the panel says; a value that is on no word has one made for it."""
+        super().display(value, home, waits=waits)
+        own = [extra for extra in (home, value) if extra not in self.dial.stops]
+        values = (*self.dial.stops, *dict.fromkeys(own))
+        if values != self.values:
+            self.values = values
+            self.row = WordRow([figure(each) for each in values], self.track[0], self.box.right, SMALL, _GAP)
+
+    def press(self) -> None:
+        """Take the word under the mouse; without one, the next."""
+        x, chosen = self.ui_manager.get_mouse_position()[0], self.values.index(self.value)
+        by_key = self.ringed or not self.box.collidepoint(x, self.box.centery)
+        self.turn(self.values[(chosen + 1) % len(self.values) if by_key else self.row.at(x, chosen)])
+
+    def shift(self, direction: int) -> bool:
+        """Take the word to the left or right."""
+        place = self.values.index(self.value) + direction
+        if 0 <= place < len(self.values):
+            self.turn(self.values[place])
+        return True
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the words."""
+        super().paint(canvas)
+        ink = self.colour if self.live or self.waits else INK
+        self.row.paint(
+            canvas, self.box.centery + 4.5, self.values.index(self.value),
+            ink=ink, line=self.colour, drop=5.5, thickness=2.0 if self.live else 1.0,
+        )  # fmt: skip
+
+
+class SeedKnob(Entry):
+    """The seed: typed, or one up and down with the arrows. A run begins with it, so it always takes a new one."""
+
+    live = False
+    changed = False
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, turn: Callable[[int], None]
+    ) -> None:
+        super().__init__(manager, box, label, "0", self._accept, limit=_LONGEST_SEED, fits=digits, size=SMALL)
+        self.help = texts.KNOB_SEED
+        self._turn, self.value, self.waits = turn, 0, False
+
+    def display(self, value: int, *, waits: bool) -> None:
+        """Show what the panel says."""
+        self.value, self.waits = value, waits
+        if not self.typing:
+            self.line.set(str(value))
+
+    def shift(self, direction: int) -> bool:
+        """One up, one down."""
+        self._turn(min(max(self.value + direction, 0), 10**_LONGEST_SEED - 1))
+        return True
+
+    def _accept(self, text: str) -> Transition | None:
+        self._turn(int(text))
+        return None
+
+    def ease(self, at_once: bool) -> None:
+        """Take what was typed once the focus is elsewhere."""
+        super().ease(at_once)
+        if not self.typing and self.line.text != str(self.value):
+            self._turn(int(self.line.text or self.value))
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Where the number begins: it ends at the right end of the row."""
+        return self.box.right - typeface.width(self.line.text, SMALL, "regular"), self.box.centery + 4.5
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the label and the number."""
+        draw_row(canvas, self, changed=False)
+        x, baseline = self.start
+        if self.typing:
+            draw_line(canvas, self.line, (x, baseline), self.box.width, SMALL, typing=True)
+            canvas.line((min(x, self.box.right - 20), baseline + 5.5), (self.box.right, baseline + 5.5), HUMAN, 1)
+        else:
+            canvas.text(self.line.text, (x, baseline), size=SMALL, colour=HUMAN if self.waits else MUTE)
+
+
+def draw_row(canvas: Canvas, widget: Widget, *, changed: bool) -> None:
+    """Draw what every row has: the ring of the focus, the dot of a change, the label."""
+    box = widget.box
+    if widget.ringed and widget.warmth > 0.02:
+        canvas.outline(box.inflate(12, 0), 6, INK, 1, 0.35 * widget.warmth)
+    if changed:
+        canvas.dot((box.left + 5, box.centery), 2.5, HUMAN)
+    colour = mix(mix(MUTE, INK, 0.7), INK, widget.warmth)
+    canvas.text(widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour)

@@ -1,0 +1,343 @@
+"""The panel of knobs of a training run: presets, pages of knobs, and what the one in focus is for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, Final
+
+import pygame
+
+from ai.config import PRESETS, Config
+from ai.sabotage import SABOTAGES
+from game import texts
+from game.controls import Command
+from game.dials import Dial, figure, label, pages
+from game.tuning import SEED, Named, Tuning, sentence, word
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.knob import MARGIN, Knob, SeedKnob, SliderKnob, SwitchKnob, WordsKnob
+from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
+from game.ui.widgets import Choice, PointsManager, Widget, Word, mix
+
+_KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
+_SEED_PAGE: Final = "lander"
+_HEAD: Final = 34  # from the top to the line under the presets
+_TABS: Final = 36  # from there to the first row: the tabs are in between
+_FOOT: Final = 60  # what is left at the bottom
+_PITCH: Final = 26  # of the rows, where there is room
+_TAB_GAP: Final = 13.0
+_LINE: Final = 16.0  # from a baseline of the foot to the next
+
+
+class Knobs:
+    """Made of widgets of a form, in a box of about 384 by 360 points; the scene draws the panel behind it.
+
+    What may change while a run goes on changes at once. What takes a new run waits, says so, and is applied or
+    undone by the player.
+
+    Args:
+        form: where the widgets are added; the scene passes events and updates to it, and draws it.
+        box: where, in points; the dots of what was changed are up to 16 points to the left of it.
+        config: what to begin with.
+        seed: the seed of that.
+        on_change: hears of every knob that has changed, by its name in Config ("weights.time" for a part of the
+            reward, "seed" for the seed), and of its value: while a run goes on, of those alone that may.
+        on_restart: asked for a new run with another configuration and seed, once the player has applied them.
+
+    """
+
+    def __init__(
+        self,
+        form: Form,
+        box: pygame.typing.RectLike,
+        config: Config,
+        seed: int,
+        on_change: Callable[[str, Any], None],
+        on_restart: Callable[[Config, int], None],
+    ) -> None:
+        self._form, self._box = form, pygame.Rect(box)
+        self._tuning = Tuning(config, seed, on_change, on_restart)
+        self._pages = pages(self._tuning.dials.values())
+        self._page = 0
+        self._picking = False
+        self._sections: dict[str, tuple[Hashable, list[Widget]]] = {}
+        self._widgets: list[Widget] = []
+        self._lay()
+
+    @property
+    def config(self) -> Config:
+        """What holds now; what waits to be applied is not in it."""
+        return self._tuning.config
+
+    @property
+    def seed(self) -> int:
+        """The seed that belongs to it."""
+        return self._tuning.seed
+
+    @property
+    def name(self) -> str:
+        """The preset or the sabotage that this is or began as, in the player's words."""
+        return word(self._tuning.named)
+
+    @property
+    def changed(self) -> bool:
+        """Whether knobs were turned away from what has that name."""
+        return self._tuning.changed
+
+    @property
+    def waiting(self) -> list[str]:
+        """Which knobs wait for a new run, by name."""
+        return self._tuning.waiting
+
+    def set_running(self, running: bool) -> None:
+        """Say whether a run goes on; without one, every knob changes at once."""
+        if running != self._tuning.running:
+            self._tuning.set_running(running)
+            self._lay()
+
+    def set_config(self, config: Config, seed: int) -> None:
+        """Show a configuration that came from elsewhere, such as a run that was loaded; nobody is called."""
+        self._tuning.set_config(config, seed)
+        self._picking = False
+        self._lay()
+
+    def turn(self, name: str, value: Any) -> None:
+        """Turn a knob by its name, as if by hand; for an impossible value, the panel says why not."""
+        self._tuning.turn(name, value)
+        self._lay()
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw what is not a widget; the form draws the widgets."""
+        box, y = self._box, self._box.top + _HEAD
+        canvas.line((box.left, y), (box.right, y), LINE, 1)
+        if self.changed:
+            left = box.left + canvas.text_width(self.name, size=TITLE) + 9
+            canvas.text(texts.KNOBS_CHANGED, (left, y - 13), size=LABEL, colour=HUMAN)
+        if self._picking:
+            heading = texts.SABOTAGE_HEADING.format(name=word((self._tuning.named[0], ""))).upper()
+            canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
+        self._draw_foot(canvas)
+
+    # Widgets
+
+    def _lay(self) -> None:
+        """Put the widgets in place that belong here now, and show in them what holds."""
+        tuning, picking = self._tuning, self._picking
+        answer = "apply" if tuning.waiting else "undo" if tuning.put_aside else ""
+        sections: dict[str, tuple[Hashable, Callable[[], list[Widget]]]] = {
+            "head": ((tuning.named, picking), self._make_head),
+            "tabs": (picking, lambda: [] if picking else [self._make_tabs()]),
+            "body": ((picking, self._page), self._make_picks if picking else self._make_rows),
+            "answers": (answer, lambda: self._make_answers(answer)),
+        }
+        for name, (key, make) in sections.items():
+            if name not in self._sections or self._sections[name][0] != key:
+                self._sections[name] = (key, make())
+        widgets = [widget for name in sections for widget in self._sections[name][1]]
+        if widgets != self._widgets:
+            self._form.replace(self._widgets, widgets)
+            self._widgets = widgets
+        waiting = tuning.waiting
+        for widget in widgets:
+            if isinstance(widget, Knob):
+                dial = widget.dial
+                widget.display(dial.read(tuning.draft), dial.read(tuning.home), waits=dial.name in waiting)
+            elif isinstance(widget, SeedKnob):
+                widget.display(tuning.draft_seed, waits=SEED in waiting)
+
+    def _make_head(self) -> list[Widget]:
+        """The chosen one large on the left, which brings all of it back; the others on the right."""
+        box, named, manager = self._box, self._tuning.named, self._form.manager
+        top = box.top + 6
+        chosen = _Title(manager, (box.left, top - 2, _width(self.name, TITLE), 28), self.name, self._loads(named))
+        others: list[tuple[str, Callable[[], None]]] = [
+            (word((base, "")), self._loads((base, ""))) for base in PRESETS if (base, "") != named
+        ]
+        others.append((texts.SABOTAGE_LEAVE, self._leave) if self._picking else (texts.SABOTAGE, self._pick))
+        right, made = float(box.right), []
+        for name, press in reversed(others):
+            width = _width(name, SMALL)
+            made.append(Word(manager, (right - width, top, width, 24), name, press, size=SMALL))
+            right -= width + 14
+        return [chosen, *reversed(made)]
+
+    def _make_tabs(self) -> Choice:
+        words = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self._pages]
+        box = (self._box.left, self._box.top + _HEAD + 8, self._box.width, 22)
+        return Choice(self._form.manager, box, "", words, self._page, self._turn_page, size=LABEL, gap=_TAB_GAP)
+
+    def _make_rows(self) -> list[Widget]:
+        page, manager = self._pages[self._page], self._form.manager
+        rows: list[Widget] = []
+        for dial in self._tuning.dials.values():
+            if dial.page == page:
+                rows.append(_KINDS[dial.kind](manager, self._row(len(rows)), dial, self._turned))
+        if page == _SEED_PAGE:
+            turn = self._seeded
+            rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), turn))
+        return rows
+
+    def _row(self, number: int) -> pygame.Rect:
+        """The box of a row: as far from the next as the longest page allows."""
+        box, dials = self._box, self._tuning.dials.values()
+        longest = max(sum(dial.page == page for dial in dials) for page in self._pages)
+        pitch = min(_PITCH, (box.height - _HEAD - _TABS - _FOOT) // longest)
+        return pygame.Rect(box.left - MARGIN, box.top + _HEAD + _TABS + number * pitch, box.width + MARGIN, pitch)
+
+    def _make_picks(self) -> list[Widget]:
+        """What can be taken away, in two columns."""
+        base, (left, top) = self._tuning.named[0], self._box.topleft
+        half = (len(SABOTAGES) + 1) // 2
+        picks: list[Widget] = []
+        for number, name in enumerate(SABOTAGES):
+            column, row = divmod(number, half)
+            box = (left + column * self._box.width // 2, top + _HEAD + 38 + row * _PITCH, 160, _PITCH)
+            pick = Word(self._form.manager, box, word((base, name)), self._loads((base, name)), size=SMALL + 1)
+            pick.help = "\n".join(texts.SABOTAGES[name][1:])
+            picks.append(pick)
+        return picks
+
+    def _make_answers(self, answer: str) -> list[Widget]:
+        """The words that apply or undo."""
+        words = {"apply": [(texts.KNOBS_UNDO, self._undo), (texts.KNOBS_APPLY, self._apply)],
+                 "undo": [(texts.KNOBS_UNDO, self._undo)]}  # fmt: skip
+        right, made = self._box.right - 14.0, []
+        for name, press in words.get(answer, []):
+            width = _width(name, TEXT)
+            made.append(_Answer(self._form.manager, (right - width, self._box.bottom - 42, width, 28), name, press))
+            right -= width + 18
+        return [*reversed(made)]
+
+    # What the widgets ask for
+
+    def _turned(self, dial: Dial, value: Any) -> None:
+        self.turn(dial.name, value)
+
+    def _seeded(self, seed: int) -> None:
+        self.turn(SEED, seed)
+
+    def _turn_page(self, page: int) -> None:
+        self._page = page
+        self._lay()
+
+    def _loads(self, named: Named) -> Callable[[], None]:
+        def load() -> None:
+            self._tuning.load(named)
+            self._picking = False
+            self._lay()
+
+        return load
+
+    def _pick(self) -> None:
+        self._picking = True
+        self._lay()
+
+    def _leave(self) -> None:
+        self._picking = False
+        self._lay()
+
+    def _apply(self) -> None:
+        self._tuning.apply()
+        self._lay()
+
+    def _undo(self) -> None:
+        self._tuning.undo()
+        self._lay()
+
+    # The foot: what is refused, what waits, or what the knob in focus is for
+
+    def _draw_foot(self, canvas: Canvas) -> None:
+        tuning, box = self._tuning, self._box
+        if tuning.problem:
+            first = box.bottom - _FOOT + 22
+            canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
+            _write(canvas, tuning.problem, (box.left + 18, first), box.width - 18, canvas.palette.warn)
+        elif tuning.waiting:
+            self._draw_notice(canvas, texts.KNOBS_STARTS_ANEW, _listed(tuning.waiting))
+        elif tuning.put_aside:
+            line = texts.KNOBS_PUT_ASIDE_LINE.format(name=self.name)
+            self._draw_notice(canvas, texts.KNOBS_PUT_ASIDE, line)
+        else:
+            self._draw_help(canvas)
+
+    def _draw_notice(self, canvas: Canvas, heading: str, line: str) -> None:
+        box = self._box
+        canvas.outline((box.left, box.bottom - 50, box.width, 46), 8, HUMAN, 1, 0.35)
+        canvas.text(heading, (box.left + 14, box.bottom - 31), size=SMALL, colour=HUMAN)
+        canvas.text(line, (box.left + 14, box.bottom - 14), size=SMALL, colour=INK)
+
+    def _draw_help(self, canvas: Canvas) -> None:
+        box, widget = self._box, self._form.focused
+        help_text = widget.help if widget in self._widgets and widget else ""
+        y = box.bottom - _FOOT + (-18.0 if self._picking else 22.0)
+        for number, part in enumerate((help_text or sentence(self._tuning.named)).split("\n")):
+            y = _write(canvas, part, (box.left, y), box.width, INK if number else MUTE) + (6 if self._picking else 0)
+        if isinstance(widget, Knob | SeedKnob) and widget in self._widgets:
+            self._draw_marks(canvas, widget, box.bottom - 4)
+
+    def _draw_marks(self, canvas: Canvas, widget: Knob | SeedKnob, baseline: float) -> None:
+        """Say whether it takes a new run, and how the preset's value comes back."""
+        box, controls = self._box, self._form.controls
+        if not widget.live:
+            canvas.marker("ring", (box.left + 4, baseline - 4), 8, MUTE)
+            canvas.text(texts.KNOBS_NEW_RUN, (box.left + 14, baseline), size=LABEL, colour=MUTE)
+        if isinstance(widget, Knob) and widget.changed:
+            key = texts.KNOBS_CLICK if controls.mouse_in_use else controls.word(Command.RETRY)
+            back = texts.KNOBS_BACK_TO.format(value=figure(widget.home))
+            draw_hints(canvas, [(key, back)], (box.right, baseline), from_right=True, size=LABEL)
+
+
+class _Title(Word):
+    """The chosen preset: large, with a line under it."""
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
+    ) -> None:
+        super().__init__(manager, box, label, on_press, size=TITLE)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the word and its line."""
+        Widget.paint(self, canvas)
+        box = self.box
+        canvas.text(self.label, (box.left, box.top + 17), size=TITLE, colour=INK)
+        canvas.line((box.left, box.top + 30), (box.left + box.width, box.top + 30), NET, 2)
+
+
+class _Answer(Word):
+    """Apply or undo: the player's, and so amber."""
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
+    ) -> None:
+        super().__init__(manager, box, label, on_press, size=TEXT)
+
+    def tint(self) -> Colour:
+        """Amber, and ink as it comes into focus."""
+        return mix(HUMAN, INK, self.warmth)
+
+
+def _width(text: str, size: float) -> float:
+    return typeface.width(text, size, "regular")
+
+
+def _listed(names: list[str]) -> str:
+    """Name the knobs that wait: as many as there is room for."""
+    labels = list(dict.fromkeys(label(name.split(".")[0]) for name in names))
+    return ", ".join(labels) if len(labels) < 3 else texts.KNOBS_MORE.format(first=labels[0], count=len(labels) - 1)
+
+
+def _write(canvas: Canvas, text: str, start: tuple[float, float], width: float, colour: Colour) -> float:
+    """Write a text on as many lines as it takes; return the baseline after the last."""
+    x, y = start
+    line = ""
+    for each in text.split():
+        longer = f"{line} {each}".strip()
+        if line and canvas.text_width(longer, size=SMALL) > width:
+            canvas.text(line, (x, y), size=SMALL, colour=colour)
+            line, y = each, y + _LINE
+        else:
+            line = longer
+    canvas.text(line, (x, y), size=SMALL, colour=colour)
+    return y + _LINE

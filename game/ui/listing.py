@@ -1,0 +1,154 @@
+"""Rows to choose from, more of them than there is room for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import pygame
+
+from game.controls import Command, translate
+from game.scene import Transition
+from game.ui.canvas import Canvas
+from game.ui.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
+from game.ui.widgets import PointsManager, Widget, mix
+
+Row = tuple[str, str]  # what it is called, and a few words at the right end
+_BAR: Final = 3.0
+_GAP: Final = 12.0  # between a row's words and the scroll bar
+
+
+class Listing(Widget):
+    """Rows one below the other, one of them chosen; the wheel, the arrows and Page Up and Down scroll.
+
+    `on_choose` hears of each row that becomes the chosen one, by its number; `on_press` of Enter, a pad's A or a
+    second click on it. At either end, the arrows lead on to the next widget.
+    """
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        rows: Sequence[Row],
+        index: int = 0,
+        *,
+        on_choose: Callable[[int], None] = lambda _: None,
+        on_press: Callable[[int], Transition | None] = lambda _: None,
+        empty: str = "",
+        pitch: float = 32,
+        size: float = TEXT,
+    ) -> None:
+        super().__init__(manager, box, "")
+        self._on_choose, self._on_press, self._empty = on_choose, on_press, empty
+        self._pitch, self._size = pitch, size
+        self._pressed = -1
+        self.first = 0
+        self.set_rows(rows, index)
+
+    def set_rows(self, rows: Sequence[Row], index: int = 0) -> None:
+        """Take other rows; nobody is told of the row that is chosen then."""
+        self.rows = list(rows)
+        self.index = min(max(index, 0), max(0, len(self.rows) - 1))
+        self._show_chosen()
+
+    @property
+    def room(self) -> int:
+        """How many rows there is room for."""
+        return max(1, int(self.box.height // self._pitch))
+
+    def choose(self, index: int) -> None:
+        """Choose a row, and bring it into sight."""
+        index = min(max(index, 0), len(self.rows) - 1)
+        if self.rows and index != self.index:
+            self.index = index
+            self._on_choose(index)
+        self._show_chosen()
+
+    def press(self) -> Transition | None:
+        """Open the chosen row."""
+        return self._on_press(self.index) if self.rows else None
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Move the choice, as long as there are rows ahead."""
+        steps = {Command.UP: -1, Command.DOWN: 1, Command.PREVIOUS: -self.room, Command.NEXT: self.room}
+        if event.type == pygame.KEYDOWN and event.key in (pygame.K_HOME, pygame.K_END):
+            self.choose(0 if event.key == pygame.K_HOME else len(self.rows) - 1)
+            return True
+        step = steps.get(command) if (command := translate(event)) else None
+        if step is None:
+            return False
+        before = self.index
+        self.choose(self.index + step)
+        return self.index != before or abs(step) > 1
+
+    def scroll(self, rows: int) -> bool:
+        """Turn the wheel: the choice stays where it is."""
+        self._look(self.first - rows)
+        return len(self.rows) > self.room
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Choose the row that is clicked; one that was the chosen one already is opened."""
+        row = self._row_at(event.pos) if event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) else None
+        if row is None or event.button != 1:
+            return False
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self._pressed = row if row == self.index else -1
+            self.choose(row)
+        elif row == self._pressed:
+            self.outcome = self.press()
+        return True
+
+    def _row_at(self, place: tuple[float, float]) -> int | None:
+        if not self.hover_point(*place):
+            return None
+        row = self.first + int((place[1] - self.box.top) // self._pitch)
+        return row if row < min(len(self.rows), self.first + self.room) else None
+
+    def _show_chosen(self) -> None:
+        self._look(min(max(self.first, self.index - self.room + 1), self.index))
+
+    def _look(self, first: int) -> None:
+        self.first = min(max(first, 0), max(0, len(self.rows) - self.room))
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the rows in sight, and where in the list they are."""
+        super().paint(canvas)
+        box = self.box
+        scrolls = len(self.rows) > self.room
+        right = box.right - (_BAR + _GAP if scrolls else 0)
+        if not self.rows:
+            canvas.text(self._empty, (box.left, box.top + 0.62 * self._pitch), size=self._size, colour=MUTE)
+        for number, (words, note) in enumerate(self.rows[self.first : self.first + self.room], self.first):
+            top = box.top + (number - self.first) * self._pitch
+            self._paint_row(canvas, words, note, (box.left, top, right), chosen=number == self.index)
+        if scrolls:
+            self._paint_bar(canvas)
+
+    def _paint_row(
+        self, canvas: Canvas, words: str, note: str, place: tuple[float, float, float], *, chosen: bool
+    ) -> None:
+        left, top, right = place
+        baseline = top + 0.62 * self._pitch
+        canvas.text(note, (right, baseline), size=SMALL, colour=MUTE, align="right", tabular=True)
+        room = right - left - canvas.text_width(note, size=SMALL, tabular=True) - 24
+        colour = INK if chosen else mix(MUTE, INK, 0.35)
+        canvas.text(_shortened(canvas, words, self._size, room), (left, baseline), size=self._size, colour=colour)
+        canvas.line((left, top + self._pitch - 1), (right, top + self._pitch - 1), LINE, 1)
+        if chosen:
+            canvas.line((left - 12, top + 0.26 * self._pitch), (left - 12, top + 0.76 * self._pitch), NET, 2)
+
+    def _paint_bar(self, canvas: Canvas) -> None:
+        box, count = self.box, len(self.rows)
+        left = box.right - _BAR
+        canvas.pill((left, box.top, _BAR, box.height), LINE)
+        height = max(12.0, box.height * self.room / count)
+        top = box.top + (box.height - height) * self.first / (count - self.room)
+        canvas.pill((left, top, _BAR, height), mix(FAINT, MUTE, self.warmth))
+
+
+def _shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
+    if canvas.text_width(text, size=size) <= room:
+        return text
+    while text and canvas.text_width(text + "…", size=size) > room:
+        text = text[:-1]
+    return text + "…"
