@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
     import pygame
@@ -29,6 +29,14 @@ class Scene(Protocol):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw between the last two steps (alpha 0 to 1). Changes nothing but pixels."""
+
+
+@runtime_checkable
+class Lasting(Protocol):
+    """A scene that holds more than memory, such as a process, and gives it back when it is left for good."""
+
+    def close(self) -> None:
+        """Give back what is held; `exit` has been called before."""
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from game.scene import Pop, Push, Quit, Replace, Scene, Transition
+from game.scene import Lasting, Pop, Push, Quit, Replace, Scene, Transition
 
 if TYPE_CHECKING:
     import pygame
@@ -52,7 +52,7 @@ class SceneManager:
                     self.top.exit()
                 self._enter(scene)
             case Replace(scene):
-                self._stack.pop().exit()
+                self._leave(1)
                 self._enter(scene)
             case Pop(levels):
                 self._pop(levels)
@@ -61,13 +61,15 @@ class SceneManager:
 
     def reset(self, *scenes: Scene) -> None:
         """Leave every scene without a word to them, for their state is in doubt, and put these in place."""
+        left = [scene for scene in self._stack if scene not in scenes]
         self._stack = list(scenes[:-1])
+        _close(left)
         self._enter(scenes[-1])
 
     def close(self) -> None:
-        """Leave the top scene, for good."""
+        """Leave every scene, for good."""
         if self._stack:
-            self._stack.pop().exit()
+            self._leave(len(self._stack))
 
     def _enter(self, scene: Scene) -> None:
         self._stack.append(scene)
@@ -77,6 +79,18 @@ class SceneManager:
         if levels >= len(self._stack):
             self.running = False  # `close` leaves the top scene
             return
-        self.top.exit()
-        del self._stack[-levels:]
+        self._leave(levels)
         self.top.enter(self._context)
+
+    def _leave(self, levels: int) -> None:
+        """Take the top scenes away, for good."""
+        self.top.exit()
+        left = self._stack[-levels:]
+        del self._stack[-levels:]
+        _close(left)
+
+
+def _close(scenes: list[Scene]) -> None:
+    for scene in reversed(scenes):
+        if isinstance(scene, Lasting):
+            scene.close()

@@ -36,6 +36,12 @@ def _watch() -> Scene:
     return Watch()
 
 
+def _train() -> Scene:
+    from game.scenes.train import Train
+
+    return Train()
+
+
 def _physics() -> Scene:
     from game.scenes.physics import Physics
 
@@ -52,6 +58,7 @@ def _settings() -> Scene:
 ROWS: Final[tuple[tuple[str, Callable[[], Scene] | None], ...]] = (
     ("play", _play),
     ("watch", _watch),
+    ("train", _train),
     ("physics", _physics),
     ("settings", _settings),
     ("quit", None),

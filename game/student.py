@@ -1,0 +1,164 @@
+"""A training run as the window knows it: what its worker has told, and what may be asked of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+from ai.config import Config
+from ai.history import Alteration, Checkpoint, History, Point, Validation
+from ai.live import Begun, Change, Insight, Refused, Revert, Save, Saved, Sight, live, turned
+from ai.nn import ModelFormatError
+from game import texts
+from game.library import Library, LibraryError
+from game.worker import State, Worker
+
+# Decisions of all landers a second: one lasts 1/15 s of their own time. None is as fast as it can.
+PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
+_EARLIER: Final = 3  # runs of this visit that stay to be compared with
+
+
+class Student:
+    """One run after another, each in a child process of its own; `poll` once a frame.
+
+    A run keeps itself in the library under no name, until `save` gives it one.
+
+    Attributes:
+        history: what has been told of the run that goes on, or of the last one.
+        sight, insight: the latest of their kind; None until a run has told of any.
+        earlier: the runs before it, by name, the latest first.
+
+    """
+
+    def __init__(self, library: Library) -> None:
+        self.library = library
+        self.config, self.seed = Config(), 0
+        self.history = History()
+        self.sight: Sight | None = None
+        self.insight: Insight | None = None
+        self.earlier: list[tuple[str, History]] = []
+        self.runs = 0
+        self.begun = False  # whether a run has said with what it was begun, since this was last set to False
+        self.pace = len(PACES) - 1
+        self._worker: Worker | None = None
+
+    @property
+    def state(self) -> State | None:
+        """How the run stands; None before the first."""
+        return self._worker.state if self._worker else None
+
+    @property
+    def alive(self) -> bool:
+        """Whether there is a run to pause, to step and to change."""
+        return self.state in (State.STARTING, State.RUNNING, State.PAUSED)
+
+    @property
+    def problem(self) -> str:
+        """Why the run failed, in words; empty if it did not."""
+        return self._worker.problem if self._worker and self.state is State.FAILED else ""
+
+    @property
+    def kept(self) -> bool:
+        """Whether there is a run without a name that could be given one."""
+        return self.alive or self.library.rescued() is not None
+
+    def begin(self, config: Config, seed: int, resume: Path | None = None) -> str:
+        """Start a run, or go on with a saved one. Returns what the player should know, if anything."""
+        self.close()
+        if len(self.history):
+            self.earlier.insert(0, (texts.TRAIN_RUN.format(number=self.runs), self.history))
+            del self.earlier[_EARLIER:]
+        note = ""
+        self.history = History()
+        try:
+            if resume is not None:
+                self.history = History.read(resume)
+            if resume != self.library.unsaved:
+                self.library.discard_rescued()  # to where it can still be brought back from
+        except (ModelFormatError, LibraryError) as error:
+            note = str(error)
+        self.config, self.seed = config, seed
+        self.sight = self.insight = None
+        self.runs += 1
+        self._worker = Worker(live, config, seed, keep=self.library.unsaved, resume=resume)
+        self._worker.set_pace(PACES[self.pace])
+        return note
+
+    def set_pace(self, index: int) -> None:
+        """Choose one of the paces."""
+        self.pace = index
+        if self._worker:
+            self._worker.set_pace(PACES[index])
+
+    def pause(self) -> None:
+        """Let the landers hang."""
+        if self._worker and self.alive:
+            self._worker.pause()
+
+    def resume(self) -> None:
+        """Let them fly on."""
+        if self._worker and self.alive:
+            self._worker.resume()
+
+    def step(self) -> None:
+        """Take one decision of all landers, and stand still after it."""
+        if self._worker and self.alive:
+            self._worker.pause()
+            self._worker.step()
+
+    def change(self, name: str, value: Any) -> None:
+        """Turn a live knob."""
+        if self._worker and self.alive:
+            self._worker.send(Change(name, value))
+
+    def revert(self, checkpoint: Checkpoint) -> None:
+        """Let the network be what it was."""
+        if self._worker and self.alive:
+            self._worker.send(Revert(checkpoint.decisions))
+
+    def save(self, name: str) -> str:
+        """Give the run a name in the library; returns what the player should know, later news come from `poll`."""
+        try:
+            if self._worker and self.alive:
+                self._worker.send(Save(self.library.new_folder(name)))
+                return ""
+            self.library.keep_rescued(name)
+        except LibraryError as error:
+            return str(error)
+        return texts.TRAIN_SAVED.format(name=name)
+
+    def poll(self) -> list[str]:
+        """Take in what the worker has told; returns what the player should know."""
+        notes: list[str] = []
+        for message in self._worker.poll() if self._worker else ():
+            match message:
+                case Sight():
+                    self.sight = message
+                case Insight():
+                    self.insight = message
+                case Alteration(_, name, _, after):
+                    self.history.append(message)
+                    self.config = _turned(self.config, name, after)
+                case Point() | Checkpoint() | Validation():
+                    self.history.append(message)
+                case Begun(config, seed, _):
+                    self.config, self.seed, self.begun = config, seed, True
+                case Saved(folder, problem):
+                    told = texts.TRAIN_NOT_SAVED.format(problem=problem) if problem else texts.TRAIN_SAVED
+                    if folder != self.library.unsaved or problem:
+                        notes.append(told.format(name=folder.name))
+                case Refused(_, problem):
+                    notes.append(problem)
+        return notes
+
+    def close(self) -> None:
+        """End the run, and its process for certain."""
+        if self._worker:
+            self._worker.close()
+
+
+def _turned(config: Config, name: str, value: Any) -> Config:
+    try:
+        return turned(config, name, value)
+    except ValueError:  # what the worker took, it took: only the knob's face is at stake
+        return config

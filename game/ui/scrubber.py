@@ -1,0 +1,41 @@
+"""A widget over charts that share an axis: the mouse or the arrows move a marker along it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from game.scene import Transition
+from game.ui.canvas import Canvas
+from game.ui.chart import Charts
+from game.ui.tokens import INK
+from game.ui.widgets import OnPress, PointsManager, Widget
+
+
+class Scrubber(Widget):
+    """Lies over the first chart. `on_move` gets a place on the axis as a float, or -1 or 1 as an int for a step."""
+
+    def __init__(
+        self, manager: PointsManager, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress
+    ) -> None:
+        super().__init__(manager, charts.charts[0].box, "")
+        self._charts, self._on_move, self._on_press = charts, on_move, on_press
+
+    def press(self) -> Transition | None:
+        """Do it; the mouse only moves the marker."""
+        return self._on_press() if self.ringed else None
+
+    def shift(self, direction: int) -> bool:
+        """Go one step along."""
+        self._on_move(direction)
+        return True
+
+    def drag(self, x: float) -> None:
+        """Follow the mouse."""
+        place = self._charts.x_at((x, self.box.centery))
+        if place is not None:
+            self._on_move(float(place))
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw nothing but the ring of the focus."""
+        if self.ringed and self.warmth > 0.02:
+            canvas.outline(self.box.inflate(12, 8), 8, INK, 1, 0.4 * self.warmth)

@@ -1,0 +1,138 @@
+"""A swarm that learns elsewhere, as it was last seen: eased between two sights, with the ways of recent flights."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Bools, Doubles
+from ai.lander import PARAMS, Outcome
+from ai.live import CAREFUL, Sight
+from game import texts
+from game.render import HOME, POINTS_PER_METRE, View
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
+from game.world.backdrop import Backdrop
+from game.world.pad import draw_pad
+from game.world.paths import Trails
+from game.world.stage import draw_craft, draw_crowd, draw_fires
+
+_SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # landers up to, how large they are drawn
+_KEEP: Final = 28  # flights whose way stays to be seen
+_LONGEST_GAP: Final = 12.0  # frames between two sights that are still eased over
+_JUMP: Final = 4.0  # metres: further than any lander flies between two sights
+_MOON: Final = 5
+_EARTH: Final = (880.0, 150.0)  # points of the small picture: clear of the figures
+
+
+class LearningSwarm:
+    """The landers of one training run in the upper left part of the view.
+
+    `width` is the share of the view's width that they have; the world keeps its proportions in it.
+    """
+
+    def __init__(self, width: float) -> None:
+        self._share = width
+        span = (1 - width) / (2 * width * POINTS_PER_METRE)
+        self._centre = (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1])
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget the run that was seen."""
+        self.sight: Sight | None = None
+        self._trails = Trails(0)
+        self._before: Doubles = np.empty((0, 3))
+        self._now: Doubles = self._before
+        self._since = self._gap = 1.0
+        self._time = 0.0
+        self._frame = 0
+        self._lucky = 0
+
+    def take(self, sight: Sight) -> None:
+        """Note what the landers did last."""
+        poses = np.column_stack([sight.position, sight.angle]).astype(float)
+        last = self.sight
+        if last is None or len(last.outcome) != len(sight.outcome):
+            count = len(sight.outcome)
+            self._trails = Trails(count, _KEEP, stride=1)
+            fresh = np.ones(count, bool)
+        else:
+            moved = np.hypot(*(poses[:, :2] - self._now[:, :2]).T)
+            fresh = (last.outcome != Outcome.FLYING) | (moved > _JUMP)
+        self._before = np.where(fresh[:, None], poses, self._now) if len(self._now) == len(poses) else poses
+        self._now = poses
+        self._gap += 0.3 * (min(max(self._since, 1.0), _LONGEST_GAP) - self._gap)
+        self._since = 0.0
+        self.sight = sight
+        self._trails.follow(poses[:, :2], sight.outcome.astype(np.intp), fresh, sight.outcome != Outcome.FLYING)
+        flying = sight.outcome == Outcome.FLYING
+        if fresh[self._lucky % len(fresh)] or not flying[self._lucky % len(flying)]:
+            self._lucky = int(np.where(flying, sight.earned, -np.inf).argmax())
+
+    def update(self, still: bool = False) -> None:
+        """Let 1/60 s pass; while `still`, the lamps and flames stay as they are."""
+        self._since += 1
+        if not still:
+            self._time += 1 / 60
+            self._frame += 1
+
+    def draw(self, canvas: Canvas, alpha: float, paused: bool = False) -> None:
+        """Draw the moon, the pad, the landers."""
+        view = View(canvas.scale, self._centre, self._share)
+        moon = _moon(canvas.surface.get_size(), self._share)
+        canvas.surface.blit(moon, (0, 0))
+        draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
+        if self.sight is None:
+            return
+        part = 1.0 if paused else min(1.0, (self._since + alpha) / self._gap)
+        poses = self._before + part * (self._now - self._before)
+        wrecked = np.isin(self.sight.outcome, (Outcome.CRASHED, Outcome.OUT_OF_BOUNDS))
+        count = len(poses)
+        size = next((size for most, size in _SIZES if count <= most), _SIZES[-1][1])
+        marked = np.zeros(count, bool)
+        marked[[CAREFUL, self._lucky % count]] = True
+        canvas.surface.set_clip(canvas.rect(0, 0, VIEW_SIZE[0] * self._share, moon.get_height() / canvas.scale))
+        self._trails.draw(canvas, view, CAREFUL)
+        shown = ~marked & ~wrecked
+        draw_fires(canvas, view, poses[shown & self._burning()], self._frame, size)
+        draw_crowd(canvas, view, poses[shown], size)
+        for slot, word, colour in ((self._lucky % count, texts.SWARM_LUCKIEST, INK), (CAREFUL, texts.SWARM_BEST, NET)):
+            if not wrecked[slot] and (slot == CAREFUL or self._lucky % count != CAREFUL):
+                self._draw_marked(canvas, view, poses[slot], slot, (word if count > 1 else ""), colour, size)
+        canvas.surface.set_clip(None)
+
+    def _burning(self) -> Bools:
+        assert self.sight is not None
+        burning: Bools = (self.sight.action >= 3) & (self.sight.outcome == Outcome.FLYING)
+        return burning
+
+    def _draw_marked(
+        self, canvas: Canvas, view: View, pose: Doubles, slot: int, word: str, colour: Colour, size: float
+    ) -> None:
+        assert self.sight is not None
+        steer = int(self.sight.action[slot]) % 3
+        thrust = np.array([self._burning()[slot], steer == 2, steer == 1], dtype=float)
+        draw_craft(canvas, view, pose, thrust, 1.0, self._frame, min(1.0, 1.5 * size))
+        x, y = view.points(pose[:2]).tolist()
+        if word:
+            y -= 30 * min(1.0, 1.5 * size)
+            width = canvas.text_width(word, size=LABEL)
+            canvas.pill((x - width / 2 - 8, y - 22, width + 16, 17), NIGHT0, 0.72)  # over whatever flies behind
+            canvas.text(word, (x, y - 9.5), size=LABEL, colour=colour, align="centre")
+            canvas.marker("triangle_down", (x, y - 1), 6, colour)
+
+
+@lru_cache(maxsize=2)
+def _moon(size: tuple[int, int], share: float) -> pygame.Surface:
+    """Return the landscape as it lies behind the swarm, darkened towards its lower edge."""
+    small = (round(size[0] * share), round(size[1] * share))
+    picture = pygame.Surface(small)
+    Backdrop(small, np.random.default_rng(_MOON), reduced_motion=True).paint(picture, earth=_EARTH)
+    veil = pygame.Surface(small)
+    veil.fill(NIGHT0)
+    veil.set_alpha(90)
+    picture.blit(veil, (0, 0))
+    return picture
