@@ -8,23 +8,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 import pygame
 
 from game import texts
 from game.ui import plotting
 from game.ui.canvas import Canvas, Point
 from game.ui.plotting import Limits, Numbers
-from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, Colour
+from game.ui.series import RUN_STYLES, Run, Series, Tick, draw_legend
+from game.ui.shapes import Shape
+from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT, Colour
+from game.ui.tooltip import Row, draw_tooltip
+from game.world.paint import mix
+
+__all__ = ["RUN_STYLES", "Chart", "Charts", "Series", "Tick", "draw_legend"]
 
 _HEADER: Final = 24.0  # from the top of the box to the highest line
 _FOOT: Final = 18.0  # from the lowest line to the bottom of the box
 _GUTTER: Final = 34.0  # for the lines' numbers, on the right
 _MARGIN: Final = 6.0  # of the sheet around the box
+_AXES: Final = mix(FAINT, MUTE, 0.55)
+_AXES_SIZE: Final = LABEL - 1.5
 _LINE_WIDTH: Final = 1.6
 _SPECK: Final = 0.55  # radius of a raw point
 _SPECK_ALPHA: Final = 0.5
@@ -32,86 +38,8 @@ _SMOOTHING: Final = 0.022  # of the width, to either side
 _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
 _EASE: Final = 0.2
 _REACH: Final = 5.0  # points from a tick within which it tells what it stands for
-_ROW: Final = 15.0  # of the read-out
 _TICK_SPACING: Final = 4.0
-
-# Blue is the run of now; the others differ from it, and from each other, in colour, lightness and dashes.
-RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = (
-    (NET, ()),
-    ((236, 140, 190), (7.0, 5.0)),
-    ((222, 214, 160), (2.0, 4.0)),
-    ((168, 146, 240), (10.0, 4.0, 2.0, 4.0)),
-)
-
-
-@dataclass(frozen=True, eq=False)
-class Series:
-    """One run's curve.
-
-    Attributes:
-        x: (n,) rising.
-        y: (n,) values; one that is not finite makes a gap.
-        dash: on, off, ... in points; empty for a solid line, which also shows its raw points.
-        smooth: whether the line is smoothed; not for what has no noise.
-
-    """
-
-    x: npt.ArrayLike
-    y: npt.ArrayLike
-    name: str
-    colour: Colour = NET
-    dash: tuple[float, ...] = ()
-    smooth: bool = True
-
-
-@dataclass(frozen=True)
-class Tick:
-    """A moment worth a mark below the chart: a checkpoint, or a knob that was turned."""
-
-    x: float
-    text: str
-    kind: Literal["checkpoint", "knob"] = "checkpoint"
-
-
-@dataclass(frozen=True)
-class _Run:
-    """A series, its numbers copied, sorted out once for as many drawings as there may be."""
-
-    series: Series
-    x: Numbers
-    y: Numbers
-
-    @classmethod
-    def of(cls, series: Series) -> _Run:
-        x, y = (np.array(values, float).ravel() for values in (series.x, series.y))
-        length = min(len(x), len(y))
-        x, y = x[:length], y[:length]
-        placed = np.isfinite(x)
-        return cls(series, x[placed], y[placed])
-
-    def same(self, other: _Run) -> bool:
-        looks = [(each.series.name, each.series.colour, each.series.dash) for each in (self, other)]
-        return (
-            looks[0] == looks[1] and np.array_equal(self.x, other.x) and np.array_equal(self.y, other.y, equal_nan=True)
-        )
-
-    def nearest(self, x: float, slack: float) -> tuple[float, float] | None:
-        """Return the finite point nearest to x, unless the run ends more than `slack` before or after it."""
-        finite = np.flatnonzero(np.isfinite(self.y))
-        if not len(finite):
-            return None
-        at = self.x[finite]
-        if not at[0] - slack <= x <= at[-1] + slack:
-            return None
-        after = min(int(np.searchsorted(at, x)), len(at) - 1)
-        before = max(after - 1, 0)
-        index = before if x - at[before] <= at[after] - x else after
-        return float(at[index]), float(self.y[finite[index]])
-
-    def last(self) -> float | None:
-        """Return the latest finite value."""
-        finite = self.y[np.isfinite(self.y)]
-        return float(finite[-1]) if len(finite) else None
+_SLACK: Final = 0.02  # of the x axis: so far from its ends a run is still told of
 
 
 class Chart:
@@ -134,7 +62,7 @@ class Chart:
         self.label, self.read, self.read_x = label, read, read_x
         self.fixed = limits
         self.redraws = 0  # how often the sheet was drawn
-        self._runs: list[_Run] = []
+        self._runs: list[Run] = []
         self._ticks: tuple[Tick, ...] = ()
         self._x_range: Limits = (0.0, 1.0)
         self._lines = plotting.grid(*(limits or (0.0, 1.0)))
@@ -166,7 +94,7 @@ class Chart:
 
     def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = ()) -> None:
         """Show these runs, the current one first; the same numbers again cost nothing. Call it when new ones came."""
-        runs = [_Run.of(each) for each in series]
+        runs = [Run(each) for each in series]
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
         span = (start, end) if end > start else (start, start + 1.0)
         if (
@@ -271,7 +199,7 @@ class Chart:
             self._paint_run(sheet, area, run, values)
         if not any(np.isfinite(values).any() for values in self._traces):
             middle = (plot.centerx, plot.centery + 4)
-            sheet.text(texts.CHART_EMPTY, middle, size=SMALL, colour=FAINT, align="centre")
+            sheet.text(texts.CHART_EMPTY, middle, size=SMALL, colour=_AXES, align="centre")
         self._paint_ticks(sheet, plot)
         return sheet
 
@@ -292,54 +220,64 @@ class Chart:
                 sheet.line((plot.x, y), (plot.right, y), LINE)
                 if number in (0, len(lines) - 1):
                     text = plotting.round_number(float(value))
-                    sheet.text(text, (plot.right + 6, y + 4), size=LABEL - 1.5, colour=FAINT, tabular=True)
+                    sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES, tabular=True)
+        start, end = (self.read_x(x) for x in self._x_range)
         y = plot.bottom + 15
-        for x, side, align in ((self._x_range[0], plot.x, "left"), (self._x_range[1], plot.right, "right")):
-            sheet.text(self.read_x(x), (side, y), size=LABEL - 1.5, colour=FAINT, tabular=True, align=align)  # type: ignore[arg-type]
+        sheet.text(start, (plot.x, y), size=_AXES_SIZE, colour=_AXES, tabular=True)
+        sheet.text(end, (plot.right, y), size=_AXES_SIZE, colour=_AXES, tabular=True, align="right")
 
-    def _trace(self, run: _Run, columns: int) -> Numbers:
+    def _trace(self, run: Run, columns: int) -> Numbers:
         low, high = self._goal
         span = high - low
+        kept = np.where(np.isfinite(run.y), np.clip(run.y, low - span, high + span), np.nan)
         radius = round(_SMOOTHING * columns) if run.series.smooth else 0
-        return plotting.trace(run.x, np.where(np.isfinite(run.y), np.clip(run.y, low - span, high + span), np.nan),
-                              self._x_range, columns, radius)  # fmt: skip
+        return plotting.trace(run.x, kept, self._x_range, columns, radius)
 
-    def _paint_run(self, sheet: Canvas, area: pygame.Rect, run: _Run, values: Numbers) -> None:
+    def _paint_run(self, sheet: Canvas, area: pygame.Rect, run: Run, values: Numbers) -> None:
         colour, scale = run.series.colour, sheet.scale
         pad = sheet.px(3)
         low, high = self._shown
         size = (area.width, area.height + 2 * pad)
+        corner = (area.x, area.y - pad)
 
         def rows(of: Numbers) -> Numbers:
             row = (high - of) / (high - low) * (area.height - 1) + pad
             clipped: Numbers = np.clip(row, -4.0 * pad, size[1] + 4.0 * pad)
             return clipped
 
-        where = (area.x, area.y - pad)
         if not run.series.dash and run.series.smooth:
             kept = plotting.thinned(run.x, run.y, self._x_range, area.width)
             start, end = self._x_range
             columns = (run.x[kept] - start) / (end - start) * (area.width - 1)
-            dots = plotting.specks(columns, rows(run.y[kept]), size, _SPECK * scale)
-            _cover(sheet.surface, where, colour, _SPECK_ALPHA * dots)
-        dash = tuple(length * scale for length in run.series.dash)
+            _cover(sheet.surface, corner, colour, plotting.specks(columns, rows(run.y[kept]), size, _SPECK * scale),
+                   _SPECK_ALPHA)  # fmt: skip
         heights = rows(values)
-        _cover(sheet.surface, where, colour, plotting.stroke(heights, size[1], _LINE_WIDTH * scale, dash))
-        for column in _alone(values):
-            sheet.dot(((area.x + column) / scale, (area.y - pad + heights[column]) / scale), 1.6, colour)
-        for shape, beyond, y in (("triangle", values > high, area.y), ("triangle_down", values < low, area.bottom)):
-            for column in _starts(beyond, 14 * scale):
-                x = min((area.x + column) / scale + 3, area.right / scale)
-                sheet.marker(shape, (x, y / scale), 8, colour)  # type: ignore[arg-type]
+        dash = tuple(length * scale for length in run.series.dash)
+        first, line = plotting.stroke(heights, size[1], _LINE_WIDTH * scale, dash)
+        _cover(sheet.surface, (corner[0], corner[1] + first), colour, line)
+        for column in plotting.alone(values):
+            sheet.dot(((area.x + column) / scale, (corner[1] + heights[column]) / scale), 1.6, colour)
+        self._paint_arrows(sheet, area, colour, values)
+
+    def _paint_arrows(self, sheet: Canvas, area: pygame.Rect, colour: Colour, values: Numbers) -> None:
+        """Mark where a curve leaves the chart."""
+        low, high = self._goal
+        above: tuple[Shape, Numbers, int] = ("triangle", values - high, area.top)
+        below: tuple[Shape, Numbers, int] = ("triangle_down", low - values, area.bottom)
+        for shape, beyond, y in (above, below):
+            for column in plotting.starts(beyond > 0, 14 * sheet.scale):
+                x = min((area.x + column) / sheet.scale + 3, area.right / sheet.scale)
+                sheet.marker(shape, (x, y / sheet.scale), 8, colour)
 
     def _paint_ticks(self, sheet: Canvas, plot: pygame.FRect) -> None:
-        last = -math.inf
+        start, end = self._x_range
+        last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
         for tick in self._ticks:
-            x = plot.x + self.place(tick.x, 0.0)[0] - self.plot.x
+            x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
             if tick.kind == "knob":
                 sheet.marker("diamond", (x, plot.bottom), 8, HUMAN)
             elif x - last >= _TICK_SPACING:
-                sheet.line((x, plot.bottom + 2), (x, plot.bottom + 5), FAINT)
+                sheet.surface.fill(FAINT, (sheet.px(x), top, max(1, sheet.px(1)), height))
                 last = x
 
     def _value_at(self, x: float) -> float | None:
@@ -371,38 +309,16 @@ class Chart:
         plot = self.plot
         across, _ = self.place(x, 0.0)
         canvas.line((across, plot.top), (across, plot.bottom), MUTE, 1, 0.7)
-        slack = 0.02 * (self._x_range[1] - self._x_range[0])
+        slack = _SLACK * (self._x_range[1] - self._x_range[0])
         rows = []
         for run in self._runs:
             point = run.nearest(x, slack)
             if point:
                 canvas.dot(self.place(*point), 3, run.series.colour)
-                rows.append((run.series, self.read(point[1])))
+                rows.append(Row(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
         if self._pointed:
-            self._draw_readout(canvas, across, x, rows)
-
-    def _draw_readout(self, canvas: Canvas, across: float, x: float, rows: list[tuple[Series, str]]) -> None:
-        words = [tick.text for tick in self._ticks if abs(self.place(tick.x, 0.0)[0] - across) <= _REACH][-1:]
-        heads = [self.read_x(x), *words]
-        swatch, gap = 26.0, 14.0
-        names = max((canvas.text_width(series.name, size=LABEL) for series, _ in rows), default=0.0)
-        values = max((canvas.text_width(value, size=SMALL, tabular=True) for _, value in rows), default=0.0)
-        inner = max(swatch + names + gap + values if rows else 0.0, *(canvas.text_width(h, size=LABEL) for h in heads))
-        width, height = inner + 20, _ROW * (len(heads) + len(rows)) + 8
-        left = across + 10 if across + 10 + width <= self.box.right else across - 10 - width
-        left = max(min(left, self.box.right - width), self.box.x)
-        top = min(self.plot.top, self.box.bottom - height)
-        canvas.rounded((left, top, width, height), 6, NIGHT0, 0.88)
-        canvas.outline((left, top, width, height), 6, LINE)
-        y = top + 15
-        for head in heads:
-            canvas.text(head, (left + 10, y), size=LABEL, colour=MUTE, tabular=True)
-            y += _ROW
-        for series, value in rows:
-            draw_swatch(canvas, (left + 10, y - 4), series.colour, series.dash)
-            canvas.text(series.name, (left + 10 + swatch, y), size=LABEL, colour=INK)
-            canvas.text(value, (left + width - 10, y), size=SMALL, colour=series.colour, align="right", tabular=True)
-            y += _ROW
+            near = [tick.text for tick in self._ticks if abs(self.place(tick.x, 0.0)[0] - across) <= _REACH]
+            draw_tooltip(canvas, (across, plot.top), self.box, [self.read_x(x), *near[-1:]], rows)
 
 
 class Charts:
@@ -441,53 +357,17 @@ class Charts:
             chart.draw(canvas)
 
 
-def draw_swatch(canvas: Canvas, start: Point, colour: Colour, dash: Sequence[float], length: float = 20.0) -> None:
-    """Draw a short level piece of a run's line."""
-    x, y = start
-    lengths = list(dash) or [length, 0.0]
-    at = 0.0
-    while at < length:
-        for on, off in zip(lengths[::2], lengths[1::2], strict=True):
-            if at < length:
-                canvas.pill((x + at, y - 1, min(on, length - at), 2), colour)
-            at += on + off
-
-
-def draw_legend(canvas: Canvas, series: Sequence[Series], position: Point) -> float:
-    """Name runs side by side on one baseline, each with a piece of its line; return where they end."""
-    x, y = position
-    for each in series:
-        draw_swatch(canvas, (x, y - 4), each.colour, each.dash)
-        x = canvas.text(each.name, (x + 27, y), size=SMALL, colour=MUTE).right + 20
-    return x - 20
-
-
-def _cover(surface: pygame.Surface, where: tuple[int, int], colour: Colour, cover: Numbers) -> None:
+def _cover(
+    surface: pygame.Surface, corner: tuple[int, int], colour: Colour, cover: Numbers, alpha: float = 1.0
+) -> None:
     """Lay a colour over a surface, as far as `cover` (rows, columns) says."""
     rows, columns = cover.shape
     layer = pygame.Surface((columns, rows), pygame.SRCALPHA)
     layer.fill((*colour, 0))
-    alpha = pygame.surfarray.pixels_alpha(layer)
-    alpha[:] = (255 * cover + 0.5).astype(np.uint8).T
-    del alpha
-    surface.blit(layer, where)
-
-
-def _alone(values: Numbers) -> list[int]:
-    """Return the columns that have a value and no neighbour: no line runs through them."""
-    known = np.pad(np.isfinite(values), 1)
-    columns: list[int] = np.flatnonzero(known[1:-1] & ~known[:-2] & ~known[2:]).tolist()
-    return columns
-
-
-def _starts(flags: npt.NDArray[np.bool_], spacing: float) -> list[int]:
-    """Return where stretches of True begin, those too near to the one before left out."""
-    begins = np.flatnonzero(flags & ~np.roll(flags, 1) | (flags & (np.arange(len(flags)) == 0)))
-    kept: list[int] = []
-    for column in begins.tolist():
-        if not kept or column - kept[-1] >= spacing:
-            kept.append(column)
-    return kept
+    pixels = pygame.surfarray.pixels_alpha(layer)
+    pixels.T[...] = np.multiply(cover, 255 * alpha, dtype=np.float32)
+    del pixels
+    surface.blit(layer, corner)
 
 
 def _eased(shown: Limits, goal: Limits) -> Limits:

@@ -20,7 +20,8 @@ from ai.nn import NeuralNetwork
 from game import texts
 from game.ui import plotting, typeface
 from game.ui.canvas import Align, Canvas, Point
-from game.ui.tokens import EMBER, FAINT, INK, LABEL, LINE, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
+from game.ui.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
+from game.ui.tooltip import Row, draw_tooltip
 
 Show = Literal["weights", "activations", "gradients"]
 Indices = npt.NDArray[np.intp]
@@ -369,23 +370,11 @@ class NetView:
         column = self.columns[number]
         if place >= len(column.units):
             return
-        rows = [(texts.NET_VALUE, plotting.compact(float(column.values[place])))]
+        rows = [Row(texts.NET_VALUE, plotting.compact(float(column.values[place])))]
         if column.bias is not None:
-            rows.append((texts.NET_BIAS, plotting.compact(float(column.bias[place]))))
+            rows.append(Row(texts.NET_BIAS, plotting.compact(float(column.bias[place]))))
         head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
-        values = max(canvas.text_width(value, size=SMALL, tabular=True) for _, value in rows)
-        words = max(canvas.text_width(word, size=LABEL) for word, _ in rows)
-        width = max(words + 16 + values, canvas.text_width(head, size=LABEL)) + 20
-        height = 15 * (1 + len(rows)) + 9
-        x, y = self._centre(number, place)
-        left = x + 14 if x + 14 + width <= self.box.right else x - 14 - width
-        top = min(max(y - height / 2, self.box.y), self.box.bottom - height)
-        canvas.rounded((left, top, width, height), 6, NIGHT0, 0.9)
-        canvas.outline((left, top, width, height), 6, LINE)
-        canvas.text(head, (left + 10, top + 15), size=LABEL, colour=INK)
-        for row, (word, value) in enumerate(rows, 2):
-            canvas.text(word, (left + 10, top + 15 * row), size=LABEL, colour=MUTE)
-            canvas.text(value, (left + width - 10, top + 15 * row), size=SMALL, align="right", tabular=True)
+        draw_tooltip(canvas, self._centre(number, place), self.box, [head], rows)
 
     def name(self, number: int, place: int) -> str:
         """Return what a unit is called."""

@@ -18,6 +18,8 @@ Limits = tuple[float, float]
 _WILD: Final = 100.0  # a range so many times wider than the middle half of its values is cut
 _KEPT: Final = 10.0  # middle halves that stay on either side of it then
 _STEPS: Final = (1.0, 2.0, 2.5, 5.0, 10.0)
+_STEEP: Final = 3.0  # rows in a column: from here on a line grows no thicker, or else it would end in spikes
+_FAR: Final = -1e6  # a row that nobody sees
 _ROUNDING: Final = 1e-9
 _THOUSANDS: Final = ((1e6, "M"), (1e3, "k"))
 
@@ -93,16 +95,16 @@ def steady_grid(span: Limits, before: Numbers | None) -> Numbers:
 
 
 def thinned(x: Numbers, y: Numbers, x_range: Limits, count: int) -> npt.NDArray[np.intp]:
-    """Return which points to keep, at most about `count`: of each stretch of x the lowest and the highest."""
+    """Return which points to keep, at most about `count`: of each few neighbours the lowest and the highest."""
     kept = np.flatnonzero(np.isfinite(y) & (x >= x_range[0]) & (x <= x_range[1]))
     if len(kept) <= count:
         return kept
-    stretches = max(1, count // 2)
-    stretch = ((x[kept] - x_range[0]) * (stretches / (x_range[1] - x_range[0]))).astype(np.intp)
-    order = np.lexsort((y[kept], np.minimum(stretch, stretches - 1)))
-    ends = np.flatnonzero(np.diff(stretch[order])) + 1
-    lowest, highest = np.concatenate([[0], ends]), np.concatenate([ends - 1, [len(order) - 1]])
-    return np.unique(kept[order[np.concatenate([lowest, highest])]])
+    neighbours = -(-len(kept) // max(1, count // 2))
+    rows = -(-len(kept) // neighbours)
+    groups = np.pad(y[kept], (0, rows * neighbours - len(kept)), mode="edge").reshape(rows, neighbours)
+    first = np.arange(rows) * neighbours
+    ends = np.stack([first + groups.argmin(axis=1), first + groups.argmax(axis=1)])
+    return np.unique(kept[np.minimum(ends, len(kept) - 1)])
 
 
 def trace(x: Numbers, y: Numbers, x_range: Limits, columns: int, radius: int) -> Numbers:
@@ -114,18 +116,19 @@ def trace(x: Numbers, y: Numbers, x_range: Limits, columns: int, radius: int) ->
     """
     at = np.rint((x - x_range[0]) * ((columns - 1) / max(x_range[1] - x_range[0], 1e-300)))
     inside = (at >= 0) & (at < columns)
-    column, values = at[inside].astype(np.intp), y[inside]
-    finite = np.isfinite(values)
-    count = np.bincount(column[finite], minlength=columns).astype(float)
-    total = np.bincount(column[finite], values[finite], minlength=columns).astype(float)
+    finite = inside & np.isfinite(y)
+    column, values = at[finite].astype(np.intp), y[finite]
+    count = np.bincount(column, minlength=columns).astype(float)
+    total = np.bincount(column, values, minlength=columns).astype(float)
     filled = np.flatnonzero(count)
     if not len(filled):
         return np.full(columns, np.nan)
     smooth = _local_line(count, total, min(radius, (columns - 1) // 2))[filled]
-    smooth = np.clip(smooth, values[finite].min(), values[finite].max())
+    smooth = np.clip(smooth, values.min(), values.max())
     every = np.arange(columns)
     line = np.interp(every, filled, smooth, left=np.nan, right=np.nan)
-    missing = np.setdiff1d(column[~finite], filled)
+    gaps = inside & ~finite
+    missing = np.setdiff1d(at[gaps].astype(np.intp), filled) if gaps.any() else gaps[:0]
     if len(missing):
         stretch = np.searchsorted(filled, every)
         broken = np.isin(stretch, np.searchsorted(filled, missing))
@@ -138,6 +141,8 @@ def _local_line(count: Numbers, total: Numbers, radius: int) -> Numbers:
     """Fit a line around each column, near ones weighing most; return its height there. Empty: anything."""
     away = np.arange(-radius, radius + 1, dtype=float)
     weight = (1 - (away / (radius + 1)) ** 2) ** 2
+    if not radius:
+        return total / np.maximum(count, 1.0)
     s0, s1, s2 = (np.convolve(count, weight * away**power, mode="same") for power in range(3))
     t0, t1 = (np.convolve(total, weight * away**power, mode="same") for power in range(2))
     spread = s0 * s2 - s1 * s1
@@ -146,36 +151,43 @@ def _local_line(count: Numbers, total: Numbers, radius: int) -> Numbers:
     return fit
 
 
-def stroke(heights: Numbers, rows: int, width: float, dash: Sequence[float] = ()) -> Numbers:
-    """Return how far a line covers each pixel, (rows, columns) in 0 to 1.
+def stroke(heights: Numbers, rows: int, width: float, dash: Sequence[float] = ()) -> tuple[int, Numbers]:
+    """Return how far a line covers each pixel, (height, columns) in 0 to 1, and the row at which that begins.
 
     `heights` (columns,) are rows, NaN where there is no line; `width` and `dash` (on, off, ...) are pixels.
+    What lies outside of 0 to `rows` is cut off.
     """
-    middle = np.asarray(heights, np.float32)
-    before, after = np.roll(middle, 1), np.roll(middle, -1)
-    before[0], after[-1] = np.nan, np.nan
-    left = np.where(np.isnan(before), middle, (before + middle) / 2)
-    right = np.where(np.isnan(after), middle, (after + middle) / 2)
+    known = np.isfinite(heights)
+    if not known.any():
+        return 0, np.zeros((0, len(heights)), np.float32)
+    middle = np.where(known, heights, _FAR).astype(np.float32)
+    between = (middle[1:] + middle[:-1]) / 2  # a line leaves a column half way to its neighbour
+    joined = known[1:] & known[:-1]
+    left, right = middle.copy(), middle.copy()
+    np.copyto(left[1:], between, where=joined)
+    np.copyto(right[:-1], between, where=joined)
     low, high = np.minimum(np.minimum(left, right), middle), np.maximum(np.maximum(left, right), middle)
     rise = high - low
-    thick = width * np.sqrt(1 + rise**2)  # seen from above, a steep line is a thick one
-    ramp = np.maximum(rise, 1.0)
-    most = np.minimum(thick / ramp, 1.0)
-    if dash:
-        most = most * _dashes(middle, dash)
-    reach = (thick + ramp) / 2
-    cover = np.abs(np.arange(rows, dtype=np.float32)[:, None] - (low + high) / 2)
-    np.subtract(reach, cover, out=cover)
-    cover /= ramp
-    np.minimum(cover, most, out=cover)
-    np.nan_to_num(cover, copy=False, nan=0.0)
-    return np.maximum(cover, 0.0, out=cover)
+    slope = np.minimum(rise, _STEEP)
+    thick = width * np.sqrt(1 + slope**2)  # measured upright, a steep line is a thick one
+    ramp = np.maximum(slope, 1.0)
+    most = np.minimum(thick / ramp, 1.0) * (_dashes(middle, dash) if dash else 1.0)
+    reach = (np.maximum(rise, 1.0) + thick) / 2
+    centre = (low + high) / 2
+    first = max(0, math.floor((centre - reach)[known].min()))
+    last = min(rows, math.ceil((centre + reach)[known].max()) + 1)
+    cover = np.arange(first, max(first, last), dtype=np.float32)[:, None] - centre
+    np.abs(cover, out=cover)
+    cover *= -1 / ramp
+    cover += reach / ramp
+    return first, np.clip(cover, 0.0, most, out=cover)
 
 
 def _dashes(heights: Numbers, dash: Sequence[float]) -> Numbers:
     """Return how far each column is within a dash, going along the line."""
-    steps = np.nan_to_num(np.abs(np.diff(heights, prepend=heights[:1])))
-    along = np.cumsum(np.hypot(1.0, steps)) % sum(dash)
+    lengths = np.ones(len(heights))
+    lengths[1:] = np.sqrt(1 + np.minimum((heights[1:] - heights[:-1]) ** 2, 1e4))
+    along = np.cumsum(lengths) % sum(dash)
     within = np.zeros(len(along))
     start = 0.0
     for on, off in zip(dash[::2], dash[1::2], strict=True):
@@ -193,5 +205,26 @@ def specks(columns: Numbers, heights: Numbers, size: tuple[int, int], radius: fl
     column, row = np.rint(columns).astype(np.intp)[:, None] + across, np.rint(heights).astype(np.intp)[:, None] + down
     cover = np.clip(radius + 0.5 - np.hypot(column - columns[:, None], row - heights[:, None]), 0.0, 1.0)
     inside = (column >= 0) & (column < size[0]) & (row >= 0) & (row < size[1])
-    flat = np.bincount((row * size[0] + column)[inside], cover[inside], minlength=size[0] * size[1])
+    flat = np.bincount((row * size[0] + column)[inside], cover[inside], minlength=size[0] * size[1]).astype(np.float32)
     return np.minimum(flat, 1.0).reshape(size[1], size[0])
+
+
+def alone(values: Numbers) -> list[int]:
+    """Return the places of finite values whose neighbours are not: no line runs through them."""
+    known = np.isfinite(values)
+    lonely = known.copy()
+    lonely[1:] &= ~known[:-1]
+    lonely[:-1] &= ~known[1:]
+    places: list[int] = np.flatnonzero(lonely).tolist()
+    return places
+
+
+def starts(flags: npt.NDArray[np.bool_], spacing: float) -> list[int]:
+    """Return where stretches of True begin, but for those that begin less than `spacing` after another."""
+    kept: list[int] = []
+    if not flags.any():
+        return kept
+    for place in np.flatnonzero(np.diff(flags, prepend=False) & flags).tolist():
+        if not kept or place - kept[-1] >= spacing:
+            kept.append(place)
+    return kept
