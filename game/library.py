@@ -41,6 +41,7 @@ class SavedRun:
         preset, changes: the preset its settings are nearest to, and how many of them differ.
         decisions, seconds: how long it learnt.
         success: share of validation flights that its best network landed, 0 to 1; None where nobody counted.
+        flyable: whether it may well fly a lander; only reading it will tell.
         resumable: whether there is something to go on training from.
         problem: what is wrong with it; empty for a whole one.
 
@@ -55,6 +56,7 @@ class SavedRun:
     decisions: int = 0
     seconds: float = 0.0
     success: float | None = None
+    flyable: bool = False
     resumable: bool = False
     problem: str = ""
 
@@ -69,16 +71,18 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     try:
         missing = [part for part in (*PARTS, TRAINING_FILE) if not (folder / part).exists()]
         if missing:
-            return SavedRun(name, folder, saved, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
+            flyable = missing == [TRAINING_FILE]
+            return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
         described = json.loads(file.read_text(encoding="utf-8"))
         if described["env"] != LANDER:
             return SavedRun(name, folder, saved, problem=texts.RUN_ELSEWHERE.format(env=described["env"]))
-        return SavedRun(name, folder, saved, resumable=(folder / LAST).is_dir(), **_figures(described))
+        last = (folder / LAST).is_dir()
+        return SavedRun(name, folder, saved, flyable=True, resumable=last, **_figures(described))
     except OSError as error:
         problem = _reason(error)
     except (ValueError, KeyError, TypeError, ArithmeticError, RecursionError):
         problem = texts.RUN_UNREADABLE.format(file=TRAINING_FILE)
-    return SavedRun(name, folder, saved, problem=problem)
+    return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
 def _figures(described: dict[str, Any]) -> dict[str, Any]:
@@ -90,13 +94,18 @@ def _figures(described: dict[str, Any]) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def fitting(text: str) -> str:
+    """Keep what may stand in a name."""
+    return "".join(letter for letter in unicodedata.normalize("NFC", text) if letter.isalnum() or letter in " -_.")
+
+
 def name_problem(text: str) -> str:
     """Say why a text is no name for a folder on every system, in a sentence; empty if it is one."""
     if not text.strip():
         return texts.NAME_EMPTY
     if len(text) > LONGEST_NAME:
         return texts.NAME_LONG.format(most=LONGEST_NAME)
-    if not all(letter.isalnum() or letter in " -_." for letter in text):
+    if fitting(text) != unicodedata.normalize("NFC", text):
         return texts.NAME_LETTERS
     if text[0] == "." or text[-1] == "." or text != text.strip():
         return texts.NAME_ENDS
@@ -147,9 +156,7 @@ class Library:
 
     def free_name(self, suggestion: str) -> str:
         """Return the suggestion as a valid name that no run has yet, with a number behind it if need be."""
-        letters = unicodedata.normalize("NFC", suggestion)
-        kept = "".join(letter if letter.isalnum() or letter in "-_." else " " for letter in letters)
-        base = " ".join(kept.split())[:LONGEST_NAME].strip(" .")
+        base = " ".join(fitting(suggestion).split())[:LONGEST_NAME].strip(" .")
         if name_problem(base):
             base = texts.RUN_UNNAMED
         name, number = base, 1
@@ -179,6 +186,12 @@ class Library:
     def delete(self, name: str) -> None:
         """Throw a run away; `undo_delete` brings it back."""
         self._throw_away(self._existing(name), name)
+
+    @property
+    def last_deleted(self) -> str:
+        """What `undo_delete` would bring back; empty for nothing."""
+        thrown = self._thrown()
+        return thrown[-1].name.partition(" ")[2] if thrown else ""
 
     def undo_delete(self) -> SavedRun | None:
         """Bring back what was thrown away last, under another name if its own is taken; None if nothing was."""

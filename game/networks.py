@@ -95,15 +95,34 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
     return _missing(models_dir)
 
 
-def available(models_dir: Path, user_dir: Path) -> list[Network]:
-    """Read every network there is, damaged ones too, and the scripted pilot."""
-    from ai.pilots import ScriptedPilot
+class Roster:
+    """All there is to fly with, by name, the scripted pilot last. A network is read when it is first asked for."""
 
-    known = folders(models_dir, user_dir)
-    found = [load(name, folder) for name, folder in known.items()]
-    if DEFAULT not in known:
-        found.insert(0, _missing(models_dir))
-    return [*found, Network(SCRIPTED, ScriptedPilot())]
+    def __init__(self, models_dir: Path, user_dir: Path) -> None:
+        self._models_dir = models_dir
+        self._folders = folders(models_dir, user_dir)
+        missing = [] if DEFAULT in self._folders else [DEFAULT]
+        self.names = [*missing, *self._folders, SCRIPTED]
+        self._read: dict[str, Network] = {}
+
+    def __getitem__(self, name: str) -> Network:
+        """Return the network of that name, a damaged one too; KeyError if there is none."""
+        if name not in self._read:
+            self._read[name] = self._load(name)
+        return self._read[name]
+
+    def first_fit(self) -> Network:
+        """Return the first that can fly; the scripted pilot always can."""
+        return next(network for name in self.names if (network := self[name]).flyer)
+
+    def _load(self, name: str) -> Network:
+        from ai.pilots import ScriptedPilot
+
+        if name == SCRIPTED:
+            return Network(SCRIPTED, ScriptedPilot())
+        if name == DEFAULT and name not in self._folders:
+            return _missing(self._models_dir)
+        return load(name, self._folders[name])
 
 
 def _missing(models_dir: Path) -> Network:

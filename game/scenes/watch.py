@@ -24,7 +24,8 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
-from game.ui.widgets import CHOICE_GAP, Choice
+from game.ui.widgets import Choice
+from game.ui.words import GAP
 from game.world.backdrop import landscape
 from game.world.pad import draw_pad
 from game.world.paths import Trails
@@ -63,18 +64,21 @@ class Watch:
         if self._context is not None:
             return
         self._context, self._settings = context, context.settings
-        self._networks = networks.available(context.models_dir, context.user_dir)
-        names = [network.name for network in self._networks]
+        self._roster = networks.Roster(context.models_dir, context.user_dir)
+        names = self._roster.names
         wanted = names.index(context.settings.model) if context.settings.model in names else 0
         self._form = Form(context, on_back=Pop)
-        self._model_choice = self._add_choice(0, texts.WATCH_MODEL, self._words(), wanted, self._choose_network)
+        words = [_shortened(name) for name in names]
+        self._model_choice = self._add_choice(0, texts.WATCH_MODEL, words, wanted, self._choose_network)
         self._count_choice = self._add_choice(
             1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
         )
         self._speed_choice = self._add_choice(2, texts.WATCH_SPEED, _SPEED_WORDS, self._speed, self._choose_speed)
-        self._network = next(network for network in self._networks if network.flyer)
         if self._seed is None:
             self._seed = int(context.rng.integers(2**31))
+        self._network = self._roster[names[wanted]]
+        if self._network.flyer is None:
+            self._network = self._roster.first_fit()
         self._choose_network(wanted)
         self._begin()
 
@@ -191,21 +195,14 @@ class Watch:
         self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
     ) -> Choice:
         x, y, pitch = _ROW
-        width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + CHOICE_GAP for word in words) - CHOICE_GAP
+        width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
         box = pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
         manager = self._form.manager
         return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
 
-    def _words(self) -> list[str]:
-        return [
-            name if network.flyer else texts.WATCH_UNFIT.format(name=name)
-            for network in self._networks
-            for name in [_shortened(network.name)]
-        ]
-
     def _choose_network(self, index: int) -> None:
         """Fly the same starts with another network; a damaged one is named, and the last good one flies on."""
-        network = self._networks[index]
+        network = self._roster[self._roster.names[index]]
         self.problem = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem) if network.problem else ""
         if network.flyer is None:
             return

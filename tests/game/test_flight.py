@@ -158,18 +158,31 @@ def test_a_speed_just_over_the_limit_does_not_read_as_the_limit():
 
 def test_networks_are_listed_with_what_is_wrong_with_them(tmp_path: Path):
     models, user = tmp_path / "models", tmp_path / "user"
-    assert [n.name for n in networks.available(models, user)] == ["modern", "scripted"]
-    assert "missing" in networks.available(models, user)[0].problem
+    roster = networks.Roster(models, user)
+    assert roster.names == ["modern", "scripted"]
+    assert "missing" in roster["modern"].problem
+    assert roster.first_fit().name == "scripted"
     for folder in (models / "lander" / "broken", user / "models" / "mine"):
         folder.mkdir(parents=True)
         (folder / "config.json").write_text("{}")
     (user / "models" / "pictures").mkdir()
     (user / "models" / "notes.txt").touch()
-    found = {network.name: network for network in networks.available(models, user)}
-    assert list(found) == ["modern", "broken", "mine", "scripted"]
-    assert all(found[name].flyer is None and found[name].problem for name in ("modern", "broken", "mine"))
+    roster = networks.Roster(models, user)
+    assert roster.names == ["modern", "broken", "mine", "scripted"]
+    assert all(roster[name].flyer is None and roster[name].problem for name in ("modern", "broken", "mine"))
     assert networks.chosen(models, user, "broken").problem
     assert networks.chosen(models, user, "gone").name == "modern"
+
+
+def test_only_the_network_that_is_asked_for_is_read_and_only_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    for name in ("one", "two", "three"):
+        DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(tmp_path / "models" / name)
+    read = []
+    load = DeepQAgent.load
+    monkeypatch.setattr(DeepQAgent, "load", lambda folder: (read.append(folder.name), load(folder))[1])
+    roster = networks.Roster(tmp_path / "shipped", tmp_path)
+    assert roster["two"].flyer is roster["two"].flyer is not None
+    assert read == ["two"]
 
 
 @pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exists(), reason="no trained network here")
@@ -189,7 +202,7 @@ def test_whatever_lies_in_the_players_folder_is_named_and_never_raises(tmp_path:
     DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(folder / "cut")
     (folder / "cut" / "optimizer.npz").write_bytes((folder / "cut" / "optimizer.npz").read_bytes()[:200])
     DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(tmp_path / "shipped" / "lander" / "modern")
-    found = {network.name: network for network in networks.available(tmp_path / "shipped", tmp_path)}
+    found = networks.Roster(tmp_path / "shipped", tmp_path)
     assert found["cartpole"].flyer is None
     assert "4 inputs and 2 actions" in found["cartpole"].problem
     assert found["cut"].flyer is None

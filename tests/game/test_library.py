@@ -84,6 +84,7 @@ def test_a_damaged_run_is_listed_with_its_problem_and_can_go_anywhere(library: L
     (add(library, "hurt") / "training.json").write_text(text)
     (run,) = library.runs()
     assert run.problem == "training.json is damaged"
+    assert run.flyable
     assert library.export("hurt", tmp_path / "out").is_dir()
     library.rename("hurt", "still hurt")
     library.delete("still hurt")
@@ -96,11 +97,13 @@ def test_what_is_missing_is_named(library: Library, part: str):
     path.rmdir() if path.is_dir() else path.unlink()
     (run,) = library.runs()
     assert run.problem == f"{part} is missing"
+    assert run.flyable is (part == "training.json")
 
 
 def test_a_network_for_something_else_is_named_as_such(library: Library):
     add(library, "pole", env="CartPole-v1")
     assert "CartPole-v1" in library.runs()[0].problem
+    assert not library.runs()[0].flyable
 
 
 def test_bytes_that_are_no_text_are_survived(library: Library):
@@ -183,10 +186,12 @@ def test_what_was_deleted_comes_back_the_latest_first(library: Library):
         library.delete(name)
     assert names(library) == []
     for name in ("two", "one"):
+        assert library.last_deleted == name
         restored = library.undo_delete()
         assert restored is not None
         assert restored.name == name
     assert library.undo_delete() is None
+    assert library.last_deleted == ""
     assert names(library) == ["one", "two"]
 
 
