@@ -100,11 +100,12 @@ class _Trial:
 
     def go_on(self, decisions: int | None = None) -> bool:
         """Take so many decisions, or all that are left; whether it is done."""
-        try:
-            for _ in range(decisions) if decisions else repeat(None):
-                next(self._flights)
-        except StopIteration as done:
-            self.score = done.value
+        if self.score is None:  # flights that are over would have no score a second time
+            try:
+                for _ in range(decisions) if decisions else repeat(None):
+                    next(self._flights)
+            except StopIteration as done:
+                self.score = done.value
         return self.score is not None
 
 
