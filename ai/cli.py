@@ -12,12 +12,15 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from ai.config import Config
+    from ai.digit_config import DigitConfig
     from ai.task import Score
     from ai.training import Training
+
+    Settings = TypeVar("Settings", Config, DigitConfig)
 
 
 def add_commands(commands: Any) -> None:
@@ -50,28 +53,28 @@ def _train(arguments: argparse.Namespace) -> int:
     from ai.training import Training
 
     if arguments.resume is None and arguments.output is None:
-        return _fail("say where to keep the network: --output DIR, or --resume DIR")
+        return fail("say where to keep the network: --output DIR, or --resume DIR")
     if arguments.seconds is None and arguments.decisions is None:
-        return _fail("say when to stop: --seconds S or --decisions N")
+        return fail("say when to stop: --seconds S or --decisions N")
     output = arguments.output or arguments.resume
     try:
         resumed = resume_run(arguments.resume) if arguments.resume else None
         training = resumed or Training(_config(arguments), arguments.seed)
         training.validation_episodes = arguments.validation or training.validation_episodes
     except (ValueError, ImportError) as error:
-        return _fail(str(error))
+        return fail(str(error))
     clock = TrainingClock(arguments.seconds, arguments.decisions)
     try:
         _advance(training, clock, output)
     except FloatingPointError as error:
         save_run(training, output)
-        return _fail(f"training stopped: {error}. What was best until then is kept in {output}.")
+        return fail(f"training stopped: {error}. What was best until then is kept in {output}.")
     except OSError as error:
-        return _fail(f"could not write to {output}: {error.strerror or error}")
+        return fail(f"could not write to {output}: {error.strerror or error}")
     try:
         save_run(training, output, final=True)
     except OSError as error:
-        return _fail(f"could not write to {output}: {error.strerror or error}")
+        return fail(f"could not write to {output}: {error.strerror or error}")
     print(f"kept in {output}: {training.best}")
     return 0
 
@@ -85,7 +88,7 @@ def _advance(training: Training, clock: Any, output: Path) -> None:
 
     lander = training.config.env == LANDER
     form = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
-    with tqdm(total=1000, desc="training", bar_format=form, disable=None) as bar, _stoppable() as stop:
+    with tqdm(total=1000, desc="training", bar_format=form, disable=None) as bar, stoppable() as stop:
         for progress in clock.run(training):
             bar.update(int(clock.share * 1000) - bar.n)
             best = f" best {progress.best.figure}" if progress.best else ""
@@ -101,7 +104,7 @@ def _advance(training: Training, clock: Any, output: Path) -> None:
 
 
 @contextmanager
-def _stoppable() -> Iterator[list[bool]]:
+def stoppable() -> Iterator[list[bool]]:
     """Turn the first Ctrl-C into an entry of the list, so that a step and its save are never cut short."""
     stop: list[bool] = []
     before = signal.signal(signal.SIGINT, lambda *_: stop.append(True))
@@ -121,21 +124,21 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 
     spawn, episodes = arguments.spawn or "random", arguments.episodes
     if episodes is not None and episodes < 1:
-        return _fail("--episodes starts from 1")
+        return fail("--episodes starts from 1")
     if spawn not in SPAWNS:
-        return _fail(f"--spawn is one of {', '.join(SPAWNS)}, not {spawn}")
+        return fail(f"--spawn is one of {', '.join(SPAWNS)}, not {spawn}")
     try:
         agent = DeepQAgent.load(arguments.model)
         task = task_of(agent.config)
     except (ModelFormatError, ValueError, ImportError) as error:
-        return _fail(str(error))
+        return fail(str(error))
     episodes = episodes or task.test_episodes
     if agent.config.env == LANDER:
         score: Score = evaluate(agent, episodes, arguments.seed, spawn, agent.config.frame_skip)
     elif arguments.spawn is None:
         score = task.evaluate(agent, episodes, arguments.seed)
     else:
-        return _fail(f"--spawn is for the lander; this network is for {agent.config.env}")
+        return fail(f"--spawn is for the lander; this network is for {agent.config.env}")
     if arguments.json:
         print(json.dumps(score.to_json(), indent=2))
         return 0
@@ -164,10 +167,15 @@ def _config(arguments: argparse.Namespace) -> Config:
         preset = PRESETS[arguments.preset or "modern"].changed(env=arguments.env)
     else:
         raise ValueError(f"--preset is one of {', '.join(PRESETS)}, not {arguments.preset}")
+    return configured(preset, arguments.changes)
+
+
+def configured(preset: Settings, given: list[str]) -> Settings:
+    """Return the preset with some settings changed, each as NAME=VALUE; raises ValueError for nonsense."""
     changes = {}
-    for change in arguments.changes:
+    for change in given:
         name, equals, text = change.partition("=")
-        if not equals or name not in PRESETS["modern"].to_json():
+        if not equals or name not in preset.to_json():
             raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
         try:
             changes[name] = json.loads(text)
@@ -176,6 +184,7 @@ def _config(arguments: argparse.Namespace) -> Config:
     return preset.from_json(preset.to_json() | changes)
 
 
-def _fail(message: str) -> int:
+def fail(message: str) -> int:
+    """Say what went wrong, and return the exit code of a failure."""
     print(message, file=sys.stderr)
     return 1

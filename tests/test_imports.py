@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
-LATE = {"ai.cli": {"tqdm"}, "ai.gym_task": {"gymnasium"}}
+LATE = {"ai.cli": {"tqdm"}, "ai.digits_cli": {"tqdm"}, "ai.gym_task": {"gymnasium"}}
 # What is there for the users of an extra alone.
 EXTRA = {"ai.gym_lander": {"gymnasium"}}
 
