@@ -44,13 +44,16 @@ class Tuning:
         self.dials = {dial.name: dial for dial in dials()}
         self._on_change, self._on_restart = on_change, on_restart
         self.running = False
+        self.named, self.draft = nearest(config), config
         self.set_config(config, seed)
 
     def set_config(self, config: Config, seed: int) -> None:
         """Hold a configuration that came from elsewhere; nobody is told."""
+        if config != self.draft:
+            self.named = nearest(config)
+        self._named_held = self.named
         self.config = self.draft = config
         self.seed = self.draft_seed = seed
-        self.named = self._named_held = nearest(config)
         self.problem = ""
         self.put_aside: tuple[Config, Named] | None = None
 

@@ -32,6 +32,8 @@ _LONGEST_SEED: Final = 9  # digits
 class Knob(Widget):
     """What all kinds share. The panel owns the value: `turn` asks for another, `display` brings it back here.
 
+    `enter` is called by Enter, or a pad's A, on a slider: there is nothing to press on it.
+
     Attributes:
         value: what is shown.
         home: what the preset says.
@@ -40,14 +42,19 @@ class Knob(Widget):
     """
 
     def __init__(
-        self, manager: PointsManager, box: pygame.typing.RectLike, dial: Dial, turn: Callable[[Dial, Any], None]
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        dial: Dial,
+        turn: Callable[[Dial, Any], None],
+        enter: Callable[[], None] = lambda: None,
     ) -> None:
         super().__init__(manager, box, dial.label)
         self.dial, self.help = dial, dial.help
         self.value: Any = None
         self.home: Any = None
         self.waits = False
-        self._turn = turn
+        self._turn, self._enter = turn, enter
         self._named = False  # the mouse was pressed on the name
 
     def display(self, value: Any, home: Any, *, waits: bool) -> None:
@@ -119,22 +126,28 @@ class SliderKnob(Knob):
         stops = np.abs(np.array(self.dial.stops, dtype=float))  # they rise, or fall below 0
         return float(np.interp(abs(value), stops, np.linspace(0.0, 1.0, len(stops))))
 
+    def _places(self) -> dict[float, Any]:
+        """Where along the track it can stand: at a stop, or at the preset's value."""
+        return {self._at(value): value for value in (*self.dial.stops, self.home)}
+
     def shift(self, direction: int) -> bool:
         """Go to the next stop."""
-        last = len(self.dial.stops) - 1
-        place = self._at(self.value) * last
-        stop = int(np.floor(place + 1e-6)) + 1 if direction > 0 else int(np.ceil(place - 1e-6)) - 1
-        self.turn(self.dial.stops[min(max(stop, 0), last)])
+        places, here = self._places(), self._at(self.value)
+        ahead = [place for place in places if (place - here) * direction > 1e-6]
+        if ahead:
+            self.turn(places[min(ahead, key=lambda place: abs(place - here))])
         return True
 
+    def press(self) -> None:
+        """Leave it to the panel, unless the mouse has let go of it."""
+        if self.ringed:
+            self._enter()
+
     def drag(self, x: float) -> None:
-        """Go to the stop nearest to the mouse; the preset's own value is one as well."""
+        """Go to the stop nearest to the mouse."""
         left, right = self.track
-        fraction = min(max((x - left) / (right - left), 0.0), 1.0)
-        last = len(self.dial.stops) - 1
-        stop = self.dial.stops[round(fraction * last)]
-        home = self._at(self.home)
-        self.turn(self.home if abs(home - fraction) < min(0.4 / last, 0.02) else stop)
+        places, fraction = self._places(), (x - left) / (right - left)
+        self.turn(places[min(places, key=lambda place: abs(place - fraction))])
 
     def paint(self, canvas: Canvas) -> None:
         """Draw track, tick, handle and figure."""
@@ -154,11 +167,7 @@ class SliderKnob(Knob):
 class SwitchKnob(Knob):
     """On or off."""
 
-    def __init__(
-        self, manager: PointsManager, box: pygame.typing.RectLike, dial: Dial, turn: Callable[[Dial, Any], None]
-    ) -> None:
-        super().__init__(manager, box, dial, turn)
-        self._slid: float | None = None
+    _slid: float | None = None
 
     def press(self) -> None:
         """Change to the other state."""
@@ -258,6 +267,10 @@ class SeedKnob(Entry):
     def ease(self, at_once: bool) -> None:
         """Take what was typed once the focus is elsewhere."""
         super().ease(at_once)
+        self.commit()
+
+    def commit(self) -> None:
+        """Take what was typed, unless it is still being typed."""
         if not self.typing and self.line.text != str(self.value):
             self._turn(int(self.line.text or self.value))
 

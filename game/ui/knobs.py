@@ -10,13 +10,11 @@ import pygame
 from ai.config import PRESETS, Config
 from ai.sabotage import SABOTAGES
 from game import texts
-from game.controls import Command
-from game.dials import Dial, figure, label, pages
-from game.tuning import SEED, Named, Tuning, sentence, word
-from game.ui import typeface
+from game.dials import Dial, label, pages
+from game.tuning import SEED, Named, Tuning, word
+from game.ui import knob_foot, typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
-from game.ui.hints import draw_hints
 from game.ui.knob import MARGIN, Knob, SeedKnob, SliderKnob, SwitchKnob, WordsKnob
 from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
 from game.ui.widgets import Choice, PointsManager, Widget, Word, mix
@@ -25,10 +23,8 @@ _KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKn
 _SEED_PAGE: Final = "lander"
 _HEAD: Final = 34  # from the top to the line under the presets
 _TABS: Final = 36  # from there to the first row: the tabs are in between
-_FOOT: Final = 60  # what is left at the bottom
 _PITCH: Final = 26  # of the rows, where there is room
 _TAB_GAP: Final = 13.0
-_LINE: Final = 16.0  # from a baseline of the foot to the next
 
 
 class Knobs:
@@ -118,7 +114,8 @@ class Knobs:
         if self._picking:
             heading = texts.SABOTAGE_HEADING.format(name=word((self._tuning.named[0], ""))).upper()
             canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
-        self._draw_foot(canvas)
+        focused = self._form.focused if self._form.focused in self._widgets else None
+        knob_foot.draw_foot(canvas, self._box, self._tuning, focused, self._form.controls, picking=self._picking)
 
     # Widgets
 
@@ -173,17 +170,16 @@ class Knobs:
         rows: list[Widget] = []
         for dial in self._tuning.dials.values():
             if dial.page == page:
-                rows.append(_KINDS[dial.kind](manager, self._row(len(rows)), dial, self._turned))
+                rows.append(_KINDS[dial.kind](manager, self._row(len(rows)), dial, self._turned, self._seek))
         if page == _SEED_PAGE:
-            turn = self._seeded
-            rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), turn))
+            rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), self._seeded))
         return rows
 
     def _row(self, number: int) -> pygame.Rect:
         """The box of a row: as far from the next as the longest page allows."""
         box, dials = self._box, self._tuning.dials.values()
         longest = max(sum(dial.page == page for dial in dials) for page in self._pages)
-        pitch = min(_PITCH, (box.height - _HEAD - _TABS - _FOOT) // longest)
+        pitch = min(_PITCH, (box.height - _HEAD - _TABS - knob_foot.HEIGHT) // longest)
         return pygame.Rect(box.left - MARGIN, box.top + _HEAD + _TABS + number * pitch, box.width + MARGIN, pitch)
 
     def _make_picks(self) -> list[Widget]:
@@ -206,7 +202,11 @@ class Knobs:
         right, made = self._box.right - 14.0, []
         for name, press in words.get(answer, []):
             width = _width(name, TEXT)
-            made.append(_Answer(self._form.manager, (right - width, self._box.bottom - 42, width, 28), name, press))
+            made.append(
+                _Answer(
+                    self._form.manager, (right - width, self._box.bottom - knob_foot.ANSWERS, width, 28), name, press
+                )
+            )
             right -= width + 18
         return [*reversed(made)]
 
@@ -219,74 +219,50 @@ class Knobs:
         self.turn(SEED, seed)
 
     def _turn_page(self, page: int) -> None:
+        for widget in self._widgets:
+            if isinstance(widget, SeedKnob):
+                widget.typing = False
+                widget.commit()
         self._page = page
         self._lay()
+
+    def _seek(self) -> None:
+        """Bring the focus to the words that apply and undo, if there are any."""
+        self._focus("answers")
+
+    def _focus(self, section: str) -> None:
+        """Bring the focus to the first widget of a section."""
+        if widgets := self._sections[section][1]:
+            self._form.focus(widgets[0])
 
     def _loads(self, named: Named) -> Callable[[], None]:
         def load() -> None:
             self._tuning.load(named)
             self._picking = False
             self._lay()
+            self._focus("head")
 
         return load
 
     def _pick(self) -> None:
         self._picking = True
         self._lay()
+        self._focus("body")
 
     def _leave(self) -> None:
         self._picking = False
         self._lay()
+        self._focus("head")
 
     def _apply(self) -> None:
         self._tuning.apply()
         self._lay()
+        self._focus("tabs")
 
     def _undo(self) -> None:
         self._tuning.undo()
         self._lay()
-
-    # The foot: what is refused, what waits, or what the knob in focus is for
-
-    def _draw_foot(self, canvas: Canvas) -> None:
-        tuning, box = self._tuning, self._box
-        if tuning.problem:
-            first = box.bottom - _FOOT + 22
-            canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
-            _write(canvas, tuning.problem, (box.left + 18, first), box.width - 18, canvas.palette.warn)
-        elif tuning.waiting:
-            self._draw_notice(canvas, texts.KNOBS_STARTS_ANEW, _listed(tuning.waiting))
-        elif tuning.put_aside:
-            line = texts.KNOBS_PUT_ASIDE_LINE.format(name=self.name)
-            self._draw_notice(canvas, texts.KNOBS_PUT_ASIDE, line)
-        else:
-            self._draw_help(canvas)
-
-    def _draw_notice(self, canvas: Canvas, heading: str, line: str) -> None:
-        box = self._box
-        canvas.outline((box.left, box.bottom - 50, box.width, 46), 8, HUMAN, 1, 0.35)
-        canvas.text(heading, (box.left + 14, box.bottom - 31), size=SMALL, colour=HUMAN)
-        canvas.text(line, (box.left + 14, box.bottom - 14), size=SMALL, colour=INK)
-
-    def _draw_help(self, canvas: Canvas) -> None:
-        box, widget = self._box, self._form.focused
-        help_text = widget.help if widget in self._widgets and widget else ""
-        y = box.bottom - _FOOT + (-18.0 if self._picking else 22.0)
-        for number, part in enumerate((help_text or sentence(self._tuning.named)).split("\n")):
-            y = _write(canvas, part, (box.left, y), box.width, INK if number else MUTE) + (6 if self._picking else 0)
-        if isinstance(widget, Knob | SeedKnob) and widget in self._widgets:
-            self._draw_marks(canvas, widget, box.bottom - 4)
-
-    def _draw_marks(self, canvas: Canvas, widget: Knob | SeedKnob, baseline: float) -> None:
-        """Say whether it takes a new run, and how the preset's value comes back."""
-        box, controls = self._box, self._form.controls
-        if not widget.live:
-            canvas.marker("ring", (box.left + 4, baseline - 4), 8, MUTE)
-            canvas.text(texts.KNOBS_NEW_RUN, (box.left + 14, baseline), size=LABEL, colour=MUTE)
-        if isinstance(widget, Knob) and widget.changed:
-            key = texts.KNOBS_CLICK if controls.mouse_in_use else controls.word(Command.RETRY)
-            back = texts.KNOBS_BACK_TO.format(value=figure(widget.home))
-            draw_hints(canvas, [(key, back)], (box.right, baseline), from_right=True, size=LABEL)
+        self._focus("tabs")
 
 
 class _Title(Word):
@@ -320,24 +296,3 @@ class _Answer(Word):
 
 def _width(text: str, size: float) -> float:
     return typeface.width(text, size, "regular")
-
-
-def _listed(names: list[str]) -> str:
-    """Name the knobs that wait: as many as there is room for."""
-    labels = list(dict.fromkeys(label(name.split(".")[0]) for name in names))
-    return ", ".join(labels) if len(labels) < 3 else texts.KNOBS_MORE.format(first=labels[0], count=len(labels) - 1)
-
-
-def _write(canvas: Canvas, text: str, start: tuple[float, float], width: float, colour: Colour) -> float:
-    """Write a text on as many lines as it takes; return the baseline after the last."""
-    x, y = start
-    line = ""
-    for each in text.split():
-        longer = f"{line} {each}".strip()
-        if line and canvas.text_width(longer, size=SMALL) > width:
-            canvas.text(line, (x, y), size=SMALL, colour=colour)
-            line, y = each, y + _LINE
-        else:
-            line = longer
-    canvas.text(line, (x, y), size=SMALL, colour=colour)
-    return y + _LINE
