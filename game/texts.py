@@ -517,3 +517,59 @@ TRAIN_SAVED: Final = "Saved as {name}: fly with it, or watch it."
 TRAIN_NOT_SAVED: Final = "Not saved: {problem}"
 NAMING_KEEP: Final = "Keep"
 NAMING_LEAVE: Final = "Cancel"
+
+# Your networks
+RUNS_TITLE: Final = "Your networks"
+RUNS_CHOOSE_TITLE: Final = "Choose a network"
+RUNS_PLACE: Final = "Kept in {folder}. A run's folder that is dropped here is copied there."
+RUNS_NONE: Final = "None of your own yet: train one, and keep it under a name."
+RUNS_COLUMNS: Final = ("NAME", "LANDED", "DECISIONS", "SAVED")
+RUNS_SHIPPED: Final = "with the game"
+RUNS_NOTHING: Final = "There is no network here at all."
+RUN_SETTINGS: Final = {0: "{preset}, as it is", 1: "{preset}, 1 setting changed"}
+RUN_SETTINGS_MANY: Final = "{preset}, {count} settings changed"
+RUN_SEED: Final = "{settings}  ·  seed {seed}"
+RUN_SAVED: Final = "saved {when}"
+RUN_SHIPPED: Final = "came with the game"
+RUN_FIGURES: Final = ("LANDED", "DECISIONS", "LEARNT FOR")
+RUN_FLIES: Final = "This one flies when you hand over."
+RUN_SUGGESTION: Final = "{preset} {decisions} {percent}"
+RUN_NAME: Final = "NAME"
+RUN_CHOOSE: Final = "Take this one"
+RUN_WATCH: Final = "Watch it"
+RUN_FLY: Final = "Fly with it"
+RUN_TRAIN: Final = "Go on training"
+RUN_RENAME: Final = "Rename"
+RUN_EXPORT: Final = "Export"
+RUN_DELETE: Final = "Delete"
+RUN_KEEP_NAME: Final = "Keep the name"
+RUN_LEAVE_NAME: Final = "Leave it as it was"
+HINT_KEEP_NAME: Final = "keep the name"
+HINT_LEAVE_NAME: Final = "leave it as it was"
+RUN_RESTORE: Final = "Bring back {name}"
+RUN_RESTORED: Final = "{name} is back."
+RUN_DELETED: Final = "{name} is gone, and can still be brought back."
+RUN_EXPORTED: Final = "Copied to {path}"
+RUN_IMPORTED: Final = "Copied here: {name}"
+TRAIN_COMPARE: Final = "Compare"
+TRAIN_COMPARE_WITH: Final = "Which run shall stand beside this one?"
+TRAIN_NO_CURVES: Final = "{name} was saved without its curves."
+PICKING_EMPTY: Final = "Nothing is saved yet."
+HINT_TITLE: Final = "Hint"
+HINT_APPLIED: Final = "Applied"
+HINT_APPLY: Final = "Apply"
+HINT_DISMISS: Final = "Dismiss"
+HINT_UNDO: Final = "Undo"
+# What a rule of ai.hints means, by its name
+HINTS: Final = {
+    "loss_explodes": "The loss explodes: its steps are too long. Try a lower learning rate.",
+    "q_runs_away": "Q has left what the rewards can pay: its guesses feed on each other.",
+    "dead_units": "More than half of its units are silent for everything it sees.",
+    "collapsed": "It flew better before. Go back to its best, with shorter steps.",
+    "crashes": "Nothing lands and everything falls: what it is paid does not show the way.",
+    "hovers": "Time runs out: it hovers or parks beside the pad.",
+    "small_memory": "Its memory holds only a few batches: it forgets what it has just learnt.",
+    "overfed": "Few landers for so many learning steps: it sees the same again and again.",
+    "random": "It still acts at random most of the time: ε is high.",
+    "plateau": "It has stopped getting better.",
+}

@@ -13,7 +13,7 @@ from game.ui.canvas import Canvas
 from game.ui.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.ui.widgets import PointsManager, Widget, mix
 
-Row = tuple[str, str]  # what it is called, and a few words at the right end
+Row = tuple[str, ...]  # what it is called, and a few words for each column
 _BAR: Final = 3.0
 _GAP: Final = 12.0  # between a row's words and the scroll bar
 
@@ -22,7 +22,8 @@ class Listing(Widget):
     """Rows one below the other, one of them chosen; the wheel, the arrows and Page Up and Down scroll.
 
     `on_choose` hears of each row that becomes the chosen one, by its number; `on_press` of Enter, a pad's A or a
-    second click on it. At either end, the arrows lead on to the next widget.
+    second click on it. At either end, the arrows lead on to the next widget. `columns` says how far from the right
+    end each cell after the first ends.
     """
 
     def __init__(
@@ -35,12 +36,13 @@ class Listing(Widget):
         on_choose: Callable[[int], None] = lambda _: None,
         on_press: Callable[[int], Transition | None] = lambda _: None,
         empty: str = "",
+        columns: Sequence[float] = (0.0,),
         pitch: float = 32,
         size: float = TEXT,
     ) -> None:
         super().__init__(manager, box, "")
         self._on_choose, self._on_press, self._empty = on_choose, on_press, empty
-        self._pitch, self._size = pitch, size
+        self._columns, self._pitch, self._size = columns, pitch, size
         self._pressed = -1
         self.first = 0
         self.set_rows(rows, index)
@@ -55,6 +57,11 @@ class Listing(Widget):
     def room(self) -> int:
         """How many rows there is room for."""
         return max(1, int(self.box.height // self._pitch))
+
+    @property
+    def right(self) -> float:
+        """Where the rows end: before the scroll bar, if there is one."""
+        return self.box.right - (_BAR + _GAP if len(self.rows) > self.room else 0.0)
 
     def choose(self, index: int) -> None:
         """Choose a row, and bring it into sight."""
@@ -114,28 +121,28 @@ class Listing(Widget):
         """Draw the rows in sight, and where in the list they are."""
         super().paint(canvas)
         box = self.box
-        scrolls = len(self.rows) > self.room
-        right = box.right - (_BAR + _GAP if scrolls else 0)
         if not self.rows:
             canvas.text(self._empty, (box.left, box.top + 0.62 * self._pitch), size=self._size, colour=MUTE)
-        for number, (words, note) in enumerate(self.rows[self.first : self.first + self.room], self.first):
+        for number, row in enumerate(self.rows[self.first : self.first + self.room], self.first):
             top = box.top + (number - self.first) * self._pitch
-            self._paint_row(canvas, words, note, (box.left, top, right), chosen=number == self.index)
-        if scrolls:
+            self._paint_row(canvas, row, (box.left, top, self.right), chosen=number == self.index)
+        if len(self.rows) > self.room:
             self._paint_bar(canvas)
 
-    def _paint_row(
-        self, canvas: Canvas, words: str, note: str, place: tuple[float, float, float], *, chosen: bool
-    ) -> None:
+    def _paint_row(self, canvas: Canvas, row: Row, place: tuple[float, float, float], *, chosen: bool) -> None:
         left, top, right = place
         baseline = top + 0.62 * self._pitch
-        canvas.text(note, (right, baseline), size=SMALL, colour=MUTE, align="right", tabular=True)
-        room = right - left - canvas.text_width(note, size=SMALL, tabular=True) - 24
+        words, *cells = row
+        room = right - left
+        for cell, column in zip(cells, self._columns, strict=False):
+            end = right - column
+            box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True)
+            room = min(room, box.left - left - 24)
         colour = INK if chosen else mix(MUTE, INK, 0.35)
-        canvas.text(_shortened(canvas, words, self._size, room), (left, baseline), size=self._size, colour=colour)
+        canvas.text(shortened(canvas, words, self._size, room), (left, baseline), size=self._size, colour=colour)
         canvas.line((left, top + self._pitch - 1), (right, top + self._pitch - 1), LINE, 1)
         if chosen:
-            canvas.line((left - 12, top + 0.26 * self._pitch), (left - 12, top + 0.76 * self._pitch), NET, 2)
+            canvas.line((left - 7, top + 0.26 * self._pitch), (left - 7, top + 0.76 * self._pitch), NET, 2)
 
     def _paint_bar(self, canvas: Canvas) -> None:
         box, count = self.box, len(self.rows)
@@ -146,7 +153,8 @@ class Listing(Widget):
         canvas.pill((left, top, _BAR, height), mix(FAINT, MUTE, self.warmth))
 
 
-def _shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
+def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
+    """Return a text, or as much of it as there is room for and three dots."""
     if canvas.text_width(text, size=size) <= room:
         return text
     while text and canvas.text_width(text + "…", size=size) > room:

@@ -1,0 +1,379 @@
+"""Your networks: the runs that were kept and those that came with the game, and what can be done with each."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import pygame
+
+from game import networks, texts
+from game.context import Context
+from game.controls import Command
+from game.library import LONGEST_NAME, Library, LibraryError, SavedRun, fitting, read_run
+from game.scene import Pop, Push, Transition
+from game.ui.canvas import Canvas
+from game.ui.entry import Entry
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.listing import Listing, shortened
+from game.ui.sky import NightSky
+from game.ui.tokens import LABEL, LINE, MARGIN, MUTE, NET, SMALL, TITLE, VIEW_SIZE
+from game.ui.widgets import OnPress, Widget, Word
+
+_LIST: Final = pygame.Rect(MARGIN, 168, 672, 408)
+_PITCH: Final = 34
+_COLUMNS: Final = (232.0, 112.0, 0.0)  # how far from the list's right end each figure ends
+_LEFT: Final = 824  # of what is said of the chosen run
+_WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
+_FIRST_WORD: Final = 340
+_LINE: Final = 36
+_FOOT: Final = 608
+
+
+class Runs:
+    """A list on the left; the chosen run, its figures and its verbs on the right.
+
+    Args:
+        choose: hears the name of the network that is taken, and the scene closes. Without it, a run can be
+            watched, flown with and trained on from here.
+        train: what goes on training from a run's folder; a Train scene of its own by default.
+
+    """
+
+    def __init__(
+        self,
+        choose: Callable[[str], None] | None = None,
+        train: Callable[[Path], Transition] | None = None,
+    ) -> None:
+        self._choose, self._train = choose, train or _train_on
+        self._context: Context | None = None
+        self._entry: Entry | None = None
+        self.runs: list[SavedRun] = []
+
+    def enter(self, context: Context) -> None:
+        """Build the screen, or look again at what there is."""
+        if self._context is None:
+            self._build(context)
+        self._reload(self.shown.folder if self.shown else None)
+
+    def exit(self) -> None:
+        """Nothing is held: every change was made on the disk at once."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Leave it to the widgets; Delete and F2 do what they do elsewhere, and a folder can be dropped here."""
+        if event.type == pygame.DROPFILE:
+            self._import(Path(event.file))
+        elif event.type == pygame.KEYDOWN and self._is_own and not self._entry:
+            if event.key == pygame.K_DELETE:
+                self._delete()
+                return None
+            if event.key == pygame.K_F2:
+                self._begin_naming()
+                return None
+        return self._form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Let the widgets ease."""
+        return self._form.update()
+
+    # What there is
+
+    @property
+    def shown(self) -> SavedRun | None:
+        """The run on the right; None if there is none at all."""
+        return self.runs[self._list.index] if self.runs else None
+
+    @property
+    def _is_own(self) -> bool:
+        """Whether the run on the right is the player's, and not the game's."""
+        return self.shown is not None and self.shown.folder.parent == self._library.folder
+
+    def _build(self, context: Context) -> None:
+        self._context = context
+        self._library = Library(context.user_dir)
+        self._sky = NightSky(context.rng, ember=0.5, stars=70)
+        self._form = Form(context, on_back=self._back)
+        manager = self._form.manager
+        self._list = self._form.add(Listing(
+            manager, _LIST, [], on_choose=lambda _: self._choose_row(), on_press=lambda _: self._press_row(),
+            empty=texts.RUNS_NOTHING, columns=_COLUMNS, pitch=_PITCH,
+        ))  # fmt: skip
+        self._verbs: list[Widget] = []
+        self._foot: list[Widget] = []
+
+    def _reload(self, shown: Path | None) -> None:
+        """Look at the disk again, and show that run, or the one that has taken its place in the list."""
+        assert self._context is not None
+        context = self._context
+        own = self._library.runs()
+        known = networks.folders(context.models_dir, context.user_dir)
+        shipped = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
+        self._names = {folder: name for name, folder in known.items()}
+        self.runs = [*own, *shipped]
+        folders = [run.folder for run in self.runs]
+        index = folders.index(shown) if shown in folders else self._list.index
+        self._list.set_rows([_row(run, own=run in own) for run in self.runs], index)
+        self._line = self._library.problem or (
+            texts.RUNS_PLACE.format(folder=self._library.folder) if own else texts.RUNS_NONE
+        )
+        self._entry = None
+        self._set_verbs()
+
+    def _set_verbs(self) -> None:
+        """Put the words on the right that fit the chosen run, and those below the list."""
+        rows: list[tuple[str, OnPress]] = []
+        run = self.shown
+        if self._entry:
+            rows = [(texts.RUN_KEEP_NAME, self._entry_done), (texts.RUN_LEAVE_NAME, self._end_naming)]
+        elif run:
+            if run.flyable and self._choose:
+                rows.append((texts.RUN_CHOOSE, self._take))
+            elif run.flyable:
+                rows += [(texts.RUN_WATCH, self._watch), (texts.RUN_FLY, self._fly)]
+            if run.resumable and not self._choose:
+                rows.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
+            if self._is_own:
+                rows += [(texts.RUN_RENAME, self._begin_naming), (texts.RUN_EXPORT, self._export),
+                         (texts.RUN_DELETE, self._delete)]  # fmt: skip
+        manager = self._form.manager
+        verbs: list[Widget] = [
+            Word(manager, (_LEFT, _FIRST_WORD + number * _LINE, 200, _LINE), label, press, size=18)
+            for number, (label, press) in enumerate(rows)
+        ]
+        foot: list[Widget] = [Word(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, self._back, size=18)]
+        if deleted := self._library.last_deleted:
+            label = texts.RUN_RESTORE.format(name=deleted)
+            foot.append(Word(manager, (MARGIN + 120, _FOOT, 520, _LINE), label, self._restore, size=18))
+        new = ([self._entry] if self._entry else []) + verbs + foot
+        self._form.replace(self._verbs + self._foot, new)
+        self._verbs, self._foot = new[: len(new) - len(foot)], foot
+
+    # What can be done
+
+    def _choose_row(self) -> None:
+        self._entry = None
+        self._set_verbs()
+
+    def _press_row(self) -> Transition | None:
+        """Take a network where one is asked for; elsewhere go over to the verbs."""
+        if self._choose:
+            return self._take()
+        if self._verbs:
+            self._form.focus(self._verbs[0])
+        return None
+
+    def _back(self) -> Transition | None:
+        if not self._entry:
+            return Pop()
+        self._end_naming()
+        return None
+
+    def _take(self) -> Transition | None:
+        if not self.shown or not self.shown.flyable or self._choose is None:
+            return None
+        self._choose(self._names[self.shown.folder])
+        return Pop()
+
+    def _make_pilot(self) -> None:
+        assert self._context is not None
+        assert self.shown is not None
+        self._context.settings.model = self._names[self.shown.folder]
+        self._context.apply_settings()
+
+    def _watch(self) -> Transition:
+        from game.scenes.watch import Watch
+
+        self._make_pilot()
+        return Push(Watch())
+
+    def _fly(self) -> Transition:
+        from game.scenes.play import Play
+
+        self._make_pilot()
+        return Push(Play())
+
+    def _begin_naming(self) -> None:
+        run, context = self.shown, self._context
+        assert run is not None
+        assert context is not None
+        text = _suggestion(self._library, run) if context.controls.pad_in_use else run.name
+        self._entry = Entry(
+            self._form.manager, (_LEFT, 140, _WIDTH, 34), texts.RUN_NAME, text, self._rename,
+            on_cancel=self._end_naming, limit=LONGEST_NAME, fits=fitting, size=TITLE,
+        )  # fmt: skip
+        self._set_verbs()
+        self._form.focus(self._entry)
+        self._entry.begin()
+
+    def _entry_done(self) -> None:
+        assert self._entry is not None
+        self._rename(self._entry.text.strip())
+
+    def _rename(self, name: str) -> None:
+        """Take the new name; one that cannot be had is explained, and can be changed."""
+        run, context = self.shown, self._context
+        assert run is not None
+        assert context is not None
+        try:
+            renamed = self._library.rename(run.name, name)
+        except LibraryError as error:
+            context.note(str(error))
+            if self._entry:
+                self._form.focus(self._entry)
+                self._entry.begin()
+            return
+        flies = context.settings.model == self._names[run.folder]
+        self._reload(renamed.folder)
+        self._form.focus(self._list)
+        if flies:
+            self._make_pilot()
+
+    def _end_naming(self) -> None:
+        self._entry = None
+        self._set_verbs()
+        self._form.focus(self._list)
+
+    def _export(self) -> None:
+        assert self.shown is not None
+        self._attempt(lambda name: texts.RUN_EXPORTED.format(path=self._library.export(name)), self.shown.name)
+
+    def _delete(self) -> None:
+        assert self.shown is not None
+
+        def delete(name: str) -> str:
+            self._library.delete(name)
+            return texts.RUN_DELETED.format(name=name)
+
+        self._attempt(delete, self.shown.name)
+        self._reload(None)
+        self._form.focus(self._list)
+
+    def _restore(self) -> None:
+        def restore(_: str) -> str:
+            run = self._library.undo_delete()
+            self._reload(run.folder if run else None)
+            return texts.RUN_RESTORED.format(name=run.name) if run else ""
+
+        self._attempt(restore, "")
+        self._form.focus(self._list)
+
+    def _import(self, path: Path) -> None:
+        def copy(_: str) -> str:
+            run = self._library.import_folder(path if path.is_dir() else path.parent)
+            self._reload(run.folder)
+            return texts.RUN_IMPORTED.format(name=run.name)
+
+        self._attempt(copy, "")
+
+    def _attempt(self, deed: Callable[[str], str], name: str) -> None:
+        """Do something with the library and say how it went."""
+        assert self._context is not None
+        try:
+            self._context.note(deed(name))
+        except LibraryError as error:
+            self._context.note(str(error))
+
+    # The picture
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the list, and the chosen run beside it."""
+        self._sky.draw(canvas)
+        title = texts.RUNS_CHOOSE_TITLE if self._choose else texts.RUNS_TITLE
+        canvas.text(title, (MARGIN, 84), size=34, weight="light")
+        canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE)
+        self._draw_headings(canvas)
+        self._form.draw(canvas)
+        if self.shown:
+            self._draw_run(canvas, self.shown)
+        self._draw_hints(canvas)
+
+    def _draw_headings(self, canvas: Canvas) -> None:
+        y = _LIST.top - 14
+        name, *others = texts.RUNS_COLUMNS
+        canvas.text(name, (_LIST.left, y), size=LABEL, weight="medium", colour=MUTE)
+        for label, column in zip(others, _COLUMNS, strict=True):
+            place = (self._list.right - column, y)
+            canvas.text(label, place, size=LABEL, weight="medium", colour=MUTE, align="right")
+        canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
+
+    def _draw_run(self, canvas: Canvas, run: SavedRun) -> None:
+        assert self._context is not None
+        if not self._entry:
+            canvas.text(shortened(canvas, run.name, TITLE, _WIDTH), (_LEFT, 165), size=TITLE)
+        y = 222 if run.problem else 294
+        if run.problem:
+            canvas.marker("cross", (_LEFT + 5, 190), 10, canvas.palette.warn)
+            problem = shortened(canvas, run.problem, SMALL, _WIDTH - 20)
+            canvas.text(problem, (_LEFT + 18, 194), size=SMALL, colour=canvas.palette.warn)
+        else:
+            canvas.text(_made(run), (_LEFT, 194), size=SMALL, colour=MUTE)
+            self._draw_figures(canvas, run)
+        when = time.strftime("%Y-%m-%d %H:%M", time.localtime(run.saved))
+        saved = texts.RUN_SAVED.format(when=when) if self._is_own else texts.RUN_SHIPPED
+        canvas.text(saved, (_LEFT, y), size=SMALL, colour=MUTE)
+        if self._names.get(run.folder) == (self._context.settings.model or networks.DEFAULT):
+            canvas.dot((_LEFT + 4, y + 20), 4, NET)
+            canvas.text(texts.RUN_FLIES, (_LEFT + 16, y + 24), size=SMALL, colour=NET)
+
+    def _draw_figures(self, canvas: Canvas, run: SavedRun) -> None:
+        figures = (_percent(run), _count(run.decisions), _duration(run.seconds))
+        for number, (label, (figure, unit)) in enumerate(zip(texts.RUN_FIGURES, figures, strict=True)):
+            x = _LEFT + number * 132
+            canvas.text(label, (x, 230), size=LABEL, weight="medium", colour=MUTE)
+            box = canvas.text(figure, (x - 1, 262), size=28, weight="light", tabular=True)
+            canvas.text(unit, (box.right + 5, 262), size=SMALL, colour=MUTE)
+
+    def _draw_hints(self, canvas: Canvas) -> None:
+        assert self._context is not None
+        controls = self._context.controls
+        word, arrows = controls.word, texts.DPAD if controls.pad_in_use else texts.ARROWS
+        if self._entry:
+            hints = [(word(Command.CONFIRM), texts.HINT_KEEP_NAME), (word(Command.BACK), texts.HINT_LEAVE_NAME)]
+        else:
+            hints = [(arrows, texts.HINT_MOVE), (word(Command.CONFIRM), texts.HINT_CHOOSE),
+                     (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
+        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+
+
+def _train_on(folder: Path) -> Transition:
+    from game.scenes.train import Train
+
+    return Push(Train(resume=folder))
+
+
+def _row(run: SavedRun, own: bool) -> tuple[str, str, str, str]:
+    saved = time.strftime("%Y-%m-%d", time.localtime(run.saved)) if own else texts.RUNS_SHIPPED
+    if run.problem:
+        return run.name, "–", "–", saved
+    return run.name, " ".join(_percent(run)), " ".join(_count(run.decisions)), saved
+
+
+def _made(run: SavedRun) -> str:
+    settings = texts.RUN_SETTINGS.get(run.changes, texts.RUN_SETTINGS_MANY)
+    return texts.RUN_SEED.format(settings=settings.format(preset=run.preset, count=run.changes), seed=run.seed)
+
+
+def _suggestion(library: Library, run: SavedRun) -> str:
+    """Name a run by its figures: for those who have no keys to write with."""
+    if run.problem:
+        return library.free_name(run.name)
+    count = "".join(_count(run.decisions))
+    suggestion = texts.RUN_SUGGESTION.format(preset=run.preset, decisions=count, percent=_percent(run)[0])
+    return library.free_name(suggestion)
+
+
+def _percent(run: SavedRun) -> tuple[str, str]:
+    return ("–", "") if run.success is None else (f"{100 * run.success:.1f}", "%")
+
+
+def _count(number: int) -> tuple[str, str]:
+    if number >= 1_000_000:
+        return f"{number / 1e6:.1f}", "M"
+    return (f"{number / 1e3:.0f}", "k") if number >= 1000 else (str(number), "")
+
+
+def _duration(seconds: float) -> tuple[str, str]:
+    return (f"{seconds:.0f}", "s") if seconds < 120 else (f"{seconds / 60:.0f}", "min")
