@@ -151,6 +151,17 @@ class Student:
                     notes.append(problem)
         return notes
 
+    def compare(self, name: str, folder: Path) -> str:
+        """Put a saved run's curves beside this one's; returns what the player should know."""
+        try:
+            history = History.read(folder)
+        except ModelFormatError as error:
+            return str(error)
+        if not len(history):
+            return texts.TRAIN_NO_CURVES.format(name=name)
+        self.earlier = [(name, history), *(run for run in self.earlier if run[0] != name)][:_EARLIER]
+        return ""
+
     def close(self) -> None:
         """End the run, and its process for certain."""
         if self._worker:

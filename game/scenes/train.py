@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -12,6 +13,7 @@ import pygame
 from ai.agent import build_network
 from ai.config import PRESETS, Config
 from ai.history import PARTS, Checkpoint
+from ai.inspect import dead_units
 from ai.lander import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.live import agent_of
 from ai.nn import NeuralNetwork
@@ -21,6 +23,7 @@ from game.controls import Command, translate
 from game.library import Library
 from game.scene import Pop, Push, Transition
 from game.student import PACES, Student
+from game.ui.advice import Advice, wrapped
 from game.ui.canvas import Canvas
 from game.ui.chart import RUN_STYLES, Chart, Charts, Series, Tick, draw_legend
 from game.ui.form import Form
@@ -42,6 +45,7 @@ _NET: Final = pygame.Rect(868, 458, 384, 150)
 _PAID: Final = pygame.Rect(868, 478, 384, 80)
 _SAID: Final = pygame.Rect(868, 612, 384, 50)
 _CONTROLS: Final = 676.0
+_WITNESSES: Final = 64
 _EVERY: Final = 12  # frames between two looks at the history
 _CHARTS: Final = (
     ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),
@@ -86,6 +90,9 @@ class Train:
         self._form = Form(context, on_back=self._leave)
         self._add_controls()
         self.knobs = Knobs(self._form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
+        self._advice = Advice(self._form, _SAID, self.knobs.turn, self._go_back)
+        self._seen: deque[np.ndarray] = deque(maxlen=_WITNESSES)  # observations, to find the silent units by
+        self._dead: float | None = None
         self._scrubber = self._form.add(Scrubber(self._form.manager, self.charts, self._scrub_to, self._duel))
         if self._resume is not None:
             self._go_on(self._resume)
@@ -134,6 +141,7 @@ class Train:
             self.knobs.set_config(self.student.config, self.student.seed)
         if self.student.alive != self._alive:
             self._alive = self.student.alive
+            self._advice.clear()
             self.knobs.set_running(self._alive)
         still = self._settings.reduced_motion
         self._frame += 1
@@ -178,6 +186,9 @@ class Train:
         if note := self.student.begin(config, seed, resume):
             self._context.note(note)
         self.swarm.clear()
+        self._advice.clear()
+        self._seen.clear()
+        self._dead = None
         self._scrub, self._net, self._told = None, None, -1
         if resume is None:
             self.knobs.set_config(config, seed)
@@ -213,7 +224,27 @@ class Train:
 
         return Push(Runs())
 
+    def _compare(self) -> Transition:
+        """Ask for a saved run whose curves shall be seen beside these."""
+        from game.scenes.picking import Picking
+
+        runs = self.student.library.runs()
+
+        def put(number: int) -> None:
+            assert self._context is not None
+            if note := self.student.compare(runs[number].name, runs[number].folder):
+                self._context.note(note)
+            self._told = -1
+
+        return Push(Picking(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
+
     # Checkpoints
+
+    def _go_back(self, decisions: int) -> None:
+        """Let the run be what it was at its best."""
+        checkpoint = self.student.history.checkpoint_at(decisions)
+        if checkpoint is not None:
+            self.student.revert(checkpoint)
 
     def _scrub_to(self, place: float | int) -> None:
         """Choose the checkpoint at so many seconds, or one further left or right for a whole -1 or 1."""
@@ -266,7 +297,9 @@ class Train:
         y = 26
         word(_WIDTH - 136, 112, texts.TRAIN_RUNS, self._open_runs)
         y = 54
-        self._duel_word = word(_WIDTH - 136, 112, texts.TRAIN_DUEL, self._duel)
+        word(_WIDTH - 136, 112, texts.TRAIN_DUEL, self._duel)
+        y = 82
+        word(_WIDTH - 136, 112, texts.TRAIN_COMPARE, self._compare)
 
     def _look_at(self, index: int) -> None:
         self._inside = index
@@ -285,6 +318,10 @@ class Train:
             self._net.values = values
             self._net.gradients[:] = gradients
             self._view.set(self._net, observation)
+            self._seen.append(observation)
+            if len(self._seen) == _WITNESSES:
+                self._dead = dead_units(self._net, np.array(self._seen))
+                self._seen.clear()
 
     def _set_charts(self) -> None:
         history = self.student.history
@@ -293,6 +330,8 @@ class Train:
         self._told = len(history)
         if len(history):
             self._strip.set(PARTS, history.parts[-1])
+            if self.student.alive:
+                self._advice.follow(history, self.student.config, self._dead)
         runs = [history, *(old for _, old in self.student.earlier)]
         end = max([10.0, *(float(run["seconds"][-1]) for run in runs if len(run))])
         ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds))
@@ -326,23 +365,13 @@ class Train:
     def _draw_said(self, canvas: Canvas) -> None:
         """Say what is wrong, or what to do first."""
         left, top = _SAID.left, _SAID.top
+        if not self.student.problem:
+            self._advice.draw(canvas)
         if problem := self.student.problem:
             canvas.marker("cross", (left + 5, top + 13), 10, canvas.palette.warn)
-            for number, line in enumerate(_wrapped(canvas, problem, SMALL, _SAID.width - 20)[:3]):
+            for number, line in enumerate(wrapped(canvas, problem, SMALL, _SAID.width - 20)[:3]):
                 canvas.text(line, (left + 18, top + 17 + 16 * number), size=SMALL, colour=canvas.palette.warn)
 
 
 def _written(form: str, value: float) -> str:
     return form.format(value).replace("-", "−")
-
-
-def _wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
-    """Break a sentence into lines that fit."""
-    lines = [""]
-    for word in text.split():
-        longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and canvas.text_width(longer, size=size) > width:
-            lines.append(word)
-        else:
-            lines[-1] = longer
-    return lines

@@ -21,7 +21,7 @@ from game.world.paths import Trails
 from game.world.stage import draw_craft, draw_crowd, draw_fires
 
 _SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # landers up to, how large they are drawn
-_KEEP: Final = 28  # flights whose way stays to be seen
+_KEEP: Final = 16  # flights whose way stays to be seen
 _LONGEST_GAP: Final = 12.0  # frames between two sights that are still eased over
 _JUMP: Final = 4.0  # metres: further than any lander flies between two sights
 _MOON: Final = 5

@@ -1,0 +1,120 @@
+"""The one hint on the training screen: what is off, a remedy at a press, and the way back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import pygame
+
+from ai.config import Config
+from ai.hints import Adviser, Hint
+from ai.history import History
+from game import texts
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.tokens import HUMAN, LABEL, SMALL
+from game.ui.widgets import Word
+
+_WORDS: Final = 64.0  # width kept for the words on the right
+_LINE: Final = 16.0
+
+
+class Advice:
+    """Asks the adviser and shows what it says in a box of a form; `turn` sets a knob by its name.
+
+    `go_back` is called with the moment, in decisions, that a run should return to.
+    """
+
+    def __init__(
+        self, form: Form, box: pygame.Rect, turn: Callable[[str, Any], None], go_back: Callable[[int], None]
+    ) -> None:
+        self._form, self._box, self._turn, self._go_back = form, box, turn, go_back
+        self.adviser = Adviser(Config())
+        self._hint: Hint | None = None
+        self._words: list[Word] = []
+
+    @property
+    def shown(self) -> bool:
+        """Whether there is anything to see."""
+        return bool(self._words)
+
+    def follow(self, history: History, config: Config, dead_share: float | None) -> None:
+        """Look at the run again; call it when there is news."""
+        self._lay(self.adviser.advise(history, config, dead_share))
+
+    def clear(self) -> None:
+        """Begin anew with another run."""
+        self.adviser.reset()
+        self._lay(None)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the box and the sentence; the form draws the words."""
+        if not self.shown:
+            return
+        box = self._box
+        canvas.outline(box, 8, HUMAN, 1, 0.35)
+        title = texts.HINT_TITLE if self._hint else texts.HINT_APPLIED
+        canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
+        if self._hint:
+            for number, line in enumerate(wrapped(canvas, texts.HINTS[self._hint.name], SMALL, self._room)[:2]):
+                canvas.text(line, (box.left + 14, box.top + 34 + _LINE * number), size=SMALL)
+
+    @property
+    def _room(self) -> float:
+        return self._box.width - 28 - _WORDS
+
+    def _lay(self, hint: Hint | None) -> None:
+        """Put the words there that fit what is shown."""
+        self._hint = hint
+        wanted: list[tuple[str, Callable[[], None]]] = []
+        if hint is not None:
+            if hint.remedy or hint.back_to is not None:
+                wanted.append((texts.HINT_APPLY, self._apply))
+            wanted.append((texts.HINT_DISMISS, self._dismiss))
+        elif self.adviser.can_undo:
+            wanted = [(texts.HINT_UNDO, self._undo), (texts.HINT_DISMISS, self._keep)]
+        if [label for label, _ in wanted] == [word.label for word in self._words]:
+            return
+        box = self._box
+        words = [
+            Word(self._form.manager, (box.right - _WORDS, box.top + 6 + 24 * number, _WORDS - 14, 22), label, press,
+                 size=SMALL)
+            for number, (label, press) in enumerate(wanted)
+        ]  # fmt: skip
+        self._form.replace(self._words, words)
+        self._words = words
+
+    def _apply(self) -> None:
+        back_to = self._hint.back_to if self._hint else None
+        for name, value in self.adviser.apply().items():
+            self._turn(name, value)
+        if back_to is not None:
+            self._go_back(back_to)
+        self._lay(None)
+
+    def _undo(self) -> None:
+        for name, value in self.adviser.undo().items():
+            self._turn(name, value)
+        self._lay(None)
+
+    def _dismiss(self) -> None:
+        self.adviser.dismiss()
+        self._lay(None)
+
+    def _keep(self) -> None:
+        """Leave the remedy as it is."""
+        self.adviser.undo()
+        self._lay(None)
+
+
+def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
+    """Break a sentence into lines that fit."""
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and canvas.text_width(longer, size=size) > width:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines

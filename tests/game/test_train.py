@@ -1,0 +1,164 @@
+"""The training screen, through real pygame events and with a real worker beside it."""
+
+import threading
+import time
+from collections.abc import Callable
+from multiprocessing import active_children
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.config import PRESETS
+from ai.rewards import RewardWeights
+from ai.training import Training
+from game.library import Library
+from game.scenes.menu import Menu
+from game.scenes.naming import Naming
+from game.scenes.play import Play
+from game.scenes.train import Train
+from game.worker import State
+from tests.game.driver import Driver
+
+SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1)
+
+
+def wait(driver: Driver, until: Callable[[], object], seconds: float = 40.0) -> None:
+    """Play frames until something holds; the limit is only there so that a failure ends."""
+    end = time.monotonic() + seconds
+    while not until():
+        assert time.monotonic() < end, "it never happened"
+        driver.frames(1)
+        time.sleep(0.005)
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver]) -> Driver:
+    driver = open_game(Train())
+    driver.frames(2)
+    driver.top.knobs.set_config(SMALL, 3)
+    return driver
+
+
+def start(driver: Driver) -> None:
+    driver.key(pygame.K_RETURN)
+    wait(driver, lambda: len(driver.top.student.history) >= 2)
+
+
+def test_start_pause_step_and_go_on(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    assert scene.student.state is State.RUNNING
+    assert len(scene.swarm.sight.outcome) == 4
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: scene.student.state is State.PAUSED)
+    train.frames(20)
+    time.sleep(0.2)
+    train.frames(5)
+    stood = scene.student.sight.decisions
+    time.sleep(0.3)
+    train.frames(5)
+    assert scene.student.sight.decisions == stood
+    train.key(pygame.K_PERIOD)
+    wait(train, lambda: scene.student.sight.decisions > stood)
+    assert scene.student.sight.decisions == stood + 4
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: scene.student.sight.decisions > stood + 8)
+
+
+def test_it_learns_as_it_would_without_a_window(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    wait(train, lambda: len(scene.student.history.checkpoints) >= 2)
+    checkpoint = scene.student.history.checkpoints[1]
+    training = Training(SMALL, 3)
+    while training.agent.decisions < checkpoint.decisions:
+        training.advance()
+    assert np.array_equal(training.agent.network.values, checkpoint.values)
+
+
+def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
+    start(train)
+    scene = train.top
+    scene._form.focus(scene._save_word)
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, Naming)
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    library = Library(tmp_path / "user")
+    wait(train, library.runs)
+    (run,) = library.runs()
+    assert not run.problem
+    assert run.seed == 3
+
+
+def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    scene.knobs.turn("discount", 0.9)
+    wait(train, lambda: scene.student.config.discount == 0.9)
+    assert scene.student.history.alterations[-1].name == "discount"
+    scene.knobs.turn("n_step", 3)
+    assert scene.knobs.waiting == ["n_step"]
+    assert scene.student.config.n_step == SMALL.n_step
+
+
+def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    scene._form.focus(scene._scrubber)
+    train.key(pygame.K_LEFT)
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, Play)
+    wait(train, lambda: scene.student.state is State.PAUSED)
+    train.frames(3)
+    train.key(pygame.K_ESCAPE)
+    assert train.top is scene
+    wait(train, lambda: scene.student.state is State.RUNNING)
+
+
+def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp_path: Path) -> None:
+    start(train)
+    scene = train.top
+    wait(train, lambda: scene.student.library.unsaved.is_dir() or scene.student.state is State.FAILED, 60)
+    for child in active_children():
+        child.kill()
+    wait(train, lambda: scene.student.state is State.FAILED)
+    assert scene.student.problem
+    train.frames(20)
+    scene._save_as("saved all the same")
+    (run,) = Library(tmp_path / "user").runs()
+    assert (run.name, run.problem) == ("saved all the same", "")
+
+
+def test_numbers_that_run_away_are_told(train: Driver) -> None:
+    wild = SMALL.changed(cost="mse", reward_scale=1.0, weights=RewardWeights(terminal=1e30))
+    train.top.knobs.set_config(wild, 0)
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: train.top.student.state is State.FAILED, 60)
+    assert "learning step" in train.top.student.problem
+    train.frames(20)
+    assert isinstance(train.top, Train)
+
+
+def test_ten_visits_leave_no_process_and_no_thread(game: Driver) -> None:
+    threads = threading.active_count()
+    for _ in range(10):
+        assert isinstance(game.top, Menu)
+        game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+        assert isinstance(game.top, Train)
+        game.top.knobs.set_config(SMALL, 0)
+        game.key(pygame.K_RETURN)
+        game.frames(5)
+        game.key(pygame.K_ESCAPE)
+        game.keys(pygame.K_UP, pygame.K_UP)
+        assert not active_children()
+    time.sleep(0.2)
+    assert threading.active_count() <= threads + 1
+
+
+def test_closing_the_game_ends_the_worker(train: Driver) -> None:
+    start(train)
+    train.app.close()
+    assert not active_children()
