@@ -10,6 +10,7 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 
+import time
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,6 +25,7 @@ from game.scene import Scene
 from game.scenes.menu import Menu
 from game.scenes.physics import Physics
 from game.scenes.play import Play
+from game.scenes.train import Train
 from game.scenes.watch import Watch
 from game.settings import Settings
 
@@ -32,6 +34,7 @@ PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("menu", Menu(), {}, 200),
     ("play", Play(seed=12), {5: pygame.K_TAB}, 170),
     ("watch", Watch(64, seed=3), {}, 260),
+    ("train", Train(), {5: pygame.K_RETURN}, 30),
     ("physics", Physics("heap"), {60: pygame.K_c}, 400),
 )
 
@@ -47,8 +50,16 @@ def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
                 for kind in (pygame.KEYDOWN, pygame.KEYUP):
                     pygame.event.post(pygame.event.Event(kind, key=keys[frame], mod=0))
             app.tick()
+        while isinstance(scene, Train) and not _has_learnt(scene):  # it learns by a clock of its own
+            app.tick()
+            time.sleep(1 / 60)
         pygame.image.save(app.canvas.surface, ROOT / "docs" / "images" / f"{name}.png")
         app.close()
+
+
+def _has_learnt(scene: Train) -> bool:
+    history = scene.student.history
+    return bool(len(history) and history["success"][-1] > 0.9)
 
 
 if __name__ == "__main__":

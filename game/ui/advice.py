@@ -16,7 +16,7 @@ from game.ui.form import Form
 from game.ui.tokens import HUMAN, LABEL, SMALL
 from game.ui.widgets import Word
 
-_WORDS: Final = 64.0  # width kept for the words on the right
+_WORD: Final = 62.0  # from one word to the next
 _LINE: Final = 16.0
 
 
@@ -62,7 +62,7 @@ class Advice:
 
     @property
     def _room(self) -> float:
-        return self._box.width - 28 - _WORDS
+        return self._box.width - 28
 
     def _lay(self, hint: Hint | None) -> None:
         """Put the words there that fit what is shown."""
@@ -78,8 +78,8 @@ class Advice:
             return
         box = self._box
         words = [
-            Word(self._form.manager, (box.right - _WORDS, box.top + 6 + 24 * number, _WORDS - 14, 22), label, press,
-                 size=SMALL)
+            Word(self._form.manager, (box.right - _WORD * (len(wanted) - number), box.top + 2, _WORD - 14, 22), label,
+                 press, size=SMALL)
             for number, (label, press) in enumerate(wanted)
         ]  # fmt: skip
         self._form.replace(self._words, words)
