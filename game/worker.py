@@ -18,11 +18,10 @@ from threading import Thread
 from typing import Any, Final
 
 from game import texts
-from game.worker_process import Bundle, Function, serve
+from game.worker_process import CREDIT, Bundle, Function, serve
 
 PATIENCE: Final = 30.0  # seconds without an answer after which a process counts as hung
 STOP_SECONDS: Final = 3.0  # to come to an end when asked
-CREDIT: Final = 2  # bundles asked for ahead: with one, every other turn would pass while the request is under way
 _LONGEST_FRAME: Final = 0.25  # what counts of the time between two polls: the rest, the window itself was away
 _LONGEST_BUNDLE: Final = 1 << 29  # bytes; no process that is in its right mind tells more at once
 _log = logging.getLogger("tranquility")
@@ -53,7 +52,7 @@ class Worker:
         self.patience = PATIENCE
         self.clock: Callable[[], float] = time.monotonic
         self._paused = self._heard = self._lost = False
-        self._wanted = 0  # bundles asked for and not yet come
+        self._wanted = CREDIT  # bundles asked for and not yet come; the process knows of the first
         self._over: State | None = None
         self._deadline: float | None = None  # for it to have ended by itself
         self._silence = 0.0
@@ -81,7 +80,6 @@ class Worker:
             theirs.close()
         for thread in threads:
             thread.start()
-        self._ask()
 
     @property
     def state(self) -> State:

@@ -21,6 +21,7 @@ from typing import Any, Final
 
 HEARTBEAT: Final = 1.0  # seconds after which it answers even if there is nothing to tell
 GRACE: Final = 3.0  # seconds to come to an end in, once the window has gone
+CREDIT: Final = 2  # bundles wanted ahead: with one, every other turn would pass while the request is under way
 MOST_WAITING: Final = 2000  # messages, before some of those that may be thinned are dropped
 MOST_AT_ONCE: Final = 250
 _NICENESS: Final = 5  # the window goes first
@@ -123,8 +124,8 @@ class _Service:
         self._steps = 0  # to be taken in spite of the pause
         self._period = 0.0  # seconds from turn to turn
         self._due = 0.0  # when the next turn is
-        self._wanted = 0  # bundles that the window has asked for
-        self._since = 0.0  # when it last asked, or was told something
+        self._wanted = CREDIT  # bundles that the window has asked for
+        self._since = time.monotonic()  # when it last asked, or was told something
         Thread(target=_listen, args=(connection, self._orders), daemon=True).start()
 
     def run(self, turns: Turns) -> None:
@@ -132,8 +133,8 @@ class _Service:
         try:
             self.waiting.add(next(turns))  # a generator takes commands from its second turn on
             while not self._stopped:
-                self._answer()
                 self._follow_orders(turns)
+                self._answer()
                 now = time.monotonic()
                 if not self._stopped and self._seconds_to_turn(now) == 0.0:
                     self._due = max(self._due + self._period, now)
@@ -157,9 +158,11 @@ class _Service:
             self._connection.send(Bundle(self.waiting.take(MOST_AT_ONCE)))
 
     def _follow_orders(self, turns: Turns) -> None:
-        """Do all that has been ordered; with no turn due, wait for an order, for a while or as long as it takes."""
+        """Do all that has been ordered; with nothing else to do, wait for an order."""
         patience = self._seconds_to_turn(time.monotonic())
-        if self._wanted:
+        if self._wanted and self.waiting:
+            patience = 0.0
+        elif self._wanted:
             patience = HEARTBEAT if patience is None else min(patience, HEARTBEAT)
         with suppress(Empty):
             self._follow(self._orders.get(timeout=patience) if patience != 0.0 else self._orders.get_nowait(), turns)
