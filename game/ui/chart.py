@@ -265,7 +265,7 @@ class Chart:
         above: tuple[Shape, Numbers, int] = ("triangle", values - high, area.top)
         below: tuple[Shape, Numbers, int] = ("triangle_down", low - values, area.bottom)
         for shape, beyond, y in (above, below):
-            for column in plotting.starts(beyond > 0, 14 * sheet.scale):
+            for column in plotting.starts(beyond > 1e-6 * (high - low), 14 * sheet.scale):
                 x = min((area.x + column) / sheet.scale + 3, area.right / sheet.scale)
                 sheet.marker(shape, (x, y / sheet.scale), 8, colour)
 

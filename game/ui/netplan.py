@@ -92,11 +92,7 @@ class Plan:
     ) -> None:
         found = links(network)
         sizes = [len(found[0].weights), *(len(link.bias) for link in found)] if found else []
-        unknown = [np.full(size, np.nan) for size in sizes]
-        values = unknown if observation is None else traces(network, observation)
-        if [np.shape(each) for each in values] != [(size,) for size in sizes]:
-            values = unknown
-        known = values is not unknown
+        values, known = _values(network, observation, sizes)
         old = before if before and [column.total for column in before.columns] == sizes else None
         self.columns: list[Column] = []
         self._activity = [np.abs(np.nan_to_num(each.astype(float), posinf=0.0, neginf=0.0)) for each in values]
@@ -148,6 +144,19 @@ class Plan:
         least = 1.0 if column == 0 else 1e-9  # observations are of order one; of a faint one not much is made
         lit: Numbers = values / max(float(np.abs(finite).max()), least)
         return lit
+
+
+def _values(
+    network: NeuralNetwork, observation: npt.ArrayLike | None, sizes: Sequence[int]
+) -> tuple[list[Numbers], bool]:
+    """Return the values of each stage, and true; or NaN for all, and false, without a fitting observation."""
+    try:
+        values = [] if observation is None else traces(network, observation)
+    except ValueError:  # it is of another shape
+        values = []
+    if sizes and [np.shape(each) for each in values] == [(size,) for size in sizes]:
+        return values, True
+    return [np.full(size, np.nan) for size in sizes], False
 
 
 def _strength(found: Sequence[Link], stage: int) -> Numbers:

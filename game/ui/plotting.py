@@ -15,7 +15,7 @@ import numpy.typing as npt
 Numbers = npt.NDArray[np.floating[Any]]
 Limits = tuple[float, float]
 
-_WILD: Final = 100.0  # a range so many times wider than the middle half of its values is cut
+_WILD: Final = 300.0  # a range so many times wider than the middle half of its values is cut
 _KEPT: Final = 10.0  # middle halves that stay on either side of it then
 _STEPS: Final = (1.0, 2.0, 2.5, 5.0, 10.0)
 _STEEP: Final = 3.0  # rows in a column: from here on a line grows no thicker, or else it would end in spikes

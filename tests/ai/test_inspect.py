@@ -1,0 +1,98 @@
+import numpy as np
+import pytest
+
+from ai.agent import build_network
+from ai.config import Config
+from ai.inspect import dead_units, links, traces
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    ConvolutionLayer,
+    CostFunctions,
+    FlattenLayer,
+    FullyConnectedLayer,
+    NeuralNetwork,
+)
+
+OBSERVATION = np.linspace(-1, 1, 9).astype(np.float32)
+
+
+def network_of(**options: object) -> NeuralNetwork:
+    config = Config(hidden=(5, 7)).changed(**options)
+    return build_network(9, 6, config, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("dueling", [False, True])
+@pytest.mark.parametrize("normalised", [False, True])
+@pytest.mark.parametrize("activation", ["relu", "tanh", "leaky_relu", "sigmoid"])
+def test_traces_end_with_what_the_network_answers(dueling: bool, normalised: bool, activation: str) -> None:
+    network = network_of(dueling=dueling, layer_normalisation=normalised, activation=activation)
+    stages = traces(network, OBSERVATION)
+    assert [len(stage) for stage in stages] == [9, 5, 7, 6]
+    np.testing.assert_array_equal(stages[0], OBSERVATION)
+    np.testing.assert_array_equal(stages[-1], network.predict(OBSERVATION))
+    if activation == "relu":
+        assert (stages[1] >= 0).all()
+    assert [(*link.weights.shape, *link.bias.shape) for link in links(network)] == [(9, 5, 5), (5, 7, 7), (7, 6, 6)]
+
+
+def test_links_of_a_dueling_layer_make_its_values() -> None:
+    network = network_of(dueling=True)
+    *_, hidden, output = traces(network, OBSERVATION)
+    last = links(network)[-1]
+    np.testing.assert_allclose(hidden @ last.weights + last.bias, output, atol=1e-6)
+
+
+def test_links_show_the_gradients_of_the_last_way_back() -> None:
+    network = network_of()
+    network.gradients[:] = np.arange(len(network.gradients))
+    assert links(network)[0].gradient[0, 1] == 1
+
+
+def test_a_batch_is_traced_row_by_row() -> None:
+    network = network_of()
+    batch = np.stack([OBSERVATION, -OBSERVATION])
+    for rows, first in zip(traces(network, batch), traces(network, OBSERVATION), strict=True):
+        np.testing.assert_allclose(rows[0], first, atol=1e-6)
+
+
+def test_numbers_that_are_none_pass_through() -> None:
+    network = network_of()
+    network.values[:] = np.nan
+    assert np.isnan(traces(network, OBSERVATION)[-1]).all()
+    network.values[:] = 1e38
+    traces(network, OBSERVATION)
+    assert dead_units(network, OBSERVATION) <= 1
+
+
+def test_images_are_traced_from_the_first_stage_of_units() -> None:
+    network = (
+        NeuralNetwork(*CostFunctions.use_mse())
+        .add_layer(ConvolutionLayer((6, 6, 1), 2, 3))
+        .add_layer(FlattenLayer((4, 4, 2)))
+        .add_layer(FullyConnectedLayer(32, 3))
+    )
+    image = np.random.default_rng(0).random((6, 6, 1), np.float32)
+    assert [stage.shape for stage in traces(network, image)] == [(32,), (3,)]
+    assert len(links(network)) == 1
+
+
+def test_dead_units_are_counted_exactly() -> None:
+    network = (
+        NeuralNetwork(*CostFunctions.use_mse())
+        .add_layer(FullyConnectedLayer(2, 4))
+        .add_layer(ActivationLayer(*ActivationFunctions.use_relu()))
+        .add_layer(FullyConnectedLayer(4, 1))
+    )
+    weights, bias = network.layers[0].parameters
+    weights.value[:] = [[1, -1, 0, 0], [0, 0, 0, 1]]
+    bias.value[:] = [0, 0, -1, -5]
+    observations = np.array([[1.0, 0.0], [-1.0, 2.0]])
+    assert dead_units(network, observations) == 0.5  # the third never answers, the fourth not to these
+    assert dead_units(network, [[1.0, 0.0]]) == 0.75
+    assert dead_units(network, [[1.0, 9.0], [-1.0, 0.0]]) == 0.25
+
+
+def test_units_that_cannot_die_are_not_counted() -> None:
+    assert dead_units(network_of(activation="tanh"), OBSERVATION) == 0
+    assert dead_units(network_of(), np.zeros((0, 9))) == 0

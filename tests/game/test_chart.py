@@ -1,0 +1,488 @@
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from game.ui import plotting
+from game.ui.canvas import Canvas
+from game.ui.chart import RUN_STYLES, Chart, Charts, Series, Tick
+from game.ui.strip import PART_COLOURS, Strip, signed
+
+BOX = (40, 450, 372, 128)
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.fixture
+def canvas() -> Canvas:
+    pygame.font.init()
+    return Canvas(pygame.Surface((1280, 720)))
+
+
+@pytest.fixture
+def drawn(canvas: Canvas) -> Callable[[Chart], np.ndarray]:
+    """Draw a chart on a black ground and return the pixels of its plot, (columns, rows, 3)."""
+
+    def draw(chart: Chart) -> np.ndarray:
+        canvas.surface.fill((0, 0, 0))
+        chart.draw(canvas)
+        return pygame.surfarray.array3d(canvas.surface.subsurface(canvas.rect(*chart.plot)))
+
+    return draw
+
+
+def settle(chart: Chart, steps: int = 200) -> None:
+    for _ in range(steps):
+        chart.update()
+
+
+def chart_of(y: object, x: object = None, **options: object) -> Chart:
+    chart = Chart(BOX, "LOSS", **options)  # type: ignore[arg-type]
+    values = np.asarray(y, float)
+    place = np.arange(len(values), dtype=float) if x is None else np.asarray(x, float)
+    chart.set([Series(place, values, "this run")], (0.0, max(1.0, len(values) - 1.0)))
+    settle(chart)
+    return chart
+
+
+# Limits and grids
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(0, 1), (0.021, 0.83), (-412, 118), (0, 1e30), (-1e-7, 3e-7), (5, 5), (0, 0)]
+)
+def test_grid_lines_are_few_even_and_around_the_numbers(low: float, high: float) -> None:
+    lines = plotting.grid(low, high)
+    assert 2 <= len(lines) <= 4
+    slack = 1e-9 * (lines[-1] - lines[0])
+    assert lines[0] <= low + slack
+    assert lines[-1] >= high - slack
+    np.testing.assert_allclose(np.diff(lines), lines[1] - lines[0])
+    mantissa = (lines[1] - lines[0]) / 10.0 ** np.floor(np.log10(lines[1] - lines[0]))
+    assert min(abs(mantissa - good) for good in (1, 2, 2.5, 5, 10)) < 1e-6
+
+
+def test_a_few_exploded_values_do_not_flatten_the_rest() -> None:
+    y = np.abs(np.sin(np.arange(500.0)))
+    y[480:] = 1e30
+    assert chart_of(y).limits[1] < 100
+
+
+def test_a_range_that_is_only_wide_is_kept_whole() -> None:
+    y = np.concatenate([np.linspace(5, 0.1, 30), np.full(200, 0.1) + 0.02 * np.sin(np.arange(200))])
+    assert chart_of(y).limits[1] >= 5
+    stage = np.repeat([0.0, 1.0], [300, 10])  # its middle half has no width at all
+    assert chart_of(stage).limits[1] >= 1
+
+
+def test_limits_ease_to_where_they_go_and_jump_with_reduced_motion() -> None:
+    chart = chart_of(np.linspace(0, 1, 50))
+    series = Series(np.arange(50.0), np.linspace(0, 3, 50), "this run")
+    chart.set([series], (0, 49))
+    chart.update()
+    _, before = chart.place(0, 3.0)
+    assert before == pytest.approx(chart.plot.top)  # still too high for the old limits
+    _, top = chart.place(0, 1.0)
+    chart.update()
+    _, next_top = chart.place(0, 1.0)
+    assert next_top > top
+    chart.update(at_once=True)
+    low, high = chart.limits
+    assert chart.place(0, high) == (chart.plot.x, chart.plot.top)
+    assert chart.place(0, low) == (chart.plot.x, chart.plot.bottom)
+
+
+def test_limits_do_not_flicker_while_the_numbers_still_fit() -> None:
+    lines = plotting.steady_grid((0.0, 0.99), None)
+    for most in (1.01, 0.97, 1.02, 0.95):
+        lines = plotting.steady_grid((0.0, most), lines)
+    np.testing.assert_array_equal(plotting.steady_grid((0.0, 0.93), lines), lines)
+    assert plotting.steady_grid((0.0, 0.1), lines)[-1] < 0.5
+
+
+def test_fixed_limits_stay() -> None:
+    assert chart_of([3, 250, -4], limits=(0.0, 100.0)).limits == (0.0, 100.0)
+
+
+# Curves
+
+
+def test_smoothing_neither_lags_nor_bends_a_straight_line() -> None:
+    x = np.arange(900.0)
+    line = plotting.trace(x, 3 - 0.01 * x, (0, 899), 300, 9)
+    np.testing.assert_allclose(line, 3 - 0.01 * np.linspace(0, 899, 300), atol=0.02)
+
+
+def test_smoothing_takes_noise_away_and_keeps_a_bump_in_its_place() -> None:
+    x = np.arange(2000.0)
+    bump = np.exp(-(((x - 700) / 150) ** 2))
+    noise = np.random.default_rng(0).normal(size=2000)
+    line = plotting.trace(x, bump + 0.2 * noise, (0, 1999), 400, 9)
+    assert abs(np.argmax(line) * 1999 / 399 - 700) < 60
+    assert np.std(line - np.interp(np.linspace(0, 1999, 400), x, bump)) < 0.06
+
+
+def test_an_unsmoothed_trace_passes_through_its_points() -> None:
+    line = plotting.trace(np.array([0.0, 50, 100]), np.array([1.0, 0.0, 0.5]), (0, 100), 101, 0)
+    assert (line[0], line[25], line[50], line[75], line[100]) == (1.0, 0.5, 0.0, 0.25, 0.5)
+
+
+@pytest.mark.parametrize("bad", [NAN, INF, -INF])
+def test_values_that_are_no_numbers_make_a_gap(bad: float) -> None:
+    y = np.ones(101)
+    y[40:60] = bad
+    line = plotting.trace(np.arange(101.0), y, (0, 100), 101, 3)
+    assert np.isnan(line[40:60]).all()
+    assert np.isfinite(line[:40]).all()
+    assert np.isfinite(line[60:]).all()
+
+
+def test_a_gap_between_sparse_points_is_not_bridged() -> None:
+    line = plotting.trace(np.array([0.0, 30, 50, 100]), np.array([1.0, 1.0, NAN, 1.0]), (0, 100), 101, 0)
+    assert np.isfinite(line[:31]).all()
+    assert np.isnan(line[31:100]).all()
+    assert line[100] == 1
+
+
+def test_no_line_is_drawn_before_or_after_the_data() -> None:
+    line = plotting.trace(np.arange(20.0, 61.0), np.ones(41), (0, 100), 101, 3)
+    np.testing.assert_array_equal(np.flatnonzero(np.isfinite(line)), np.arange(20, 61))
+
+
+@given(st.integers(1, 5000), st.integers(2, 400), st.integers(0, 2**32 - 1))
+@settings(max_examples=40, deadline=None)
+def test_thinning_keeps_extremes_and_at_most_a_point_a_column(count: int, columns: int, seed: int) -> None:
+    y = np.random.default_rng(seed).normal(size=count)
+    kept = plotting.thinned(np.arange(float(count)), y, (0.0, float(count)), columns)
+    assert len(kept) <= columns + 1
+    assert (np.diff(kept) > 0).all()
+    assert y[kept].min() == y.min()
+    assert y[kept].max() == y.max()
+
+
+def test_a_stroke_is_as_thick_as_it_should_be_and_smooth() -> None:
+    first, cover = plotting.stroke(np.full(40, 10.3), 30, 1.6)
+    np.testing.assert_allclose(cover.sum(axis=0), 1.6, atol=1e-5)
+    middle = (cover * (first + np.arange(len(cover)))[:, None]).sum(axis=0) / cover.sum(axis=0)
+    np.testing.assert_allclose(middle, 10.3, atol=0.15)
+    _, slanted = plotting.stroke(np.linspace(5, 45, 40), 60, 1.6)  # about 45 degrees: √2 thicker upright
+    assert slanted.sum(axis=0)[5:-5].mean() == pytest.approx(1.6 * np.hypot(1, 40 / 39), rel=0.05)
+
+
+def test_a_jump_is_drawn_without_spikes_beyond_its_ends() -> None:
+    first, cover = plotting.stroke(np.repeat([90.0, 10.0], 20), 100, 1.6)
+    covered = np.flatnonzero(cover.max(axis=1) > 0.05) + first
+    assert covered.min() >= 10 - 5
+    assert covered.max() <= 90 + 5
+
+
+def test_dashes_leave_gaps() -> None:
+    _, cover = plotting.stroke(np.full(200, 5.0), 10, 2.0, (7.0, 5.0))
+    most = cover.max(axis=0)
+    assert 0.5 < (most > 0.5).mean() < 0.67
+    assert (most == 0).any()
+
+
+# Pointing
+
+
+@pytest.mark.parametrize("x", [0.0, 3.7, 20.0])
+def test_x_at_is_the_inverse_of_place(x: float) -> None:
+    chart = chart_of(np.arange(21.0))
+    across, up = chart.place(x, 5.0)
+    assert chart.x_at((across, up)) == pytest.approx(x, abs=1e-3)
+
+
+def test_x_at_is_none_outside_and_never_beyond_the_axis() -> None:
+    chart = chart_of(np.arange(21.0))
+    plot = chart.plot
+    assert chart.x_at((plot.x - 50, plot.centery)) is None
+    assert chart.x_at((plot.centerx, chart.box.y - 10)) is None
+    assert chart.x_at((plot.x - 3, plot.centery)) == 0.0
+    assert chart.x_at((plot.right + 3, plot.centery)) == 20.0
+
+
+def test_the_cursor_reads_the_nearest_point_of_each_run(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[float] = []
+
+    def reading(value: float) -> str:
+        read.append(value)
+        return str(value)
+
+    chart = Chart(BOX, "RETURN", read=reading)
+    chart.set(
+        [
+            Series([0.0, 10.0, 20.0], [1.0, 2.0, 3.0], "this run"),
+            Series([0.0, 9.0, 20.0], [4.0, NAN, 6.0], "before", *RUN_STYLES[1]),
+            Series([0.0, 1.0], [7.0, 8.0], "ended long ago", *RUN_STYLES[2]),
+        ],
+        (0.0, 20.0),
+    )
+    settle(chart)
+    chart.draw(canvas)
+    read.clear()
+    chart.hover(chart.place(12.0, 2.0))
+    chart.draw(canvas)
+    assert read == [2.0, 6.0]  # nearest to 12 that are numbers; a run that had ended says nothing
+
+
+def test_the_readout_stays_inside_the_box(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    from game.ui import chart as module
+
+    boxes = []
+    original = module.draw_tooltip
+
+    def draw(*arguments: object) -> pygame.FRect:
+        boxes.append(original(*arguments))  # type: ignore[arg-type]
+        return boxes[-1]
+
+    monkeypatch.setattr(module, "draw_tooltip", draw)
+    chart = chart_of(np.arange(21.0))
+    for x in (0.0, 7.0, 13.0, 20.0):
+        chart.hover(chart.place(x, 3.0))
+        chart.draw(canvas)
+        assert chart.box.contains(boxes[-1])
+    chart.hover((0.0, 0.0))
+    chart.draw(canvas)
+    assert len(boxes) == 4
+
+
+def test_the_cursor_is_shared_and_the_values_are_told_where_the_mouse_is(canvas: Canvas) -> None:
+    top, bottom = Chart((40, 40, 300, 120), "A"), Chart((40, 200, 200, 120), "B")
+    for chart in (top, bottom):
+        chart.set([Series([0.0, 10.0], [0.0, 1.0], "this run")], (0.0, 10.0))
+    charts = Charts([top, bottom])
+    assert charts.hover(bottom.place(5.0, 0.5)) == pytest.approx(5.0, abs=0.01)
+    before = pygame.surfarray.array3d(canvas.surface)
+    charts.draw(canvas)
+    after = pygame.surfarray.array3d(canvas.surface)
+    x, _ = map(round, top.place(5.0, 0.0))
+    column = slice(int(top.plot.top) + 2, int(top.plot.bottom) - 2)
+    assert (after[x - 1 : x + 2, column] != before[x - 1 : x + 2, column]).any(axis=(0, 2)).all()
+    assert charts.hover((5.0, 5.0)) is None
+
+
+# Drawing
+
+
+def test_the_same_numbers_are_not_drawn_again(canvas: Canvas) -> None:
+    def series(last: float) -> list[Series]:
+        return [Series(np.arange(30.0), np.append(np.arange(29.0), last), "this run")]
+
+    chart = Chart(BOX, "RETURN")
+    chart.set(series(1.0), (0, 29))
+    for _ in range(30):
+        chart.update()
+        chart.draw(canvas)
+    redraws = chart.redraws
+    for _ in range(30):
+        chart.set(series(1.0), (0, 29))
+        chart.hover(chart.place(float(_), 3.0))
+        chart.update()
+        chart.draw(canvas)
+    assert chart.redraws == redraws
+    chart.set(series(2.0), (0, 29))
+    for _ in range(30):
+        chart.update()
+        chart.draw(canvas)
+    assert chart.redraws == redraws + 1
+
+
+def test_an_array_that_grows_in_place_is_noticed(canvas: Canvas) -> None:
+    memory = np.arange(30.0)
+    chart = Chart(BOX, "RETURN")
+    chart.set([Series(memory, memory, "this run")], (0, 29))
+    chart.draw(canvas)
+    redraws = chart.redraws
+    memory[-1] = 28.5
+    chart.set([Series(memory, memory, "this run")], (0, 29))
+    settle(chart)
+    chart.draw(canvas)
+    assert chart.redraws > redraws
+
+
+def test_charts_take_turns_and_rest(canvas: Canvas) -> None:
+    boxes = [(40, 40 + 100 * number, 300, 90) for number in range(6)]
+    charts = Charts([Chart(box, "A") for box in boxes])
+    most = total = 0
+    charts.draw(canvas)
+    for frame in range(60):
+        for chart in charts.charts:
+            chart.set([Series(np.arange(9.0), np.arange(9.0) + 1e-6 * frame, "this run")], (0, 8))
+        before = [chart.redraws for chart in charts.charts]
+        charts.update()
+        charts.draw(canvas)
+        drawn = sum(chart.redraws for chart in charts.charts) - sum(before)
+        most, total = max(most, drawn), total + drawn
+    assert most == 1
+    assert 6 * 8 <= total <= 6 * 10
+    assert min(chart.redraws for chart in charts.charts) >= 8
+
+
+def test_a_new_window_size_is_drawn_at_once(canvas: Canvas) -> None:
+    chart = chart_of(np.arange(20.0))
+    chart.draw(canvas)
+    canvas.attach(pygame.Surface((1920, 1080)))
+    redraws = chart.redraws
+    chart.draw(canvas)
+    assert chart.redraws == redraws + 1
+
+
+def test_the_curve_is_where_its_values_are(drawn: Callable[[Chart], np.ndarray]) -> None:
+    chart = chart_of(np.full(100, 25.0), limits=(0.0, 100.0))
+    pixels = drawn(chart)
+    blue = pixels[:, :, 2].astype(int) - pixels[:, :, 0]
+    rows = blue[20:-20].sum(axis=0)
+    assert rows.argmax() == pytest.approx(0.75 * (pixels.shape[1] - 1), abs=1)
+
+
+def test_what_lies_beyond_the_limits_is_marked(drawn: Callable[[Chart], np.ndarray]) -> None:
+    inside = chart_of(np.full(100, 50.0), limits=(0.0, 100.0))
+    y = np.full(100, 50.0)
+    y[60:] = 1e30
+    beyond = chart_of(y, limits=(0.0, 100.0))
+    columns = np.flatnonzero((drawn(beyond) != drawn(inside))[:, :3].any(axis=(1, 2)))
+    assert len(columns)
+    assert abs(columns.mean() / len(drawn(inside)) - 0.6) < 0.06  # an arrow, where the curve leaves
+
+
+UGLY = {
+    "nothing": [],
+    "one point": [3.0],
+    "no number at all": [NAN] * 9,
+    "infinite": [INF, -INF, 1.0, INF],
+    "one number among none": [NAN, 2.0, NAN, NAN],
+    "constant": [7.0] * 40,
+    "zero": [0.0] * 40,
+    "negative": [-5.0, -400.0, -3e5],
+    "exploding": list(10.0 ** np.arange(-8.0, 31.0)),
+    "as large as can be": [-1e300, 1e300, 1e308, -1e308, 0.0],
+    "as small as can be": [5e-324, 1e-310, 0.0],
+    "alternating": [(-1.0) ** k * 1e12 for k in range(60)],
+}
+
+
+@pytest.mark.parametrize("name", UGLY)
+@pytest.mark.parametrize("smooth", [True, False])
+def test_ugly_numbers_are_drawn(canvas: Canvas, name: str, smooth: bool) -> None:
+    y = UGLY[name]
+    chart = Chart(BOX, "LOSS")
+    series = [
+        Series(np.arange(len(y)), y, "this run", smooth=smooth),
+        Series(np.arange(len(y)), y, "b", *RUN_STYLES[1]),
+    ]
+    chart.set(series, (0.0, len(y)), [Tick(1.0, "checkpoint"), Tick(1e9, "a knob", "knob")])
+    chart.mark(2.0, "checkpoint 2 s: fly against it, and a caption that is much too long for such a small chart")
+    for point in ((60.0, 500.0), (405.0, 577.0), None):
+        chart.hover(point)
+        settle(chart, 30)
+        chart.draw(canvas)
+    low, high = chart.limits
+    assert np.isfinite([low, high]).all()
+    assert low < high
+
+
+@pytest.mark.parametrize("x_range", [(0.0, 0.0), (5.0, 1.0), (NAN, 3.0), (0.0, INF)])
+def test_an_ugly_x_axis_is_mended(canvas: Canvas, x_range: tuple[float, float]) -> None:
+    chart = Chart(BOX, "LOSS")
+    chart.set([Series([0.0, NAN, 2.0], [1.0, 2.0, 3.0, 4.0], "this run")], x_range)
+    chart.draw(canvas)
+    assert chart.x_at(chart.plot.center) is not None
+
+
+def test_an_empty_chart_has_no_x_but_its_axis(canvas: Canvas) -> None:
+    chart = Chart(BOX, "LOSS")
+    chart.draw(canvas)
+    assert chart.x_at(chart.plot.center) == pytest.approx(0.5)
+    Charts([]).update()
+    Charts([]).draw(canvas)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"), (0.0213, "0.0213"), (0.84, "0.840"), (-0.5, "−0.500"), (118.2, "118"), (12_345, "12.3k"),
+        (148_000, "148k"), (1.23e30, "1.2e30"), (-4e-7, "−4.0e−7"), (NAN, "–"), (INF, "–"),
+    ],
+)  # fmt: skip
+def test_numbers_are_written_short(value: float, text: str) -> None:
+    assert plotting.compact(value) == text
+
+
+# The reward strip
+
+PARTS = ("distance", "feet", "time", "terminal")
+
+
+def test_parts_grow_outwards_from_zero_in_their_order() -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [40.0, 30.0, -90.0, 120.0])
+    strip.update(at_once=True)
+    distance, feet, time, terminal = strip.pieces()
+    assert time.right == distance.left
+    assert distance.right == feet.left
+    assert feet.right == terminal.left
+    assert (terminal.right - terminal.left) / (distance.right - distance.left) == pytest.approx(3)
+    assert strip.box.x <= time.left
+    assert terminal.right <= strip.box.right
+
+
+def test_a_part_keeps_its_colour_whatever_stands_beside_it() -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [40.0, 30.0, -90.0, 120.0])
+    before = {piece.name: piece.colour for piece in strip.pieces()}
+    strip.set(PARTS[::-1], [-120.0, 0.0, 3.0, -4.0])
+    assert {piece.name: piece.colour for piece in strip.pieces()} == before
+    assert len(set(PART_COLOURS.values())) == len(PART_COLOURS)
+
+
+def test_the_mouse_finds_a_part() -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [40.0, 30.0, -90.0, 0.0])
+    for piece in strip.pieces()[:3]:
+        found = strip.piece_at(((piece.left + piece.right) / 2, 60.0))
+        assert found is not None
+        assert (found.name, found.value) == (piece.name, piece.value)
+    assert strip.piece_at((60.0, 200.0)) is None
+
+
+def test_every_part_of_the_reward_has_a_colour_and_a_sentence() -> None:
+    from ai.rewards import REWARDS
+    from game import texts
+
+    assert set(REWARDS) == set(PART_COLOURS)
+    assert set(REWARDS) <= set(texts.REWARD_PARTS)
+
+
+@pytest.mark.parametrize("values", [[], [0.0] * 4, [NAN, INF, 1e30, -1e30], [1e-12] * 4, [-5.0] * 4, [1.0, 2.0]])
+def test_ugly_parts_are_drawn(canvas: Canvas, values: list[float]) -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.draw(canvas)
+    for _ in range(3):
+        strip.set(PARTS, values)
+        strip.hover((200.0, 62.0))
+        strip.update()
+        strip.draw(canvas)
+
+
+def test_a_strip_that_rests_is_not_drawn_again(canvas: Canvas) -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [1.0, 2.0, 3.0, 4.0])
+    strip.set(PARTS, [2.0, 2.0, 3.0, 4.0])
+    for _ in range(200):
+        strip.update()
+        strip.draw(canvas)
+    redraws = strip.redraws
+    for _ in range(20):
+        strip.update()
+        strip.draw(canvas)
+    assert strip.redraws == redraws
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(98.2, "+98"), (-3.21, "−3.2"), (0.01, "0"), (1e30, "+1.0e30"), (NAN, "–")]
+)
+def test_sums_are_written_with_their_sign(value: float, text: str) -> None:
+    assert signed(value) == text
