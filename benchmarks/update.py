@@ -133,10 +133,10 @@ def torch_decision() -> Callable[[], object]:
     return decide
 
 
-def medians(*tasks: Callable[[], object], calls: int) -> list[float]:
+def medians(*tasks: Callable[[], object], calls: int, rounds: int = ROUNDS) -> list[float]:
     """Return the median time of each task in microseconds; the tasks take turns of so many calls."""
     times: list[list[float]] = [[] for _ in tasks]
-    for measured in [False] * (ROUNDS // 10) + [True] * ROUNDS:
+    for measured in [False] * (rounds // 10) + [True] * rounds:
         for task, record in zip(tasks, times, strict=True):
             start = time.perf_counter()
             for _ in range(calls):

@@ -6,17 +6,12 @@ and compares whole runs of examples at a time, however small the images are, and
 are gathered almost at the speed of memory (docs/adr/0009-images-batch-last-in-memory.md).
 """
 
-from collections.abc import Iterator
-from itertools import product
-
 import numpy as np
 import numpy.typing as npt
-from numpy.lib.stride_tricks import sliding_window_view
 
-from ai.nn.layers import FullyConnectedLayer, ImageShape, Layer, checked_size
+from ai.nn.correlation import Correlation
+from ai.nn.layers import FullyConnectedLayer, ImageShape, Layer, checked_size, constant
 from ai.nn.parameter import Array
-
-BLOCK = 1 << 19  # values gathered at a time: 2 MB, which stay in the cache between gathering and product
 
 
 class ConvolutionLayer(FullyConnectedLayer):
@@ -25,10 +20,6 @@ class ConvolutionLayer(FullyConnectedLayer):
     `inputs` is (height, width, channels). Windows lie `stride` pixels apart, and `padding` zeros are put around
     the image on each side; padding of kernel // 2 keeps the size. As in all such libraries the kernel is not
     flipped: this is a correlation. Raises ValueError for sizes that make no sense.
-
-    The windows become the columns of a matrix, and the convolution one product with the weights (Chellapilla,
-    Puri & Simard 2006). They are gathered block by block and again on the way back: that costs less than
-    keeping kernel² copies of every image.
     """
 
     settings = ("inputs", "filters", "kernel", "stride", "padding")
@@ -61,104 +52,66 @@ class ConvolutionLayer(FullyConnectedLayer):
         )
         self.inputs = shape
         self.outputs = (self._reach(height), self._reach(width), self.filters)
-        self.padded = self.padded_error = self.scratch = np.empty(0, dtype)
+        self.overhang = self.kernel - 1 - self.padding  # the padding of the way back
+        self.forward = Correlation(self.kernel, channels, self.filters, stride=self.stride, padding=self.padding)
+        self.backward = Correlation(self.kernel, self.filters, channels, padding=self.overhang)
+        self.framed = self.framed_error = np.empty((0, 0, 0, 0), dtype)
 
     @property
     def weights(self) -> Array:
-        """Weights, (kernel · kernel · channels, filters), rows by kernel row, kernel column and channel."""
+        """Weights, (kernel · kernel · channels, filters), rows by kernel column, kernel row and channel."""
         return self.parameters[0].value
+
+    @property
+    def kernels(self) -> Array:
+        """The weights as (kernel column, kernel row, channel, filter)."""
+        return self.weights.reshape(self.kernel, self.kernel, -1, self.filters)
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return each window times the weights, plus the bias: (batch, height, width, filters)."""
         _check_images(self, input_data)
         if len(self.output) != len(input_data) or self.output.dtype != self.dtype:
-            self.padded, self.output = self._padded(len(input_data)), self._empty_output(len(input_data))
-        self._inner(self.padded)[...] = input_data
-        return self._correlate(self.padded, self.output)
+            self.framed = self._frame(len(input_data))
+            self.output = np.empty((len(input_data), *self.outputs), self.dtype, order="F")
+        return self._correlate(input_data, self.framed, self.output)
 
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array, also for one image without the batch axis."""
-        _check_images(self, input_data)
+        _check_images(self, input_data, (3, 4))
         images = input_data if input_data.ndim == 4 else input_data[None]
-        padded = self._padded(len(images))
-        self._inner(padded)[...] = images
-        output = self._correlate(padded, self._empty_output(len(images)))
+        output = np.empty((len(images), *self.outputs), self.dtype, order="F")
+        self._correlate(images, self._frame(len(images)), output)
         return output if input_data.ndim == 4 else output[0]
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of weights, the sum of windowᵀ E over all windows, and of the bias."""
         weights, bias = self.parameters
-        error = self._rows(output_error)
-        error.reshape(self.filters, -1).sum(axis=1, out=bias.gradient)
-        weights.gradient.fill(0)
-        for windows, block in self._blocks(self.padded):
-            weights.gradient += self._gathered(windows) @ error[block].reshape(self.filters, -1).T
+        error = np.asarray(output_error, self.dtype, order="F").T
+        error.reshape(self.filters, -1).dot(constant(error[0].size, 1.0, error.dtype), bias.gradient)
+        weights.gradient[...] = self.forward.gradient(self.framed.T, error).reshape(weights.value.shape)
 
     def input_error(self, output_error: Array) -> Array:
-        """Return what all windows send back to each pixel, summed: (batch, height, width, channels)."""
-        error = self._rows(output_error)
-        if self.padded_error.shape != self.padded.shape:
-            self.padded_error = self._padded(len(output_error))
-        self.padded_error.fill(0)
-        for windows, block in self._blocks(self.padded_error):
-            columns = self._columns(windows)
-            matrix = columns.reshape(len(self.weights), -1)
-            np.matmul(self.weights, error[block].reshape(self.filters, -1), out=matrix)
-            for tap in np.ndindex(self.kernel, self.kernel):
-                pixels = windows[tap]
-                pixels += columns[tap]  # in place: the windows overlap, those of one tap do not
-        return self._inner(self.padded_error)
+        """Return E correlated with the kernels turned by half: (batch, height, width, channels)."""
+        if len(self.framed_error) != len(output_error) or self.framed_error.dtype != self.dtype:
+            height, width, channels = self.inputs
+            reach = self.kernel - 1
+            shape = (len(output_error), height + reach, width + reach, self.filters)
+            self.framed_error = np.zeros(shape, self.dtype, order="F")
+            self.error = np.empty((len(output_error), height, width, channels), self.dtype, order="F")
+        _place(output_error, self.framed_error, self.overhang, self.stride)
+        turned = self.kernels[::-1, ::-1].swapaxes(2, 3)
+        self.backward.correlate(self.framed_error.T, turned, np.zeros(turned.shape[-1], self.dtype), self.error.T)
+        return self.error
 
-    def _correlate(self, padded: Array, output: Array) -> Array:
-        weights, bias = self.parameters
-        for windows, block in self._blocks(padded):
-            out = output.T[block].reshape(self.filters, -1)
-            np.matmul(weights.value.T, self._gathered(windows), out=out)
-            out += bias.value[:, None]
+    def _correlate(self, images: Array, frame: Array, output: Array) -> Array:
+        _place(images, frame, self.padding)
+        self.forward.correlate(frame.T, self.kernels, self.bias, output.T)
         return output
 
-    def _blocks(self, padded: Array) -> Iterator[tuple[Array, tuple[slice, ...]]]:
-        """Yield views of all windows, (kernel, kernel, channels, width, height, batch), and their places.
-
-        A place is what picks the same windows from the transposed output. It is some whole columns of the
-        image, or a part of one: contiguous either way.
-        """
-        windows = sliding_window_view(padded.T, (self.kernel, self.kernel), (1, 2), writeable=True)
-        windows = windows[:, :: self.stride, :: self.stride].transpose(5, 4, 0, 1, 2, 3)
-        *_, width, height, batch = windows.shape
-        fit = max(1, BLOCK // (len(self.weights) * batch))
-        rows = -(-height // -(-height // fit))  # parts of equal size
-        columns = max(1, fit // height)
-        for x, y in product(range(0, width, columns), range(0, height, rows)):
-            block = (slice(None), slice(x, x + columns), slice(y, y + rows))
-            yield windows[:, :, *block], block
-
-    def _gathered(self, windows: Array) -> Array:
-        """Return windows as columns of a matrix, (kernel · kernel · channels, windows)."""
-        columns = self._columns(windows)
-        columns[...] = windows
-        return columns.reshape(len(self.weights), -1)
-
-    def _columns(self, windows: Array) -> Array:
-        """Return memory for so many windows: the same at each call."""
-        if self.scratch.size < windows.size or self.scratch.dtype != self.dtype:
-            self.scratch = np.empty(windows.size, self.dtype)
-        return self.scratch[: windows.size].reshape(windows.shape)
-
-    def _rows(self, output_error: Array) -> Array:
-        """Return the transposed error, (filters, width, height, batch), contiguous."""
-        return np.asarray(output_error, self.dtype, order="F").T
-
-    def _padded(self, batch: int) -> Array:
+    def _frame(self, batch: int) -> Array:
+        """Return memory for images with zeros around them."""
         height, width, channels = self.inputs
         return np.zeros((batch, height + 2 * self.padding, width + 2 * self.padding, channels), self.dtype, order="F")
-
-    def _inner(self, padded: Array) -> Array:
-        inner = slice(self.padding, -self.padding or None)
-        return padded[:, inner, inner]
-
-    def _empty_output(self, batch: int) -> Array:
-        return np.empty((batch, *self.outputs), self.dtype, order="F")
 
     def _reach(self, pixels: int) -> int:
         """Return how many windows lie along so many pixels."""
@@ -193,7 +146,7 @@ class MaxPoolingLayer(Layer):
 
     def predict(self, input_data: Array) -> Array:
         """Return the same as a new array, also for one image without the batch axis."""
-        _check_images(self, input_data)
+        _check_images(self, input_data, (3, 4))
         images = input_data if input_data.ndim == 4 else input_data[None]
         output = self._maximum(images, np.empty((len(images), *self.outputs), images.dtype, order="F"))
         return output if input_data.ndim == 4 else output[0]
@@ -203,22 +156,22 @@ class MaxPoolingLayer(Layer):
         if self.error.shape != self.input.shape or self.error.dtype != self.input.dtype:
             self.error = np.zeros(self.input.shape, self.input.dtype, order="F")
             self.left = np.empty_like(self.output)
-        self.left[...] = output_error
-        *others, (_, last) = zip(self._pixels(self.input), self._pixels(self.error), strict=True)
+        left = output_error
+        *others, (_, last) = zip(self._squares(self.input), self._squares(self.error), strict=True)
         for pixel, error in others:
-            np.multiply(self.left, pixel == self.output, out=error)
-            self.left -= error  # what is given away leaves exactly nothing for pixels of the same value
-        last[...] = self.left
+            np.multiply(left, pixel == self.output, out=error)
+            left = np.subtract(left, error, out=self.left)  # of what was given, nothing: equal pixels get 0
+        last[...] = left
         return self.error
 
-    def _maximum(self, images: Array, out: Array) -> Array:
-        first, second, *others = self._pixels(images)
-        np.maximum(first, second, out=out)
+    def _maximum(self, images: Array, output: Array) -> Array:
+        first, second, *others = self._squares(images)
+        np.maximum(first, second, out=output)
         for pixel in others:
-            np.maximum(out, pixel, out=out)
-        return out
+            np.maximum(output, pixel, out=output)
+        return output
 
-    def _pixels(self, images: Array) -> list[Array]:
+    def _squares(self, images: Array) -> list[Array]:
         """Return views of the first pixel of each square, of the second, and so on, row by row."""
         rows, columns = (count * self.size for count in self.outputs[:2])
         squares = np.ndindex(self.size, self.size)
@@ -247,7 +200,7 @@ class FlattenLayer(Layer):
 
     def predict(self, input_data: Array) -> Array:
         """Return the same, also for one image without the batch axis."""
-        _check_images(self, input_data)
+        _check_images(self, input_data, (3, 4))
         return input_data.reshape(*input_data.shape[:-3], self.outputs, order="F")
 
     def input_error(self, output_error: Array) -> Array:
@@ -256,6 +209,12 @@ class FlattenLayer(Layer):
             self.error = np.empty((len(output_error), *self.inputs), output_error.dtype, order="F")
         self.error.reshape(output_error.shape, order="F")[...] = output_error
         return self.error
+
+
+def _place(images: Array, frame: Array, border: int, stride: int = 1) -> None:
+    """Copy images into the middle of frames, their pixels `stride` apart."""
+    rows, columns = (slice(border, border + stride * (size - 1) + 1, stride) for size in images.shape[1:3])
+    frame[:, rows, columns] = images
 
 
 def _checked_shape(inputs: ImageShape) -> ImageShape:
@@ -268,7 +227,7 @@ def _checked_shape(inputs: ImageShape) -> ImageShape:
     return height, width, channels
 
 
-def _check_images(layer: Layer, images: Array) -> None:
-    if images.ndim not in (3, 4) or images.shape[-3:] != layer.inputs:
+def _check_images(layer: Layer, images: Array, dimensions: tuple[int, ...] = (4,)) -> None:
+    if images.ndim not in dimensions or images.shape[-3:] != layer.inputs:
         kind = type(layer).__name__
-        raise ValueError(f"{kind} takes images of shape {layer.inputs}, or a batch of them; not {images.shape}")
+        raise ValueError(f"{kind} takes a batch of images of shape {layer.inputs}, not {images.shape}")

@@ -276,7 +276,7 @@ class LayerNormalisation(Layer):
 
     @property
     def _average(self) -> Array:
-        return _constant(self.size, 1 / self.size, np.dtype(self.dtype))
+        return constant(self.size, 1 / self.size, np.dtype(self.dtype))
 
     def _start(self, name: str) -> Array:
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
@@ -302,11 +302,12 @@ def checked_size(name: str, size: int) -> int:
 
 
 @lru_cache(maxsize=64)
-def _constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
-    constant: Array = np.full(size, value, dtype)
-    constant.setflags(write=False)
-    return constant
+def constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
+    """Return a vector of equal numbers, to sum rows with: it is kept, and cannot be written to."""
+    vector: Array = np.full(size, value, dtype)
+    vector.setflags(write=False)
+    return vector
 
 
 def _ones(size: int, dtype: npt.DTypeLike) -> Array:
-    return _constant(size, 1.0, np.dtype(dtype))
+    return constant(size, 1.0, np.dtype(dtype))

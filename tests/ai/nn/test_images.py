@@ -14,29 +14,28 @@ from ai.nn import (
     FullyConnectedLayer,
     MaxPoolingLayer,
     NeuralNetwork,
-    images,
+    correlation,
 )
 
 
 def convolved(layer, image):
     """Return what the definition says, pixel by pixel."""
-    weights = layer.weights.reshape(layer.kernel, layer.kernel, *layer.inputs[2:], layer.filters)
     padded = np.pad(image, [(layer.padding, layer.padding)] * 2 + [(0, 0)])
     output = np.empty(layer.outputs)
     for row, column in np.ndindex(layer.outputs[:2]):
         top, left = row * layer.stride, column * layer.stride
         window = padded[top : top + layer.kernel, left : left + layer.kernel]
-        output[row, column] = np.einsum("hwc,hwcf->f", window, weights) + layer.bias
+        output[row, column] = np.einsum("hwc,whcf->f", window, layer.kernels) + layer.bias
     return output
 
 
-@pytest.mark.parametrize("block", [1, 100, 1000, images.BLOCK])
+@pytest.mark.parametrize("block", [1, 100, 1000, correlation.BLOCK])
 @pytest.mark.parametrize(
     ("inputs", "kernel", "stride", "padding"),
     [((5, 8, 2), 3, 1, 0), ((7, 4, 1), 5, 1, 2), ((9, 6, 3), 3, 2, 1), ((4, 5, 2), 2, 3, 1), ((3, 3, 1), 3, 1, 0)],
 )
 def test_a_convolution_is_what_its_definition_says(monkeypatch, block, inputs, kernel, stride, padding):
-    monkeypatch.setattr(images, "BLOCK", block)
+    monkeypatch.setattr(correlation, "BLOCK", block)
     rng = np.random.default_rng(1)
     layer = ConvolutionLayer(inputs, 4, kernel, stride=stride, padding=padding, dtype=np.float64, rng=rng)
     layer.bias[...] = rng.normal(size=4)
@@ -55,7 +54,7 @@ def test_gradients_do_not_depend_on_the_blocks(monkeypatch):
         return [input_error, *(parameter.gradient for parameter in layer.parameters)]
 
     expected = gradients()
-    monkeypatch.setattr(images, "BLOCK", 200)
+    monkeypatch.setattr(correlation, "BLOCK", 200)
     for gradient, one in zip(gradients(), expected, strict=True):
         np.testing.assert_allclose(gradient, one, atol=1e-12)
 
@@ -152,6 +151,8 @@ def test_images_of_another_shape_are_named(layer, shape):
     for propagate in (layer.forward_propagate, layer.predict):
         with pytest.raises(ValueError, match=r"images of shape \(8, 8, 1\)"):
             propagate(np.zeros(shape))
+    with pytest.raises(ValueError, match="a batch of images"):
+        layer.forward_propagate(np.zeros((8, 8, 1)))
 
 
 def test_image_layers_have_to_fit():
