@@ -86,7 +86,7 @@ def stages(
     fitted = _resample(ink, middle, CELLS, frame)
     cells = float(CELLS)  # along a pixel of the result
     if width:
-        ink, growth = _with_stroke_width(ink > (0.25 if pitch > 1 else 0.5) * ink.max(), frame if fit else None)
+        ink, growth = _with_stroke_width(_covered(ink, drawn.max()), frame if fit else None)
         cells /= growth
         middle = _middle_of(_box(ink))
     thinned = _resample(ink, middle, cells, frame)
@@ -146,6 +146,13 @@ def _weights(size: int, middle: float, pitch: float, count: int) -> Image:
     near, far = (1.5 * x - 2.5) * x * x + 1, ((2.5 - 0.5 * x) * x - 4) * x + 2
     weights: Image = np.where(x < 1, near, np.where(x < 2, far, 0.0)).astype(np.float32)
     return weights
+
+
+def _covered(ink: Image, full: float) -> npt.NDArray[np.bool_]:
+    """Return the cells that ink covers by half; of lines so thin that they nowhere fill a cell, all they touch."""
+    peak = ink.max()
+    covered: npt.NDArray[np.bool_] = ink > peak * (0.45 if peak > 0.9 * full else 0.25)
+    return covered
 
 
 def _with_stroke_width(ink: npt.NDArray[np.bool_], frame: int | None) -> tuple[Image, float]:
