@@ -9,11 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.nn.costs import Cost, CostFunction
+from ai.nn.dropout import DropoutLayer
 from ai.nn.folder import atomic_folder
 from ai.nn.layers import ActivationLayer, Layer, check_fit
 from ai.nn.optimizers import SGD, Optimizer
 from ai.nn.parameter import Array, pack
 from ai.nn.storage import read_network, write_network
+
+IMAGES = 250  # predicted at a time: each takes some 100 KB on its way
 
 
 class NeuralNetwork:
@@ -70,15 +73,38 @@ class NeuralNetwork:
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
 
+        Inputs of a network for images are (batch, height, width, channels), or without the batch as well.
         Leaves no trace: a backward pass may still follow the last `forward_propagate`.
         """
         data: Array = np.asarray(input_data, self.dtype)
+        if data.ndim == 4 and len(data) > IMAGES:
+            return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
         row = data.ndim == 2 and len(data) == 1
         if row:
             data = data[0]  # NumPy adds vectors three times faster than matrices of one row
         for layer in self.layers:
             data = layer.predict(data)
         return data[None] if row else data
+
+    def activations(self, input_data: npt.ArrayLike) -> list[Array]:
+        """Return what each layer gives for a batch or one example; the last is what `predict` returns."""
+        data: Array = np.asarray(input_data, self.dtype)
+        return [data := layer.predict(data) for layer in self.layers]
+
+    def input_gradient(self, input_data: npt.ArrayLike, output_error: npt.ArrayLike) -> Array:
+        """Return the derivative of Σ output_error · output by every number of a batch, as a new array of its shape.
+
+        With a one-hot error it says which pixels speak for that answer (Simonyan et al. 2014). Nothing is
+        dropped and `gradients` stay as they are, but what the last forward pass kept is overwritten.
+        """
+        layers = [layer for layer in self.layers if not isinstance(layer, DropoutLayer)]
+        data: Array = np.asarray(input_data, self.dtype)
+        for layer in layers:
+            data = layer.forward_propagate(data)
+        error: Array = np.asarray(output_error, self.dtype)
+        for layer in reversed(layers):
+            error = layer.input_error(error)
+        return np.array(error)
 
     def forward_propagate(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch, and let every layer keep what the way back needs.

@@ -15,6 +15,7 @@ from ai.nn import (
     MaxPoolingLayer,
     NeuralNetwork,
     correlation,
+    network,
 )
 
 
@@ -107,6 +108,20 @@ def test_dropout_does_nothing_in_predict():
     plain.values = network.values
     np.testing.assert_array_equal(network.predict(x), plain.predict(x))
     assert not np.array_equal(network.forward_propagate(x), plain.forward_propagate(x))
+
+
+def test_nothing_is_dropped_on_the_way_to_the_input():
+    network, plain = digits_network(dropout=0.9), digits_network(dropout=0.0)
+    plain.values = network.values
+    x, error = np.random.default_rng(1).random((4, 8, 8, 1)), np.eye(3)[[0, 1, 2, 0]]
+    np.testing.assert_array_equal(network.input_gradient(x, error), plain.input_gradient(x, error))
+
+
+def test_many_images_are_predicted_in_parts(monkeypatch):
+    x = np.random.default_rng(1).random((23, 8, 8, 1))
+    expected = digits_network().predict(x)
+    monkeypatch.setattr(network, "IMAGES", 10)
+    np.testing.assert_allclose(digits_network().predict(x), expected, rtol=1e-5)
 
 
 def test_dropout_is_reproducible():

@@ -135,6 +135,31 @@ def test_a_layer_alone_returns_its_input_error(name):
 
 
 @pytest.mark.parametrize("name", LAYER_ROWS)
+def test_the_way_back_to_the_input(name):
+    network = network_with(LAYER_ROWS[name]())
+    x, error = examples(network, BATCH, 9), np.random.default_rng(10).normal(size=(BATCH, 2))
+    network.gradients[:] = 7
+    gradient = network.input_gradient(x, error)
+    expected = numerical_gradient(lambda: np.sum(network.predict(x) * error), x.reshape(-1))
+    np.testing.assert_allclose(gradient, expected.reshape(x.shape), rtol=1e-6, atol=1e-8)
+    np.testing.assert_array_equal(network.gradients, 7)
+    network.forward_propagate(2 * x)
+    network.backward_propagate(error)
+    np.testing.assert_array_equal(gradient, network.input_gradient(x, error))
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
+def test_activations_are_what_each_layer_gives(name):
+    network = network_with(LAYER_ROWS[name]())
+    x = examples(network, BATCH, 11)
+    kept = network.activations(x)
+    assert len(kept) == len(network.layers)
+    np.testing.assert_allclose(kept[-1], network.predict(x))
+    for whole, one in zip(kept, network.activations(x[2]), strict=True):
+        np.testing.assert_allclose(one, whole[2], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
 def test_a_batch_equals_its_examples(name):
     network = network_with(LAYER_ROWS[name](), dtype=np.float32)
     x = examples(network, BATCH, 1).astype(np.float32)
