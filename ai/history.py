@@ -126,9 +126,7 @@ class History:
             case Point():
                 self._append_point(entry)
             case Checkpoint():
-                self.checkpoints.append(entry)
-                if len(self.checkpoints) > MOST_CHECKPOINTS:
-                    del self.checkpoints[1:-1:2]
+                self._append_checkpoint(entry)
             case Alteration():
                 self.alterations.append(entry)
             case Validation():
@@ -144,6 +142,13 @@ class History:
         row[: len(_NUMBERS)] = [getattr(point, name) for name in _NUMBERS]
         row[len(_NUMBERS) :] = point.parts
         self._told += 1
+
+    def _append_checkpoint(self, checkpoint: Checkpoint) -> None:
+        self.checkpoints.append(checkpoint)
+        if len(self.checkpoints) > MOST_CHECKPOINTS:
+            moments = np.array([each.decisions for each in self.checkpoints])
+            # The one whose neighbours are closest together is the least missed.
+            del self.checkpoints[1 + int((moments[2:] - moments[:-2]).argmin())]
 
     def _thin(self) -> None:
         kept = self._table[: self._length : 2].copy()

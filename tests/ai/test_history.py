@@ -1,0 +1,191 @@
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+from ai.history import (
+    CAPACITY,
+    COLUMNS,
+    HISTORY_FILE,
+    MOST_CHECKPOINTS,
+    PARTS,
+    Alteration,
+    Checkpoint,
+    History,
+    Point,
+    Validation,
+)
+from ai.nn import ModelFormatError
+
+
+def point(number):
+    return Point(**dict.fromkeys(COLUMNS, float(number)), landed=0.25, parts=tuple(range(len(PARTS))))
+
+
+def checkpoint(number, scale=None):
+    return Checkpoint(0.5 * number, number, 0.5, np.full(7, number, np.float32), scale)
+
+
+def full_history():
+    history = History()
+    for number in range(10):
+        history.append(point(number))
+    history.append(checkpoint(0))
+    history.append(checkpoint(300, {"count": 1, "mean": [0.5], "squares": [0.0]}))
+    history.append(Alteration(200, "learning_rate", 0.002, 0.001))
+    history.append(Alteration(200, "mirror", True, False))
+    history.append(Validation(100, 0.75, -3.5, True))
+    return history
+
+
+def test_columns_are_what_was_told():
+    history = full_history()
+    assert len(history) == 10
+    assert history["decisions"].tolist() == list(range(10))
+    assert history["landed"].tolist() == [0.25] * 10
+    assert history.parts.shape == (10, len(PARTS))
+    assert history[PARTS[-1]].tolist() == [len(PARTS) - 1] * 10
+    with pytest.raises(KeyError):
+        history["no such column"]
+
+
+@pytest.mark.parametrize("count", [1, 2, CAPACITY, CAPACITY + 1, CAPACITY + 2, 5 * CAPACITY + 3, 8 * CAPACITY])
+def test_points_are_thinned_evenly_and_the_latest_is_always_there(count):
+    history = History()
+    for number in range(count):
+        history.append(point(number))
+    told = history["decisions"]
+    assert len(told) == len(history) <= CAPACITY
+    assert len(told) >= min(count, CAPACITY // 2)
+    assert told[0] == 0
+    assert told[-1] == count - 1
+    gaps = np.diff(told)
+    assert len(np.unique(gaps[:-1])) <= 1
+    assert (gaps > 0).all()
+
+
+def test_checkpoints_are_thinned_and_the_first_and_last_are_kept():
+    history = History()
+    for number in range(5 * MOST_CHECKPOINTS):
+        history.append(checkpoint(number))
+        decisions = [each.decisions for each in history.checkpoints]
+        assert decisions[0] == 0
+        assert decisions[-1] == number
+        assert decisions == sorted(decisions)
+        assert len(decisions) <= MOST_CHECKPOINTS
+    assert max(np.diff(decisions)) <= 2 * 5 + 1
+
+
+def test_the_checkpoint_of_a_moment_is_the_last_one_before_it():
+    history = full_history()
+    assert [history.checkpoint_at(moment).decisions for moment in (-1, 0, 299, 300, 10**9)] == [0, 0, 0, 300, 300]
+    assert History().checkpoint_at(5) is None
+
+
+def same(one, other):
+    assert np.array_equal(one.points, other.points)
+    assert one.alterations == other.alterations
+    assert one.validations == other.validations
+    assert len(one.checkpoints) == len(other.checkpoints)
+    for first, second in zip(one.checkpoints, other.checkpoints, strict=True):
+        assert (first.decisions, first.seconds, first.success) == (second.decisions, second.seconds, second.success)
+        assert first.scale == second.scale
+        assert np.array_equal(first.values, second.values)
+        assert second.values.dtype == np.float32
+
+
+@pytest.mark.parametrize("extra", [0, CAPACITY + 5, 3 * CAPACITY])
+def test_what_is_written_is_read_and_goes_on_alike(tmp_path, extra):
+    history = full_history()
+    for number in range(10, extra):
+        history.append(point(number))
+    history.write(tmp_path)
+    again = History.read(tmp_path)
+    same(history, again)
+    for number in range(extra, extra + CAPACITY):
+        history.append(point(number))
+        again.append(point(number))
+    same(history, again)
+
+
+def test_it_can_be_sent_to_another_process_and_copied():
+    history = full_history()
+    same(history, pickle.loads(pickle.dumps(history)))
+    twin = history.copy()
+    history.append(point(99))
+    history.append(checkpoint(999))
+    same(full_history(), twin)
+
+
+def test_a_run_without_a_history_has_an_empty_one(tmp_path):
+    assert len(History.read(tmp_path)) == 0
+    History().write(tmp_path)
+    same(History(), History.read(tmp_path))
+
+
+def rewritten(folder, **changes):
+    with np.load(folder / HISTORY_FILE) as arrays:
+        kept = dict(arrays)
+    described = json.loads(str(kept["described"]))
+    for name, value in changes.items():
+        if name in kept:
+            kept[name] = value
+        else:
+            described[name] = value
+    kept["described"] = np.array(json.dumps(described))
+    np.savez(folder / HISTORY_FILE, **kept)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"version": 99},
+        {"stride": 0},
+        {"told": 1},
+        {"stride": "x"},
+        {"points": np.zeros((3, 2))},
+        {"points": np.zeros((CAPACITY + 1, len(COLUMNS) + 4 + len(PARTS)))},
+        {"values": np.full((2, 7), np.nan, np.float32)},
+        {"values": np.zeros((1, 7), np.float32)},
+        {"alterations": [{"decisions": 3}]},
+        {"checkpoints": 5},
+        {"validations": [[1, 2]]},
+        {"described": np.array("[]")},
+    ],
+)
+def test_nonsense_is_named(tmp_path, changes):
+    full_history().write(tmp_path)
+    if "described" in changes:
+        with np.load(tmp_path / HISTORY_FILE) as arrays:
+            kept = dict(arrays) | changes
+        np.savez(tmp_path / HISTORY_FILE, **kept)
+    else:
+        rewritten(tmp_path, **changes)
+    with pytest.raises(ModelFormatError, match=HISTORY_FILE):
+        History.read(tmp_path)
+
+
+def test_a_damaged_file_is_named_wherever_the_damage_is(tmp_path):
+    full_history().write(tmp_path)
+    whole = (tmp_path / HISTORY_FILE).read_bytes()
+    rng = np.random.default_rng(0)
+    for _ in range(150):
+        damaged = bytearray(whole)
+        for place in rng.integers(len(whole), size=3):
+            damaged[place] = rng.integers(256)
+        (tmp_path / HISTORY_FILE).write_bytes(damaged if rng.random() < 0.5 else damaged[: rng.integers(len(whole))])
+        try:
+            History.read(tmp_path)
+        except ModelFormatError:
+            continue
+
+
+def test_parts_of_a_reward_that_came_later_or_are_gone_do_no_harm(tmp_path):
+    history = full_history()
+    history.write(tmp_path)
+    columns = [*COLUMNS, "landed", "crashed", "out_of_bounds", "timed_out", *PARTS[:-1], "gone"]
+    rewritten(tmp_path, columns=columns)
+    again = History.read(tmp_path)
+    assert np.array_equal(again["success"], history["success"])
+    assert not again[PARTS[-1]].any()
