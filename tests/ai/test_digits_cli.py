@@ -1,0 +1,178 @@
+import json
+
+import numpy as np
+import pytest
+
+import ai.digit_training
+from ai.digit_config import DIGIT_PRESETS, DigitConfig, build_digit_network
+from ai.digit_runs import resume_digit_run, save_digit_run
+from ai.digit_training import LIVE, DigitTraining, run_digits
+from ai.digits import DigitClassifier
+from ai.mnist import load_part
+from ai.nn import ModelFormatError
+from main import main
+
+SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, averaging=0.9)
+
+
+@pytest.fixture(scope="module")
+def data():
+    """600 images: enough to see a network learn."""
+    images, labels = load_part("test")
+    return images[:600], labels[:600]
+
+
+@pytest.fixture
+def few(monkeypatch, data):
+    """Let the commands learn from few images."""
+    monkeypatch.setattr(ai.digit_training, "load_part", lambda part: data)
+
+
+def test_a_run_learns_and_tells_how_it_stands(data):
+    progress = list(run_digits(SMALL, seed=1, data=data))
+    assert [one.step for one in progress] == list(range(1, 31))
+    assert progress[-1].epoch == 3
+    assert progress[-1].steps == 30
+    assert [one.step for one in progress if one.held_out is not None] == [10, 20, 30]
+    assert np.mean([one.loss for one in progress[-5:]]) < 0.9 * np.mean([one.loss for one in progress[:5]])
+    assert progress[-1].best == max(one.held_out for one in progress if one.held_out is not None)
+    assert progress[0].learning_rate < progress[8].learning_rate > progress[-1].learning_rate
+
+
+def test_the_same_seed_gives_the_same_network(data):
+    def values(seed):
+        training = DigitTraining(SMALL, seed, data)
+        for _ in range(5):
+            training.advance()
+        return training.classifier.network.values
+
+    np.testing.assert_array_equal(values(2), values(2))
+    assert not np.array_equal(values(2), values(3))
+
+
+def test_live_knobs_can_be_sent_and_the_others_stay(data):
+    run = run_digits(SMALL, data=data)
+    next(run)
+    assert run.send(SMALL.changed(learning_rate=1e-5, final_learning_rate=1e-6, hidden=(3,))).learning_rate <= 1e-5
+    assert {"learning_rate", "augmentation"} <= set(LIVE)
+    assert "hidden" not in LIVE
+
+
+def test_held_out_images_are_never_learnt_from(data):
+    training = DigitTraining(SMALL, data=data)
+    assert len(training.images) == 500
+    learnt = {image.tobytes() for image in training.images}
+    assert not [image for image in training.held_images if image.tobytes() in learnt]
+    with pytest.raises(ValueError, match="leaves none"):
+        DigitTraining(SMALL.changed(held_out=600), data=data)
+
+
+def test_a_resumed_run_goes_on_as_if_it_had_never_stopped(data, tmp_path):
+    whole, first = DigitTraining(SMALL, 5, data), DigitTraining(SMALL, 5, data)
+    for _ in range(13):
+        first.advance()
+    save_digit_run(first, tmp_path / "run")
+    second = resume_digit_run(tmp_path / "run", data=data)
+    for training in (whole, second):
+        while not training.done:
+            training.advance()
+    np.testing.assert_array_equal(whole.classifier.network.values, second.classifier.network.values)
+    np.testing.assert_allclose(whole.average, second.average, atol=1e-7)
+    assert whole.best == second.best
+
+
+def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
+    training = DigitTraining(SMALL, data=data)
+    training.advance()
+    save_digit_run(training, tmp_path / "run")
+    (tmp_path / "run" / "last.npz").write_bytes(b"nothing")
+    with pytest.raises(ModelFormatError, match=r"last\.npz"):
+        resume_digit_run(tmp_path / "run", data=data)
+    (tmp_path / "run" / "training.json").write_text("{}")
+    with pytest.raises(ModelFormatError, match=r"training\.json"):
+        resume_digit_run(tmp_path / "run", data=data)
+
+
+def test_a_gradient_that_is_not_finite_ends_the_run(data):
+    training = DigitTraining(SMALL, data=data)
+    training.classifier.network.values[:] = np.nan
+    with pytest.raises(FloatingPointError, match="no longer finite"):
+        training.advance()
+
+
+@pytest.mark.parametrize("preset", DIGIT_PRESETS)
+def test_presets_build_networks_of_ten_outputs(preset):
+    network = build_digit_network(DIGIT_PRESETS[preset], np.random.default_rng(0))
+    assert DigitClassifier(network).predict(np.zeros((2, 28, 28))).shape == (2, 10)
+
+
+def test_classic_is_the_network_as_first_described():
+    network = build_digit_network(DIGIT_PRESETS["classic"], np.random.default_rng(0))
+    assert [layer.outputs for layer in network.layers if layer.outputs] == [100, 50, 10]
+    assert [layer.activation.name for layer in network.layers if hasattr(layer, "activation")] == ["tanh"] * 3
+    assert network.cost.name == "mse"
+
+
+def test_settings_are_checked_and_survive_json():
+    assert DigitConfig.from_json(json.loads(json.dumps(SMALL.to_json()))) == SMALL
+    for wrong in ({"dropout": 1.5}, {"cost": "guess"}, {"epochs": 1.5}, {"hidden": [0]}, {"warp": 9}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            DigitConfig.from_json(wrong)
+    for item in DigitConfig.__dataclass_fields__.values():
+        assert item.metadata["help"].endswith(".")
+        assert item.metadata["group"] in ("learning", "network", "images")
+
+
+@pytest.mark.usefixtures("few")
+def test_train_resume_evaluate(tmp_path, capsys):
+    run = str(tmp_path / "run")
+    small = ["--preset", "classic", "--set", "hidden=[16]", "--set", "held_out=100"]
+    assert main(["train-digits", *small, "--epochs", "3", "--seconds", "0", "--output", run]) == 0
+    assert run in capsys.readouterr().out
+    assert main(["train-digits", "--resume", run]) == 0
+    described = json.loads((tmp_path / "run" / "training.json").read_text())
+    assert described["preset"] == "classic"
+    assert described["changes"] == {"hidden": [16], "held_out": 100, "epochs": 3}
+    assert described["epochs"] == 3
+    assert len(described["history"]) == 3
+    assert not (tmp_path / "run" / "last.npz").exists(), "there is nothing to go on with"
+    assert main(["train-digits", "--resume", run]) == 1
+    assert "finished" in capsys.readouterr().err
+    assert main(["evaluate-digits", "--model", run, "--json"]) == 0
+    measured = json.loads(capsys.readouterr().out)
+    assert measured["accuracy"] == described["test"]
+    assert np.array(measured["confusion"]).sum() == measured["images"] == 10_000
+    assert len(measured["by_digit"]) == 10
+    assert main(["evaluate-digits", "--model", run]) == 0
+    assert "read right" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["train-digits"], "--output"),
+        (["train-digits", "--output", "x", "--preset", "magic"], "--preset is one of"),
+        (["train-digits", "--output", "x", "--set", "warp=9"], "warp=9"),
+        (["train-digits", "--output", "x", "--epochs", "0"], "epochs lies between"),
+        (["train-digits", "--resume", "nowhere"], "nowhere"),
+        (["evaluate-digits", "--model", "nowhere"], "nowhere"),
+    ],
+)
+@pytest.mark.usefixtures("few")
+def test_what_cannot_be_done_is_said_in_a_line(arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 1
+    told = capsys.readouterr().err
+    assert message in told
+    assert "Traceback" not in told
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("few")
+def test_a_folder_with_something_else_is_left_alone(tmp_path, capsys):
+    (tmp_path / "letters").mkdir()
+    (tmp_path / "letters" / "dear.txt").write_text("you")
+    options = ["--preset", "classic", "--epochs", "1", "--set", "held_out=100"]
+    assert main(["train-digits", *options, "--output", str(tmp_path / "letters")]) == 1
+    assert "letters" in capsys.readouterr().err
+    assert (tmp_path / "letters" / "dear.txt").read_text() == "you"
