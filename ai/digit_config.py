@@ -34,7 +34,7 @@ class DigitConfig:
     final_learning_rate: float = knob(1e-6, "What the learning rate falls to, along half a cosine.",
                                       "learning", low=1e-7, high=1.0, log=True, live=True)
     warm_up: float = knob(0.5, "Epochs over which the learning rate rises from 0.", "learning", low=0.0, high=10.0)
-    epochs: int = knob(20, "How often every training image is seen.", "learning", low=1, high=1000)
+    epochs: int = knob(12, "How often every training image is seen.", "learning", low=1, high=1000)
     batch_size: int = knob(50, "How many images each step learns from.", "learning", low=1, high=5000)
     optimizer: str = knob("adam", "How a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("softmax_cross_entropy", "How a wrong answer is measured.", "learning", choices=tuple(COSTS))
@@ -91,7 +91,7 @@ DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {
     "modern": DigitConfig(),
     "classic": DigitConfig(
         learning_rate=3e-3, cost="mse", smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
-        output_activation=True, dropout=0.0, augmentation=0.8, original=0.1, epochs=60, batch_size=100,
+        output_activation=True, dropout=0.0, augmentation=0.8, original=0.2, epochs=60, batch_size=100,
     ),
 }  # fmt: skip
 
