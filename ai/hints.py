@@ -28,6 +28,8 @@ _FASTEST: Final = 10.0  # m/s that a lander may gain or lose in a flight
 _FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
 _ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always
 _FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
+_FAR_SPAWNS: Final = ("random", "hard", "highest")  # of which none begins near the pad
+_SANE: Final = {"learning_rate": 2e-3, "final_learning_rate": 3e-4}
 _PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say how close it is
 
 
@@ -115,6 +117,11 @@ def _q_runs_away(run: Recent) -> bool:
     return not 2 * least <= run.last("mean_q") <= 2 * most
 
 
+def _dead_units(run: Recent) -> bool:
+    """More than half of the units give 0 whatever they are shown: then nothing can change them any more."""
+    return run.config.activation == "relu" and (run.dead_share or 0.0) > 0.5
+
+
 def _collapsed(run: Recent) -> bool:
     best = run.best()
     return best >= 0.6 and run.last("success", 12) <= best - 0.4
@@ -174,10 +181,15 @@ def _calm_q(run: Recent) -> Mapping[str, Any]:
 def _for_crashes(run: Recent) -> Mapping[str, Any]:
     config = run.config
     if config.learning_rate > 0.01:
-        return {"learning_rate": 2e-3, "final_learning_rate": 3e-4}
+        return _SANE
     if config.optimizer == "sgd" and config.learning_rate < 0.02:
         return {"optimizer": "adam"}
     return _for_short_sight(config)
+
+
+def _for_dead_units(run: Recent) -> Mapping[str, Any]:
+    leaky = {"activation": "leaky_relu"}
+    return _SANE | leaky if run.config.learning_rate > 0.01 else leaky
 
 
 def _for_short_sight(config: Config) -> Mapping[str, Any]:
@@ -192,6 +204,8 @@ def _for_hovering(run: Recent) -> Mapping[str, Any]:
         return {"epsilon_end": 0.05}
     if config.random_main > 0.4:
         return {"random_main": 0.3}
+    if config.spawn in _FAR_SPAWNS:
+        return {"spawn": "practice"}
     if config.weights.time > paid.time:
         return {"weights.time": paid.time}
     return _for_short_sight(config) or {"weights.time": round(1.5 * config.weights.time, 3)}
@@ -219,7 +233,7 @@ def _more_memory(run: Recent) -> Mapping[str, Any]:
 RULES: Final = (
     Rule("loss_explodes", _loss_explodes, _slower(10)),
     Rule("q_runs_away", _q_runs_away, _calm_q),
-    Rule("dead_units", lambda run: (run.dead_share or 0.0) > 0.5, lambda _: {"activation": "leaky_relu"}),
+    Rule("dead_units", _dead_units, _for_dead_units),
     Rule("collapsed", _collapsed, _slower(3), goes_back=True),
     Rule("crashes", _crashes, _for_crashes),
     Rule("hovers", _hovers, _for_hovering),

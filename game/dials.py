@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import Field, asdict, dataclass, fields
 from typing import Any, Final, Literal
 
@@ -91,6 +91,12 @@ def figure(value: Any) -> str:
         written = f"{value:.6g}"
         return f"{value:.7f}".rstrip("0") if "e-" in written else written.replace("-", "−")
     return f"{value:,}".replace(",", "\u2009").replace("-", "−")
+
+
+def told(changes: Mapping[str, Any]) -> str:
+    """Write what changes as the player reads it, given values by the names of dials."""
+    names = {dial.name: dial.label for dial in dials()}
+    return ", ".join(f"{names.get(name, name)} {figure(value)}" for name, value in changes.items())
 
 
 def _kind(item: Field[Any]) -> Kind:

@@ -1,0 +1,308 @@
+"""Made-up histories that do and do not set off each rule; runs as they were measured are in the comments."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ai.config import PRESETS, Config
+from ai.hints import HOLD, REST, RULES, STAY, Adviser, Hint, Recent, returns
+from ai.history import Checkpoint, History, Point
+from ai.rewards import RewardWeights
+from ai.sabotage import sabotaged
+from ai.training import Training
+
+MODERN = PRESETS["modern"]
+NAN = float("nan")
+HEALTHY = Point(
+    seconds=0.0, decisions=0.0, episodes=0.0, success=0.97, mean_return=100.0, loss=0.05, mean_q=0.7, epsilon=0.05,
+    stage=0.0, steps_per_second=5e4, landed=0.97, crashed=0.02, out_of_bounds=0.0, timed_out=0.01,
+)  # fmt: skip
+Curve = Callable[[float], Point]  # of the share of the run that is over
+
+
+def history(curve: Curve, points: int = 400, decisions: float = 400_000, seconds: float = 40.0) -> History:
+    made = History()
+    for number in range(1, points + 1):
+        share = number / points
+        made.append(replace(
+            curve(share), seconds=share * seconds, decisions=share * decisions, episodes=share * decisions / 150
+        ))  # fmt: skip
+    return made
+
+
+def points(**values: Any) -> Curve:
+    return lambda _: replace(HEALTHY, **values)
+
+
+def later(when: float, **values: Any) -> Curve:
+    """Healthy until a share of the run is over."""
+    return lambda share: replace(HEALTHY, **values) if share > when else HEALTHY
+
+
+def holding(curve: Curve, config: Config = MODERN, dead_share: float | None = None, **options: Any) -> set[str]:
+    run = Recent(history(curve, **options), config, dead_share)
+    return {rule.name for rule in RULES if rule.holds(run)}
+
+
+def remedy(name: str, curve: Curve, config: Config = MODERN) -> dict[str, Any]:
+    rule = next(rule for rule in RULES if rule.name == name)
+    return dict(rule.remedy(Recent(history(curve), config, None)))
+
+
+# Rules
+
+
+@pytest.mark.parametrize("base", PRESETS)
+def test_a_healthy_run_is_left_alone(base: str):
+    assert holding(points(), PRESETS[base]) == set()
+
+
+def test_a_run_that_has_just_begun_is_left_alone():
+    falls = points(success=0.0, landed=0.0, crashed=0.6, timed_out=0.4, epsilon=0.9, loss=0.3, mean_q=-0.5)
+    assert holding(falls, points=50, decisions=50_000) == set()
+
+
+LANDS_NOTHING = {"success": 0.0, "landed": 0.0}
+CRASHES = LANDS_NOTHING | {"crashed": 0.97, "out_of_bounds": 0.02, "timed_out": 0.01}
+HOVERS = LANDS_NOTHING | {"crashed": 0.0, "out_of_bounds": 0.02, "timed_out": 0.98}
+
+
+@pytest.mark.parametrize(
+    ("name", "curve", "config"),
+    [
+        ("loss_explodes", later(0.97, loss=0.8), MODERN),
+        ("loss_explodes", later(0.99, loss=NAN), MODERN),
+        ("q_runs_away", later(0.9, mean_q=12.0), MODERN),
+        ("q_runs_away", later(0.9, mean_q=-30.0), MODERN),
+        ("q_runs_away", later(0.999, mean_q=float("inf")), MODERN),
+        ("collapsed", later(0.9, success=0.3), MODERN),
+        ("crashes", points(**CRASHES), MODERN),
+        ("hovers", points(**HOVERS), MODERN),
+        ("small_memory", points(), MODERN.changed(replay_size=256)),
+        ("overfed", points(), MODERN.changed(num_envs=1)),
+        ("random", points(epsilon=0.6), MODERN),
+        ("plateau", points(success=0.4), MODERN),
+    ],
+)
+def test_each_rule_holds_for_what_it_is_about(name: str, curve: Curve, config: Config):
+    assert holding(curve, config) == {name}
+
+
+def test_dead_units_are_counted_where_units_can_die():
+    assert holding(points(), dead_share=0.7) == {"dead_units"}
+    assert holding(points(), dead_share=0.3) == set()
+    assert holding(points(), MODERN.changed(activation="tanh"), dead_share=0.7) == set()
+
+
+@pytest.mark.parametrize(
+    ("curve", "config"),
+    [
+        (later(0.97, loss=0.3), MODERN),  # modern rises and falls by a factor of 3
+        (later(0.999, success=0.3), MODERN),  # one bad point
+        (later(0.9, success=0.75), MODERN),
+        (points(mean_q=2.9), MODERN),
+        (points(crashed=0.7, landed=0.3, success=0.3 + 0.6), MODERN),
+        (lambda share: replace(HEALTHY, success=0.05 + 0.7 * share), MODERN),  # slow, but it gets better
+        (lambda share: replace(HEALTHY, stage=float(share > 0.9), success=0.1 if share > 0.9 else 0.97), MODERN),
+        (lambda share: replace(HEALTHY, loss=NAN if share < 0.5 else 0.05), MODERN),
+    ],
+)  # fmt: skip
+def test_rules_hold_their_peace(curve: Curve, config: Config):
+    assert holding(curve, config) == set()
+
+
+@pytest.mark.parametrize("column", ["loss", "mean_q", "success", "epsilon", "landed", "crashed", "timed_out"])
+def test_no_number_stops_a_rule(column: str):
+    for when in (0.0, 0.5, 0.999):
+        holding(later(when, **{column: NAN}))
+    holding(points(**{column: NAN}), points=1)
+
+
+def test_what_a_flight_can_pay_follows_the_weights():
+    least, most = returns(MODERN)
+    assert least < -4.0  # hovering for the whole time, and a crash
+    assert 2.5 < most < 5.0
+    doubled = MODERN.changed(reward_scale=0.02)
+    assert returns(doubled) == pytest.approx((2 * least, 2 * most))
+    assert returns(sabotaged(MODERN, "no_shaping")) == pytest.approx((-1.2, 1.2))
+
+
+# Remedies
+
+
+@pytest.mark.parametrize(
+    ("name", "curve", "config", "cure"),
+    [
+        ("loss_explodes", points(), MODERN, {"learning_rate": 2e-4, "final_learning_rate": 2e-4}),
+        ("loss_explodes", points(), MODERN.changed(learning_rate=1e-5, final_learning_rate=1e-6),
+         {"learning_rate": 1e-5}),
+        ("q_runs_away", points(), MODERN.changed(double=False), {"double": True}),
+        ("q_runs_away", points(), sabotaged(MODERN, "no_target"), {"target_rate": 0.005}),
+        ("crashes", points(), sabotaged(MODERN, "plain_steps"), {"optimizer": "adam"}),
+        ("crashes", points(), sabotaged(MODERN, "rate_times_100"),
+         {"learning_rate": 2e-3, "final_learning_rate": 3e-4}),
+        ("crashes", points(), sabotaged(MODERN, "short_sight"), {"discount": 0.985}),
+        ("hovers", points(), sabotaged(MODERN, "no_shaping"),
+         {"weights.distance": 0.5, "weights.speed": 0.05, "weights.alignment": 30.0}),
+        ("hovers", points(), sabotaged(MODERN, "no_exploration"), {"epsilon_end": 0.05}),
+        ("hovers", points(), sabotaged(MODERN, "uniform_actions"), {"random_main": 0.3}),
+        ("hovers", points(), sabotaged(MODERN, "no_practice"), {"spawn": "practice"}),
+        ("hovers", points(), MODERN.changed(weights=RewardWeights(time=0.0)), {"weights.time": -0.2}),
+        ("hovers", points(), MODERN, {"weights.time": -0.3}),
+        ("overfed", points(), sabotaged(MODERN, "one_lander"), {"num_envs": 256}),
+        ("random", points(), MODERN.changed(epsilon_end=0.5), {"epsilon_end": 0.05}),
+        ("random", points(), PRESETS["classic"], {"epsilon_decay": 0.995}),
+        ("plateau", points(), sabotaged(MODERN, "no_n_step"), {"n_step": 10}),
+    ],
+)  # fmt: skip
+def test_remedies_follow_what_is_set(name: str, curve: Curve, config: Config, cure: dict[str, Any]):
+    assert remedy(name, curve, config) == cure
+
+
+@pytest.mark.parametrize("name", [rule.name for rule in RULES])
+@pytest.mark.parametrize("base", PRESETS)
+def test_a_configuration_takes_every_remedy(name: str, base: str):
+    for knob, value in remedy(name, points(), PRESETS[base]).items():
+        field, _, part = knob.partition(".")
+        weights = replace(PRESETS[base].weights, **{part: value}) if part else None
+        PRESETS[base].changed(**{field: weights or value})
+
+
+def test_a_collapse_leads_back_to_the_best_checkpoint():
+    run = history(later(0.6, success=0.2))
+    for decisions, success in ((0, 0.0), (200_000, 0.98), (380_000, 0.2)):
+        run.append(Checkpoint(0.0, decisions, success, np.zeros(3, dtype=np.float32)))
+    hint = watch(Adviser(MODERN), run)[-1]
+    assert hint is not None
+    assert (hint.name, hint.back_to) == ("collapsed", 200_000)
+    assert hint.remedy["learning_rate"] < MODERN.learning_rate
+
+
+# The adviser
+
+
+def watch(adviser: Adviser, run: History, config: Config = MODERN, start: int = 0) -> list[Hint | None]:
+    """Let an adviser see a run grow, point by point; what it shows after each."""
+    growing, shown = History(), []
+    numbers = [*run.points]
+    for checkpoint in run.checkpoints:
+        growing.append(checkpoint)
+    for number, row in enumerate(numbers):
+        growing.append(Point(*row[:14].tolist(), parts=tuple(row[14:].tolist())))
+        if number >= start:
+            shown.append(adviser.advise(growing, config))
+    return shown
+
+
+def names(shown: list[Hint | None]) -> list[str]:
+    return [hint.name if hint else "" for hint in shown]
+
+
+def test_a_hint_appears_once_it_has_held_and_not_before():
+    shown = names(watch(Adviser(MODERN), history(points(**HOVERS))))
+    first = shown.index("hovers")
+    assert set(shown[:first]) == {""}
+    assert first == pytest.approx(150 + 10 * HOLD, abs=2)  # ten points a second; late after 150,000 decisions
+
+
+def test_a_flicker_shows_nothing():
+    flicker = history(lambda share: replace(HEALTHY, epsilon=0.9 if int(400 * share) % 20 < 6 else 0.1))
+    assert set(names(watch(Adviser(MODERN), flicker))) == {""}
+
+
+def test_a_hint_stays_for_a_while_and_goes_when_it_is_over():
+    spell = history(lambda share: replace(HEALTHY, epsilon=0.9 if 0.5 < share < 0.57 else 0.1))
+    shown = names(watch(Adviser(MODERN), spell))
+    assert shown.count("random") == pytest.approx(10 * STAY, abs=3)
+    assert shown[-1] == ""
+    spells = "".join("x" if each else " " for each in shown).split()
+    assert len(spells) == 1
+
+
+def test_the_most_severe_comes_first():
+    both = history(points(**CRASHES, epsilon=0.9, mean_q=50.0))
+    assert names(watch(Adviser(MODERN), both))[-1] == "q_runs_away"
+
+
+def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once():
+    adviser = Adviser(MODERN)
+    run = history(points(**HOVERS), seconds=40.0 + REST)
+    shown = watch(adviser, run)
+    assert shown[-1] is not None
+    assert adviser.apply() == {"weights.time": -0.3}
+    assert adviser.can_undo
+    assert adviser.undo() == {"weights.time": -0.2}
+    assert not adviser.can_undo
+    assert adviser.undo() == {}
+
+    adviser = Adviser(MODERN)
+    growing, moments = History(), []
+    for row in run.points:
+        growing.append(Point(*row[:14].tolist()))
+        if adviser.advise(growing, MODERN):
+            moments.append(float(row[0]))
+            adviser.apply()
+    assert len(moments) == 2
+    assert moments[1] - moments[0] >= REST
+
+
+def test_a_dismissed_hint_leaves_room_for_another():
+    adviser = Adviser(MODERN)
+    run = history(points(**HOVERS, epsilon=0.9))
+    assert names(watch(adviser, run, start=0))[-1] == "hovers"
+    adviser.dismiss()
+    growing = run.copy()
+    hint = adviser.advise(growing, MODERN)
+    assert hint is not None
+    assert hint.name == "random"
+
+
+def test_a_remedy_that_changes_nothing_is_none():
+    config = MODERN.changed(learning_rate=1e-5, final_learning_rate=1e-5)
+    shown = watch(Adviser(config), history(later(0.5, loss=NAN)), config)
+    assert shown[-1] == Hint("loss_explodes", {})
+
+
+def test_another_run_begins_without_the_past():
+    adviser = Adviser(MODERN)
+    watch(adviser, history(points(**HOVERS)))
+    assert adviser.shown
+    assert adviser.advise(history(points(), points=3, seconds=0.3), MODERN) is None
+    assert adviser.advise(History(), MODERN) is None
+
+
+def test_remedies_are_named_as_knobs_are():
+    for rule in RULES:
+        for name in rule.remedy(Recent(history(points()), PRESETS["classic"], None)):
+            attrgetter(name)(MODERN)
+
+
+# Real runs, short ones
+
+
+def live(config: Config, decisions: int, pace: float) -> list[str]:
+    """What an adviser shows while a real run takes so many decisions, `pace` of them a second."""
+    training, run, adviser, shown = Training(config, evaluate_every=0), History(), Adviser(config), []
+    while training.agent.decisions < decisions:
+        progress = training.advance()
+        run.append(Point(
+            progress.decisions / pace, progress.decisions, progress.episodes, progress.success_rate,
+            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, 0.0, 0.0, *progress.shares,
+        ))  # fmt: skip
+        hint = adviser.advise(run, config)
+        shown.append(hint.name if hint else "")
+    return shown
+
+
+def test_nothing_is_said_of_a_run_that_starts_well():
+    assert set(live(MODERN.changed(updates=1), 30_000, 1_000)) == {""}
+
+
+@pytest.mark.parametrize(("name", "hint"), [("no_replay", "small_memory"), ("one_lander", "overfed")])
+def test_what_is_plain_from_the_settings_is_said_soon(name: str, hint: str):
+    config = sabotaged(MODERN, name)
+    assert live(config, 20 * config.num_envs, 5 * config.num_envs)[-1] == hint
