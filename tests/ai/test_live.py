@@ -1,0 +1,391 @@
+import pickle
+from dataclasses import fields, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from ai import live as module
+from ai.agent import DeepQAgent
+from ai.config import Config
+from ai.history import PARTS, Alteration, Checkpoint, History, Point, Validation
+from ai.lander import Outcome
+from ai.lander_task import LanderTask
+from ai.live import (
+    CAREFUL,
+    REVERTED,
+    Begun,
+    Change,
+    Insight,
+    Refused,
+    Revert,
+    Save,
+    Saved,
+    Sight,
+    agent_of,
+    live,
+    turned,
+)
+from ai.nn import ModelFormatError
+from ai.rewards import RewardWeights
+from ai.runs import resume_run
+from ai.training import Training
+
+TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000, spawn="near")
+
+
+@pytest.fixture
+def begin():
+    """Begins runs, and closes them."""
+    begun = []
+
+    def begin(config=TINY, seed=0, **options):
+        begun.append(live(config, seed, **options))
+        return begun[-1]
+
+    yield begin
+    for each in begun:
+        each.close()
+
+
+def told_in(run, turns):
+    return [message for _ in range(turns) for message in next(run)]
+
+
+def of(kind, told):
+    return [message for message in told if isinstance(message, kind)]
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"num_envs": 1, "success_pass": True, "fly_target": False, "spawn": "curriculum"}]
+)
+def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
+    monkeypatch.setattr(LanderTask, "evaluate_every", 640)
+    monkeypatch.setattr(LanderTask, "validation_episodes", 5)
+    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    config = TINY.changed(**changes)
+    run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
+    told = told_in(run, 1)
+    scores = []
+    for _ in range(90):
+        told += next(run)
+        score = headless.advance().evaluation
+        scores += [score] if score else []
+    answer = run.send(Save(tmp_path / "run"))
+    assert of(Saved, answer) == [Saved(tmp_path / "run")]
+    saved = resume_run(tmp_path / "run")
+    assert headless.agent.train_count > 0
+    for network in ("online", "target"):
+        assert np.array_equal(getattr(saved.agent, network).values, getattr(headless.agent, network).values)
+    assert saved.best == headless.best
+    if headless.best_values is not None:
+        assert np.array_equal(saved.best_values, headless.best_values)
+    tried = of(Validation, [*told, *answer])
+    assert [(each.success, each.mean_return) for each in tried] == [(each.success, each.mean_return) for each in scores]
+    assert [each.decisions for each in tried] == [640 * (each + 1) for each in range(len(scores))]
+    assert len(tried) == (4 if config.num_envs == 32 else 0)
+
+
+def test_the_first_turn_says_how_it_begins(begin):
+    first = next(begin(TINY, 7))
+    assert of(Begun, first) == [Begun(TINY, 7, 0)]
+    (checkpoint,) = of(Checkpoint, first)
+    assert (checkpoint.decisions, checkpoint.seconds) == (0, 0.0)
+    assert np.array_equal(checkpoint.values, Training(TINY, 7).agent.network.values)
+    assert len(of(Sight, first)) == len(of(Insight, first)) == 1
+
+
+def test_every_message_can_be_sent_to_another_process(begin):
+    run = begin()
+    for message in [*told_in(run, 120), *run.send(Change("discount", 0.9)), *run.send(Change("nope", 1))]:
+        assert type(pickle.loads(pickle.dumps(message))) is type(message)
+
+
+def test_sights_show_flights_as_they_end_and_what_they_have_earned(begin):
+    run = begin()
+    sights = of(Sight, told_in(run, 150))
+    assert [sight.decisions for sight in sights] == [32 * number for number in range(150)]
+    earned = np.zeros(32)
+    ends = 0
+    for before, sight in pairwise(sights):
+        assert sight.position.shape == (32, 2)
+        assert {part.dtype for part in (sight.position, sight.angle, sight.earned)} == {np.dtype(np.float32)}
+        assert sight.action.dtype == sight.outcome.dtype == np.int8
+        goes_on = before.outcome == Outcome.FLYING
+        # No lander moves further than that in 1/15 s: those whose flight has ended are still where it did.
+        assert (np.abs(sight.position - before.position)[goes_on] < 1.5).all()
+        began_anew = ~goes_on
+        assert (np.abs(sight.earned[began_anew]) < 150).all()
+        earned = np.where(began_anew, 0.0, earned)
+        ends += int((sight.outcome != Outcome.FLYING).sum())
+    assert ends > 3
+
+
+def test_what_flights_earned_is_the_sum_of_its_parts(begin):
+    run = begin()
+    told = told_in(run, 200)
+    points = of(Point, told)
+    assert (np.diff([point.decisions for point in points]) == 256).all()
+    last = points[-1]
+    assert last.episodes > 10
+    assert sum(last.parts) == pytest.approx(last.mean_return, abs=1e-3)
+    assert len(last.parts) == len(PARTS)
+    assert last.landed + last.crashed + last.out_of_bounds + last.timed_out == pytest.approx(1.0)
+    assert last.landed == last.success
+    ended = np.concatenate([sight.outcome[sight.outcome != 0] for sight in of(Sight, told)])
+    upto = ended[: int(last.episodes)][-100:]
+    assert last.crashed == pytest.approx((upto == Outcome.CRASHED).mean(), abs=0.05)
+
+
+def test_the_careful_lander_acts_at_random_the_least():
+    training = Training(TINY.changed(epsilon_spread=0.7), 0, evaluate_every=0)
+    spread = training._spread(0.3)
+    assert spread.argmin() == CAREFUL
+    assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
+
+
+def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
+    run = begin(TINY.changed(normalise_inputs=True))
+    checkpoints = of(Checkpoint, told_in(run, 200))
+    assert [each.decisions for each in checkpoints] == [0, 2528, 5056]
+    other = begin(TINY.changed(normalise_inputs=True))
+    again = of(Checkpoint, told_in(other, 90))
+    assert np.array_equal(checkpoints[1].values, again[1].values)
+    training = Training(TINY.changed(normalise_inputs=True), 0, evaluate_every=0)
+    while training.agent.decisions < 2528:
+        training.advance()
+    agent = agent_of(training.config, checkpoints[1])
+    assert np.array_equal(agent.q_values(training.observation), training.agent.q_values(training.observation))
+    with pytest.raises(ValueError, match="parameters"):
+        agent_of(TINY.changed(hidden=(9,)), checkpoints[1])
+
+
+def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
+    run = begin()
+    told_in(run, 30)
+    (answer,) = run.send(Change("learning_rate", 0.05))
+    assert answer == Alteration(29 * 32, "learning_rate", TINY.learning_rate, 0.05)
+    (answer,) = run.send(Change("weights.time", -1.0))
+    assert answer == Alteration(29 * 32, "weights.time", TINY.weights.time, -1.0)
+    assert of(Sight, next(run))[0].decisions == 30 * 32
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("no_such_knob", 1, "no setting"),
+        ("", 1, "no setting"),
+        ("weights.charm", 1.0, "no setting"),
+        ("discount.time", 1.0, "no setting"),
+        ("hidden", (4,), "cannot change"),
+        ("num_envs", 4, "cannot change"),
+        ("learning_rate", 1e9, "between"),
+        ("learning_rate", float("nan"), "between"),
+        ("learning_rate", "fast", "between"),
+        ("batch_size", 2.5, "whole"),
+        ("double", 1, "yes or no"),
+        ("weights.time", float("inf"), "finite"),
+        ("weights.time", None, "finite"),
+        ("weights", 3, "finite"),
+    ],
+)
+def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin, name, value, words):
+    run, quiet = begin(), begin()
+    told_in(run, 10)
+    told_in(quiet, 10)
+    (answer,) = run.send(Change(name, value))
+    assert isinstance(answer, Refused)
+    assert words in answer.problem
+    told, expected = of(Sight, told_in(run, 30))[-1], of(Sight, told_in(quiet, 30))[-1]
+    assert np.array_equal(told.position, expected.position)
+
+
+def live_knobs():
+    return [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "weights"]
+
+
+ELSEWHERE = {
+    "batch_size": 64, "updates": 3, "mirror": False, "double": False, "fly_target": False, "target_every": 7,
+    "success_pass": True, "success_batch_size": 16, "epsilon_decisions": 100, "epsilon_decay": 0.91,
+    "steadiness": 0.5, "discount": 0.9,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", live_knobs())
+def test_every_live_knob_makes_a_difference(begin, name):
+    # What a knob needs for its effect to show within a few flights.
+    config = TINY.changed(success_pass=name == "success_batch_size", n_step=3, gradient_clip=0.5)
+    config = config.changed(epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, horizon=1000, reward_scale=1.0)
+    config = config.changed(epsilon_decisions=0 if name == "epsilon_decay" else 2000)
+    value = ELSEWHERE.get(name, getattr(config, name) * 0.8)
+    run, quiet = begin(config), begin(config)
+    if name.startswith("success"):
+        told_in(run, 5), told_in(quiet, 5)
+        for each in (run, quiet):  # there are no landings yet to learn from: give it some
+            training = each.gi_frame.f_locals["run"].training
+            rng = np.random.default_rng(0)
+            cells = training.agent.replay.cells._replace()
+            picked = [part[:64].copy() for part in cells]
+            picked[0] = rng.normal(size=picked[0].shape).astype(np.float32)
+            training.agent.successes.add(type(cells)(*picked))
+    told_in(run, 10), told_in(quiet, 10)
+    assert isinstance(run.send(Change(name, value))[0], Alteration)
+    told_in(run, 60), told_in(quiet, 60)
+    ours, theirs = (each.gi_frame.f_locals["run"].training for each in (run, quiet))
+    assert getattr(ours.agent.config, name) == value
+    same = np.array_equal(ours.observation, theirs.observation)
+    assert not (same and np.array_equal(ours.agent.network.values, theirs.agent.network.values))
+
+
+def test_turned_weights_pay_in_the_run_that_goes_on(begin):
+    run = begin(TINY.changed(spawn="fixed"))
+    told_in(run, 20)
+    run.send(Change("weights.time", -100.0))
+    before = of(Sight, next(run))[0].earned
+    after = of(Sight, next(run))[0].earned
+    assert ((after - before) < -300).all()  # four physics steps
+
+
+def test_turning_gives_a_configuration():
+    assert turned(TINY, "weights.feet", 2.0) == TINY.changed(weights=replace(TINY.weights, feet=2.0))
+    assert turned(TINY, "weights", RewardWeights(feet=3.0)).weights.feet == 3.0
+    assert turned(TINY, "updates", 2) == TINY.changed(updates=2)
+
+
+def test_it_goes_back_to_a_checkpoint_and_time_goes_on(begin):
+    run = begin()
+    told = told_in(run, 120)
+    first, second = of(Checkpoint, told)
+    answer = run.send(Revert(second.decisions + 5))
+    assert of(Alteration, answer) == [Alteration(119 * 32, REVERTED, None, second.decisions)]
+    assert np.array_equal(of(Insight, answer)[0].values, second.values)
+    answer = run.send(Revert(0))
+    assert np.array_equal(of(Insight, answer)[0].values, first.values)
+    assert of(Sight, next(run))[0].decisions == 120 * 32
+
+
+def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
+    run = begin(TINY, 5)
+    history = History()
+    for message in told_in(run, 100):
+        history.append(message)
+    (change,) = run.send(Change("updates", 2))
+    assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
+    again = begin(Config(), 99, resume=tmp_path / "run")
+    first = next(again)
+    assert of(Begun, first) == [Begun(TINY.changed(updates=2), 5, 99 * 32)]
+    assert np.array_equal(of(Insight, first)[0].values, DeepQAgent.load(tmp_path / "run" / "last").online.values)
+    kept = History.read(tmp_path / "run")
+    assert np.array_equal(kept.points, history.points)
+    assert [each.decisions for each in kept.checkpoints] == [each.decisions for each in history.checkpoints]
+    assert kept.alterations == [change]
+    sights = of(Sight, told_in(again, 3))
+    assert sights[-1].decisions == 102 * 32
+    assert resume_run(tmp_path / "run").best is None  # nobody has tried it yet
+
+
+def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
+    run = begin(TINY, keep=tmp_path / "keep")
+    told_in(run, 50)
+    assert not (tmp_path / "keep").exists()
+    run.close()
+    assert resume_run(tmp_path / "keep").agent.decisions == 49 * 32
+    unused = begin(TINY, keep=tmp_path / "unused")
+    next(unused)
+    unused.close()
+    assert not (tmp_path / "unused").exists()
+
+
+def test_it_keeps_itself_by_the_clock(begin, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    run = begin(TINY, keep=tmp_path / "keep")
+    told_in(run, 2)
+    monkeypatch.setattr(module, "KEEP_SECONDS", 1e9)
+    run.gi_frame.f_locals["run"]._writing.result()
+    told_in(run, 20)
+    assert resume_run(tmp_path / "keep").agent.decisions == 32
+
+
+def full(*_):
+    raise OSError(28, "No space left on device")
+
+
+def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    run = begin(TINY, keep=tmp_path / "keep")
+    told_in(run, 10)
+    assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
+    monkeypatch.setattr(History, "write", full)
+    assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run", "No space left on device")]
+    assert resume_run(tmp_path / "run").agent.decisions == 9 * 32  # what was there before is whole
+    told = told_in(run, 100)
+    assert of(Saved, told) == [Saved(tmp_path / "keep", "No space left on device")]
+    assert len(of(Sight, told)) == 100
+    monkeypatch.undo()
+    run.close()
+    assert resume_run(tmp_path / "keep").agent.decisions == 109 * 32
+
+
+def test_a_folder_that_holds_something_else_is_left_alone(begin, tmp_path):
+    (tmp_path / "diary.txt").write_text("dear diary")
+    run = begin()
+    told_in(run, 2)
+    (saved,) = of(Saved, run.send(Save(tmp_path)))
+    assert "something else" in saved.problem
+    assert (tmp_path / "diary.txt").exists()
+
+
+def until_it_fails(run, told):
+    for _ in range(200):
+        told += next(run)
+
+
+def test_numbers_that_run_away_stop_the_run_and_the_last_good_network_is_kept(begin, tmp_path):
+    run = begin(TINY, keep=tmp_path / "keep")
+    told = told_in(run, 120)
+    run.gi_frame.f_locals["run"].training.agent.replay.cells.reward[:] = np.nan
+    with pytest.raises(FloatingPointError, match=r"learning step \d+; most likely the learning rate of 0.0"):
+        until_it_fails(run, told)
+    good = of(Checkpoint, told)[-1]
+    assert good.decisions > 0
+    kept = resume_run(tmp_path / "keep")
+    assert np.array_equal(kept.agent.network.values, good.values)
+    assert History.read(tmp_path / "keep").checkpoints[-1].decisions == good.decisions
+    again = begin(TINY, resume=tmp_path / "keep")
+    assert of(Point, told_in(again, 30))
+
+
+def test_no_checkpoint_and_no_save_holds_what_is_not_finite(begin, tmp_path):
+    run = begin(TINY, keep=tmp_path / "keep")
+    told = told_in(run, 78)
+    inside = run.gi_frame.f_locals["run"]
+    assert of(Saved, run.send(Save(tmp_path / "keep"))) == [Saved(tmp_path / "keep")]
+    inside.training.agent.target.values[3] = np.nan  # behind the back of every check
+    inside.training.agent.learn = lambda: None
+    (saved,) = of(Saved, run.send(Save(tmp_path / "keep")))
+    assert "finite" in saved.problem
+    with pytest.raises(FloatingPointError, match="not finite after learning step"):
+        until_it_fails(run, told)
+    assert all(np.isfinite(each.values).all() for each in of(Checkpoint, told))
+    assert np.isfinite(resume_run(tmp_path / "keep").agent.network.values).all()
+
+
+def test_there_must_be_a_run_to_go_on_with(begin, tmp_path):
+    with pytest.raises(ModelFormatError):
+        next(begin(resume=tmp_path / "nothing"))
+
+
+def test_only_landers_can_be_looked_into(begin):
+    pytest.importorskip("gymnasium")
+    from ai.gym_task import gym_config
+
+    with pytest.raises(ValueError, match="CartPole"):
+        next(begin(gym_config("CartPole-v1")))
+
+
+def test_a_save_that_was_cut_between_its_two_renames_is_put_back(begin, tmp_path):
+    run = begin()
+    told_in(run, 5)
+    run.send(Save(tmp_path / "run"))
+    (tmp_path / "run").rename(tmp_path / ".run.old")
+    assert resume_run(tmp_path / "run").agent.decisions == 4 * 32
