@@ -22,8 +22,8 @@ class Layer(ABC):
     """One step of a network, on arrays of shape (batch, values), or images (batch, height, width, channels).
 
     `forward_propagate` and `backward_propagate` write into arrays that are kept while the batch size stays
-    the same, so what they return lasts until their next call. `predict` returns a new array, and also takes
-    one example without the batch axis.
+    the same, so what they return lasts until their next call. `predict` returns a new array, or its input where
+    there is nothing to compute, and also takes one example without the batch axis.
     """
 
     settings: tuple[str, ...] = ()  # arguments of the constructor that are stored with the layer
