@@ -90,6 +90,13 @@ class Flight:
         hands = self.recording.hands
         return hands.count(Hand.HUMAN) / len(hands) if hands else 1.0
 
+    def change_network(self, network: Flyer | None) -> None:
+        """Let another network take the stick from here on; without one, the person has it."""
+        self.network = network
+        self._held_for = 0
+        if network is None:
+            self.hand = Hand.HUMAN
+
     def hand_over(self) -> bool:
         """Give the stick to the other one. False if there is no other, or nothing left to fly."""
         if self.over or (self.network is None and self.hand is Hand.HUMAN):

@@ -81,6 +81,7 @@ PAUSE_TITLE: Final = "Paused"
 PAUSE_RESUME: Final = "Resume"
 PAUSE_RETRY: Final = "Retry"
 PAUSE_NEW_STARTS: Final = "New starts"
+PAUSE_NETWORK: Final = "Network: {name}"
 PAUSE_SETTINGS: Final = "Settings"
 PAUSE_LEAVE: Final = "Leave"
 
@@ -157,6 +158,7 @@ WATCH_MANY: Final = "{count} landers"
 WATCH_LANDED: Final = "% landed"
 WATCH_COUNTS: Final = "{landed} landed  ·  {lost} lost"
 WATCH_MODEL: Final = "Flown by"
+WATCH_ALL: Final = "all {count}"
 WATCH_COUNT: Final = "Landers"
 WATCH_SPEED: Final = "Speed"
 WATCH_PROBLEM: Final = "{name} cannot fly: {problem}"
@@ -422,7 +424,7 @@ SABOTAGES: Final = {
     "no_target": (
         "No target",
         "No slower copy to aim at: the targets move with every step. Watch the loss, and mean Q.",
-        "Hardly missed here: both seeds landed 99% after 100,000 decisions. The other parts carry it.",
+        "Hardly missed: both seeds landed 99% after 100,000 decisions, as early as with it.",
     ),
     "no_replay": (
         "No replay",

@@ -15,7 +15,7 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.tokens import MARGIN, NIGHT0, VIEW_SIZE
-from game.ui.widgets import Word
+from game.ui.widgets import OnPress, Word
 
 _FIRST_WORD: Final = 304
 _LINE: Final = 44
@@ -28,13 +28,18 @@ class Pause:
         below: the scene to show; it is not advanced.
         retry: begins the scene below anew; without it there is no such word.
         retry_word: what that is called there.
+        more: gives further words, with what they do; asked each time that the column is built.
 
     """
 
     def __init__(
-        self, below: Scene, retry: Callable[[], None] | None = None, retry_word: str = texts.PAUSE_RETRY
+        self,
+        below: Scene,
+        retry: Callable[[], None] | None = None,
+        retry_word: str = texts.PAUSE_RETRY,
+        more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
-        self._below, self._retry, self._retry_word = below, retry, retry_word
+        self._below, self._retry, self._retry_word, self._more = below, retry, retry_word, more
         self._picture: pygame.Surface | None = None
 
     def enter(self, context: Context) -> None:
@@ -42,12 +47,12 @@ class Pause:
         self._controls = context.controls
         self._form = Form(context, on_back=Pop)
         self._picture = None
-        rows: list[tuple[str, Callable[[], Transition | None]]] = [(texts.PAUSE_RESUME, Pop)]
+        rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop)]
         if self._retry:
             rows.append((self._retry_word, self._begin_anew))
-        rows += [(texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
+        rows += [*self._more(), (texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
         for number, (label, press) in enumerate(rows):
-            box = (MARGIN, _FIRST_WORD + number * _LINE, 200, _LINE)
+            box = (MARGIN, _FIRST_WORD + number * _LINE, 420, _LINE)
             self._form.add(Word(self._form.manager, box, label, press, size=22, weight="light"))
 
     def exit(self) -> None:

@@ -21,6 +21,7 @@ from game.scene import Pop, Push, Transition
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints
 from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
+from game.ui.widgets import OnPress
 from game.world.backdrop import landscape
 from game.world.pad import draw_pad
 from game.world.paths import draw_dotted
@@ -62,10 +63,8 @@ class Play:
             return
         self._context = context
         self._controls, self._settings = context.controls, context.settings
-        self._network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        self._load_network()
         self._begin(self._new_seed() if self._seed is None else self._seed)
-        if self._network.problem:
-            context.note(texts.NO_NETWORK.format(problem=self._network.problem))
 
     def exit(self) -> None:
         """Keep the flight for the way back."""
@@ -180,10 +179,20 @@ class Play:
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
         self._path = coast_path(self.flight.env)
-        ahead = None if self._ghost else self._network.flyer  # beside a ghost, one blue path is enough
-        self._forecast = Forecast(ahead) if ahead else None
+        self._forecast = self._new_forecast()
         self._sweep = 1.0
         self._steps = self._since_end = 0
+
+    def _new_forecast(self) -> Forecast | None:
+        ahead = None if self._ghost else self._network.flyer  # beside a ghost, one blue path is enough
+        return Forecast(ahead) if ahead else None
+
+    def _load_network(self) -> None:
+        assert self._context is not None
+        context = self._context
+        self._network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        if self._network.problem:
+            context.note(texts.NO_NETWORK.format(problem=self._network.problem))
 
     def _new_seed(self) -> int:
         assert self._context is not None
@@ -211,7 +220,24 @@ class Play:
         from game.scenes.pause import Pause
 
         self._away = 0
-        return Push(Pause(self, retry=self.retry))
+        return Push(Pause(self, retry=self.retry, more=self._pause_words))
+
+    def _pause_words(self) -> list[tuple[str, OnPress]]:
+        return [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
+
+    def _open_networks(self) -> Transition:
+        from game.scenes.runs import Runs
+
+        return Push(Runs(choose=self._choose_network))
+
+    def _choose_network(self, name: str) -> None:
+        """Let another network be the one to hand over to, in the midst of a flight too."""
+        assert self._context is not None
+        self._settings.model = name
+        self._context.apply_settings()
+        self._load_network()
+        self.flight.change_network(self._network.flyer)
+        self._forecast = self._new_forecast()
 
     # The picture
 

@@ -55,9 +55,13 @@ class Runs:
 
     def enter(self, context: Context) -> None:
         """Build the screen, or look again at what there is."""
-        if self._context is None:
-            self._build(context)
-        self._reload(self.shown.folder if self.shown else None)
+        if self._context is not None:
+            self._reload(self.shown.folder if self.shown else None)
+            return
+        self._build(context)
+        known = networks.folders(context.models_dir, context.user_dir)
+        flies = known.get(context.settings.model, known.get(networks.DEFAULT))
+        self._reload(flies if self._choose else None)
 
     def exit(self) -> None:
         """Nothing is held: every change was made on the disk at once."""

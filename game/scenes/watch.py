@@ -23,8 +23,9 @@ from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
+from game.ui.pick import Pick
 from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
-from game.ui.widgets import Choice
+from game.ui.widgets import Choice, OnPress
 from game.ui.words import GAP
 from game.world.backdrop import landscape
 from game.world.pad import draw_pad
@@ -57,30 +58,29 @@ class Watch:
         self._time = self._due = 0.0
         self.stopped = False
         self.shown = 0
-        self.problem = ""
+        self.problem = self._wanted = ""
 
     def enter(self, context: Context) -> None:
         """Read the networks and begin, or go on after a pause."""
         if self._context is not None:
+            self._look_again()
             return
         self._context, self._settings = context, context.settings
         self._roster = networks.Roster(context.models_dir, context.user_dir)
         names = self._roster.names
         wanted = names.index(context.settings.model) if context.settings.model in names else 0
         self._form = Form(context, on_back=Pop)
-        words = [_shortened(name) for name in names]
-        self._model_choice = self._add_choice(0, texts.WATCH_MODEL, words, wanted, self._choose_network)
+        self._model_choice = self._form.add(self._network_row(wanted))
         self._count_choice = self._add_choice(
             1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
         )
         self._speed_choice = self._add_choice(2, texts.WATCH_SPEED, _SPEED_WORDS, self._speed, self._choose_speed)
         if self._seed is None:
             self._seed = int(context.rng.integers(2**31))
-        self._network = self._roster[names[wanted]]
-        if self._network.flyer is None:
-            self._network = self._roster.first_fit()
         self._choose_network(wanted)
-        self._begin()
+        if self.problem:
+            self._network = self._roster.first_fit()
+            self._begin()
 
     def exit(self) -> None:
         """Keep everything for the way back."""
@@ -187,18 +187,54 @@ class Watch:
     def _pause(self) -> Transition:
         from game.scenes.pause import Pause
 
-        return Push(Pause(self, self._begin_anew, texts.PAUSE_NEW_STARTS))
+        return Push(Pause(self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words))
+
+    def _pause_words(self) -> list[tuple[str, OnPress]]:
+        return [(texts.PAUSE_NETWORK.format(name=_shortened(self._wanted or self._network.name)), self._open_networks)]
 
     # Choices
 
     def _add_choice(
         self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
     ) -> Choice:
+        manager, box = self._form.manager, self._row_box(row, words)
+        return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
+
+    def _row_box(self, row: int, words: Sequence[str]) -> pygame.Rect:
         x, y, pitch = _ROW
         width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
-        box = pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
-        manager = self._form.manager
-        return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
+        return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
+
+    def _network_row(self, index: int) -> Pick:
+        words = [_shortened(name) for name in self._roster.names]
+        box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
+        return Pick(
+            self._form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
+            everything, label_width=_LABEL_WIDTH,
+        )  # fmt: skip
+
+    def _open_networks(self) -> Transition:
+        from game.scenes.runs import Runs
+
+        def choose(name: str) -> None:
+            self._wanted = name
+
+        return Push(Runs(choose=choose))
+
+    def _look_again(self) -> None:
+        """Take what was chosen in the list, and note what came, went or has another name since."""
+        assert self._context is not None
+        roster = networks.Roster(self._context.models_dir, self._context.user_dir)
+        wanted, self._wanted = self._wanted or self._settings.model, ""
+        if roster.names == self._roster.names and wanted == self._network.name:
+            return
+        self._roster = roster
+        index = next((roster.names.index(name) for name in (wanted, self._network.name) if name in roster.names), 0)
+        row = self._network_row(index)
+        self._form.replace([self._model_choice], [row])
+        self._model_choice = row
+        if roster.names[index] != self._network.name:
+            self._choose_network(index)
 
     def _choose_network(self, index: int) -> None:
         """Fly the same starts with another network; a damaged one is named, and the last good one flies on."""

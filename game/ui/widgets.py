@@ -308,13 +308,17 @@ class Choice(Widget):
             self.index = index
             self._on_change(index)
 
-    def press(self) -> None:
+    @property
+    def mouse_x(self) -> float | None:
+        """Where in the row the mouse is; None while keys or a pad are in use."""
+        x = float(self.ui_manager.get_mouse_position()[0])
+        return None if self.ringed or not self.box.collidepoint(x, self.box.centery) else x
+
+    def press(self) -> Transition | None:
         """Take the option under the mouse; without one, the next."""
-        x = self.ui_manager.get_mouse_position()[0]
-        if self.ringed or not self.box.collidepoint(x, self.box.centery):
-            self.choose((self.index + 1) % len(self.options))
-        else:
-            self.choose(self.row.at(x, self.index))
+        x = self.mouse_x
+        self.choose((self.index + 1) % len(self.options) if x is None else self.row.at(x, self.index))
+        return None
 
     def shift(self, direction: int) -> bool:
         """Take the option to the left or right."""

@@ -6,6 +6,8 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.agent import DeepQAgent
+from ai.config import Config
 from ai.lander import PARAMS, Outcome
 from ai.pilots import ScriptedPilot
 from game import networks, texts
@@ -234,6 +236,47 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(open_game: Open, contex
     driver.frames(30)
     assert scene(driver).flight.hand is Hand.HUMAN
     assert "weights" in scene(driver)._network.problem
+
+
+def with_networks(context: Context, tmp_path: Path, *names: str) -> None:
+    context.models_dir = tmp_path / "shipped"
+    for name in names:
+        DeepQAgent(config=Config(hidden=(4,))).save(context.user_dir / "models" / name)
+
+
+@pytest.mark.parametrize("hand", [Hand.HUMAN, Hand.NETWORK])
+def test_the_pause_changes_the_network_in_mid_flight(open_game: Open, context: Context, tmp_path: Path, hand: Hand):
+    with_networks(context, tmp_path, "a", "b", "modern")
+    driver = open_game(Play(seed=4))
+    play = scene(driver)
+    assert play._network.name == "modern"
+    driver.key(pygame.K_TAB)
+    if hand is Hand.HUMAN:
+        driver.key(pygame.K_TAB)
+    driver.frames(20)
+    flight, before = play.flight, play.flight.network
+    driver.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    assert driver.top_name == "Runs"
+    driver.keys(pygame.K_END, pygame.K_RETURN)  # the one that was saved first
+    assert driver.top_name == "Pause"
+    driver.keys(pygame.K_ESCAPE)
+    assert scene(driver).flight is flight
+    assert flight.hand is hand
+    assert flight.network is not before
+    assert play._network.name == context.settings.model == "a"
+    driver.frames(20)
+
+
+def test_a_network_that_breaks_on_the_way_gives_the_stick_back(open_game: Open, context: Context, tmp_path: Path):
+    with_networks(context, tmp_path, "modern", "hurt")
+    (context.user_dir / "models" / "hurt" / "online" / "config.json").write_text("{")
+    driver = open_game(Play(seed=4))
+    driver.key(pygame.K_TAB)
+    driver.frames(5)
+    scene(driver)._choose_network("hurt")
+    driver.frames(5)
+    assert scene(driver).flight.hand is Hand.HUMAN
+    assert "No network" in driver.app._notes._text
 
 
 def test_draw_changes_nothing(open_game: Open, flown_by):

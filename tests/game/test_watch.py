@@ -5,9 +5,14 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.agent import DeepQAgent
+from ai.config import Config
 from game.context import Context
+from game.library import Library
 from game.render import Camera
+from game.scenes.runs import Runs
 from game.scenes.watch import Watch
+from game.settings import SettingsFile
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]
@@ -95,6 +100,71 @@ def test_restart_flies_new_starts(watching: Driver):
     watching.key(pygame.K_r)
     assert scene(watching).swarm is not first
     assert np.abs(scene(watching).swarm.poses.now - first.poses.before).max() > 0.5
+
+
+@pytest.fixture
+def many(open_game: Open, context: Context, tmp_path: Path) -> Driver:
+    """Twenty networks of the player's own, the game's, and the scripted pilot."""
+    context.models_dir = tmp_path / "shipped"
+    agent = DeepQAgent(config=Config(hidden=(4,)))
+    agent.save(context.models_dir / "lander" / "modern")
+    for number in range(20):
+        agent.save(context.user_dir / "models" / f"run {number:02}")
+    context.settings.model = "run 03"
+    SettingsFile(context.user_dir).save(context.settings)
+    return open_game(Watch(seed=2))
+
+
+def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):
+    assert scene(many)._network.name == "run 03"
+    assert set(scene(many)._roster._read) == {"run 03"}
+    many.key(pygame.K_RIGHT)
+    assert set(scene(many)._roster._read) == {"run 03", "run 04"}
+
+
+@pytest.mark.parametrize("way", ["key", "pad", "mouse", "pause"])
+def test_a_list_opens_to_choose_from(many: Driver, context: Context, way: str):
+    row = scene(many)._model_choice
+    match way:
+        case "key":
+            many.key(pygame.K_RETURN)
+        case "pad":
+            many.button(pygame.CONTROLLER_BUTTON_A)
+        case "mouse":
+            many.click((row.box.right - 6, row.box.centery))
+        case _:
+            many.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    runs = many.top
+    assert isinstance(runs, Runs)
+    assert runs.shown is not None
+    assert runs.shown.name == "run 03"
+    many.keys(pygame.K_HOME, pygame.K_RETURN)
+    name = runs.runs[0].name
+    if way == "pause":
+        many.key(pygame.K_ESCAPE)
+    assert scene(many)._network.name == context.settings.model == name
+    assert scene(many)._model_choice.options[scene(many)._model_choice.index] == name
+    many.frames(5)
+
+
+def test_the_mouse_turns_pages_and_takes_words_beside_the_list(many: Driver):
+    row = scene(many)._model_choice
+    last = next(page.stop for page in row.row.pages if row.index in page)
+    many.click((row._open_left - 24, row.box.centery))
+    assert scene(many)._network.name == row.options[last]
+
+
+def test_what_was_renamed_or_deleted_meanwhile_is_noted(many: Driver, context: Context):
+    library = Library(context.user_dir)
+    many.key(pygame.K_ESCAPE)
+    library.delete("run 03")
+    library.rename("run 04", "better")
+    many.key(pygame.K_ESCAPE)
+    watch = scene(many)
+    assert "better" in watch._model_choice.options
+    assert "run 03" not in watch._model_choice.options
+    assert watch._network.name == watch._model_choice.options[watch._model_choice.index]
+    many.frames(5)
 
 
 def test_a_missing_network_is_listed_with_what_is_wrong_and_another_flies(watching: Driver):

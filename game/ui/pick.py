@@ -1,0 +1,57 @@
+"""A choice of a few words in a row, out of more than there is room for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import pygame
+
+from game.scene import Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.tokens import SMALL
+from game.ui.widgets import Choice, OnPress, PointsManager
+from game.ui.words import WordRow
+
+_GAP: Final = 20.0  # between the row and the word that opens the list
+
+
+class Pick(Choice):
+    """A choice that can also be made from a list: Enter, a pad's A or a click on `all_word` calls `on_open`.
+
+    The word stands at the right end, where not all options fit into the row.
+    """
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        label: str,
+        options: Sequence[str],
+        index: int,
+        on_change: Callable[[int], None],
+        on_open: OnPress,
+        all_word: str,
+        *,
+        label_width: float = 0,
+        size: float = SMALL,
+    ) -> None:
+        super().__init__(manager, box, label, options, index, on_change, label_width=label_width, size=size)
+        self._on_open, self._all_word = on_open, all_word
+        self._open_left = float(self.box.right)
+        if len(self.row.pages) > 1:
+            self._open_left -= typeface.width(all_word, size, "regular")
+            self.row = WordRow(options, self.box.left + label_width, self._open_left - _GAP, size)
+
+    def press(self) -> Transition | None:
+        """Open the list, or take the option under the mouse."""
+        x = self.mouse_x
+        return self._on_open() if x is None or x >= self._open_left - 4 else super().press()
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the options, and the word that opens the list if there are more than are seen."""
+        super().paint(canvas)
+        if len(self.row.pages) > 1:
+            baseline = self.box.centery + 0.36 * self._size
+            canvas.text(self._all_word, (self._open_left, baseline), size=self._size, colour=self.tint())
