@@ -1,11 +1,14 @@
 """How long it takes to learn to land, beside stable-baselines3's DQN on the same lander.
 
-    python -m benchmarks.learning [--seeds 5] [--seconds 60] [--rival-seeds 3] [--rival-seconds 300]
+    python -m benchmarks.learning [--seeds 10] [--seconds 60] [--rival-seeds 3] [--rival-seconds 300]
+    python -m benchmarks.learning --runs 30 120 [--seeds 5] [--preset modern] [--set NAME=VALUE ...]
 
 Ours is the modern preset. The rival has the settings its authors tuned for Gymnasium's lunar lander and flies
 ours through Gymnasium, one decision at a time, from the same practice spawns. Every second of training (the
-rival: every ten) the network flies 500 random spawns greedily, which is not counted. A share counts as reached
-when it is first seen. Seconds are processor time on one thread, so that a busy machine does not matter.
+rival: every ten) the network flies 500 random validation spawns greedily, and the best so far is kept. What is
+told of it are its flights from 2,000 other spawns, which had no say in the choice; a share counts as reached when
+the network then kept first lands it there. `--runs` measures what is kept after so many seconds instead, on random
+and on hard spawns. Seconds are processor time on one thread, of training alone.
 """
 
 import os
@@ -17,7 +20,8 @@ import argparse
 import platform
 import statistics
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -25,11 +29,15 @@ from typing import Any
 
 import numpy as np
 
-from ai.config import PRESETS
+from ai.cli import configured
+from ai.config import PRESETS, Config
 from ai.env import Floats, Ints
-from ai.training import TEST_SEED, Training, evaluate
+from ai.lander_task import Evaluation
+from ai.pilots import Pilot
+from ai.training import TEST_SEED, VALIDATION_SEED, Training, evaluate
 
-FLIGHTS = 500
+VALIDATION_FLIGHTS = 500
+TEST_FLIGHTS = 2000
 SHARES = (0.95, 0.99)
 # rl-baselines3-zoo, hyperparams/dqn.yml, LunarLander
 TUNED = {
@@ -41,36 +49,64 @@ TUNED_STEPS = 100_000
 
 
 @dataclass
-class Run:
-    """When one seed reached each share, in seconds and decisions, and the last share seen."""
+class Kept:
+    """The best network after so many seconds of training, measured on spawns that did not choose it."""
 
-    seconds: list[float]
-    decisions: list[float]
-    last: float
+    seconds: float
+    decisions: int
+    test: Evaluation
+    hard: Evaluation | None = None
 
 
-def measure(seen: Iterator[tuple[float, int, float]], limit: float) -> Run:
-    """Follow a training that tells its seconds, decisions and share landed, until all is reached or time is up."""
-    run = Run([np.inf] * len(SHARES), [np.inf] * len(SHARES), 0.0)
-    for seconds, decisions, landed in seen:
-        run.last = landed
-        for k, share in enumerate(SHARES):
-            if landed >= share and np.isinf(run.seconds[k]):
-                run.seconds[k], run.decisions[k] = seconds, decisions
-        if seconds >= limit or landed >= SHARES[-1]:
+Checkpoint = tuple[float, int, Pilot, Callable[[], Pilot]]  # seconds, decisions, the pilot, how to keep it
+
+
+def followed(training: Iterator[Checkpoint]) -> Iterator[tuple[float, int, Pilot, bool]]:
+    """Yield seconds, decisions, the best pilot so far by validation, and whether it is a new one."""
+    best, kept = None, None
+    for seconds, decisions, pilot, keep in training:
+        score = evaluate(pilot, VALIDATION_FLIGHTS, VALIDATION_SEED)
+        if new := score.better_than(best):
+            best, kept = score, keep()
+        assert kept is not None
+        yield seconds, decisions, kept, new
+
+
+def race(training: Iterator[Checkpoint], limit: float) -> tuple[list[Kept | None], float]:
+    """The first network kept that lands each share, None for those not reached; and the last share seen."""
+    reached: list[Kept | None] = [None] * len(SHARES)
+    last = 0.0
+    for seconds, decisions, pilot, new in followed(training):
+        if new:
+            kept = Kept(seconds, decisions, evaluate(pilot, TEST_FLIGHTS, TEST_SEED))
+            last = kept.test.success
+            reached = [old or (kept if last >= share else None) for old, share in zip(reached, SHARES, strict=True)]
+        if seconds >= limit or all(reached):
             break
-    return run
+    return reached, last
 
 
-def ours(seed: int) -> Iterator[tuple[float, int, float]]:
-    training = Training(PRESETS["modern"], seed, evaluate_every=0)
+def kept_after(training: Iterator[Checkpoint], moments: list[float]) -> Iterator[Kept]:
+    """Yield what is kept after so many seconds, for each of the moments, which rise."""
+    waiting = sorted(moments)
+    for seconds, decisions, pilot, _ in followed(training):
+        if seconds >= waiting[0]:
+            test, hard = (evaluate(pilot, TEST_FLIGHTS, TEST_SEED, spawn) for spawn in ("random", "hard"))
+            yield Kept(waiting.pop(0), decisions, test, hard)
+        if not waiting:
+            break
+
+
+def ours(seed: int, config: Config = PRESETS["modern"]) -> Iterator[Checkpoint]:
+    """Train one of ours without end, pausing every second."""
+    training = Training(config, seed, evaluate_every=0)
     spent = 0.0
     while True:
         start = time.process_time()
         while time.process_time() - start < 1.0:
             training.advance()
         spent += time.process_time() - start
-        yield spent, training.agent.decisions, evaluate(training.agent, FLIGHTS, TEST_SEED).success
+        yield spent, training.agent.decisions, training.agent, training.best_agent
 
 
 class Flyer:
@@ -85,7 +121,8 @@ class Flyer:
         return actions
 
 
-def theirs(seed: int) -> Iterator[tuple[float, int, float]]:
+def theirs(seed: int) -> Iterator[Checkpoint]:
+    """Train one of stable-baselines3's without end, pausing every ten seconds."""
     import gymnasium
     import torch
     from stable_baselines3 import DQN
@@ -102,47 +139,79 @@ def theirs(seed: int) -> Iterator[tuple[float, int, float]]:
             callback=lambda *_, start=start: time.process_time() - start < 10.0,
         )  # fmt: skip
         spent += time.process_time() - start
-        yield spent, model.num_timesteps, evaluate(Flyer(model), FLIGHTS, TEST_SEED).success
+        yield spent, model.num_timesteps, Flyer(model), lambda: Flyer(deepcopy(model.policy))
 
 
-def row(name: str, runs: list[Run], limit: float) -> list[float]:
+def row(name: str, runs: list[tuple[list[Kept | None], float]], limit: float) -> list[float]:
     """Print one line of the table, and return its medians."""
-    cells = []
+    cells, medians = [], []
     for k in range(len(SHARES)):
-        seconds, decisions = (statistics.median(getattr(run, kind)[k] for run in runs)
-                              for kind in ("seconds", "decisions"))  # fmt: skip
-        late = np.isinf(seconds)
-        cells.append(f"not within {limit:g} s" if late else f"{seconds:.1f} s, {decisions / 1000:,.0f}k decisions")
-    last = " ".join(f"{run.last:.1%}" for run in runs)
-    print(f"| {name} | {' | '.join(cells)} | {last} |", flush=True)
-    return [statistics.median(run.seconds[k] for run in runs) for k in range(len(SHARES))]
+        seconds = [np.inf if kept is None else kept.seconds for kept in (reached[k] for reached, _ in runs)]
+        decisions = [np.inf if kept is None else kept.decisions for kept in (reached[k] for reached, _ in runs)]
+        medians.append(statistics.median(seconds))
+        if np.isinf(medians[-1]):
+            cells.append(f"not within {limit:g} s")
+            continue
+        slowest = f"{max(seconds):.1f} s" if np.isfinite(max(seconds)) else f"not within {limit:g} s"
+        cells.append(
+            f"{medians[-1]:.1f} s, {statistics.median(decisions) / 1000:,.0f}k decisions"
+            f" ({min(seconds):.1f} s; {slowest})"
+        )
+    print(f"| {name} | {' | '.join(cells)} | {' '.join(f'{last:.1%}' for _, last in runs)} |", flush=True)
+    return medians
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--rival-seeds", type=int, default=3)
-    parser.add_argument("--rival-seconds", type=float, default=300.0)
-    arguments = parser.parse_args()
-    rival = find_spec("stable_baselines3") is not None
-    versions = [f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
-    versions += [f"{name} {version(name)}" for name in ("stable-baselines3", "torch", "gymnasium") if rival]
-    print(f"{', '.join(versions)}; medians of {arguments.seeds} seeds of ours", end="")
-    print(f", {arguments.rival_seeds} of theirs\n" if rival else "\n")
-    print(f"| | {' | '.join(f'{share:.0%} landed after' for share in SHARES)} | last seen, each seed |")
-    print("|---|---|---|---|")
-    runs = [measure(ours(seed), arguments.seconds) for seed in range(arguments.seeds)]
-    mine = row("ours, modern", runs, arguments.seconds)
+def compare(arguments: argparse.Namespace, config: Config) -> None:
+    """Print how long each needs to land each share."""
+    rival = find_spec("stable_baselines3") is not None and arguments.rival_seeds > 0
+    heads = " | ".join(f"{share:.0%} landed after: median (fastest; slowest)" for share in SHARES)
+    print(f"| | {heads} | last seen, each seed |\n|---|---|---|---|")
+    runs = [race(ours(seed, config), arguments.seconds) for seed in range(arguments.seeds)]
+    mine = row(f"ours, {arguments.preset}", runs, arguments.seconds)
     if not rival:
-        print('\nstable-baselines3 is not installed; to compare with it: pip install "tranquility[bench]"')
+        print('\nto compare with stable-baselines3: pip install "tranquility[bench]"')
         return
     limit = arguments.rival_seconds
-    runs = [measure(theirs(seed), limit) for seed in range(arguments.rival_seeds)]
+    runs = [race(theirs(seed), limit) for seed in range(arguments.rival_seeds)]
     other = row("stable-baselines3's DQN, tuned", runs, limit)
     ratios = [f"over {limit / us:.0f}" if np.isinf(them) else f"{them / us:.0f}"
               for us, them in zip(mine, other, strict=True)]  # fmt: skip
     print(f"| times as long | {' | '.join(ratios)} | |")
+
+
+def tabulate(arguments: argparse.Namespace, config: Config) -> None:
+    """Print what is kept after runs of given lengths."""
+    print("| seed | after | decisions | random spawns | hard spawns | takes | burns | switches a second |")
+    print("|---|---|---|---|---|---|---|---|")
+    for seed in range(arguments.seeds):
+        for kept in kept_after(ours(seed, config), arguments.runs):
+            test, hard = kept.test, kept.hard
+            assert hard is not None
+            print(
+                f"| {seed} | {kept.seconds:g} s | {kept.decisions / 1000:,.0f}k | {test.success:.2%}"
+                f" | {hard.success:.2%} | {test.mean_time or np.nan:.2f} s | {test.mean_fuel or np.nan:.2f} s"
+                f" | {test.switches:.1f} |",
+                flush=True,
+            )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--rival-seeds", type=int, default=3)
+    parser.add_argument("--rival-seconds", type=float, default=300.0)
+    parser.add_argument("--runs", type=float, nargs="+", metavar="SECONDS")
+    parser.add_argument("--preset", default="modern", choices=PRESETS)
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    arguments = parser.parse_args()
+    config = configured(PRESETS[arguments.preset], arguments.changes)
+    versions = [f"Python {platform.python_version()}", f"NumPy {np.__version__}"]
+    if not arguments.runs:
+        rivals = ("stable-baselines3", "torch", "gymnasium")
+        versions += [f"{name} {version(name)}" for name in rivals if find_spec(name.replace("-", "_"))]
+    print(f"{', '.join(versions)}; {arguments.seeds} seeds of ours\n")
+    (tabulate if arguments.runs else compare)(arguments, config)
 
 
 if __name__ == "__main__":
