@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import zlib
 from dataclasses import dataclass
 from functools import cached_property
@@ -46,11 +47,19 @@ class Symmetry:
     features: Ints  # (features,) which feature stands in each place
     actions: Ints  # (actions,) which action each becomes
 
+    @cached_property
+    def matrix(self) -> Floats:
+        """What a state is multiplied by, (features, features): exact, since all but one term of a sum are 0."""
+        size = len(self.features)
+        matrix = np.zeros((size, size), dtype=np.float32)
+        matrix[self.features, np.arange(size)] = self.signs
+        return matrix
+
     def apply(self, cell: MemoryCell, count: int) -> None:
-        """Mirror the first `count` transitions of a batch, in place."""
+        """Mirror the first `count` transitions of a batch, or of each of many (batches, n), in place."""
         for states in (cell.state, cell.next_state):
-            states[:count] = states[:count, self.features] * self.signs
-        cell.action[:count] = self.actions[cell.action[:count]]
+            states[..., :count, :] = states[..., :count, :] @ self.matrix
+        cell.action[..., :count] = self.actions[cell.action[..., :count]]
 
 
 class DeepQAgent:
@@ -157,55 +166,58 @@ class DeepQAgent:
             config.learning_rate, config.final_learning_rate, self.decisions, config.horizon
         )
         self.optimizer.clip = config.gradient_clip
-        losses = self._learn_from(self.replay, config.batch_size, config.updates)
+        self.loss = self._learn_from(self.replay, config.batch_size, config.updates)
         if config.success_pass and len(self.successes) >= config.success_batch_size:
             self._learn_from(self.successes, config.success_batch_size, config.updates)
-        self.loss = float(np.mean(losses))
         return self.loss
 
-    def _learn_from(self, memory: ReplayBuffer, batch_size: int, updates: int) -> list[float]:
+    def _learn_from(self, memory: ReplayBuffer, batch_size: int, updates: int) -> float:
         if isinstance(memory, PrioritisedReplayBuffer):
             memory.importance = linear(self.config.importance_exponent, 1.0, self.decisions, self.config.horizon)
         cells, rows, weights = memory.sample(batch_size * updates, self.rng)
         if self.scale:
             cells = cells._replace(state=self.scale(cells.state), next_state=self.scale(cells.next_state))
         if self.config.mirror and self.symmetry is not None:
-            _mirror_half_of_each(cells, self.symmetry, batch_size)
+            batches = MemoryCell(*(part.reshape(updates, batch_size, *part.shape[1:]) for part in cells))
+            self.symmetry.apply(batches, batch_size // 2)
         targets = self._targets(cells)
         errors = np.empty_like(targets)
-        losses = []
         for first in range(0, len(targets), batch_size):
             batch = slice(first, first + batch_size)
             errors[batch] = self._update(cells.state[batch], cells.action[batch], targets[batch], weights[batch])
-            losses.append(float(np.mean(np.abs(errors[batch]))))
         memory.surprise(rows, errors)
-        return losses
+        return float(np.abs(errors).mean())
 
     def _targets(self, cells: MemoryCell) -> Floats:
         """Bellman targets (n,): reward + γ^steps · value of the best next action, by the target network."""
-        values = self.target.predict(cells.next_state)
-        if self.config.double:  # van Hasselt et al. 2016: the online network picks, the target judges
-            best = self.online.predict(cells.next_state).argmax(axis=1)
-            value = values[np.arange(len(best)), best]
-        else:
-            value = values.max(axis=1)
+        size = self.config.batch_size  # what many layers make of a batch stays in the cache
+        parts = (cells.next_state[first : first + size] for first in range(0, len(cells.action), size))
+        value = np.concatenate([self._value(part) for part in parts])
         self.mean_q = float(value.mean())
         discount = np.float32(self.config.discount) ** cells.steps.astype(np.float32)
         targets: Floats = cells.reward + discount * value * ~cells.terminal
         return targets
 
+    def _value(self, states: Floats) -> Floats:
+        """What the target network thinks of the best action in each state, (n,)."""
+        values = self.target.predict(states)
+        # van Hasselt et al. 2016: the online network picks, the target judges.
+        best = (self.online.predict(states) if self.config.double else values).argmax(axis=1)
+        value: Floats = values[np.arange(len(best)), best]
+        return value
+
     def _update(self, states: Floats, actions: Ints, targets: Floats, weights: Floats) -> Floats:
         """One step of the optimizer; returns the errors (n,) it was taken on."""
         predicted = self.online.forward_propagate(states)
         rows = np.arange(len(actions))
-        wanted = predicted.copy()
-        wanted[rows, actions] = targets
-        errors: Floats = predicted[rows, actions] - targets
-        slope = self.online.cost.derivative(predicted, wanted)
-        slope *= weights[:, None]
+        chosen = predicted[rows, actions]
+        errors: Floats = chosen - targets
+        slope = np.zeros_like(predicted)
+        # Outputs have costs of their own: those of the other actions are 0.
+        slope[rows, actions] = self.online.cost.derivative(chosen[:, None], targets[:, None])[:, 0] * weights
         self.online.backward_propagate(slope)
         length = self.optimizer.step(self.online.values, self.online.gradients)
-        if not (np.isfinite(length) and np.isfinite(errors).all()):
+        if not (math.isfinite(length) and np.isfinite(errors).all()):
             raise FloatingPointError(
                 f"the error was not finite at learning step {self.train_count + 1}; "
                 f"most likely the learning rate of {self.optimizer.learning_rate:g} is too high"
@@ -307,12 +319,6 @@ def build_network(num_features: int, num_actions: int, config: Config, rng: np.r
         inputs = units
     head = DuelingLayer if config.dueling else FullyConnectedLayer
     return network.add_layer(head(inputs, num_actions, scale=config.output_scale))
-
-
-def _mirror_half_of_each(cells: MemoryCell, symmetry: Symmetry, batch_size: int) -> None:
-    for first in range(0, len(cells.action), batch_size):
-        part = MemoryCell(*(array[first : first + batch_size] for array in cells))
-        symmetry.apply(part, batch_size // 2)
 
 
 def _read_description(folder: Path) -> dict[str, Any]:

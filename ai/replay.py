@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ai.env import Doubles, Floats, Ints
 
@@ -31,14 +32,13 @@ class ReplayBuffer:
         if not 1 <= prune <= capacity:
             raise ValueError(f"prune must lie between 1 and the capacity of {capacity}, not {prune}")
         self.capacity, self.prune = capacity, prune
-        self.cells = MemoryCell(
-            state=np.zeros((capacity, num_features), dtype=np.float32),
-            next_state=np.zeros((capacity, num_features), dtype=np.float32),
-            action=np.zeros(capacity, dtype=np.intp),
-            reward=np.zeros(capacity, dtype=np.float32),
-            terminal=np.zeros(capacity, dtype=bool),
-            steps=np.ones(capacity, dtype=np.intp),
-        )
+        # One record for each transition: drawing one from a memory larger than the cache waits for it once.
+        fields = [
+            ("state", np.float32, num_features), ("next_state", np.float32, num_features), ("action", np.int32),
+            ("reward", np.float32), ("terminal", bool), ("steps", np.int32),
+        ]  # fmt: skip
+        self.records = np.zeros(capacity, np.dtype(fields, align=True))
+        self.cells = _fields(self.records)
         self.start = 0  # where the oldest lies
         self.size = 0
 
@@ -69,7 +69,7 @@ class ReplayBuffer:
 
     def at(self, rows: Ints) -> MemoryCell:
         """Return the transitions that lie at `rows`, stacked."""
-        return MemoryCell(*(part[rows] for part in self.cells))
+        return _fields(self.records.take(rows))
 
     def surprise(self, rows: Ints, errors: Floats) -> None:
         """Take note of how wrong the network was about some transitions; here, it makes no difference."""
@@ -77,6 +77,11 @@ class ReplayBuffer:
     def _drop(self, count: int) -> None:
         self.start = (self.start + count) % self.capacity
         self.size -= count
+
+
+def _fields(records: NDArray[np.void]) -> MemoryCell:
+    """Return the fields of records as views."""
+    return MemoryCell(*(records[name] for name in MemoryCell._fields))
 
 
 class PrioritisedReplayBuffer(ReplayBuffer):

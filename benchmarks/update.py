@@ -80,7 +80,8 @@ def our_update(network: NeuralNetwork, size: int) -> Callable[[], object]:
     rows, error = np.arange(size), np.zeros((size, 6), np.float32)
 
     def update() -> None:
-        goal = rewards + GAMMA * (1 - terminals) * target.predict(next_states).max(axis=1)
+        values = target.predict(next_states)
+        goal = rewards + GAMMA * (1 - terminals) * values[rows, values.argmax(axis=1)]
         q = network.forward_propagate(states)
         error.fill(0)
         error[rows, actions] = (q[rows, actions] - goal) * (2 / size)

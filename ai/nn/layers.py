@@ -216,6 +216,8 @@ class LayerNormalisation(Layer):
     """Each example to mean 0 and variance 1 over its values, then a learned gain and bias (Ba et al. 2016).
 
     Means are products with a constant vector, because BLAS sums rows several times faster than `mean` does.
+    Likewise gain / deviation is made by an outer product, and then one plain product of two arrays does for two
+    that would have to repeat a row or a column.
     """
 
     settings = ("size", "epsilon")
@@ -233,9 +235,11 @@ class LayerNormalisation(Layer):
         """Return the normalised batch, (batch, size)."""
         gain, bias = self.parameters
         if len(self.output) != len(input_data):
-            self.output, self.normalised, self.error, self.scratch = np.empty((4, *input_data.shape), self.dtype)
-        self.inverse_deviation = self._normalise(np.asarray(input_data, self.dtype), self.normalised)
-        np.multiply(self.normalised, gain.value, out=self.output)
+            buffers = np.empty((5, *input_data.shape), self.dtype)
+            self.output, self.centred, self.stretch, self.error, self.scratch = buffers
+        self.inverse_deviation = self._centre(np.asarray(input_data, self.dtype), self.centred)
+        self.inverse_deviation.dot(gain.value[None], self.stretch)
+        np.multiply(self.centred, self.stretch, out=self.output)
         self.output += bias.value
         return self.output
 
@@ -243,35 +247,32 @@ class LayerNormalisation(Layer):
         """Return the normalised batch as a new array."""
         gain, bias = self.parameters
         output = np.empty_like(input_data)
-        self._normalise(input_data, output)
-        output *= gain.value
+        output *= self._centre(input_data, output).dot(gain.value[None])
         output += bias.value
         return output
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of gain, Σ n E, and bias, Σ E over the batch, with n the normalised input."""
         gain, bias = self.parameters
-        ones = _ones(len(output_error), self.dtype)
-        ones.dot(np.multiply(self.normalised, output_error, out=self.scratch), gain.gradient)
-        ones.dot(output_error, bias.gradient)
+        self.inverse_deviation.T.dot(np.multiply(self.centred, output_error, out=self.scratch), gain.gradient[None])
+        _ones(len(output_error), self.dtype).dot(output_error, bias.gradient)
 
     def input_error(self, output_error: Array) -> Array:
-        """Return (D - mean D - n · mean(n D)) / deviation, with D = gain · E and means over the values."""
-        error: Array = np.multiply(output_error, self.parameters[0].value, out=self.error)
-        along = np.vecdot(self.normalised, error)[:, None] / self.size
+        """Return D - mean D - n · mean(n D), with D = gain · E / deviation and means over the values."""
+        error: Array = np.multiply(output_error, self.stretch, out=self.error)
+        along = np.vecdot(self.centred, error)[:, None]
+        along *= self.inverse_deviation**2 / self.size
         error -= error.dot(self._average)[:, None]
-        error -= np.multiply(self.normalised, along, out=self.scratch)
-        error *= self.inverse_deviation
+        error -= np.multiply(self.centred, along, out=self.scratch)
         return error
 
-    def _normalise(self, input_data: Array, out: Array) -> Array:
-        """Fill `out` with the input at mean 0 and variance 1, and return what it was divided by, inverted."""
+    def _centre(self, input_data: Array, out: Array) -> Array:
+        """Fill `out` with the input at mean 0, and return the inverse of its standard deviation, (..., 1)."""
         np.subtract(input_data, input_data.dot(self._average)[..., None], out=out)
         variance = np.vecdot(out, out)[..., None]
         variance /= self.size
         variance += self.epsilon
         inverse_deviation: Array = np.divide(1, np.sqrt(variance, out=variance), out=variance)
-        out *= inverse_deviation
         return inverse_deviation
 
     @property

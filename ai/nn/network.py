@@ -118,11 +118,10 @@ class NeuralNetwork:
 
     def backward_propagate(self, output_error: Array) -> None:
         """Fill `gradients`, given the cost's derivative by the output of the last forward pass."""
-        first, *others = self.layers
         error: Array = np.asarray(output_error, self.dtype)
-        for layer in reversed(others):
+        for layer in self.layers[:0:-1]:
             error = layer.backward_propagate(error)
-        first.fill_gradients(error)
+        self.layers[0].fill_gradients(error)
 
     def train(
         self,

@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent
+from ai.agent import DeepQAgent, Symmetry
 from ai.config import PRESETS, Config
 from ai.env import StepResult
 from ai.lander import NUM_ACTIONS, NUM_FEATURES
@@ -143,6 +143,26 @@ def test_a_mirrored_memory_is_its_own_mirror_image_twice():
     LANDER_SYMMETRY.apply(cell, 6)
     assert np.array_equal(cell.state, states)
     assert cell.action.tolist() == list(range(6))
+
+
+@pytest.mark.parametrize("changes", [{}, {"prioritised": True}, {"normalise_inputs": True}])
+def test_half_of_each_batch_is_learnt_in_the_mirror(changes):
+    agent = fed(SMALL.changed(mirror=True, **changes))
+    mirror = Symmetry(np.array([100, 1, 1], np.float32), np.array([2, 1, 0]), np.array([1, 0]))
+    plain = fed(SMALL.changed(mirror=False, **changes))
+    seen = []
+    for one in (agent, plain):
+        one.symmetry, original = mirror, one._update
+        one._update = lambda *batch, original=original: (
+            seen.append([part.copy() for part in batch]),
+            original(*batch),
+        )[1]
+        one.learn()
+    (states, actions, *_), (same, same_actions, *_) = seen[0], seen[2]
+    assert len(seen) == 4
+    assert states[:4] == pytest.approx(same[:4, [2, 1, 0]] * [100, 1, 1])
+    assert (states[4:] == same[4:]).all()
+    assert actions.tolist() == [*(1 - same_actions[:4]), *same_actions[4:]]
 
 
 def test_a_gradient_that_is_not_finite_stops_with_the_step_and_a_cause():

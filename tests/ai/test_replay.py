@@ -39,6 +39,16 @@ def test_the_newest_are_kept_and_the_oldest_pruned_in_one_go(kind, batches, prun
         assert weights.shape == (20,)
 
 
+def test_what_is_drawn_is_a_copy():
+    buffer = ReplayBuffer(4, 2)
+    buffer.add(cells(0, 4))
+    drawn = buffer.at(np.array([1, 3]))
+    for part in drawn:
+        part[...] = 0
+    assert kept(buffer) == [0, 1, 2, 3]
+    assert buffer.at(np.array([3])).state.tolist() == [[3, 3]]
+
+
 def test_the_described_buffer_falls_from_1500_to_500():
     buffer = ReplayBuffer(1500, 2, prune=1000)
     buffer.add(cells(0, 1500))
