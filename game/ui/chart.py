@@ -16,10 +16,10 @@ import pygame
 from game import texts
 from game.ui import plotting
 from game.ui.canvas import Canvas, Point
+from game.ui.curves import Axes, paint_run, trace_run
 from game.ui.plotting import Limits, Numbers
 from game.ui.series import RUN_STYLES, Run, Series, Tick, draw_legend
-from game.ui.shapes import Shape
-from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT, Colour
+from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT
 from game.ui.tooltip import Row, draw_tooltip
 from game.world.paint import mix
 
@@ -31,10 +31,6 @@ _GUTTER: Final = 34.0  # for the lines' numbers, on the right
 _MARGIN: Final = 6.0  # of the sheet around the box
 _AXES: Final = mix(FAINT, MUTE, 0.55)
 _AXES_SIZE: Final = LABEL - 1.5
-_LINE_WIDTH: Final = 1.6
-_SPECK: Final = 0.55  # radius of a raw point
-_SPECK_ALPHA: Final = 0.5
-_SMOOTHING: Final = 0.022  # of the width, to either side
 _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
 _EASE: Final = 0.2
 _REACH: Final = 5.0  # points from a tick within which it tells what it stands for
@@ -194,11 +190,12 @@ class Chart:
         self._paint_header(sheet, box)
         self._paint_grid(sheet, plot)
         area = sheet.rect(*plot)
-        self._traces = [self._trace(run, area.width) for run in self._runs]
+        axes = Axes(self._x_range, self._shown, self._goal)
+        self._traces = [trace_run(run, axes, area.width) for run in self._runs]
         for run, values in reversed(list(zip(self._runs, self._traces, strict=True))):
-            self._paint_run(sheet, area, run, values)
+            paint_run(sheet, area, run, values, axes)
         if not any(np.isfinite(values).any() for values in self._traces):
-            middle = (plot.centerx, plot.centery + 4)
+            middle = (plot.centerx, plot.centery - 7)
             sheet.text(texts.CHART_EMPTY, middle, size=SMALL, colour=_AXES, align="centre")
         self._paint_ticks(sheet, plot)
         return sheet
@@ -225,49 +222,6 @@ class Chart:
         y = plot.bottom + 15
         sheet.text(start, (plot.x, y), size=_AXES_SIZE, colour=_AXES, tabular=True)
         sheet.text(end, (plot.right, y), size=_AXES_SIZE, colour=_AXES, tabular=True, align="right")
-
-    def _trace(self, run: Run, columns: int) -> Numbers:
-        low, high = self._goal
-        span = high - low
-        kept = np.where(np.isfinite(run.y), np.clip(run.y, low - span, high + span), np.nan)
-        radius = round(_SMOOTHING * columns) if run.series.smooth else 0
-        return plotting.trace(run.x, kept, self._x_range, columns, radius)
-
-    def _paint_run(self, sheet: Canvas, area: pygame.Rect, run: Run, values: Numbers) -> None:
-        colour, scale = run.series.colour, sheet.scale
-        pad = sheet.px(3)
-        low, high = self._shown
-        size = (area.width, area.height + 2 * pad)
-        corner = (area.x, area.y - pad)
-
-        def rows(of: Numbers) -> Numbers:
-            row = (high - of) / (high - low) * (area.height - 1) + pad
-            clipped: Numbers = np.clip(row, -4.0 * pad, size[1] + 4.0 * pad)
-            return clipped
-
-        if not run.series.dash and run.series.smooth:
-            kept = plotting.thinned(run.x, run.y, self._x_range, area.width)
-            start, end = self._x_range
-            columns = (run.x[kept] - start) / (end - start) * (area.width - 1)
-            _cover(sheet.surface, corner, colour, plotting.specks(columns, rows(run.y[kept]), size, _SPECK * scale),
-                   _SPECK_ALPHA)  # fmt: skip
-        heights = rows(values)
-        dash = tuple(length * scale for length in run.series.dash)
-        first, line = plotting.stroke(heights, size[1], _LINE_WIDTH * scale, dash)
-        _cover(sheet.surface, (corner[0], corner[1] + first), colour, line)
-        for column in plotting.alone(values):
-            sheet.dot(((area.x + column) / scale, (corner[1] + heights[column]) / scale), 1.6, colour)
-        self._paint_arrows(sheet, area, colour, values)
-
-    def _paint_arrows(self, sheet: Canvas, area: pygame.Rect, colour: Colour, values: Numbers) -> None:
-        """Mark where a curve leaves the chart."""
-        low, high = self._goal
-        above: tuple[Shape, Numbers, int] = ("triangle", values - high, area.top)
-        below: tuple[Shape, Numbers, int] = ("triangle_down", low - values, area.bottom)
-        for shape, beyond, y in (above, below):
-            for column in plotting.starts(beyond > 1e-6 * (high - low), 14 * sheet.scale):
-                x = min((area.x + column) / sheet.scale + 3, area.right / sheet.scale)
-                sheet.marker(shape, (x, y / sheet.scale), 8, colour)
 
     def _paint_ticks(self, sheet: Canvas, plot: pygame.FRect) -> None:
         start, end = self._x_range
@@ -317,8 +271,14 @@ class Chart:
                 canvas.dot(self.place(*point), 3, run.series.colour)
                 rows.append(Row(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
         if self._pointed:
-            near = [tick.text for tick in self._ticks if abs(self.place(tick.x, 0.0)[0] - across) <= _REACH]
-            draw_tooltip(canvas, (across, plot.top), self.box, [self.read_x(x), *near[-1:]], rows)
+            tick = self._tick_at(across)
+            draw_tooltip(canvas, (across, plot.top), self.box, [self.read_x(x), *([tick.text] if tick else [])], rows)
+
+    def _tick_at(self, across: float) -> Tick | None:
+        """Return the tick nearest to a place on the canvas, if one is near; a turned knob before a checkpoint."""
+        away = {tick: abs(self.place(tick.x, 0.0)[0] - across) for tick in self._ticks}
+        near = [tick for tick in self._ticks if away[tick] <= _REACH]
+        return min(near, key=lambda tick: (tick.kind != "knob", away[tick]), default=None)
 
 
 class Charts:
@@ -355,19 +315,6 @@ class Charts:
         """Draw all charts; the one with the read-out last, so that nothing lies over it."""
         for chart in sorted(self.charts, key=lambda chart: chart._pointed):
             chart.draw(canvas)
-
-
-def _cover(
-    surface: pygame.Surface, corner: tuple[int, int], colour: Colour, cover: Numbers, alpha: float = 1.0
-) -> None:
-    """Lay a colour over a surface, as far as `cover` (rows, columns) says."""
-    rows, columns = cover.shape
-    layer = pygame.Surface((columns, rows), pygame.SRCALPHA)
-    layer.fill((*colour, 0))
-    pixels = pygame.surfarray.pixels_alpha(layer)
-    pixels.T[...] = np.multiply(cover, 255 * alpha, dtype=np.float32)
-    del pixels
-    surface.blit(layer, corner)
 
 
 def _eased(shown: Limits, goal: Limits) -> Limits:

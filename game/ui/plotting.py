@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 Numbers = npt.NDArray[np.floating[Any]]
+Bools = npt.NDArray[np.bool_]
 Limits = tuple[float, float]
 
 _WILD: Final = 300.0  # a range so many times wider than the middle half of its values is cut
@@ -219,12 +220,12 @@ def alone(values: Numbers) -> list[int]:
     return places
 
 
-def starts(flags: npt.NDArray[np.bool_], spacing: float) -> list[int]:
-    """Return where stretches of True begin, but for those that begin less than `spacing` after another."""
-    kept: list[int] = []
-    if not flags.any():
-        return kept
-    for place in np.flatnonzero(np.diff(flags, prepend=False) & flags).tolist():
+def starts(flags: Bools, at: Numbers, spacing: float) -> list[float]:
+    """Return the places `at` which stretches of True begin, but for those less than `spacing` after another."""
+    kept: list[float] = []
+    begins = flags.copy()
+    begins[1:] &= ~flags[:-1]
+    for place in at[begins].tolist():
         if not kept or place - kept[-1] >= spacing:
             kept.append(place)
     return kept

@@ -15,12 +15,13 @@ from game.ui.plotting import Numbers
 from game.ui.tokens import MUTE, NET, SMALL, Colour
 from game.ui.tooltip import draw_swatch
 
-# Blue is the run of now; the others differ from it, and from each other, in colour, lightness and dashes.
+# Blue is the run of now; the others differ from it, and from each other, in dashes, and in colour for eyes of
+# every kind.
 RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = (
     (NET, ()),
     ((236, 140, 190), (7.0, 5.0)),
     ((222, 214, 160), (2.0, 4.0)),
-    ((168, 146, 240), (10.0, 4.0, 2.0, 4.0)),
+    ((144, 98, 244), (10.0, 4.0, 2.0, 4.0)),
 )
 
 

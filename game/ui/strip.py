@@ -17,17 +17,18 @@ from game.ui.canvas import Canvas, Point
 from game.ui.tokens import INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT, Colour
 from game.world.paint import mix
 
-# Neighbours in the strip differ in lightness as well as in hue; amber and the network's blue stay free.
+# Neighbours in the strip differ in lightness as well as in hue, also for eyes without red, green or blue cones:
+# by 28 or more in CIELAB. Amber and the network's blue stay free.
 PART_COLOURS: Final[dict[str, Colour]] = {
-    "distance": (104, 146, 214),
-    "speed": (160, 220, 226),
-    "alignment": (142, 128, 214),
-    "tilt": (232, 164, 196),
-    "feet": (150, 190, 120),
-    "engine": (226, 176, 148),
-    "switch": (176, 116, 92),
-    "time": (122, 132, 158),
-    "terminal": (240, 232, 200),
+    "distance": (82, 120, 190),
+    "speed": (164, 226, 232),
+    "alignment": (160, 140, 236),
+    "tilt": (240, 178, 206),
+    "feet": (104, 146, 84),
+    "engine": (244, 204, 170),
+    "switch": (170, 102, 78),
+    "time": (116, 126, 154),
+    "terminal": (240, 234, 206),
 }
 _OTHERS: Final[tuple[Colour, ...]] = ((176, 196, 140), (196, 150, 214), (128, 190, 196), (214, 190, 150))
 _BAR_TOP: Final = 25.0

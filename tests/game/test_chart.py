@@ -348,6 +348,32 @@ def test_what_lies_beyond_the_limits_is_marked(drawn: Callable[[Chart], np.ndarr
     assert abs(columns.mean() / len(drawn(inside)) - 0.6) < 0.06  # an arrow, where the curve leaves
 
 
+def test_a_single_wild_value_is_marked_though_the_line_hardly_shows_it(drawn: Callable[[Chart], np.ndarray]) -> None:
+    y = np.full(400, 50.0)
+    plain = drawn(chart_of(y, limits=(0.0, 100.0)))
+    y[100] = 1e4
+    wild = drawn(chart_of(y, limits=(0.0, 100.0)))
+    columns = np.flatnonzero((plain != wild)[:, :3].any(axis=(1, 2)))
+    assert len(columns)
+    assert abs(columns.mean() / len(plain) - 0.25) < 0.02
+    rows = np.flatnonzero((plain != wild)[:, 10:].any(axis=(0, 2)))
+    assert np.ptp(rows) < 0.2 * plain.shape[1]  # it does not drag the line along
+
+
+def test_a_turned_knob_is_told_before_a_checkpoint(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    from game.ui import chart as module
+
+    told: list[list[str]] = []
+    monkeypatch.setattr(module, "draw_tooltip", lambda canvas, point, box, lines, rows: told.append(lines))
+    chart = Chart(BOX, "RETURN")
+    ticks = [Tick(9.9, "knob", "knob"), Tick(10.0, "checkpoint"), Tick(15.0, "another")]
+    chart.set([Series([0.0, 20.0], [0.0, 1.0], "this run")], (0.0, 20.0), ticks)
+    for x in (10.0, 15.0, 18.0):
+        chart.hover(chart.place(x, 0.5))
+        chart.draw(canvas)
+    assert [lines[1:] for lines in told] == [["knob"], ["another"], []]
+
+
 UGLY = {
     "nothing": [],
     "one point": [3.0],
