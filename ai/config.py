@@ -126,6 +126,8 @@ class Config:
 
     def __post_init__(self) -> None:
         problems = [problem for item in fields(self) if (problem := field_problem(item, getattr(self, item.name)))]
+        if not problems and self.replay_prune > self.replay_size:
+            problems = [f"replay_prune is at most replay_size, {self.replay_size}, not {self.replay_prune}"]
         if problems:
             raise ValueError("; ".join(problems))
 

@@ -1,6 +1,7 @@
 """Named ways to take one part away from a configuration, so that a run shows what the part is there for.
 
-What is seen follows from the base: the words that go with these names were measured on the `modern` preset.
+What is seen follows from the base: the words that go with these names were measured on one preset, with seeds 0
+and 1, in 25 CPU seconds for each run.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import Any, Final
 from ai.config import Config
 from ai.rewards import RewardWeights
 
+MEASURED: Final = "modern"  # the preset
 _TERMINAL_ALONE: Final = {name: 0.0 for name in vars(RewardWeights()) if name != "terminal"}
 _SMALLEST_MEMORY: Final = 100
 

@@ -5,6 +5,7 @@ What may change while a run goes on changes at once. What takes a new run waits 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any, Final
 
@@ -90,7 +91,7 @@ class Tuning:
             draft = dial.write(self.draft, value)
             held = dial.write(self.config, value) if dial.live or not self.running else self.config
         except ValueError as error:
-            self.problem = str(error).replace(dial.field, dial.label, 1)
+            self.problem = _in_words(str(error))
             return
         self.draft = draft
         self._hold(held, self.seed)
@@ -135,6 +136,11 @@ class Tuning:
 
     def _different(self, a: Config, b: Config) -> list[str]:
         return [name for name, dial in self.dials.items() if dial.read(a) != dial.read(b)]
+
+
+def _in_words(problem: str) -> str:
+    """Call the fields in a message what the player calls them."""
+    return re.sub(r"\b[a-z_]+\b", lambda found: texts.KNOBS.get(found[0], found[0]), problem)
 
 
 def config_of(named: Named) -> Config:

@@ -8,7 +8,7 @@ from typing import Any, Final
 import pygame
 
 from ai.config import PRESETS, Config
-from ai.sabotage import SABOTAGES
+from ai.sabotage import MEASURED, SABOTAGES
 from game import texts
 from game.dials import Dial, label, pages
 from game.tuning import SEED, Named, Tuning, word
@@ -22,6 +22,7 @@ from game.ui.widgets import Choice, PointsManager, Widget, Word, mix
 _KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
 _SEED_PAGE: Final = "lander"
 _HEAD: Final = 34  # from the top to the line under the presets
+_BASELINE: Final = 21.5  # of the presets
 _TABS: Final = 36  # from there to the first row: the tabs are in between
 _PITCH: Final = 26  # of the rows, where there is room
 _TAB_GAP: Final = 13.0
@@ -109,13 +110,21 @@ class Knobs:
         box, y = self._box, self._box.top + _HEAD
         canvas.line((box.left, y), (box.right, y), LINE, 1)
         if self.changed:
-            left = box.left + canvas.text_width(self.name, size=TITLE) + 9
-            canvas.text(texts.KNOBS_CHANGED, (left, y - 13), size=LABEL, colour=HUMAN)
+            self._draw_changed(canvas)
         if self._picking:
             heading = texts.SABOTAGE_HEADING.format(name=word((self._tuning.named[0], ""))).upper()
             canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
         focused = self._form.focused if self._form.focused in self._widgets else None
         knob_foot.draw_foot(canvas, self._box, self._tuning, focused, self._form.controls, picking=self._picking)
+
+    def _draw_changed(self, canvas: Canvas) -> None:
+        """Say that knobs were turned: in a word, or by a dot where there is no room for it."""
+        left, baseline = self._box.left + canvas.text_width(self.name, size=TITLE) + 9, self._box.top + _BASELINE
+        room = self._sections["head"][1][1].box.left - left - 9
+        if canvas.text_width(texts.KNOBS_CHANGED, size=LABEL) <= room:
+            canvas.text(texts.KNOBS_CHANGED, (left, baseline), size=LABEL, colour=HUMAN)
+        else:
+            canvas.dot((left, baseline - 5), 2.5, HUMAN)
 
     # Widgets
 
@@ -147,8 +156,8 @@ class Knobs:
     def _make_head(self) -> list[Widget]:
         """The chosen one large on the left, which brings all of it back; the others on the right."""
         box, named, manager = self._box, self._tuning.named, self._form.manager
-        top = box.top + 6
-        chosen = _Title(manager, (box.left, top - 2, _width(self.name, TITLE), 28), self.name, self._loads(named))
+        top = box.top + 5
+        chosen = _Title(manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named))
         others: list[tuple[str, Callable[[], None]]] = [
             (word((base, "")), self._loads((base, ""))) for base in PRESETS if (base, "") != named
         ]
@@ -191,7 +200,8 @@ class Knobs:
             column, row = divmod(number, half)
             box = (left + column * self._box.width // 2, top + _HEAD + 38 + row * _PITCH, 160, _PITCH)
             pick = Word(self._form.manager, box, word((base, name)), self._loads((base, name)), size=SMALL + 1)
-            pick.help = "\n".join(texts.SABOTAGES[name][1:])
+            told = texts.SABOTAGES[name][1:] if base == MEASURED else texts.SABOTAGES[name][1:2]
+            pick.help = "\n".join(told)
             picks.append(pick)
         return picks
 
@@ -277,7 +287,7 @@ class _Title(Word):
         """Draw the word and its line."""
         Widget.paint(self, canvas)
         box = self.box
-        canvas.text(self.label, (box.left, box.top + 17), size=TITLE, colour=INK)
+        canvas.text(self.label, (box.left, box.top - 4 + _BASELINE), size=TITLE, colour=INK)
         canvas.line((box.left, box.top + 30), (box.left + box.width, box.top + 30), NET, 2)
 
 

@@ -28,9 +28,9 @@ class WordRow:
         widths = [typeface.width(word, size, "regular") for word in words]
         room = right - left
         if sum(widths) + gap * (len(widths) - 1) > room + 1:
-            left, room = left + _ARROW, room - 2 * _ARROW
+            room -= 2 * _ARROW
         self.pages = _pages(widths, room, gap)
-        self.lefts = [left + place for page in self.pages for place in accumulate(
+        self.lefts = [left + (_ARROW if page.start else 0) + place for page in self.pages for place in accumulate(
             (widths[number] + gap for number in page[:-1]), initial=0.0
         )]  # fmt: skip
 

@@ -38,6 +38,7 @@ def test_classic_is_the_agent_first_described():
     ("changes", "message"),
     [
         ({"learning_rate": -1.0}, "learning_rate lies between"),
+        ({"replay_size": 500, "replay_prune": 501}, "replay_prune is at most replay_size"),
         ({"learning_rate": float("nan")}, "learning_rate lies between"),
         ({"optimizer": "magic"}, "optimizer is one of"),
         ({"n_step": 2.5}, "n_step is a whole number"),

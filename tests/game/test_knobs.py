@@ -247,6 +247,15 @@ def test_the_sabotage_page_can_be_left_as_it_was(panel: tuple[Driver, Panel]):
     assert scene.knob("n_step")
 
 
+def test_what_was_measured_is_told_of_the_preset_that_it_was_measured_on(panel: tuple[Driver, Panel]):
+    game, scene = panel
+    for preset, lines in (("Modern", 2), ("Classic", 1)):
+        game.click(scene.word(preset).box.center)
+        game.click(scene.word(texts.SABOTAGE).box.center)
+        assert len(scene.word("No shaping").help.split("\n")) == lines
+        game.click(scene.word(texts.SABOTAGE_LEAVE).box.center)
+
+
 def test_turned_knobs_survive_a_preset_by_undo(panel: tuple[Driver, Panel]):
     game, scene = panel
     game.click(at(scene.knob("batch_size"), 0.0))

@@ -160,6 +160,10 @@ def test_an_impossible_value_changes_nothing_and_is_explained(tuning: Tuning, he
     assert not heard
     tuning.turn("learning_rate", 0.01)
     assert not tuning.problem
+    tuning.load(("classic", ""))
+    tuning.turn("replay_size", 500)
+    assert tuning.problem == "Forget at once is at most Replay, 500, not 1000"
+    assert tuning.config == PRESETS["classic"]
 
 
 def test_parts_of_the_reward_are_named_apart(tuning: Tuning, heard: list[Any]):
