@@ -12,29 +12,39 @@ from numpy.lib.stride_tricks import sliding_window_view
 from ai.nn.parameter import Array
 
 BLOCK = 1 << 20  # numbers at work at a time: 4 MB, which stay in the cache between one pass and the next
+MOVING = 25  # multiplications of a matrix product that take as long as copying or adding one number
 
 
 class Correlation:
-    """Correlates images of `channels` with kernels into `filters`, block by block.
+    """Correlates images of `channels` with kernels into `filters` of a given width, block by block.
 
     Kernels are (kernel column, kernel row, channel, filter). Windows lie `stride` pixels apart, and the images
     come with `padding` zeros around them.
 
-    The windows are copied into the columns of a matrix (Chellapilla, Puri & Simard 2006). Either whole, so that
-    one product with the kernels is the result. Or only one column of each window, and the products with each
-    column of the kernels are added, every one shifted by its place: if there are many channels, this moves
-    fewer numbers.
+    Windows are copied into the columns of a matrix (Chellapilla, Puri & Simard 2006): whole, so that one product
+    with the kernels is the result; or only one column of each, and the products with all columns of the kernels
+    are added, every one shifted by its place. With many channels the second moves fewer numbers.
     """
 
-    def __init__(self, kernel: int, channels: int, filters: int, *, stride: int = 1, padding: int = 0) -> None:
-        whole = stride > 1 or kernel * kernel * channels + filters <= kernel * (channels + filters)
-        self.kernel, self.stride = kernel, stride
-        self.columns = kernel if whole else 1  # of each window, in the matrix
-        self.shifts = kernel // self.columns
-        self.rows = self.columns * kernel * channels  # of the matrix
-        self.products = self.shifts * filters
-        self.margin = 0 if whole else padding  # pixels of zeros add nothing to a shifted product
+    def __init__(
+        self, kernel: int, channels: int, filters: int, width: int, *, stride: int = 1, padding: int = 0
+    ) -> None:
+        self.kernel, self.channels, self.filters, self.width = kernel, channels, filters, width
+        self.stride, self.padding = stride, padding
         self.scratch: dict[str, Array] = {}
+        self._copy(min((kernel, 1) if stride == 1 else (kernel,), key=self._cost))
+
+    def _copy(self, columns: int) -> None:
+        """Settle how many columns of each window are copied: `kernel` or 1."""
+        self.columns, self.shifts = columns, self.kernel // columns
+        self.rows = columns * self.kernel * self.channels  # of the matrix
+        self.products = self.shifts * self.filters
+        self.margin = self.padding if self.shifts > 1 else 0  # pixels of zeros, which add nothing to what is shifted
+
+    def _cost(self, columns: int) -> int:
+        self._copy(columns)
+        width = self.width + self.shifts - 1 - 2 * self.margin
+        return width * (self.rows * self.products + MOVING * (self.rows + self.products))
 
     def correlate(self, images: Array, kernels: Array, bias: Array, output: Array) -> None:
         """Fill `output`, (filters, width, height, batch), with the correlation plus a bias of each filter."""
@@ -50,18 +60,17 @@ class Correlation:
                 continue
             products = self._memory("products", (self.products, *matrix.shape[1:]), output)
             np.matmul(kernels, matrix.reshape(self.rows, -1), out=products.reshape(self.products, -1))
-            shifted = products.reshape(self.shifts, -1, *matrix.shape[1:])
-            for shift, inside, place in self._shifted(x, output.shape[1]):
+            shifted = products.reshape(self.shifts, self.filters, *matrix.shape[1:])
+            for shift, inside, place in self._shifted(x):
                 part = output[:, place, y]
                 part += shifted[shift][:, inside]
 
     def gradient(self, images: Array, error: Array) -> Array:
         """Return the gradient of the kernels, given the output's: (shifts, rows of the matrix, filters)."""
-        filters = len(error)
-        gradient = np.zeros((self.shifts, self.rows, filters), error.dtype)
+        gradient = np.zeros((self.shifts, self.rows, self.filters), error.dtype)
         for matrix, x, y in self._matrices(images):
-            for shift, inside, place in self._shifted(x, error.shape[1]):
-                part = error[:, place, y].reshape(filters, -1)
+            for shift, inside, place in self._shifted(x):
+                part = error[:, place, y].reshape(self.filters, -1)
                 gradient[shift] += matrix[:, inside].reshape(self.rows, -1) @ part.T
         return gradient
 
@@ -81,10 +90,10 @@ class Correlation:
             matrix[...] = block
             yield matrix.reshape(self.rows, *block.shape[3:]), x, y
 
-    def _shifted(self, x: slice, width: int) -> Iterator[tuple[int, slice, slice]]:
-        """Yield for each shift which columns of a block meet an output of this width, and where."""
+    def _shifted(self, x: slice) -> Iterator[tuple[int, slice, slice]]:
+        """Yield for each shift which columns of a block meet the output, and where."""
         for shift in range(self.shifts):
-            first, last = max(x.start, shift), min(x.stop, width + shift)
+            first, last = max(x.start, shift), min(x.stop, self.width + shift)
             if first < last:
                 yield shift, slice(first - x.start, last - x.start), slice(first - shift, last - shift)
 

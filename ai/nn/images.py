@@ -51,10 +51,10 @@ class ConvolutionLayer(FullyConnectedLayer):
             self.kernel**2 * channels, self.filters, initialisation=initialisation, scale=scale, rng=rng, dtype=dtype
         )
         self.inputs = shape
-        self.outputs = (self._reach(height), self._reach(width), self.filters)
+        _, reach, _ = self.outputs = (self._reach(height), self._reach(width), self.filters)
         self.overhang = self.kernel - 1 - self.padding  # the padding of the way back
-        self.forward = Correlation(self.kernel, channels, self.filters, stride=self.stride, padding=self.padding)
-        self.backward = Correlation(self.kernel, self.filters, channels, padding=self.overhang)
+        self.forward = Correlation(self.kernel, channels, self.filters, reach, stride=self.stride, padding=self.padding)
+        self.backward = Correlation(self.kernel, self.filters, channels, width, padding=self.overhang)
         self.framed = self.framed_error = np.empty((0, 0, 0, 0), dtype)
 
     @property
