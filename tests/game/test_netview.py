@@ -15,9 +15,13 @@ LARGE = (90, 80, 1100, 560)
 OBSERVATION = np.linspace(-1, 1, 9)
 
 
+@pytest.fixture(autouse=True)
+def fonts() -> None:
+    pygame.font.init()
+
+
 @pytest.fixture
 def canvas() -> Canvas:
-    pygame.font.init()
     return Canvas(pygame.Surface((1280, 720)))
 
 
