@@ -1,0 +1,155 @@
+"""The co-pilot: a person flies, and a network that values every action keeps them from harm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum, StrEnum
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from ai.env import Bools, Floats, Ints
+from ai.lander import NUM_ACTIONS, NUM_FEATURES
+from ai.pilots import COAST
+
+# What one action must be worth more than another, before assist has its say: a tenth of a landing's 120 points.
+GUARDIAN_MARGIN: Final = 0.12
+_STEERS: Final = 3  # action = 3 * main + steer
+
+
+class Valuer(Protocol):
+    """Whoever knows what actions are worth, such as a DeepQAgent."""
+
+    def q_values(self, observation: Floats) -> Floats:
+        """Value of every action, (n, 6), for observations (n, 9)."""
+
+
+class Mode(StrEnum):
+    """When the co-pilot steps in."""
+
+    TOLERANCE = "tolerance"  # where the pilot's action is not nearly as good as the best
+    GUARDIAN = "guardian"  # only where its own is better for every pad, by a margin
+
+
+class Rule(IntEnum):
+    """Whose action it became, in the order in which they are tried."""
+
+    PILOT = 0  # the pilot's, untouched
+    PILOT_MAIN = 1  # the pilot's main engine with the co-pilot's steering
+    PILOT_STEER = 2  # the co-pilot's main engine with the pilot's steering
+    COPILOT = 3  # the co-pilot's
+    HANDS_OFF = 4  # the co-pilot's, because nothing is pressed
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One shared decision, and all that explains it."""
+
+    action: Ints  # (n,) what is flown
+    pilot: Ints  # (n,) what the pilot asked for
+    best: Ints  # (n,) what the co-pilot would do
+    rule: Ints  # (n,) of Rule
+    values: Floats  # (n, pads, 6) what each action is worth on the way to each pad
+    feasible: Bools  # (n, 6) which actions the pilot could have had
+
+    @property
+    def overridden(self) -> Bools:
+        """Whether something else is flown than the pilot asked for, (n,)."""
+        overridden: Bools = self.action != self.pilot
+        return overridden
+
+
+class CoPilot:
+    """Shares the stick between a pilot and an agent (Reddy, Dragan and Levine 2018).
+
+    `assist` runs from 0, where every action of the pilot's is flown, to 1, where only the best are good enough.
+    A pilot who asks for nothing has their hands off the stick: then the co-pilot flies, whatever the assist.
+
+    In tolerance mode an action is feasible if what it is worth above the worst is at least `assist` of what the
+    best is. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more
+    on the way to every pad by a margin, which falls from without limit at assist 0 to nothing at 1.
+    """
+
+    def __init__(self, agent: Valuer, assist: float = 0.5, mode: Mode | str = Mode.TOLERANCE) -> None:
+        self.agent = agent
+        self.assist = assist
+        self.mode = Mode(mode)
+
+    @property
+    def assist(self) -> float:
+        """How much the co-pilot helps, 0 to 1; setting anything else raises ValueError."""
+        return self._assist
+
+    @assist.setter
+    def assist(self, assist: float) -> None:
+        if not 0.0 <= assist <= 1.0:
+            raise ValueError(f"assist runs from 0 to 1, not {assist}")
+        self._assist = assist
+
+    def share(self, observation: Floats, pilot_action: Any) -> tuple[Ints, Bools]:
+        """Return the actions to fly (n,), and where they are not the pilot's, (n,).
+
+        `observation` is (n, 9), or (n, pads, 9) relative to each pad that may be meant; `pilot_action` is (n,)
+        of 0 to 5. Raises ValueError for others.
+        """
+        decision = self.decide(observation, pilot_action)
+        return decision.action, decision.overridden
+
+    def decide(self, observation: Floats, pilot_action: Any) -> Decision:
+        """Do what `share` does, and say why."""
+        values, pilot = self._values(observation), np.atleast_1d(pilot_action)
+        if pilot.shape != (len(values),) or pilot.dtype.kind not in "iu":
+            raise ValueError(f"pilot actions must be {len(values)} whole numbers, not {pilot.dtype} {pilot.shape}")
+        if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
+        assist = np.where(pilot == COAST, 1.0, self.assist)
+        weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
+        best, feasible = weigh(values, pilot, assist)
+        candidates = np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS,
+                               best - best % _STEERS + pilot % _STEERS, best])  # fmt: skip
+        rows = np.arange(len(pilot))
+        rule = feasible[rows, candidates].argmax(axis=0)
+        action = candidates[rule, rows]
+        rule[(pilot == COAST) & (action != pilot)] = Rule.HANDS_OFF
+        return Decision(action, pilot, best, rule, values, feasible)
+
+    def _values(self, observation: Floats) -> Floats:
+        """Return what the agent thinks of every action, (n, pads, 6)."""
+        observation = np.atleast_2d(observation)
+        if observation.ndim == 2:
+            observation = observation[:, None]
+        values = self.agent.q_values(observation.reshape(-1, NUM_FEATURES))
+        return values.reshape(*observation.shape[:2], NUM_ACTIONS)
+
+    def _tolerate(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
+        """Return the co-pilot's action (n,) and the feasible ones (n, 6): those as good as `assist` (n,) asks for."""
+        above = values - values.min(axis=2, keepdims=True)
+        most = above.max(axis=2, keepdims=True)
+        asked = assist.astype(above.dtype)[:, None, None] * most
+        # Whoever means one of several pads may do what is right for that one; the co-pilot, what is right for all.
+        feasible = (above >= asked).all(axis=1)
+        rows = np.arange(len(pilot))
+        feasible[rows, pilot] = (above[rows, :, pilot] >= asked[:, :, 0]).any(axis=1)
+        best = (above / np.maximum(most, np.finfo(above.dtype).tiny)).min(axis=1).argmax(axis=1)
+        return self._certain(values, pilot, best, feasible)
+
+    def _guard(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
+        """Return the co-pilot's action (n,) and the feasible (n, 6): its own, and the pilot's if not much worse."""
+        rows = np.arange(len(pilot))
+        gain = (values - values[rows, :, pilot][:, :, None]).min(axis=1)
+        best = gain.argmax(axis=1)
+        with np.errstate(divide="ignore"):
+            margin = GUARDIAN_MARGIN * (1.0 - assist) / assist
+        feasible = np.zeros(gain.shape, dtype=bool)
+        feasible[rows, best] = True
+        feasible[rows, pilot] = gain[rows, best] <= margin
+        return self._certain(values, pilot, best, feasible)
+
+    @staticmethod
+    def _certain(values: Floats, pilot: Ints, best: Ints, feasible: Bools) -> tuple[Ints, Bools]:
+        """Leave the pilot alone where a ruined network, or pads that ask for different things, leave no better."""
+        rows = np.arange(len(pilot))
+        worse = ~(values[rows, :, best] >= values[rows, :, pilot]).all(axis=1)
+        feasible[rows[worse], pilot[worse]] = True
+        feasible[rows, best] = True
+        return best, feasible

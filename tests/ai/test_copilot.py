@@ -1,0 +1,119 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ai.copilot import CoPilot, Mode, Rule
+from ai.pilots import COAST
+
+
+def valuer(*rows):
+    """An agent that has these opinions of its observations, in turn."""
+    return SimpleNamespace(q_values=lambda observation: np.array(rows, dtype=np.float32).reshape(len(observation), 6))
+
+
+def seen(count=1, pads=None):
+    return np.zeros((count, 9) if pads is None else (count, pads, 9), dtype=np.float32)
+
+
+def by_the_book(values, pilot, assist):
+    """The rule of one decision as the paper has it."""
+    above = values - values.min()
+    alpha = 0.0 if pilot == COAST else 1.0 - assist
+    best = int(above.argmax())
+    for action in (pilot, pilot // 3 * 3 + best % 3, best // 3 * 3 + pilot % 3, best):
+        if above[action] >= (1.0 - alpha) * above.max():
+            return action
+    raise AssertionError
+
+
+@pytest.mark.parametrize("assist", [0.0, 0.25, 0.5, 0.75, 1.0])
+def test_tolerance_is_the_rule_of_the_paper(assist):
+    rng = np.random.default_rng(0)
+    values, pilot = rng.normal(size=(500, 6)).astype(np.float32), rng.integers(0, 6, 500)
+    action, overridden = CoPilot(valuer(values), assist).share(seen(500), pilot)
+    np.testing.assert_array_equal(action, [by_the_book(v, p, assist) for v, p in zip(values, pilot, strict=True)])
+    np.testing.assert_array_equal(overridden, action != pilot)
+
+
+@pytest.mark.parametrize(
+    ("values", "pilot", "action", "rule"),
+    [
+        ((0, 0, 0, 9, 10, 0), 3, 3, Rule.PILOT),
+        ((0, 0, 0, 0, 10, 0), 3, 4, Rule.PILOT_MAIN),
+        ((0, 0, 0, 0, 10, 0), 1, 4, Rule.PILOT_STEER),
+        ((0, 0, 0, 0, 10, 0), 2, 4, Rule.COPILOT),
+        ((0, 0, 0, 0, 10, 0), 0, 4, Rule.HANDS_OFF),
+        ((10, 0, 0, 0, 0, 0), 0, 0, Rule.PILOT),
+    ],
+)
+def test_the_pilot_keeps_as_much_as_is_safe(values, pilot, action, rule):
+    decision = CoPilot(valuer(values), 0.8).decide(seen(), [pilot])
+    assert (decision.action[0], decision.rule[0]) == (action, rule)
+    assert decision.best[0] == np.argmax(values)
+    assert decision.feasible[0, action]
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_assist_of_nothing_flies_what_is_pressed(mode):
+    rng = np.random.default_rng(1)
+    pilot = rng.integers(1, 6, 50)
+    action, overridden = CoPilot(valuer(rng.normal(size=(50, 6))), 0.0, mode).share(seen(50), pilot)
+    np.testing.assert_array_equal(action, pilot)
+    assert not overridden.any()
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_full_assist_flies_the_best(mode):
+    rng = np.random.default_rng(2)
+    values = rng.normal(size=(50, 6))
+    action, _ = CoPilot(valuer(values), 1.0, mode).share(seen(50), rng.integers(0, 6, 50))
+    np.testing.assert_array_equal(action, values.argmax(axis=1))
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_pads_that_ask_for_different_things_leave_the_pilot_alone(mode):
+    left, right = (0, 1, -1, 0, 1, -1), (0, -1, 1, 0, -1, 1)
+    copilot = CoPilot(valuer(left, right), 0.9, mode)
+    for pilot in (1, 2):
+        action, overridden = copilot.share(seen(1, 2), [pilot])
+        assert action[0] == pilot
+        assert not overridden[0]
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_what_harms_on_the_way_to_every_pad_is_overridden(mode):
+    left, right = (-3, -3, -3, 0, 2, 1), (-3, -3, -3, 0, 1, 2)
+    action, overridden = CoPilot(valuer(left, right), 0.9, mode).share(seen(1, 2), [1])
+    assert action[0] >= 3
+    assert overridden[0]
+
+
+def test_the_margin_of_the_guardian_falls_with_assist():
+    rng = np.random.default_rng(3)
+    values, pilot = rng.normal(scale=0.1, size=(1000, 6)), rng.integers(1, 6, 1000)
+    shares = [CoPilot(valuer(values), assist, "guardian").share(seen(1000), pilot)[1].mean()
+              for assist in (0.0, 0.2, 0.5, 0.8, 1.0)]  # fmt: skip
+    assert shares == sorted(shares)
+    assert shares[0] == 0.0
+    assert shares[-1] > 0.8
+
+
+@pytest.mark.parametrize("mode", Mode)
+def test_a_ruined_network_leaves_the_stick_to_the_pilot(mode):
+    values = np.full((6, 6), np.nan)
+    action, overridden = CoPilot(valuer(values), 1.0, mode).share(seen(6), np.arange(6))
+    np.testing.assert_array_equal(action, np.arange(6))
+    assert not overridden.any()
+
+
+def test_what_makes_no_sense_is_refused():
+    copilot = CoPilot(valuer(np.zeros(6)))
+    with pytest.raises(ValueError, match="assist runs from 0 to 1"):
+        copilot.assist = 1.5
+    with pytest.raises(ValueError, match="guard"):
+        CoPilot(valuer(np.zeros(6)), 0.5, "guard")
+    with pytest.raises(ValueError, match="0 to 5"):
+        copilot.share(seen(), [6])
+    with pytest.raises(ValueError, match="whole numbers"):
+        copilot.share(seen(), [1, 2])
