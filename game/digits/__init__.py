@@ -1,0 +1,1 @@
+"""Drawing digits: the pad, what a network reads of it, and pictures of how it knows."""

@@ -1,0 +1,182 @@
+"""A pad to draw on with mouse, pen or finger: smooth strokes, undo, clear."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+import pygame
+
+from ai.strokes import Canvas as Ink
+from ai.strokes import draw_segment
+from game.digits.stroke import PEN_WIDTH, Point, Stroke
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, LINE, NIGHT0, Colour
+
+_RADIUS: Final = 12.0
+_MOST_UNDONE: Final = 100
+
+
+class DrawingPad:
+    """Where a person draws. Feed it `handle_event`; events outside `rect` mean nothing to it.
+
+    Attributes:
+        rect: where it is, in points.
+        revision: goes up with every change of the drawing.
+        drawing: whether the pen is down.
+
+    """
+
+    def __init__(self, rect: pygame.typing.RectLike) -> None:
+        self.rect = pygame.Rect(rect)
+        self.revision = 0
+        self.drawing = False
+        self._outside = False
+        self._strokes: tuple[Stroke, ...] = ()
+        self._history: list[tuple[Stroke, ...]] = []
+        self._ink = _Layer(self.rect.size, 1.0)
+        self._layer: _Layer | None = None
+        self._sheet = pygame.Surface((1, 1), pygame.SRCALPHA)
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is drawn."""
+        return not self._strokes
+
+    @property
+    def strokes(self) -> list[npt.NDArray[np.float64]]:
+        """The strokes, each as (n, 2) points from the pad's upper left corner, y down."""
+        return [np.array(stroke.path) for stroke in self._strokes]
+
+    @property
+    def ink(self) -> Ink:
+        """The drawing as an image, 0 to 1, ink bright, a pixel a point: (height, width). It is kept; do not write."""
+        self._ink.follow(self._strokes)
+        return self._ink.cover
+
+    def handle_event(self, event: pygame.event.Event) -> bool:
+        """Take one event, its position in points; false if it means nothing to the pad."""
+        match event.type:
+            case pygame.MOUSEBUTTONDOWN if event.button == 1 and self.rect.collidepoint(event.pos):
+                self._begin(event.pos)
+            case pygame.MOUSEMOTION if self.drawing:
+                self._go_on(event.pos)
+            case pygame.MOUSEBUTTONUP if event.button == 1 and self.drawing:
+                self._go_on(event.pos)
+                self.drawing = False
+            case pygame.WINDOWFOCUSLOST:
+                self.drawing = False
+                return False
+            case _:
+                return False
+        return True
+
+    def undo(self) -> bool:
+        """Take back the last stroke, or the last clearing; false if there is nothing to take back."""
+        if not self._history:
+            return False
+        self._change(self._history.pop())
+        return True
+
+    def clear(self) -> None:
+        """Begin anew; `undo` brings the drawing back."""
+        if self._strokes:
+            self._remember()
+            self._change(())
+
+    def lift(self) -> None:
+        """End the stroke, whatever the mouse does."""
+        self.drawing = False
+
+    def draw(self, canvas: Canvas, colour: Colour = INK) -> None:
+        """Draw the pad and what is on it, in the window's own pixels."""
+        canvas.rounded(self.rect, _RADIUS, NIGHT0)
+        canvas.outline(self.rect, _RADIUS, LINE)
+        area = canvas.rect(*self.rect)
+        if self._layer is None or self._layer.scale != canvas.scale or self._sheet.get_size() != area.size:
+            self._layer = _Layer(area.size, canvas.scale)
+            self._sheet = pygame.Surface(area.size, pygame.SRCALPHA)
+            self._sheet.fill((*colour, 0))
+        changed = self._layer.follow(self._strokes)
+        if changed:
+            rows, columns = changed
+            alpha = pygame.surfarray.pixels_alpha(self._sheet)
+            alpha[columns, rows] = (self._layer.cover[rows, columns] * 255.5).astype(np.uint8).T
+            del alpha  # it locks the surface
+        canvas.surface.blit(self._sheet, area)
+
+    def _begin(self, position: Point) -> None:
+        self._remember()
+        self._change((*self._strokes, Stroke(self._place(position))))
+        self.drawing, self._outside = True, False
+
+    def _go_on(self, position: Point) -> None:
+        if not self.rect.inflate(PEN_WIDTH, PEN_WIDTH).collidepoint(position):
+            self._outside = True
+        elif self._outside:  # back again: it has not drawn on its way there
+            self._outside = False
+            self._strokes = (*self._strokes, Stroke(self._place(position)))
+            self.revision += 1
+        elif self._strokes[-1].add(self._place(position)):
+            self.revision += 1
+
+    def _place(self, position: Point) -> Point:
+        return float(position[0] - self.rect.left), float(position[1] - self.rect.top)
+
+    def _remember(self) -> None:
+        self._history = [*self._history[1 - _MOST_UNDONE :], self._strokes]
+
+    def _change(self, strokes: tuple[Stroke, ...]) -> None:
+        self.drawing = False
+        self._strokes = strokes
+        self.revision += 1
+
+
+class _Layer:
+    """An image of strokes that is painted once, and goes on with them.
+
+    Attributes:
+        cover: how much of each pixel is inked, 0 to 1, (height, width).
+
+    """
+
+    def __init__(self, size: tuple[int, int], scale: float) -> None:
+        self.scale = scale
+        self.cover = np.zeros(size[::-1], np.float32)
+        self._painted: dict[Stroke, tuple[int, int]] = {}  # how much of each: settled, and points in all
+
+    def follow(self, strokes: tuple[Stroke, ...]) -> tuple[slice, slice] | None:
+        """Paint what is new; return the rows and columns that changed, if any."""
+        anew = any(stroke not in strokes for stroke in self._painted)
+        if anew:
+            self.cover[...] = 0.0
+            self._painted.clear()
+        pieces = [piece for stroke in strokes for piece in self._pieces(stroke)]
+        for start, end, width in pieces:
+            draw_segment(self.cover, start, end, width)
+        if anew:
+            return slice(None), slice(None)
+        if not pieces:
+            return None
+        reach = max(width for *_, width in pieces) / 2 + 2
+        ends = [end for piece in pieces for end in piece[:2]]
+        across, down = (
+            slice(max(0, math.floor(min(axis) - reach)), max(0, math.ceil(max(axis) + reach)))
+            for axis in zip(*ends, strict=True)
+        )
+        return down, across
+
+    def _pieces(self, stroke: Stroke) -> list[tuple[Point, Point, float]]:
+        """Return what is not painted yet: start, end and width, in pixels."""
+        scale, path = self.scale, stroke.path
+        settled, count = self._painted.get(stroke, (0, 0))
+        if count == len(path) and settled == stroke.settled:
+            return []
+        self._painted[stroke] = (stroke.settled, len(path))
+        points = [(x * scale, y * scale) for x, y in path[settled:]]
+        widths = [width * scale for width in stroke.widths[settled:]]
+        if len(points) == 1:
+            return [(points[0], points[0], widths[0])]
+        return list(zip(points, points[1:], widths[1:], strict=False))
