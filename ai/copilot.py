@@ -8,12 +8,14 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
+from ai.agent import DeepQAgent
+from ai.config import Config
 from ai.env import Bools, Floats, Ints
 from ai.lander import NUM_ACTIONS, NUM_FEATURES
 from ai.pilots import COAST
 
-# What one action must be worth more than another, before assist has its say: a tenth of a landing's 120 points.
-GUARDIAN_MARGIN: Final = 0.12
+# Points of reward that the guardian's action must bring more than the pilot's, at an assist of one half.
+GUARDIAN_MARGIN: Final = 3.0
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
@@ -68,12 +70,23 @@ class CoPilot:
     In tolerance mode an action is feasible if what it is worth above the worst is at least `assist` of what the
     best is. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more
     on the way to every pad by a margin, which falls from without limit at assist 0 to nothing at 1.
+
+    `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with.
     """
 
-    def __init__(self, agent: Valuer, assist: float = 0.5, mode: Mode | str = Mode.TOLERANCE) -> None:
+    def __init__(
+        self,
+        agent: Valuer,
+        assist: float = 0.5,
+        mode: Mode | str = Mode.TOLERANCE,
+        *,
+        reward_scale: float | None = None,
+    ) -> None:
         self.agent = agent
         self.assist = assist
         self.mode = Mode(mode)
+        config = agent.config if isinstance(agent, DeepQAgent) else Config()
+        self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
 
     @property
     def assist(self) -> float:
@@ -139,7 +152,7 @@ class CoPilot:
         gain = (values - values[rows, :, pilot][:, :, None]).min(axis=1)
         best = gain.argmax(axis=1)
         with np.errstate(divide="ignore"):
-            margin = GUARDIAN_MARGIN * (1.0 - assist) / assist
+            margin = GUARDIAN_MARGIN * self.reward_scale * (1.0 - assist) / assist
         feasible = np.zeros(gain.shape, dtype=bool)
         feasible[rows, best] = True
         feasible[rows, pilot] = gain[rows, best] <= margin

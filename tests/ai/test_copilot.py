@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ai.copilot import CoPilot, Mode, Rule
+from ai.copilot import GUARDIAN_MARGIN, CoPilot, Mode, Rule
 from ai.pilots import COAST
 
 
@@ -105,6 +105,13 @@ def test_a_ruined_network_leaves_the_stick_to_the_pilot(mode):
     action, overridden = CoPilot(valuer(values), 1.0, mode).share(seen(6), np.arange(6))
     np.testing.assert_array_equal(action, np.arange(6))
     assert not overridden.any()
+
+
+def test_the_margin_is_in_points_of_reward():
+    values = (0, 0, 0, 4, 0, 0)
+    for scale, points in ((1.0, 4.0), (0.01, 400.0), (2.0, 2.0)):
+        copilot = CoPilot(valuer(values), 0.5, "guardian", reward_scale=scale)
+        assert copilot.share(seen(), [1])[1][0] == (points > GUARDIAN_MARGIN)
 
 
 def test_what_makes_no_sense_is_refused():
