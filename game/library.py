@@ -18,12 +18,14 @@ from ai.config import LANDER
 from ai.nn.folder import recover_folder
 from ai.runs import LAST, TRAINING_FILE
 from game import texts
+from game.lock import Lock, take
 from game.networks import PARTS, PLAYERS
 
-UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
+UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself; a second game's has a number behind it
 TRASH: Final = ".trash"
 LONGEST_NAME: Final = 40
 _TRASH_KEPT: Final = 8
+_GAMES: Final = 16  # that may train at the same time
 _OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
 
@@ -129,17 +131,15 @@ class Library:
 
     Attributes:
         problem: why `runs` could not look; empty if it could.
+        unsaved: where a run keeps itself until it is given a name.
 
     """
 
     def __init__(self, user_dir: Path) -> None:
         self.folder = user_dir / PLAYERS
         self.problem = ""
-
-    @property
-    def unsaved(self) -> Path:
-        """Where a run keeps itself until it is given a name."""
-        return self.folder / UNSAVED
+        self.unsaved = self.folder / UNSAVED
+        self._lock: Lock | None = None
 
     def runs(self) -> list[SavedRun]:
         """Describe every run, the latest first, damaged ones too."""
@@ -232,7 +232,29 @@ class Library:
             _copy(path, target)
         return read_run(target)
 
-    # What a game that ended too early left behind
+    # What has no name yet, and what a game that ended too early left behind
+
+    def claim(self) -> SavedRun | None:
+        """Let no other game use `unsaved` until `release`, and describe the run that lies there, if one does.
+
+        Of the places that no other game holds, it is the first with a run that was left behind, or else the first.
+        """
+        self.release()
+        places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
+        for place in [*filter(_was_used, places), *places]:
+            self._lock = take(place.with_name(f"{place.name}.lock"))
+            if self._lock:
+                self.unsaved = place
+                if (left := self.rescued()) or not _was_used(place):
+                    return left
+                self._lock.release()
+        return None
+
+    def release(self) -> None:
+        """Leave `unsaved` to whoever comes next."""
+        if self._lock:
+            self._lock.release()
+            self._lock = None
 
     def rescued(self) -> SavedRun | None:
         """Describe the run that was never given a name, called as it might be. Ask before a training begins."""
@@ -296,6 +318,10 @@ def _claims(path: Path, hidden: bool = False) -> bool:
     if path.name.startswith(".") and not hidden:
         return False
     return any((path / part).exists() for part in (*PARTS, TRAINING_FILE))
+
+
+def _was_used(place: Path) -> bool:
+    return place.exists() or place.with_name(f".{place.name}{_OLD}").exists()
 
 
 def _same(name: str) -> str:

@@ -117,14 +117,14 @@ class Student:
             self._worker.send(Revert(checkpoint.decisions))
 
     def save(self, name: str) -> str:
-        """Give the run a name in the library; returns what the player should know, later news come from `poll`."""
-        try:
-            if self._worker and self.alive:
-                self._worker.send(Save(self.library.new_folder(name)))
-                return ""
-            self.library.keep_rescued(name)
-        except LibraryError as error:
-            return str(error)
+        """Give the run a name in the library, or raise LibraryError.
+
+        Returns what the player should know; of a run that goes on, that comes from `poll`.
+        """
+        if self._worker and self.alive:
+            self._worker.send(Save(self.library.new_folder(name)))
+            return ""
+        self.library.keep_rescued(name)
         return texts.TRAIN_SAVED.format(name=name)
 
     def poll(self) -> list[str]:

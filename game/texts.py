@@ -575,3 +575,10 @@ HINTS: Final = {
     "random": "It still acts at random most of the time: ε is high.",
     "plateau": "It has stopped getting better.",
 }
+
+# Train: the run that the last visit left without a name
+TRAIN_LEFT: Final = "Here is a run that was never given a name."
+TRAIN_LEFT_FIGURES: Final = "Its best network landed {percent:.0f}% of its trials after {seconds:.0f} s of learning."
+TRAIN_LEFT_YOUNG: Final = "It has learnt for {seconds:.0f} s."
+TRAIN_LEFT_GO_ON: Final = "Go on with it"
+TRAIN_LEFT_DISCARD: Final = "Discard it"

@@ -20,7 +20,7 @@ from ai.nn import NeuralNetwork
 from game import texts
 from game.context import Context
 from game.controls import Command, translate
-from game.library import Library
+from game.library import Library, LibraryError, SavedRun
 from game.scene import Pop, Push, Transition
 from game.student import PACES, Student
 from game.ui.advice import Advice, wrapped
@@ -68,6 +68,7 @@ class Train:
         self._was_running = self._alive = False
         self._frame = 0
         self._told = -1  # points of the history that the charts have
+        self._left: SavedRun | None = None  # by the last visit, without a name
         self._scrub: Checkpoint | None = None
         self._net: NeuralNetwork | None = None
 
@@ -79,6 +80,7 @@ class Train:
             return
         self._context, self._settings = context, context.settings
         self.student = Student(Library(context.user_dir))
+        self._left = self.student.library.claim()
         self.swarm = LearningSwarm(_WIDTH / VIEW_SIZE[0])
         self.charts = Charts([
             Chart(box, texts.TRAIN_CHARTS[name], limits=limits, read=partial(_written, form))
@@ -87,7 +89,7 @@ class Train:
         self._strip = Strip(_PAID)
         self._inside = 0  # 0 for the network, 1 for what it is paid
         self._view = NetView(_NET, texts.INPUTS, ACTION_NAMES)
-        self._form = Form(context, on_back=self._leave)
+        self._form = Form(context, on_back=Pop)
         self._add_controls()
         self.knobs = Knobs(self._form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
         self._advice = Advice(self._form, _SAID, self.knobs.turn, self._go_back)
@@ -96,6 +98,7 @@ class Train:
         self._scrubber = self._form.add(Scrubber(self._form.manager, self.charts, self._scrub_to, self._duel))
         if self._resume is not None:
             self._go_on(self._resume)
+            self._left = None
 
     def exit(self) -> None:
         """Stand still while another scene has the window."""
@@ -106,6 +109,7 @@ class Train:
         """End the run's process."""
         if self._context is not None:
             self.student.close()
+            self.student.library.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Start, pause, step, turn knobs, look closer."""
@@ -128,6 +132,8 @@ class Train:
     def update(self) -> Transition | None:
         """Listen to the worker, and let the picture ease."""
         assert self._context is not None
+        if self._left:
+            return self._ask_what_becomes_of(self._left)
         before = self.student.sight, self.student.insight
         for note in self.student.poll():
             self._context.note(note)
@@ -201,7 +207,7 @@ class Train:
         self.student.change(name, value)
 
     def _save(self) -> Transition | None:
-        from game.scenes.naming import Naming
+        from game.scenes.dialog import Naming
 
         assert self._context is not None
         if not self.student.kept:
@@ -210,23 +216,49 @@ class Train:
         suggestion = self.student.library.free_name(texts.TRAIN_NAME.format(preset=self.knobs.name))
         return Push(Naming(self, texts.TRAIN_NAMING, suggestion, self._save_as))
 
-    def _save_as(self, name: str) -> None:
+    def _save_as(self, name: str) -> str:
+        """Save under a name; returns why it can't be called so."""
         assert self._context is not None
-        if note := self.student.save(name):
-            self._context.note(note)
-
-    def _leave(self) -> Transition:
-        self.student.close()
-        return Pop()
+        try:
+            if note := self.student.save(name):
+                self._context.note(note)
+        except LibraryError as error:
+            return str(error)
+        return ""
 
     def _open_runs(self) -> Transition:
         from game.scenes.runs import Runs
 
-        return Push(Runs())
+        def go_on(folder: Path) -> Transition:
+            self._go_on(folder)
+            return Pop()
+
+        return Push(Runs(train=go_on))
+
+    def _ask_what_becomes_of(self, left: SavedRun) -> Transition:
+        """Offer the run that was left without a name by the last visit, or by a game that ended too early."""
+        from game.scenes.dialog import Asking
+
+        self._left = None
+        more = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
+        more = left.problem or more.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
+        answers = [(texts.TRAIN_LEFT_DISCARD, partial(self._discard, left.name))]
+        if left.resumable:
+            answers.insert(0, (texts.TRAIN_LEFT_GO_ON, partial(self._go_on, left.folder)))
+        return Push(Asking(self, texts.TRAIN_LEFT, more, answers))
+
+    def _discard(self, name: str) -> None:
+        assert self._context is not None
+        try:
+            self.student.library.discard_rescued()
+        except LibraryError as error:
+            self._context.note(str(error))
+        else:
+            self._context.note(texts.RUN_DELETED.format(name=name))
 
     def _compare(self) -> Transition:
         """Ask for a saved run whose curves shall be seen beside these."""
-        from game.scenes.picking import Picking
+        from game.scenes.dialog import Picking
 
         runs = self.student.library.runs()
 

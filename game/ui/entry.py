@@ -19,7 +19,6 @@ from game.ui.tokens import FAINT, HUMAN, INK, LABEL, MUTE, TEXT
 from game.ui.widgets import PointsManager, Widget
 
 Fits = Callable[[str], str]
-_UNFIT: Final = frozenset('<>:"/\\|?*')
 _PASTE: Final = pygame.KMOD_CTRL | pygame.KMOD_META
 _REPEAT_AFTER: Final = 24  # steps that a key waits before it repeats, and between repeats
 _REPEAT_EVERY: Final = 3
@@ -28,11 +27,6 @@ _REPEAT_EVERY: Final = 3
 def printable(text: str) -> str:
     """Keep what can be shown on one line."""
     return "".join(letter for letter in text if letter.isprintable())
-
-
-def file_name(text: str) -> str:
-    """Keep what may stand in the name of a file on any system."""
-    return "".join(letter for letter in printable(text) if letter not in _UNFIT)
 
 
 def digits(text: str) -> str:

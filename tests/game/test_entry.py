@@ -4,10 +4,11 @@ import pygame
 import pytest
 
 from game.context import Context
+from game.library import fitting
 from game.scene import Pop, Transition
 from game.ui import entry
 from game.ui.canvas import Canvas
-from game.ui.entry import Entry, Line, digits, file_name, printable
+from game.ui.entry import Entry, Line, digits, printable
 from game.ui.form import Form
 from game.ui.listing import Listing
 from game.ui.widgets import Word
@@ -26,7 +27,7 @@ class Page:
         self.form = form = Form(context, on_back=Pop)
         log = self.log
         self.entry = form.add(
-            Entry(form.manager, (64, 100, 300, 32), "NAME", "Modern 3", log.append, limit=12, fits=file_name,
+            Entry(form.manager, (64, 100, 300, 32), "NAME", "Modern 3", log.append, limit=12, fits=fitting,
                   on_cancel=lambda: log.append("cancelled"))
         )  # fmt: skip
         self.word = form.add(Word(form.manager, (64, 160, 80, 24), "Save", lambda: log.append("saved")))
@@ -108,8 +109,8 @@ def test_everything_can_be_selected_and_deleted():
 @pytest.mark.parametrize(
     ("fits", "text", "kept"),
     [
-        (file_name, 'a/b\\c:d*e?f<g>h|i"j.k é', "abcdefghij.k é"),
-        (file_name, "a\n\tb\x00", "ab"),
+        (fitting, 'a/b\\c:d*e?f<g>h|i"j.k é', "abcdefghij.k é"),
+        (fitting, "a\n\tb\x00", "ab"),
         (printable, "a/b\n", "a/b"),
         (digits, "-1.5e3٣", "153"),
     ],
@@ -129,7 +130,7 @@ def test_a_line_is_never_longer_than_its_limit():
 
 def test_the_clipboard_is_pasted(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(entry, "_clipboard", lambda: "run/7\n")
-    line = Line("", fits=file_name)
+    line = Line("", fits=fitting)
     press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
     assert line.text == "run7"
 

@@ -12,7 +12,7 @@ from ai.runs import resume_run, save_run
 from ai.training import Training
 from game import library as module
 from game import networks
-from game.library import Library, LibraryError, is_valid_name, read_run
+from game.library import UNSAVED, Library, LibraryError, is_valid_name, read_run
 
 SMALL = Config(hidden=(8,), num_envs=4, warm_up=16, replay_size=100, batch_size=16)
 DESCRIBED = {
@@ -301,6 +301,27 @@ def test_what_had_no_name_can_be_let_go_and_brought_back(library: Library):
     restored = library.undo_delete()
     assert restored is not None
     assert restored.seed == 9
+
+
+def test_two_games_at_once_keep_their_runs_apart(library: Library):
+    other = Library(library.folder.parent)
+    assert library.claim() is None
+    assert other.claim() is None
+    assert library.unsaved != other.unsaved
+    add(other, other.unsaved.name, seed=8)
+    assert library.claim() is None, "the other still works there"
+    other.release()
+    left = library.claim()
+    assert left is not None
+    assert (left.seed, left.folder) == (8, library.unsaved)
+    assert names(library) == []
+
+
+def test_one_game_finds_what_another_that_was_killed_left(library: Library):
+    add(library, f".{UNSAVED} 2.old", seed=6)
+    left = library.claim()
+    assert left is not None
+    assert left.seed == 6
 
 
 @pytest.mark.parametrize("name", ["run", ".training"])

@@ -13,9 +13,10 @@ import pytest
 from ai.config import PRESETS
 from ai.rewards import RewardWeights
 from ai.training import Training
+from game import texts
 from game.library import Library
+from game.scenes.dialog import Asking, Naming
 from game.scenes.menu import Menu
-from game.scenes.naming import Naming
 from game.scenes.play import Play
 from game.scenes.train import Train
 from game.worker import State
@@ -91,6 +92,63 @@ def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
     (run,) = library.runs()
     assert not run.problem
     assert run.seed == 3
+
+
+def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game: Callable[..., Driver]) -> None:
+    start(train)
+    decisions = train.top.student.history["decisions"][-1]
+    train.app.close()
+    driver = open_game(Train())
+    driver.frames(2)
+    assert isinstance(driver.top, Asking)
+    driver.key(pygame.K_RETURN)
+    scene = driver.top
+    wait(driver, lambda: scene.student.begun or scene.student.sight)
+    assert scene.student.sight.decisions >= decisions
+    assert scene.student.config.num_envs == SMALL.num_envs
+
+
+def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game: Callable[..., Driver]) -> None:
+    start(train)
+    train.app.close()
+    driver = open_game(Train())
+    driver.frames(2)
+    driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
+    assert isinstance(driver.top, Train)
+    driver.frames(2)
+    assert isinstance(driver.top, Train)
+    library = driver.top.student.library
+    assert library.rescued() is None
+    assert library.last_deleted
+
+
+def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    scene._save_as("mine")
+    wait(train, scene.student.library.runs)
+    train.app.scenes.apply(scene._open_runs())
+    train.frames(2)
+    verbs = train.top._verbs
+    train.top._form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    wait(train, lambda: scene.student.sight is not None)
+    assert scene.student.state is State.RUNNING
+
+
+def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    (scene.student.library.folder / "mine").mkdir()
+    train.app.scenes.apply(scene._save())
+    train.top._entry.text = "mine"
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, Naming)
+    train.post(pygame.TEXTINPUT, text="M2")
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    wait(train, scene.student.library.runs)
 
 
 def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:

@@ -1,0 +1,155 @@
+"""Dialogs: a question over the scene that asks it, which stands still and dim meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import pygame
+
+from game import texts
+from game.context import Context
+from game.controls import Command
+from game.library import LONGEST_NAME, fitting
+from game.scene import Pop, Scene, Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.entry import Entry
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.listing import Listing, Row
+from game.ui.prose import wrapped
+from game.ui.tokens import MUTE, NIGHT0, SMALL, TEXT
+from game.ui.widgets import OnPress, Word
+
+_LEFT, _WIDTH = 400, 480
+_MARGIN: Final = 32
+_ROOM: Final = _WIDTH - 2 * _MARGIN
+_GAP: Final = 28.0  # between words
+
+
+class Dialog:
+    """What all of them share; each puts its widgets into the form in `build`. Escape closes it and does nothing."""
+
+    height = 164
+
+    def __init__(self, below: Scene, question: str, more: str = "") -> None:
+        self._below, self._question, self._more = below, question, more
+        self.box = pygame.Rect(_LEFT, (720 - self.height) // 2 - 16, _WIDTH, self.height)
+
+    def build(self, form: Form) -> None:
+        """Put the widgets into the form."""
+        raise NotImplementedError
+
+    def enter(self, context: Context) -> None:
+        """Build the form."""
+        self._context = context
+        self._form = Form(context, on_back=Pop)
+        self.build(self._form)
+
+    def exit(self) -> None:
+        """Nothing is held."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Leave it to the form."""
+        return self._form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Let the form ease."""
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the scene below, dimmed, and the question."""
+        self._below.draw(canvas, 1.0)
+        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.6)
+        canvas.panel(self.box, 0.96)
+        left, top = self.box.left + _MARGIN, self.box.top
+        canvas.text(self._question, (left, top + 40), size=TEXT)
+        if self._more:
+            for number, line in enumerate(wrapped(canvas, self._more, SMALL, _ROOM)):
+                canvas.text(line, (left, top + 66 + 18 * number), size=SMALL, colour=MUTE)
+        self._form.draw(canvas)
+        word = self._context.controls.word
+        hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.BACK), texts.HINT_LEAVE)]
+        draw_hints(canvas, hints, (left, self.box.bottom + 24))
+
+    def add_words(self, form: Form, words: Sequence[tuple[str, OnPress]]) -> None:
+        """Put words side by side along the lower edge."""
+        x = float(self.box.left + _MARGIN)
+        for label, press in words:
+            width = typeface.width(label, TEXT, "regular")
+            form.add(Word(form.manager, (x, self.box.bottom - 52, width, 28), label, press))
+            x += width + _GAP
+
+
+class Asking(Dialog):
+    """Closes on any answer, and does what that stands for."""
+
+    def __init__(
+        self, below: Scene, question: str, more: str, answers: Sequence[tuple[str, Callable[[], None]]]
+    ) -> None:
+        super().__init__(below, question, more)
+        self._answers = answers
+
+    def build(self, form: Form) -> None:
+        """Put the answers side by side."""
+        self.add_words(form, [(label, _closing(deed)) for label, deed in self._answers])
+
+
+class Naming(Dialog):
+    """Asks for a name, with a suggestion that can be taken as it is.
+
+    `on_name` is called with it, and says why it can't be had; if it says nothing, the dialog closes.
+    """
+
+    def __init__(self, below: Scene, question: str, suggestion: str, on_name: Callable[[str], str]) -> None:
+        super().__init__(below, question)
+        self._suggestion, self._on_name = suggestion, on_name
+
+    def build(self, form: Form) -> None:
+        """Put the line and two words below it."""
+        line = (self.box.left + _MARGIN, self.box.top + 60, _ROOM, 32)
+        self._entry = form.add(Entry(
+            form.manager, line, "", self._suggestion, self._done, on_cancel=Pop, limit=LONGEST_NAME, fits=fitting,
+        ))  # fmt: skip
+        self.add_words(form, [(texts.NAMING_KEEP, self._keep), (texts.NAMING_LEAVE, Pop)])
+        self._entry.begin()
+
+    def _keep(self) -> Transition | None:
+        return self._done(self._entry.text.strip())
+
+    def _done(self, name: str) -> Transition | None:
+        problem = self._on_name(name)
+        if not problem:
+            return Pop()
+        self._context.note(problem)
+        self._form.focus(self._entry)
+        self._entry.begin()
+        return None
+
+
+class Picking(Dialog):
+    """Calls `on_pick` with the number of the row that was pressed, and closes."""
+
+    height = 336
+
+    def __init__(self, below: Scene, question: str, rows: Sequence[Row], on_pick: Callable[[int], None]) -> None:
+        super().__init__(below, question)
+        self._rows, self._on_pick = rows, on_pick
+
+    def build(self, form: Form) -> None:
+        """Put the list."""
+        box = (self.box.left + _MARGIN, self.box.top + 56, _ROOM, self.box.height - 84)
+        form.add(Listing(form.manager, box, self._rows, on_press=self._pick, empty=texts.PICKING_EMPTY))
+
+    def _pick(self, number: int) -> Transition:
+        self._on_pick(number)
+        return Pop()
+
+
+def _closing(deed: Callable[[], None]) -> Callable[[], Transition]:
+    def press() -> Transition:
+        deed()
+        return Pop()
+
+    return press
