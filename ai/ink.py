@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ai.strokes import Stroke, as_points, draw_strokes
+from ai.strokes import Stroke, as_points, draw_strokes, spaced
 
 SIDE: Final = 28  # pixels along what a network reads
 BOX: Final = 20  # and along the box in its middle that ink has to fit
@@ -22,6 +22,7 @@ CENTRE: Final = 14.5  # from the image's edge: the middle of pixel 14
 STROKE_WIDTH: Final = 2.4  # pixels: the mean of MNIST's training images, as `stroke_width` measures them
 CELLS: Final = 5  # along a pixel: the grid on which strokes are measured and changed
 MARGIN: Final = 2  # pixels of it around the box, room for strokes that grow
+SPACING: Final = 1.0  # cells from one point of a stroke to the next: more of them change nothing that can be seen
 LARGEST_GROWTH: Final = 2.0  # how far ink is enlarged once its strokes are thinner: a dot stays a dot
 
 Image = npt.NDArray[np.float32]
@@ -47,6 +48,21 @@ def preprocess(canvas: npt.ArrayLike) -> Image:
 
 def preprocess_strokes(strokes: Sequence[Stroke]) -> Image:
     """Return the same of strokes, each a list of points (x, y), y down, whatever pen they were drawn with."""
+    return stages(_redrawn(strokes), width=False).centred
+
+
+def stroke_stages(strokes: Sequence[Stroke], canvas: npt.ArrayLike, *, centre: bool = True) -> Stages:
+    """Return strokes at each stage, and the canvas that they were drawn on with some pen.
+
+    What the network reads of them is what `preprocess_strokes` returns: they are not thinned on the canvas, where
+    a wide pen may have filled a loop, but drawn anew.
+    """
+    seen, redrawn = stages(canvas, width=False), stages(_redrawn(strokes), width=False, centre=centre)
+    return seen._replace(thinned=redrawn.fitted, centred=redrawn.centred)
+
+
+def _redrawn(strokes: Sequence[Stroke]) -> Image:
+    """Return strokes as large as the box, on its fine grid, with a pen as wide as MNIST's."""
     points = as_points(strokes)
     if not points:
         return np.zeros((SIDE, SIDE), np.float32)
@@ -55,8 +71,8 @@ def preprocess_strokes(strokes: Sequence[Stroke]) -> Image:
     room = BOX - STROKE_WIDTH
     scale = CELLS * room / max(float((high - low).max()), room / LARGEST_GROWTH)
     size = (BOX + 2 * MARGIN) * CELLS
-    placed = [(stroke - (low + high) / 2) * scale + size / 2 for stroke in points]
-    return stages(draw_strokes(placed, (size, size), STROKE_WIDTH * CELLS), width=False).centred
+    placed = [spaced((stroke - (low + high) / 2) * scale + size / 2, SPACING) for stroke in points]
+    return draw_strokes(placed, (size, size), STROKE_WIDTH * CELLS)
 
 
 def stages(

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 Stroke = npt.ArrayLike  # (n, 2): x to the right, y down, in pixels from the canvas's upper left corner
 Canvas = npt.NDArray[np.float32]
+Points = npt.NDArray[np.float64]
+_SMALL: Final = 8.0  # pixels beyond the pen's width that a piece may take and count as short
+_CELLS: Final = 2**18  # pixels that are worked upon at a time
 
 
-def as_points(strokes: Sequence[Stroke]) -> list[npt.NDArray[np.float64]]:
+def as_points(strokes: Sequence[Stroke]) -> list[Points]:
     """Return each stroke as (n, 2) finite points, those with none left out; raises ValueError for other shapes."""
     cleaned = []
     for stroke in strokes:
@@ -25,32 +28,75 @@ def as_points(strokes: Sequence[Stroke]) -> list[npt.NDArray[np.float64]]:
     return cleaned
 
 
+def spaced(points: Points, spacing: float) -> Points:
+    """Return a stroke without points that follow another within so much of the way; both ends stay."""
+    way = np.cumsum(np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T))
+    kept = np.diff(np.floor(way / spacing), prepend=-1.0) > 0
+    kept[-1] = True
+    return points[kept]
+
+
 def draw_strokes(strokes: Sequence[Stroke], shape: tuple[int, int], width: float) -> Canvas:
     """Return a canvas of shape (height, width), 0 to 1, drawn upon with a round pen `width` pixels wide."""
     canvas = np.zeros(shape, np.float32)
     for points in as_points(strokes):
-        for start, end in pairwise(points):
-            draw_segment(canvas, start, end, width)
-        if len(points) == 1:
-            draw_segment(canvas, points[0], points[0], width)
+        starts, ends = (points[:-1], points[1:]) if len(points) > 1 else (points, points)
+        draw_segments(canvas, starts, ends, np.full(len(starts), width))
     return canvas
 
 
-def draw_segment(canvas: Canvas, start: npt.ArrayLike, end: npt.ArrayLike, width: float) -> None:
-    """Draw one straight piece in place; a pixel is as bright as the pen covers it, to a good approximation."""
-    (x0, y0), (x1, y1) = np.asarray(start, np.float64), np.asarray(end, np.float64)
+def draw_segments(canvas: Canvas, starts: npt.ArrayLike, ends: npt.ArrayLike, widths: npt.ArrayLike) -> None:
+    """Draw straight pieces (n, 2) in place, each with a round pen (n,) wide.
+
+    A pixel is as bright as the pen covers it, to a good approximation.
+    """
+    starts, ends, widths = (np.asarray(given, np.float64) for given in (starts, ends, widths))
+    sizes = np.abs(ends - starts).max(axis=1, initial=0.0) + widths + 2
+    for index in np.flatnonzero(sizes > 2 * widths + _SMALL):
+        _draw_long(canvas, starts[index], ends[index], float(widths[index]))
+    short = np.flatnonzero(sizes <= 2 * widths + _SMALL)
+    at_a_time = max(1, int(_CELLS // max(1.0, sizes[short].max(initial=0.0) ** 2)))
+    for first in range(0, len(short), at_a_time):
+        some = short[first : first + at_a_time]
+        _draw_short(canvas, starts[some], ends[some], widths[some])
+
+
+def _draw_short(canvas: Canvas, starts: Points, ends: Points, widths: Points) -> None:
+    """Draw pieces in windows of one size, for what an array operation costs is mostly its call."""
+    height, width = canvas.shape
+    corners = np.floor(np.minimum(starts, ends) - widths[:, None] / 2 - 1)
+    side = int(np.ceil((np.maximum(starts, ends) + widths[:, None] / 2 + 1 - corners).max()))
+    inside = ((corners > -side) & (corners < (width, height))).all(axis=1)
+    starts, ends, corners, widths = starts[inside], ends[inside], corners[inside], widths[inside]
+    pixels = np.arange(side, dtype=np.float32) + 0.5
+    (across, down), (dx, dy) = (starts - corners).astype(np.float32).T, (ends - starts).astype(np.float32).T
+    covers = _cover(
+        pixels - across[:, None, None], pixels[:, None] - down[:, None, None], dx[:, None, None], dy[:, None, None],
+        widths.astype(np.float32)[:, None, None],
+    )  # fmt: skip
+    for (left, top), cover in zip(corners.astype(int).tolist(), covers, strict=True):
+        part = canvas[max(top, 0) : top + side, max(left, 0) : left + side]
+        above, before = max(-top, 0), max(-left, 0)
+        np.maximum(part, cover[above : above + part.shape[0], before : before + part.shape[1]], out=part)
+
+
+def _draw_long(canvas: Canvas, start: Points, end: Points, width: float) -> None:
+    (x0, y0), (x1, y1) = start, end
     reach = width / 2 + 1
     left, right = _clipped(min(x0, x1) - reach, max(x0, x1) + reach, canvas.shape[1])
     top, bottom = _clipped(min(y0, y1) - reach, max(y0, y1) + reach, canvas.shape[0])
     if left >= right or top >= bottom:
         return
-    across = np.arange(left, right) + 0.5 - x0
-    down = (np.arange(top, bottom) + 0.5 - y0)[:, None]
-    dx, dy = x1 - x0, y1 - y0
-    along = np.clip((across * dx + down * dy) / max(dx * dx + dy * dy, 1e-12), 0.0, 1.0)
-    distance = np.hypot(across - along * dx, down - along * dy)
+    across, down = np.arange(left, right) + 0.5 - x0, (np.arange(top, bottom) + 0.5 - y0)[:, None]
     part = canvas[top:bottom, left:right]
-    np.maximum(part, np.clip(width / 2 + 0.5 - distance, 0.0, min(1.0, width)), out=part, casting="same_kind")
+    np.maximum(part, _cover(across, down, x1 - x0, y1 - y0, width), out=part, casting="same_kind")
+
+
+def _cover(across: Any, down: Any, dx: Any, dy: Any, width: Any) -> Any:
+    """Return how much of pixels at a place from a piece's start is covered; (dx, dy) leads to its end."""
+    along = np.clip((across * dx + down * dy) / np.maximum(dx * dx + dy * dy, 1e-12), 0.0, 1.0)
+    distance = np.sqrt(np.square(across - along * dx) + np.square(down - along * dy))
+    return np.clip(width / 2 + 0.5 - distance, 0.0, np.minimum(1.0, width))
 
 
 def _clipped(low: float, high: float, size: int) -> tuple[int, int]:

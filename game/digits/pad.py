@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pygame
 
 from ai.strokes import Canvas as Ink
-from ai.strokes import draw_segment
+from ai.strokes import draw_segments
 from game.digits.stroke import PEN_WIDTH, Point, Stroke
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, LINE, NIGHT0, Colour
@@ -154,8 +154,8 @@ class _Layer:
             self.cover[...] = 0.0
             self._painted.clear()
         pieces = [piece for stroke in strokes for piece in self._pieces(stroke)]
-        for start, end, width in pieces:
-            draw_segment(self.cover, start, end, width)
+        if pieces:
+            draw_segments(self.cover, *zip(*pieces, strict=True))
         if anew:
             return slice(None), slice(None)
         if not pieces:

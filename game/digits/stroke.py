@@ -65,7 +65,7 @@ def _curve(before: Point | None, start: Point, end: Point, after: Point) -> list
     along = ((end[0] - start[0]) / chord, (end[1] - start[1]) / chord)
     first = _tangent(_direction(before, start), along) if before else along
     last = _tangent(along, _direction(end, after))
-    count = math.ceil(chord / (_CHORD / 2))
+    count = math.ceil(chord / _CHORD) + 1
     points = []
     for number in range(1, count):
         t = number / count
