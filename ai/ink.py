@@ -48,7 +48,10 @@ def preprocess(canvas: npt.ArrayLike) -> Image:
 
 def preprocess_strokes(strokes: Sequence[Stroke]) -> Image:
     """Return the same of strokes, each a list of points (x, y), y down, whatever pen they were drawn with."""
-    return stages(_redrawn(strokes), width=False).centred
+    ink = _redrawn(strokes)
+    if not ink.any():
+        return np.zeros((SIDE, SIDE), np.float32)
+    return _placed(ink, (len(ink) / 2, len(ink) / 2), CELLS, True)
 
 
 def stroke_stages(strokes: Sequence[Stroke], canvas: npt.ArrayLike, *, centre: bool = True) -> Stages:
@@ -57,20 +60,22 @@ def stroke_stages(strokes: Sequence[Stroke], canvas: npt.ArrayLike, *, centre: b
     What the network reads of them is what `preprocess_strokes` returns: they are not thinned on the canvas, where
     a wide pen may have filled a loop, but drawn anew.
     """
-    seen, redrawn = stages(canvas, width=False), stages(_redrawn(strokes), width=False, centre=centre)
-    return seen._replace(thinned=redrawn.fitted, centred=redrawn.centred)
+    seen, ink = stages(canvas, width=False), _redrawn(strokes)
+    if not ink.any():
+        return seen
+    middle = (len(ink) / 2, len(ink) / 2)
+    return seen._replace(thinned=_resample(ink, middle, CELLS, BOX), centred=_placed(ink, middle, CELLS, centre))
 
 
 def _redrawn(strokes: Sequence[Stroke]) -> Image:
     """Return strokes as large as the box, on its fine grid, with a pen as wide as MNIST's."""
-    points = as_points(strokes)
+    points, size = as_points(strokes), (BOX + 2 * MARGIN) * CELLS
     if not points:
-        return np.zeros((SIDE, SIDE), np.float32)
+        return np.zeros((size, size), np.float32)
     everything = np.concatenate(points)
     low, high = everything.min(axis=0), everything.max(axis=0)
     room = BOX - STROKE_WIDTH
     scale = CELLS * room / max(float((high - low).max()), room / LARGEST_GROWTH)
-    size = (BOX + 2 * MARGIN) * CELLS
     placed = [spaced((stroke - (low + high) / 2) * scale + size / 2, SPACING) for stroke in points]
     return draw_strokes(placed, (size, size), STROKE_WIDTH * CELLS)
 
@@ -106,10 +111,7 @@ def stages(
         cells /= growth
         middle = _middle_of(_box(ink))
     thinned = _resample(ink, middle, cells, frame)
-    if centre:
-        down, across = _centre_of_mass(ink)
-        middle = (down + (SIDE / 2 - CENTRE) * cells, across + (SIDE / 2 - CENTRE) * cells)
-    return Stages(drawn, cropped, fitted, thinned, _resample(ink, middle, cells, SIDE))
+    return Stages(drawn, cropped, fitted, thinned, _placed(ink, middle, cells, centre))
 
 
 def enlarge(image: Image, size: int) -> Image:
@@ -144,6 +146,14 @@ def _middle_of(box: tuple[slice, slice] | None) -> tuple[float, float]:
     assert box is not None, "there is ink"
     rows, columns = box
     return (rows.start + rows.stop) / 2, (columns.start + columns.stop) / 2
+
+
+def _placed(ink: Image, middle: tuple[float, float], cells: float, centre: bool) -> Image:
+    """Return (28, 28) around the centre of mass, or else around the middle, at so many cells to a pixel."""
+    if centre:
+        down, across = _centre_of_mass(ink)
+        middle = (down + (SIDE / 2 - CENTRE) * cells, across + (SIDE / 2 - CENTRE) * cells)
+    return _resample(ink, middle, cells, SIDE)
 
 
 def _resample(image: Image, middle: tuple[float, float], pitch: float, count: int) -> Image:

@@ -36,7 +36,7 @@ class DrawingPad:
         self._outside = False
         self._strokes: tuple[Stroke, ...] = ()
         self._history: list[tuple[Stroke, ...]] = []
-        self._ink = _Layer(self.rect.size, 1.0)
+        self._ink = _Layer((self.rect.width // 2, self.rect.height // 2), 0.5)
         self._layer: _Layer | None = None
         self._sheet = pygame.Surface((1, 1), pygame.SRCALPHA)
 
@@ -52,7 +52,7 @@ class DrawingPad:
 
     @property
     def ink(self) -> Ink:
-        """The drawing as an image, 0 to 1, ink bright, a pixel a point: (height, width). It is kept; do not write."""
+        """The drawing as an image (height, width), 0 to 1, ink bright, two points a pixel. It is kept; do not write."""
         self._ink.follow(self._strokes)
         return self._ink.cover
 

@@ -1,0 +1,160 @@
+"""What the networks read of a drawing, and how: stages, probabilities, activations, what spoke for the answer."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.ink import BOX, SIDE, Image, Stages, stages, stroke_stages
+from ai.strokes import Stroke
+
+if TYPE_CHECKING:
+    from ai.digits import DigitClassifier
+
+NAMES: Final = ("modern", "classic")
+SURE: Final = 0.9  # nine in ten test images that are read rightly are read with more than that
+LIKELY: Final = 0.65  # and 99 in a hundred
+LEAST_INK: Final = 18.0  # pixels: the thinnest of the test images has 25, a dot 5
+Numbers = npt.NDArray[np.float32]
+_log = logging.getLogger("tranquility")
+
+
+class Verdict(Enum):
+    """How far an answer can be trusted."""
+
+    EMPTY = auto()
+    SURE = auto()
+    LIKELY = auto()
+    UNSURE = auto()
+
+
+@dataclass(frozen=True)
+class Switches:
+    """Which steps of preprocessing are taken; `ai.ink.stages` says what each means."""
+
+    crop: bool = True
+    fit: bool = True
+    width: bool = True
+    centre: bool = True
+
+    def prepare(self, strokes: Sequence[Stroke], ink: npt.ArrayLike) -> Stages:
+        """Return strokes, and the canvas with them, at every stage."""
+        if self.crop and self.fit and self.width:
+            return stroke_stages(strokes, ink, centre=self.centre)
+        return stages(ink, **vars(self))
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One look at a drawing; `probabilities` (10,) by the name of each network that could be read."""
+
+    stages: Stages
+    probabilities: dict[str, Numbers]
+
+    def verdict(self, name: str) -> Verdict:
+        """Return how far a network's answer can be trusted."""
+        if not self.stages.centred.any():
+            return Verdict.EMPTY
+        surest = float(self.probabilities[name].max())
+        if self.stages.centred.sum() < LEAST_INK or surest < LIKELY:
+            return Verdict.UNSURE
+        return Verdict.SURE if surest >= SURE else Verdict.LIKELY
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why a network answers as it does.
+
+    Attributes:
+        saliency: (28, 28), what each pixel's ink speaks for the best answer against the second, -1 to 1.
+        filters: the first layer's weights, (n, height, width), the most active ones first if there are many.
+        layers: what layers with values to see give: (n, height, width) of images, or (n,).
+
+    """
+
+    saliency: Image
+    filters: Numbers
+    layers: list[Numbers]
+
+
+@dataclass
+class Reader:
+    """The two networks. One that can't be read is left out; `problems` says why, by name."""
+
+    classifiers: dict[str, DigitClassifier] = field(default_factory=dict)
+    problems: dict[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def load(cls, folder: Path) -> Reader:
+        """Read the networks in a folder. Never raises."""
+        reader = cls()
+        for name in NAMES:
+            reader.put(name, folder / name)
+        return reader
+
+    def put(self, name: str, folder: Path) -> bool:
+        """Read one network; if that fails, what was there stays, and false is returned."""
+        from ai.digits import DigitClassifier
+        from ai.nn import ModelFormatError
+
+        self.problems.pop(name, None)
+        try:
+            self.classifiers[name] = DigitClassifier.load(folder)
+        except ModelFormatError as error:
+            self.problems[name] = error.problems[0] if error.problems else str(error)
+        except Exception as error:  # a damaged folder may fail in any way, and none may end the game
+            _log.exception("reading %s", folder)
+            self.problems[name] = str(error) or type(error).__name__
+        return name not in self.problems
+
+    def read(self, strokes: Sequence[Stroke], ink: npt.ArrayLike, switches: Switches) -> Reading:
+        """Let all networks read a drawing."""
+        seen = switches.prepare(strokes, ink)
+        return Reading(seen, {name: one.predict(seen.centred)[0] for name, one in self.classifiers.items()})
+
+    def explain(self, name: str, image: Image) -> Explanation:
+        """Return why a network answers as it does for an image (28, 28)."""
+        classifier = self.classifiers[name]
+        shaped = classifier.shaped(image)
+        outputs = classifier.network.activations(shaped)
+        first, second = np.argsort(outputs[-1][0])[[-1, -2]]
+        between = np.zeros((1, outputs[-1].shape[-1]), np.float32)
+        between[0, first], between[0, second] = 1, -1
+        spoken = classifier.network.input_gradient(shaped, between).reshape(SIDE, SIDE) * image
+        return Explanation(_normalised(spoken), _filters(classifier, outputs), _layers(classifier, outputs))
+
+
+def _normalised(values: Numbers) -> Numbers:
+    return np.asarray(values / max(float(np.abs(values).max()), 1e-9), np.float32)
+
+
+def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
+    """Return the first weights as images, each between -1 and 1."""
+    from ai.nn import ConvolutionLayer
+
+    first = classifier.network.layers[0]
+    if isinstance(first, ConvolutionLayer):
+        images = first.kernels[:, :, 0].transpose(2, 1, 0)
+    else:
+        active = np.argsort(-np.abs(outputs[1][0]), kind="stable")
+        images = first.parameters[0].value.T.reshape(-1, SIDE, SIDE)[active[:32]]
+    return np.asarray(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9), np.float32)
+
+
+def _layers(classifier: DigitClassifier, outputs: list[Numbers]) -> list[Numbers]:
+    """Return what the activation layers give, those of images channel by channel, each layer within -1 to 1."""
+    from ai.nn import ActivationLayer
+
+    values = [out[0] for layer, out in zip(classifier.network.layers, outputs, strict=True)
+              if isinstance(layer, ActivationLayer) and out.shape[-1] > len("0123456789")]  # fmt: skip
+    return [_normalised(value.transpose(2, 0, 1) if value.ndim == 3 else value) for value in values]
+
+
+EMPTY: Final = Stages(*(np.zeros((side, side), np.float32) for side in (BOX, BOX, BOX, BOX, SIDE)))
