@@ -2,116 +2,52 @@
 
 Actions are `3 * main + steer`; `steer` is 0 for none, 1 for left, 2 for right. Observations are
 [rel_x, rel_y, vx, vy, sin θ, cos θ, ω, left contact, right contact], relative to standing on the middle of
-the pad and scaled by `OBSERVATION_SCALE`.
+the pad and scaled by `OBSERVATION_SCALE`. `ai.rules` has the numbers.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
-from enum import IntEnum
+from dataclasses import fields
 from typing import Any, Final
 
 import numpy as np
 
 from ai.env import Bools, Doubles, Floats, Ints, StepResult
+from ai.ground import Ground
 from ai.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, Change, RewardWeights, Situation
+from ai.rules import (
+    ACTION_NAMES,
+    FEATURE_NAMES,
+    FOOT_CENTRE,
+    FOOT_SIZE,
+    HULL,
+    LIMITS,
+    MIRROR_ACTIONS,
+    MIRROR_FEATURES,
+    MIRROR_SIGNS,
+    NUM_ACTIONS,
+    NUM_FEATURES,
+    OBSERVATION_SCALE,
+    PARAMS,
+    Cause,
+    LanderParams,
+    Limits,
+    Outcome,
+    engines_switched,
+)
 from ai.spawns import SPAWNS, Curriculum
 from engine import DT, Polygon, World
 
-NUM_ACTIONS: Final = 6
-NUM_FEATURES: Final = 9
-ACTION_NAMES: Final = ("coast", "left", "right", "main", "main + left", "main + right")
-FEATURE_NAMES: Final = ("x", "y", "vx", "vy", "sin θ", "cos θ", "ω", "left foot", "right foot")
-# A pad six metres wide spans about two units: near it, small differences must look large to a network.
-OBSERVATION_SCALE: Final = np.array([0.3, 0.3, 0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0])
-# Swaps left and right: multiply an observation by this, and swap its two contacts.
-MIRROR_SIGNS: Final = np.array([-1, 1, -1, 1, -1, 1, -1, 1, 1], dtype=np.float32)
-MIRROR_FEATURES: Final = np.array([0, 1, 2, 3, 4, 5, 6, 8, 7])
-MIRROR_ACTIONS: Final = np.array([0, 2, 1, 3, 5, 4])
+__all__ = [
+    "ACTION_NAMES", "FEATURE_NAMES", "FOOT_CENTRE", "FOOT_SIZE", "HULL", "LIMITS", "MIRROR_ACTIONS",
+    "MIRROR_FEATURES", "MIRROR_SIGNS", "NUM_ACTIONS", "NUM_FEATURES", "OBSERVATION_SCALE", "PARAMS", "Cause",
+    "LanderEnv", "LanderParams", "Limits", "Outcome", "engines_switched",
+]  # fmt: skip
 
-
-class Outcome(IntEnum):
-    """How a flight stands."""
-
-    FLYING = 0
-    LANDED = 1
-    CRASHED = 2
-    OUT_OF_BOUNDS = 3
-    TIMED_OUT = 4
-
-
-class Cause(IntEnum):
-    """What made a flight a crash."""
-
-    NONE = 0
-    HULL = 1  # something other than a foot touched
-    TERRAIN = 2  # touched beside the pad
-    HARD = 3  # came down too fast
-    SLIDING = 4  # moved sideways too fast while touching
-    TILTED = 5  # touched while leaning too far
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a touchdown may be, and what a landing must be."""
-
-    touch_speed: float = 2.0  # m/s into the surface
-    slide_speed: float = 2.0  # m/s along it
-    touch_tilt: float = 0.5  # rad
-    rest_speed: float = 0.5  # m/s
-    rest_tilt: float = 0.15  # rad
-    rest_spin: float = 0.3  # rad/s
-    rest_steps: int = 30  # physics steps with both feet down and all of the above
-    half_width: float = 22.0  # metres from the pad
-    ceiling: float = 26.0  # metres
-    time: float = 25.0  # seconds
-
-    def stricter(self, share: float) -> Limits:
-        """The same limits, but for touches only `share` as hard: who learns under them keeps a margin."""
-        return replace(
-            self,
-            touch_speed=share * self.touch_speed,
-            slide_speed=share * self.slide_speed,
-            touch_tilt=share * self.touch_tilt,
-        )
-
-
-@dataclass(frozen=True)
-class LanderParams:
-    """The craft and its moon, in SI units."""
-
-    gravity: float = 1.62
-    mass: float = 1.0
-    inertia: float = 0.5
-    main_thrust: float = 4.2
-    side_thrust: float = 0.9
-    side_arm: float = 0.7  # metres above the centre of mass
-    linear_drag: float = 0.02
-    quadratic_drag: float = 0.005
-    angular_drag: float = 0.25
-    angular_quadratic_drag: float = 0.1
-    restitution: float = 0.15
-    friction: float = 0.6
-    ground: float = 1.0
-    pad_top: float = 1.6
-    pad_width: float = 6.0
-    stand: float = 0.96  # height of the centre of mass above what the feet stand on
-    jet_fuel: float = 0.1  # a second of jet, in seconds of main engine
-
-
-HULL: Final = ((-0.62, -0.45), (0.62, -0.45), (0.72, 0.05), (0.42, 0.75), (-0.42, 0.75), (-0.72, 0.05))
-FOOT_SIZE: Final = (0.40, 0.12)
-FOOT_CENTRE: Final = (0.85, -0.90)
 _COUNTERS: Final = ("outcome", "cause", "actions", "contacts", "impact", "steps", "main_steps", "side_steps",
-                    "_still", "_feet_steps")  # fmt: skip
-LIMITS: Final = Limits()
-PARAMS: Final = LanderParams()
-
-
-def engines_switched(held: Ints, actions: Ints) -> Ints:
-    """How many engines, of main and jets, go on or off between two actions, each (n,)."""
-    switched: Ints = ((held >= 3) != (actions >= 3)) * 1 + ((held % 3) != (actions % 3))
-    return switched
+                    "touched", "_still", "_feet_steps")  # fmt: skip
+# No network has been farther from a pad in training; where there are several, one more so seems to be that far.
+_FAR: Final = 16.0
 
 
 class LanderEnv:
@@ -120,6 +56,9 @@ class LanderEnv:
     `spawn` names a distribution of `ai.spawns` or is a Curriculum, then followed by this environment's own
     landings. `seed` is an int, a Generator or None; slot k draws from its own stream, so that a flight does
     not depend on how many fly beside it. A `step` is `frame_skip` physics steps of 1/60 s with one action.
+
+    All fly over the same `ground`, by default a plain with one pad. Where that has several pads, a landing on any
+    of them counts; `target` (n,) says by number which one observations and rewards are about.
     """
 
     num_actions = NUM_ACTIONS
@@ -133,6 +72,7 @@ class LanderEnv:
         frame_skip: int = 4,
         *,
         params: LanderParams = PARAMS,
+        ground: Ground | None = None,
         limits: Limits = LIMITS,
         weights: RewardWeights | None = None,
     ) -> None:
@@ -140,6 +80,7 @@ class LanderEnv:
             raise ValueError(f"num_envs and frame_skip start from 1, not {num_envs} and {frame_skip}")
         self.num_envs, self.frame_skip = num_envs, frame_skip
         self.params, self.limits, self.weights = params, limits, weights or RewardWeights()
+        self.ground = ground or Ground.flat(params)
         self.spawn = spawn
         self.landings = 0
         self._rngs = np.random.default_rng(seed).spawn(num_envs)
@@ -147,7 +88,9 @@ class LanderEnv:
         self.outcome: Ints = np.zeros(num_envs, dtype=np.intp)
         self.cause: Ints = np.zeros(num_envs, dtype=np.intp)
         self.actions: Ints = np.zeros(num_envs, dtype=np.intp)
-        self.contacts: Bools = np.zeros((num_envs, 2), dtype=bool)
+        self.contacts: Bools = np.zeros((num_envs, 2), dtype=bool)  # left and right foot on a pad
+        self.touched: Ints = np.zeros(num_envs, dtype=np.intp)  # the pad that a foot was last on
+        self.target: Ints = np.zeros(num_envs, dtype=np.intp)
         self.impact: Doubles = np.zeros((num_envs, 3))
         self.steps: Ints = np.zeros(num_envs, dtype=np.intp)
         self.main_steps: Ints = np.zeros(num_envs, dtype=np.intp)
@@ -168,16 +111,12 @@ class LanderEnv:
             linear_drag=params.linear_drag, quadratic_drag=params.quadratic_drag,
             angular_drag=params.angular_drag, angular_quadratic_drag=params.angular_quadratic_drag, **surface,
         )  # fmt: skip
-        thickness = params.pad_top - params.ground
-        self._pad = self.world.add(
-            Polygon.box(params.pad_width, thickness, (0.0, -thickness / 2)), (0.0, params.pad_top),
-            static=True, **surface,
-        )  # fmt: skip
-        self.world.add(Polygon.box(80.0, 10.0), (0.0, params.ground - 5.0), static=True, **surface)
+        pads = self.ground.build(self.world, **surface)
         # Rows of the detector's pairs: which part of the craft touches, and whether it is the pad it touches.
         pairs = self.world.detector.pairs
         self._pair_part = pairs.min(axis=1)  # 0 hull, 1 left foot, 2 right foot
-        self._pair_on_pad = pairs.max(axis=1) == 3
+        self._pair_pad = pairs.max(axis=1) - 3  # the pad's number; the plain and its hills come after the pads
+        self._pair_on_pad = self._pair_pad < len(pads)
 
     @property
     def position(self) -> Doubles:
@@ -201,13 +140,18 @@ class LanderEnv:
 
     @property
     def pad(self) -> Doubles:
-        """Middle of the pad's top, (n, 2)."""
-        return self._pad.position
+        """Middle of the target pad's top, (n, 2)."""
+        return self.ground.middles[self.target]
 
     @property
     def pad_width(self) -> Doubles:
-        """Metres, (n,)."""
-        return np.full(self.num_envs, self.params.pad_width)
+        """Metres, of the target pad, (n,)."""
+        return self.ground.widths[self.target]
+
+    @property
+    def landed_on(self) -> Ints:
+        """Number of the pad a flight has landed on, -1 for those that have not, (n,)."""
+        return np.where(self.outcome == Outcome.LANDED, self.touched, -1)
 
     @property
     def time(self) -> Doubles:
@@ -227,7 +171,7 @@ class LanderEnv:
 
     @property
     def altitude(self) -> Doubles:
-        """Metres between the level feet and the pad's top, (n,)."""
+        """Metres between the level feet and the target pad's top, (n,)."""
         return self.position[:, 1] - self.pad[:, 1] - self.params.stand
 
     @property
@@ -243,7 +187,6 @@ class LanderEnv:
         draw = SPAWNS[self.spawn.spawn(self.landings) if isinstance(self.spawn, Curriculum) else self.spawn]
         slots = np.flatnonzero(mask)
         start = np.array([draw(self._rngs[slot]) for slot in slots]).reshape(-1, 6)
-        start[:, 0] += self.pad[mask, 0]
         self.place(mask, start)
         return self.observe()
 
@@ -300,24 +243,31 @@ class LanderEnv:
             components=components,
         )
 
-    def observe(self) -> Floats:
-        """What every lander senses now, (n, 9)."""
-        stand = self.pad + np.array([0.0, self.params.stand])
+    def observe(self, pad: Any = None) -> Floats:
+        """What every lander senses now of its target, or of another `pad`, one number or (n,): (n, 9)."""
+        pad = self.target if pad is None else np.asarray(pad)
         state, body = self.world.state, self.lander.index
         sensed = np.empty((self.num_envs, NUM_FEATURES))
-        sensed[:, 0:2] = self.position - stand
+        sensed[:, 0:2] = self.position - (self.ground.middles[pad] + np.array([0.0, self.params.stand]))
         sensed[:, 2:4] = self.velocity
         sensed[:, 4] = state.sin[:, body]
         sensed[:, 5] = state.cos[:, body]
         sensed[:, 6] = self.angular_velocity
         sensed[:, 7:9] = self.contacts
+        if len(self.ground.pads) > 1:
+            sensed[:, 0].clip(-_FAR, _FAR, out=sensed[:, 0])
+            sensed[:, 7:9] *= (self.touched == pad)[:, None]
         sensed *= OBSERVATION_SCALE
         return sensed.astype(np.float32)
+
+    def observe_pads(self) -> Floats:
+        """What every lander senses of each pad, (n, pads, 9)."""
+        return np.stack([self.observe(pad) for pad in range(len(self.ground.pads))], axis=1)
 
     def snapshot(self) -> dict[str, Any]:
         """Everything a flight depends on but its random streams, to be put back by `restore`."""
         state = self.world.state
-        arrays = {name: getattr(self, name).copy() for name in _COUNTERS}
+        arrays = {name: getattr(self, name).copy() for name in (*_COUNTERS, "target")}
         bodies = {field.name: getattr(state, field.name).copy() for field in fields(state)}
         return {"counters": arrays, "bodies": bodies, "contacts": self.world.detector.memory()}
 
@@ -367,7 +317,7 @@ class LanderEnv:
             self._feet_steps += flying & self.contacts.all(axis=1)
             calm &= (self.tilt < limits.rest_tilt) & (np.abs(self.angular_velocity) < limits.rest_spin)
         self._still = np.where(flying & calm, self._still + 1, np.where(flying, 0, self._still))
-        gone = np.abs(position[:, 0] - self.pad[:, 0]) > limits.half_width
+        gone = np.abs(position[:, 0]) > limits.half_width
         gone |= position[:, 1] > limits.ceiling
         late = self.steps * DT >= limits.time - 1e-9
         landed = self._still >= limits.rest_steps
@@ -390,6 +340,7 @@ class LanderEnv:
         world, part, on_pad = touches.world, self._pair_part[touches.pair], self._pair_on_pad[touches.pair]
         foot = (part > 0) & on_pad
         self.contacts[world[foot], part[foot] - 1] = True
+        self.touched[world[foot]] = self._pair_pad[touches.pair[foot]]
         felt = np.zeros((self.num_envs, 3))
         np.maximum.at(felt[:, 0], world, touches.approach[:2].max(axis=0))
         np.maximum.at(felt[:, 1], world, np.abs(touches.approach[2]))

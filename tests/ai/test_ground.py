@@ -1,0 +1,121 @@
+import numpy as np
+import pytest
+
+from ai.ground import PADS, Ground, Pad, clearance, hilly
+from ai.lander import NUM_ACTIONS, PARAMS, Cause, LanderEnv, Outcome
+
+THREE = Ground(
+    (Pad(-9.0, 2.0, 6.0), Pad(0.0, 1.6, 4.4, 3), Pad(9.0, 2.5, 3.6, 5)), (((3.0, 1.0), (4.5, 2.2), (6.0, 1.0)),)
+)
+SEEDS = range(30)
+
+
+def standing(ground, *places, frame_skip=1):
+    """Landers at rest on each of these x, y of the surface."""
+    env = LanderEnv(len(places), 0, frame_skip=frame_skip, ground=ground)
+    start = np.zeros((len(places), 6))
+    start[:, :2] = places
+    start[:, 1] += PARAMS.stand
+    env.place(np.ones(len(places), dtype=bool), start)
+    return env
+
+
+def rest(env, steps=90):
+    for _ in range(steps):
+        env.step(np.zeros(env.num_envs, dtype=int))
+
+
+def test_one_pad_on_a_plain_is_the_lander_as_it_was():
+    rng = np.random.default_rng(0)
+    usual, same = LanderEnv(8, 3, "near"), LanderEnv(8, 3, "near", ground=Ground((Pad(0.0, 1.6, 6.0),)))
+    assert np.array_equal(usual.reset(), same.reset())
+    for _ in range(100):
+        actions = rng.integers(0, NUM_ACTIONS, 8)
+        assert np.array_equal(usual.step(actions).observation, same.step(actions).observation)
+    assert np.array_equal(usual.pad, np.tile((0.0, 1.6), (8, 1)))
+    assert usual.pad_width.tolist() == [6.0] * 8
+
+
+def test_any_pad_will_do_and_the_result_tells_which():
+    env = standing(THREE, (-9, 2.0), (0, 1.6), (9, 2.5))
+    assert env.landed_on.tolist() == [-1, -1, -1]
+    rest(env)
+    assert env.outcome.tolist() == [Outcome.LANDED] * 3
+    assert env.landed_on.tolist() == [0, 1, 2]
+    env.reset()
+    assert env.landed_on.tolist() == [-1, -1, -1]
+
+
+def test_hills_and_flanks_are_no_place_to_land():
+    env = standing(THREE, (4.5, 2.3), (14, 1.1))
+    rest(env)
+    assert env.outcome.tolist() == [Outcome.CRASHED] * 2
+    assert env.cause.tolist() == [Cause.TERRAIN] * 2
+
+
+def test_observations_are_about_the_pad_in_question():
+    env = standing(THREE, (9, 2.5), (0, 9.0))
+    rest(env, 5)
+    each = env.observe_pads()
+    assert each.shape == (2, 3, 9)
+    for pad in range(3):
+        assert np.array_equal(each[:, pad], env.observe(pad))
+    assert np.array_equal(env.observe([2, 0]), each[[0, 1], [2, 0]])
+    np.testing.assert_allclose(each[0, 2, :2], 0.0, atol=0.01)
+    assert each[0, :, 7:].tolist() == [[0, 0], [0, 0], [1, 1]]  # feet on another pad are of no use
+    assert each[0, 0, 0] == pytest.approx(16.0 * 0.3)  # 18 m away, and no network has been so far
+    env.target[:] = 2
+    assert np.array_equal(env.observe(), each[:, 2])
+    assert env.pad.tolist() == [[9.0, 2.5]] * 2
+
+
+def test_rewards_follow_the_target():
+    env = standing(THREE, (4, 9.0), (4, 9.0))
+    env.target[:] = (0, 2)
+    for _ in range(20):
+        result = env.step(np.array([2, 2]))
+    assert result.components["distance"][0] < result.components["distance"][1]
+
+
+def test_a_snapshot_keeps_the_target():
+    env = standing(THREE, (4, 9.0))
+    env.target[:] = 1
+    snapshot = env.snapshot()
+    env.target[:] = 2
+    env.restore(snapshot)
+    assert env.target.tolist() == [1]
+
+
+def test_a_flight_among_hills_is_the_same_alone_and_in_a_batch():
+    ground = hilly(np.random.default_rng(1))
+    alone, many = LanderEnv(1, 7, ground=ground), LanderEnv(20, 7, ground=ground)
+    assert np.array_equal(alone.reset()[0], many.reset()[0])
+    for row in np.random.default_rng(3).integers(0, NUM_ACTIONS, (200, 20)):
+        one, all_ = alone.step(row[:1]), many.step(row)
+        assert np.array_equal(one.observation[0], all_.observation[0])
+        assert one.outcome[0] == all_.outcome[0]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_hills_leave_room_for_every_approach(seed):
+    ground = hilly(np.random.default_rng(seed))
+    assert sorted((pad.width, pad.factor) for pad in ground.pads) == sorted(PADS)
+    x = np.linspace(-20, 20, 2001)
+    for pad in ground.pads:
+        away = np.abs(x - pad.x)
+        beside = away > pad.width / 2 + 1.0
+        assert (ground.height(x) <= pad.top + np.maximum(clearance(away), 0.0) + 1e-6)[beside].all()
+        assert ground.height(pad.x) == pad.top
+    assert ground.height(x).max() < 6.0
+    assert len(ground.hills) > len(PADS)
+
+
+def test_hills_follow_from_the_seed():
+    assert hilly(np.random.default_rng(4)) == hilly(np.random.default_rng(4))
+    assert hilly(np.random.default_rng(4)) != hilly(np.random.default_rng(5))
+
+
+@pytest.mark.parametrize("pads", [(), (Pad(0, 0.5, 6),), (Pad(0, 1.6, 0),), (Pad(0, 1.6, 6), Pad(4, 1.6, 6))])
+def test_ground_that_makes_no_sense_is_refused(pads):
+    with pytest.raises(ValueError, match="pad"):
+        Ground(pads)
