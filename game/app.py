@@ -65,6 +65,7 @@ class App:
         self._follow_window()
         context.note = self._notes.show
         context.apply_settings = self.apply_settings
+        context.in_window = self.canvas.in_window
         self._palette()
         self._start_pads()
         self.scenes = SceneManager(context, first or _menu())

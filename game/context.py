@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import pygame
 
 from game.assets import ASSETS_DIR, MODELS_DIR
 from game.controls import Controls
@@ -28,7 +29,8 @@ class Context:
         assets_dir: the shipped data.
         rng: the source of every random choice.
         note: shows a short message near the top of the window for a few seconds.
-        apply_settings: makes the window follow the settings, and saves them.
+        apply_settings: makes the window and the sound follow the settings, and saves them.
+        in_window: turns a rectangle in points into the window's pixels.
 
     """
 
@@ -41,6 +43,7 @@ class Context:
     sound: Sound = field(default_factory=Sound)
     note: Callable[[str], None] = _ignore
     apply_settings: Callable[[], None] = lambda: None
+    in_window: Callable[[pygame.typing.RectLike], pygame.Rect] = pygame.Rect
 
     @property
     def settings_file(self) -> SettingsFile:

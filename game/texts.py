@@ -46,6 +46,7 @@ MENU: Final = {
     "play": ("Play", "Fly it yourself, and hand over whenever you like."),
     "watch": ("Watch", "See the network land, and what it thinks on the way down."),
     "train": ("Train", "Teach a network from nothing, and see it learn."),
+    "digits": ("Draw a digit", "A network reads your handwriting, and shows how it knows."),
     "physics": ("Physics", "Stacks, slopes, impacts: the engine, to look into and take hold of."),
     "settings": ("Settings", "Screen, motion, colours, keys."),
     "quit": ("Quit", "Back to Earth."),
@@ -582,3 +583,36 @@ TRAIN_LEFT_FIGURES: Final = "Its best network landed {percent:.0f}% of its trial
 TRAIN_LEFT_YOUNG: Final = "It has learnt for {seconds:.0f} s."
 TRAIN_LEFT_GO_ON: Final = "Go on with it"
 TRAIN_LEFT_DISCARD: Final = "Discard it"
+
+# Draw a digit
+DIGITS_TITLE: Final = "Draw a digit"
+DIGITS_NETWORKS: Final = {"modern": "Modern", "classic": "Classic"}
+DIGITS_QUIZ: Final = "Quiz"
+DIGITS_TRAIN: Final = "Train it here"
+DIGITS_DREAM: Final = "Dream"
+DIGITS_HINT_NETWORK: Final = "the other network"
+DIGITS_UNDO: Final = "Undo"
+DIGITS_CLEAR: Final = "Clear"
+DIGITS_EMPTY: Final = "Draw something"
+DIGITS_EMPTY_HOW: Final = "With the mouse, a pen or a finger."
+DIGITS_SURE: Final = "sure, {percent}"
+DIGITS_LIKELY: Final = "probably, {percent}"
+DIGITS_UNSURE: Final = "not sure"
+DIGITS_OR: Final = "or a {digit}, {percent}"
+DIGITS_EITHER: Final = "a {digit}, {percent}, or a {other}, {other_percent}?"
+DIGITS_TOO_LITTLE: Final = "Too little to tell."
+DIGITS_SEES: Final = "WHAT IT SEES"
+DIGITS_STAGES: Final = ("drawn", "cropped", "20 × 20", "pen", "centred")
+DIGITS_WHY: Final = "WHY {digit} AND NOT {other}"
+DIGITS_WHY_EMPTY: Final = "WHY"
+DIGITS_WHY_LEGEND: Final = ("speaks for it", "against it")
+DIGITS_FILTERS: Final = {"modern": "FIRST FILTERS", "classic": "FIRST WEIGHTS, THE BUSIEST"}
+DIGITS_FILTERS_LEGEND: Final = ("excite", "inhibit")
+DIGITS_MAPS: Final = "LAYER {number}: {count} MAPS OF {height} × {width}"
+DIGITS_UNITS: Final = "LAYER {number}: {count} VALUES"
+DIGITS_READS: Final = "Of {count} test digits, drawn anywhere: "
+DIGITS_READS_AS: Final = "{name} reads {percent}"
+DIGITS_MEASURING: Final = "Measuring …"
+DIGITS_NOT_MEASURED: Final = "Not measured: {problem}"
+DIGITS_HINT: Final = "Switch a step off, and see what the networks then read of digits drawn anywhere."
+DIGITS_PROBLEM: Final = "{name} can't be read: {problem}"

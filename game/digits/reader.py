@@ -51,7 +51,7 @@ class Switches:
         return stages(ink, **vars(self))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reading:
     """One look at a drawing; `probabilities` (10,) by the name of each network that could be read."""
 
@@ -68,7 +68,7 @@ class Reading:
         return Verdict.SURE if surest >= SURE else Verdict.LIKELY
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Explanation:
     """Why a network answers as it does.
 

@@ -21,7 +21,7 @@ from game.ui.widgets import Word
 _TITLE_SIZE: Final = 88.0
 _WORD_SIZE: Final = 24.0
 _FIRST_WORD: Final = 336
-_LINE: Final = 48
+_LINE: Final = 44
 
 
 def _play() -> Scene:
@@ -42,6 +42,12 @@ def _train() -> Scene:
     return Train()
 
 
+def _digits() -> Scene:
+    from game.scenes.digits import Digits
+
+    return Digits()
+
+
 def _physics() -> Scene:
     from game.scenes.physics import Physics
 
@@ -59,6 +65,7 @@ ROWS: Final[tuple[tuple[str, Callable[[], Scene] | None], ...]] = (
     ("play", _play),
     ("watch", _watch),
     ("train", _train),
+    ("digits", _digits),
     ("physics", _physics),
     ("settings", _settings),
     ("quit", None),

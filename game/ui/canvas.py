@@ -85,6 +85,11 @@ class Canvas:
         x, y = window_position
         return (x - self.offset[0]) / self.scale, (y - self.offset[1]) / self.scale
 
+    def in_window(self, rect: pygame.typing.RectLike) -> pygame.Rect:
+        """Turn a rectangle in points into one in the window's pixels."""
+        box = pygame.FRect(rect)
+        return self.rect(box.x, box.y, box.width, box.height).move(self.offset)
+
     # Text
 
     def text(

@@ -1,0 +1,124 @@
+"""The answer in the middle: what the chosen network says, how sure it is, and the other beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from game import texts
+from game.digits.reader import LEAST_INK, Numbers, Reading, Verdict
+from game.scene import Transition
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
+from game.ui.widgets import PointsManager, Widget, mix
+
+LEFT: Final = 624.0
+RIGHT: Final = 848.0
+_BASELINE: Final = 172.0
+_FIRST_ROW: Final = 272
+_ROW: Final = 26
+_EASE: Final = 0.4
+_SIZES: Final = 124.0, 48.0
+
+
+class DigitRow(Widget):
+    """A digit and how probable either network finds it; pressing it says that it is the right one.
+
+    Attributes:
+        values: of the chosen network and of the other, 0 to 1.
+
+    """
+
+    def __init__(self, manager: PointsManager, digit: int, on_press: Callable[[int], Transition | None]) -> None:
+        box = (LEFT - 10, _FIRST_ROW + digit * _ROW - _ROW // 2, RIGHT - LEFT + 20, _ROW)
+        super().__init__(manager, box, str(digit))
+        self.digit, self._on_press = digit, on_press
+        self.values = (0.0, 0.0)
+        self._shown = (0.0, 0.0)
+        self.best = False
+
+    def press(self) -> Transition | None:
+        """Say that this is what was drawn."""
+        return self._on_press(self.digit)
+
+    def ease(self, at_once: bool) -> None:
+        """Let the bars follow."""
+        super().ease(at_once)
+        part = 1.0 if at_once else _EASE
+        one, other = (now + (value - now) * part for now, value in zip(self._shown, self.values, strict=True))
+        self._shown = (one, other)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the digit, a bar for the chosen network, and a thin one for the other below."""
+        if self.ringed and self.warmth > 0.02:
+            canvas.outline(self.box, 6, INK, 1, 0.4 * self.warmth)
+        y, left = self.box.centery, LEFT + 30
+        colour = INK if self.best else mix(MUTE, INK, self.warmth)
+        canvas.text(self.label, (LEFT, y + 5), size=TEXT, colour=colour, tabular=True)
+        chosen, other = self._shown
+        canvas.bar((left, y - 2, RIGHT - left, 4), chosen if chosen > 0.004 else 0, NET if self.best else MUTE)
+        if other > 0.004:
+            canvas.pill((left, y + 5, max((RIGHT - left) * other, 2), 2), MUTE, 0.8)
+
+
+def best_two(probabilities: Numbers) -> tuple[int, int]:
+    """Return the most probable digit and the next."""
+    first, second = np.argsort(-probabilities, kind="stable")[:2].tolist()
+    return first, second
+
+
+def percent(value: float) -> str:
+    """Return a share in words of figures: never all, as nothing is certain."""
+    return f"{min(100 * value, 99.9):.1f} %" if value > 0.995 else f"{100 * value:.0f} %"
+
+
+def draw_answer(canvas: Canvas, reading: Reading, name: str) -> None:
+    """Write what a network says, large, and what the others say, small."""
+    if reading.verdict(name) is Verdict.EMPTY:
+        canvas.text(texts.DIGITS_EMPTY, (LEFT, 140), size=TITLE)
+        canvas.text(texts.DIGITS_EMPTY_HOW, (LEFT, 164), size=SMALL, colour=MUTE)
+        return
+    _draw_chosen(canvas, reading, name)
+    for other in reading.probabilities:
+        if other != name:
+            _draw_other(canvas, reading, other)
+
+
+def _draw_chosen(canvas: Canvas, reading: Reading, name: str) -> None:
+    probabilities, verdict = reading.probabilities[name], reading.verdict(name)
+    first, second = best_two(probabilities)
+    share, second_share = percent(probabilities[first]), percent(probabilities[second])
+    if verdict is Verdict.UNSURE:
+        canvas.text("?", (LEFT - 4, _BASELINE), size=_SIZES[0], weight="extralight", colour=MUTE)
+        little = reading.stages.centred.sum() < LEAST_INK
+        words = texts.DIGITS_TOO_LITTLE if little else texts.DIGITS_EITHER.format(
+            digit=first, percent=share, other=second, other_percent=second_share
+        )  # fmt: skip
+        _draw_verdict(canvas, "triangle", texts.DIGITS_UNSURE, canvas.palette.warn)
+        canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE, tabular=True)
+        return
+    canvas.text(str(first), (LEFT - 6, _BASELINE), size=_SIZES[0], weight="extralight")
+    if verdict is Verdict.SURE:
+        _draw_verdict(canvas, "check", texts.DIGITS_SURE.format(percent=share), canvas.palette.good)
+    else:
+        _draw_verdict(canvas, "ring", texts.DIGITS_LIKELY.format(percent=share), INK)
+    if probabilities[second] >= 0.005:
+        words = texts.DIGITS_OR.format(digit=second, percent=second_share)
+        canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE, tabular=True)
+
+
+def _draw_verdict(canvas: Canvas, sign: str, words: str, colour: tuple[int, int, int]) -> None:
+    canvas.marker(sign, (LEFT + 5, 200), 10, colour)  # type: ignore[arg-type]
+    canvas.text(words, (LEFT + 20, 205), size=TEXT, colour=colour, tabular=True)
+
+
+def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
+    first, _ = best_two(reading.probabilities[name])
+    sure = reading.verdict(name) is not Verdict.UNSURE
+    canvas.text(texts.DIGITS_NETWORKS[name], (RIGHT, 92), size=LABEL, colour=MUTE, align="right")
+    figure = str(first) if sure else "?"
+    canvas.text(figure, (RIGHT, _BASELINE), size=_SIZES[1], weight="light", colour=MUTE, align="right")
+    words = percent(reading.probabilities[name][first]) if sure else texts.DIGITS_UNSURE
+    canvas.text(words, (RIGHT, 205), size=SMALL, colour=MUTE, align="right", tabular=True)

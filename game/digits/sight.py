@@ -1,0 +1,157 @@
+"""What the network sees and why: each stage of preprocessing, saliency, filters, the maps of each layer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Final
+
+import pygame
+
+from ai.ink import Image
+from game import texts
+from game.digits.answer import best_two
+from game.digits.pictures import AMBER, GREY, mosaic, picture
+from game.digits.reader import Explanation, Numbers, Reading
+from game.ui.canvas import Canvas
+from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
+from game.ui.widgets import PointsManager, Toggle, draw_switch
+
+LEFT: Final = 900.0
+RIGHT: Final = 1244.0
+STEPS: Final = ("crop", "fit", "width", "centre")  # each makes a stage of the one before
+_TILE: Final = 62.0
+_PITCH: Final = (RIGHT - LEFT - _TILE) / len(STEPS)
+_TILES_TOP: Final = 58.0
+_SWITCH: Final = 26.0, 13.0
+_WHY: Final = (LEFT, 240.0, 132.0)
+_FILTERS: Final = (LEFT + 160, 240.0)
+_MAPS_TOP: Final = 426.0
+_GAP: Final = 3.0
+
+
+class StageSwitch(Toggle):
+    """Whether one step is taken; it stands under the picture of what the step makes."""
+
+    def __init__(self, manager: PointsManager, number: int, on_change: Callable[[bool], None]) -> None:
+        left = LEFT + (number + 1) * _PITCH
+        box = (round(left), round(_TILES_TOP + _TILE + 22), round(_TILE), 20)
+        super().__init__(manager, box, texts.DIGITS_STAGES[number + 1], True, on_change)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the switch alone: its name stands above."""
+        if self.ringed and self.warmth > 0.02:
+            canvas.outline(self.box.inflate(0, 4), 8, INK, 1, 0.4 * self.warmth)
+        (width, height), box = _SWITCH, self.box
+        draw_switch(canvas, (box.centerx - width / 2, box.centery - height / 2, width, height), self._slid)
+
+
+class Sight:
+    """Draws a reading and its explanation; pictures are made anew only when these have changed."""
+
+    def __init__(self) -> None:
+        self._of: tuple[object, ...] = ()
+        self._stages: list[pygame.Surface] = []
+        self._saliency = self._filters = pygame.Surface((1, 1))
+        self._layers: list[pygame.Surface] = []
+
+    def draw(self, canvas: Canvas, reading: Reading, name: str, why: Explanation | None, steps: list[bool]) -> None:
+        """Draw everything; `steps` says which are taken."""
+        if self._of != (reading, why, canvas.scale):
+            self._of = (reading, why, canvas.scale)
+            self._build(canvas, reading, why)
+        self._draw_stages(canvas, steps)
+        if why is None:
+            return
+        self._draw_why(canvas, reading.probabilities[name])
+        self._draw_filters(canvas, name)
+        self._draw_layers(canvas, why)
+
+    def _build(self, canvas: Canvas, reading: Reading, why: Explanation | None) -> None:
+        side = canvas.px(_TILE)
+        self._stages = [_fitted(image, side) for image in reading.stages]
+        if why is None:
+            return
+        size = canvas.px(_WHY[2])
+        self._saliency = picture(why.saliency, (size, size), AMBER)
+        gap = max(1, canvas.px(_GAP))
+        self._filters = mosaic(why.filters, 8, _cell(canvas.px(RIGHT - _FILTERS[0]), 8, gap), gap)
+        self._layers = [self._layer(canvas, layer, gap) for layer in why.layers]
+
+    def _layer(self, canvas: Canvas, layer: Numbers, gap: int) -> pygame.Surface:
+        width = canvas.px(RIGHT - LEFT)
+        if layer.ndim == 1:
+            columns = min(50 if len(layer) % 50 == 0 else 64, len(layer))
+            gap = max(1, gap // 2)
+            return mosaic(layer[:, None, None], columns, _cell(width, columns, gap), gap)
+        columns = 16 if len(layer) <= 32 else 32
+        return mosaic(layer, columns, _cell(width, columns, gap), gap)
+
+    def _draw_stages(self, canvas: Canvas, steps: list[bool]) -> None:
+        _label(canvas, texts.DIGITS_SEES, (LEFT, 42))
+        for number, (picture_of, words) in enumerate(zip(self._stages, texts.DIGITS_STAGES, strict=True)):
+            left = LEFT + number * _PITCH
+            taken = number == 0 or steps[number - 1]
+            area = canvas.rect(left, _TILES_TOP, _TILE, _TILE)
+            picture_of.set_alpha(255 if taken else 90)
+            canvas.surface.blit(picture_of, area)
+            pygame.draw.rect(canvas.surface, LINE, area, 1)
+            colour = INK if number == len(STEPS) else MUTE
+            canvas.text(words, (left + _TILE / 2, _TILES_TOP + _TILE + 16), size=LABEL, colour=colour, align="centre",
+                        alpha=1.0 if taken else 0.5)  # fmt: skip
+
+    def _draw_why(self, canvas: Canvas, probabilities: Numbers) -> None:
+        left, top, size = _WHY
+        first, second = best_two(probabilities)
+        _label(canvas, texts.DIGITS_WHY.format(digit=first, other=second), (left, top - 12))
+        canvas.surface.blit(self._saliency, (canvas.px(left), canvas.px(top)))
+        _legend(canvas, texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), (left, top + size + 17))
+
+    def _draw_filters(self, canvas: Canvas, name: str) -> None:
+        left, top = _FILTERS
+        _label(canvas, texts.DIGITS_FILTERS[name], (left, top - 12))
+        canvas.surface.blit(self._filters, (canvas.px(left), canvas.px(top)))
+        below = top + self._filters.get_height() / canvas.scale
+        _legend(canvas, texts.DIGITS_FILTERS_LEGEND, (NET, canvas.palette.warn), (left, below + 17))
+
+    def _draw_layers(self, canvas: Canvas, why: Explanation) -> None:
+        top = _MAPS_TOP
+        for number, (layer, surface) in enumerate(zip(why.layers, self._layers, strict=True), 1):
+            if layer.ndim == 3:
+                count, height, width = layer.shape
+                words = texts.DIGITS_MAPS.format(number=number, count=count, height=height, width=width)
+            else:
+                words = texts.DIGITS_UNITS.format(number=number, count=len(layer))
+            _label(canvas, words, (LEFT, top))
+            canvas.surface.blit(surface, (canvas.px(LEFT), canvas.px(top + 10)))
+            top += 10 + surface.get_height() / canvas.scale + 28
+
+
+def _label(canvas: Canvas, words: str, place: tuple[float, float]) -> None:
+    canvas.text(words, place, size=LABEL, colour=MUTE, weight="medium")
+
+
+def _legend(canvas: Canvas, words: tuple[str, ...], colours: tuple[Colour, ...], place: tuple[float, float]) -> None:
+    x, y = place
+    for word, colour in zip(words, colours, strict=True):
+        canvas.rounded((x, y - 7, 7, 7), 1.5, colour)
+        x += 12 + canvas.text(word, (x + 12, y), size=LABEL, colour=MUTE).width + 12
+
+
+def _cell(width: int, columns: int, gap: int) -> int:
+    return max(1, (width + gap) // columns - gap)
+
+
+def _fitted(image: Image, side: int) -> pygame.Surface:
+    """Return an image of any shape in a square, small ones with sharp pixels."""
+    height, width = image.shape
+    scale = side / max(height, width)
+    size = (max(1, math.floor(width * scale)), max(1, math.floor(height * scale)))
+    if scale >= 1:
+        grown = picture(image, size, GREY)
+    else:
+        grown = pygame.transform.smoothscale(picture(image, (width, height), GREY), size)
+    surface = pygame.Surface((side, side))
+    surface.fill(GREY[len(GREY) // 2].tolist())
+    surface.blit(grown, ((side - size[0]) // 2, (side - size[1]) // 2))
+    return surface
