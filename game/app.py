@@ -67,6 +67,7 @@ class App:
         context.apply_settings = self.apply_settings
         context.in_window = self.canvas.in_window
         self._palette()
+        context.sound.follow(context.settings)
         self._start_pads()
         self.scenes = SceneManager(context, first or _menu())
         # What lives as long as the game need not be looked through again and again: that took 20 ms at a time.
@@ -94,6 +95,7 @@ class App:
         for _ in range(steps):
             self._notes.update()
             self._guarded(self.scenes.update)
+            self.context.sound.update()
         if self.scenes.running and not self.window.minimised and time_now >= self._settled:
             self._draw()
         if self._capped:
@@ -107,6 +109,7 @@ class App:
         except Exception:
             _log.exception("leaving the last scene")
         self._save_settings()
+        self.context.sound.close()
         self.window.close()
 
     # The window
@@ -129,11 +132,12 @@ class App:
         self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
 
     def apply_settings(self) -> None:
-        """Make the window follow the settings, and save them."""
+        """Make the window and the sound follow the settings, and save them."""
         if self.window.full_screen != self.context.settings.full_screen:
             self.window.full_screen = self.context.settings.full_screen
             self._follow_window()
         self._palette()
+        self.context.sound.follow(self.context.settings)
         self._save_settings()
 
     def _save_settings(self) -> None:
@@ -145,6 +149,7 @@ class App:
 
     def _handle(self, event: pygame.event.Event) -> None:
         self._follow(event)
+        self.context.sound.handle_event(event)
         match event.type:
             case pygame.QUIT:
                 self.scenes.running = False

@@ -21,6 +21,10 @@ class Settings:
     reduced_motion: bool = False
     colour_safe: bool = False
     show_hints: bool = True
+    effects_volume: float = 0.8  # every number is a share, 0 to 1
+    interface_volume: float = 0.6
+    ambience_volume: float = 0.6
+    altitude_volume: float = 0.0  # of the tone that lets one hear height and speed; 0 is off
     model: str = ""  # the network last chosen to fly; empty for the game's own
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
 
@@ -31,14 +35,19 @@ class Settings:
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> Settings:
-        """Take every value of the right type; the others keep their defaults."""
+        """Take every value of the right kind; the others keep their defaults."""
         settings = cls()
         known = {each.name for each in fields(cls)} - {"unknown"}
         for name in known & values.keys():
-            if type(values[name]) is type(getattr(settings, name)):
+            if _fits(values[name], getattr(settings, name)):
                 setattr(settings, name, values[name])
         settings.unknown = {name: value for name, value in values.items() if name not in known}
         return settings
+
+
+def _fits(value: object, default: object) -> bool:
+    """Whether a value is of its default's type; a number must be a share as well, which NaN is not."""
+    return type(value) is type(default) and (not isinstance(value, float) or 0.0 <= value <= 1.0)
 
 
 class SettingsFile:

@@ -54,6 +54,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Cal
     except NoDisplayError as error:
         print(texts.NO_DISPLAY.format(reason=error), file=sys.stderr)
         return 2
+    context.sound.open()
     if file.problem:
         context.note(file.problem)
     if begin is not None:

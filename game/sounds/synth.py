@@ -1,0 +1,225 @@
+"""Sound as arrays: oscillators, noise, envelopes, a room.
+
+A signal holds floats between -1 and 1, RATE of them a second: mono (n,), or stereo (n, 2) with the left side
+first. A loop has no seam because it is made of periods alone: noise and pads are drawn as spectra, whose inverse
+transform goes round by nature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Signal = NDArray[np.float64]
+Spectrum = NDArray[np.complex128]
+Gain = Callable[[Signal], Signal]  # of frequencies in Hz, all above zero
+
+RATE: Final = 44_100
+_ROOM_BRIGHTNESS: Final = 2600.0  # Hz, from which on walls swallow more than they give back
+_PRE_DELAY: Final = 0.012  # seconds until the first wall answers
+
+
+def clock(seconds: float) -> Signal:
+    """Return the times of a signal's samples, in seconds."""
+    return np.arange(round(seconds * RATE)) / RATE
+
+
+def decibels(gain: float) -> float:
+    """Return a gain in dB; of nothing, minus infinity."""
+    return float(20 * np.log10(gain)) if gain > 0 else -np.inf
+
+
+def gain_of(level: float) -> float:
+    """Return what a level in dB multiplies by."""
+    return float(10 ** (level / 20))
+
+
+# Oscillators
+
+
+def sine(frequency: float | Signal, seconds: float) -> Signal:
+    """Return a sine that begins at zero; its frequency in Hz may change from sample to sample, (n,)."""
+    turns = np.cumsum(np.broadcast_to(frequency, round(seconds * RATE)) / RATE)
+    return np.asarray(np.sin(2 * np.pi * (turns - turns[0])))
+
+
+def glide(start: float, end: float, seconds: float, halving: float) -> Signal:
+    """Return frequencies that go from one to another, half of what is left every `halving` seconds."""
+    return np.asarray(end + (start - end) * 0.5 ** (clock(seconds) / halving))
+
+
+def partials(frequency: float, rows: Sequence[tuple[float, float, float]], seconds: float) -> Signal:
+    """Return the sum of sines that die away: rows of ratio to the frequency, amplitude, seconds to a thousandth."""
+    time = clock(seconds)
+    rung = [gain * sine(ratio * frequency, seconds) * 0.001 ** (time / dies) for ratio, gain, dies in rows]
+    return np.asarray(np.sum(rung, axis=0))
+
+
+# Filters, as gains over frequency
+
+
+def low_pass(cut: float, order: float = 2) -> Gain:
+    """Return a Butterworth low-pass filter's gain; half the power is left at `cut` Hz."""
+    return lambda frequency: 1 / np.sqrt(1 + (frequency / cut) ** (2 * order))
+
+
+def high_pass(cut: float, order: float = 2) -> Gain:
+    """Return a Butterworth high-pass filter's gain; half the power is left at `cut` Hz."""
+    return lambda frequency: 1 / np.sqrt(1 + (cut / frequency) ** (2 * order))
+
+
+def band_pass(low: float, high: float, order: float = 2) -> Gain:
+    """Return the gain of a high-pass and a low-pass filter in a row."""
+    return lambda frequency: high_pass(low, order)(frequency) * low_pass(high, order)(frequency)
+
+
+# Loops, as spectra
+
+
+def noise(rng: np.random.Generator, seconds: float, gain: Gain) -> Signal:
+    """Return noise of that spectrum, root mean square 1, that goes round without a seam."""
+    count = round(seconds * RATE)
+    spectrum = np.zeros(count // 2 + 1, np.complex128)
+    frequency: Signal = np.fft.rfftfreq(count, 1 / RATE)[1:].astype(np.float64)
+    spectrum[1:] = gain(frequency) * np.exp(2j * np.pi * rng.random(len(frequency)))
+    return unit(_loop(spectrum, count))
+
+
+def choir(
+    rng: np.random.Generator, seconds: float, frequency: float, amplitudes: Sequence[float], cents: float, top: float
+) -> Spectrum:
+    """Return the spectrum of many voices on one note, each a little out of tune, up to `top` Hz.
+
+    Every harmonic is a bell-shaped band of noise, wider the higher it is: PADsynth, by N. O. Paul (2005).
+
+    Args:
+        rng: draws the phases.
+        seconds: length of the loop.
+        frequency: of the note, in Hz.
+        amplitudes: of its harmonics, from the first on.
+        cents: standard deviation of the tuning.
+        top: what lies above is left out; it need not be reached.
+
+    """
+    spectrum = np.zeros(round(seconds * top) + 1, np.complex128)
+    for number, amplitude in enumerate(amplitudes, 1):
+        middle = number * frequency * seconds  # in bins
+        spread = middle * (2 ** (cents / 1200) - 1)
+        bins = np.arange(max(1, int(middle - 5 * spread)), min(len(spectrum), int(middle + 5 * spread) + 2))
+        bell = np.exp(-0.5 * ((bins - middle) / spread) ** 2) / np.sqrt(spread)
+        spectrum[bins] += amplitude * bell * np.exp(2j * np.pi * rng.random(len(bins)))
+    return spectrum
+
+
+def breathe(spectrum: Spectrum, turns: int, depth: float, phase: float) -> Spectrum:
+    """Let a loop swell and fade so many times: amplitude modulation by 1 + depth cos(2π turns t + phase)."""
+    side = 0.5 * depth * np.exp(1j * phase)
+    swelling = spectrum.copy()
+    swelling[turns:] += side * spectrum[:-turns]
+    swelling[:-turns] += side.conjugate() * spectrum[turns:]
+    return swelling
+
+
+def looped(spectrum: Spectrum, seconds: float) -> Signal:
+    """Return the loop that has a spectrum, which may end early, root mean square 1."""
+    return unit(_loop(spectrum, round(seconds * RATE)))
+
+
+def _loop(spectrum: Spectrum, count: int) -> Signal:
+    return np.asarray(np.fft.irfft(spectrum, count), np.float64)
+
+
+# Envelopes
+
+
+def strike(seconds: float, attack: float, dies: float) -> Signal:
+    """Return an envelope that rises over `attack` seconds and falls to a thousandth in `dies`; it ends at zero."""
+    time = clock(seconds)
+    return np.asarray(0.001 ** (time / dies) * edges(seconds, attack, min(0.25 * seconds, 0.02)))
+
+
+def edges(seconds: float, rise: float, fall: float) -> Signal:
+    """Return an envelope of 1 with rounded ends of zero, half a cosine each: a sound cut with it does not click."""
+    time = clock(seconds)
+    ends = np.minimum(time / rise, (time[-1] - time) / fall)
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.clip(ends, 0.0, 1.0)))
+
+
+def late(signal: Signal, delay: float) -> Signal:
+    """Return a signal that begins so many seconds later."""
+    return np.concatenate([np.zeros((round(delay * RATE), *signal.shape[1:])), signal])
+
+
+def together(*signals: Signal) -> Signal:
+    """Return the sum of signals of any lengths, all mono or all stereo."""
+    whole = np.zeros((max(map(len, signals)), *signals[0].shape[1:]))
+    for signal in signals:
+        whole[: len(signal)] += signal
+    return whole
+
+
+# Space
+
+
+def place(signal: Signal, pan: float) -> Signal:
+    """Return a mono signal in stereo, from -1 on the left to 1 on the right, equally loud everywhere."""
+    return np.asarray(signal[:, None] * pan_gains(pan))
+
+
+def pan_gains(pan: float) -> Signal:
+    """Return the gains of the left and the right side, (2,): 1 each in the middle, equal power in between."""
+    angle = 0.25 * np.pi * (1 + min(max(pan, -1.0), 1.0))
+    return np.asarray(np.sqrt(2) * np.array([np.cos(angle), np.sin(angle)]))
+
+
+def room(rng: np.random.Generator, signal: Signal, seconds: float, wet: float) -> Signal:
+    """Return a signal, mono or stereo, in a room whose echo of it dies away in so many seconds; stereo.
+
+    The echo is noise that decays exponentially, another for each ear, as in J. A. Moorer, "About this
+    reverberation business", Computer Music Journal 3 (1979); `wet` is its energy beside the signal's own.
+    """
+    dry = place(signal, 0.0) if signal.ndim == 1 else signal
+    count = len(dry) + round((seconds + _PRE_DELAY) * RATE)
+    decay = 0.001 ** (clock(seconds) / seconds) * edges(seconds, 0.004, 0.02)
+    walls = [decay * noise(rng, seconds, low_pass(_ROOM_BRIGHTNESS, 1)) for _ in range(2)]
+    answer = late(np.stack([wall / np.linalg.norm(wall) for wall in walls], axis=1), _PRE_DELAY)
+    size = _fast_length(count)
+    echo = np.fft.irfft(np.fft.rfft(dry, size, axis=0) * np.fft.rfft(answer, size, axis=0), size, axis=0)[:count]
+    return together(dry, wet * echo)
+
+
+def _fast_length(count: int) -> int:
+    """Return a length, not shorter, whose transform is fast: a power of two, or 3 or 5 times one."""
+    power = 1 << (count - 1).bit_length()
+    return next(size for size in (5 * power // 8, 3 * power // 4, power) if size >= count)
+
+
+# Levels
+
+
+def unit(signal: Signal) -> Signal:
+    """Return a signal of root mean square 1; silence stays silence."""
+    mean = np.sqrt(np.mean(signal**2))
+    return np.asarray(signal / mean if mean else signal)
+
+
+def at_peak(signal: Signal, level: float) -> Signal:
+    """Return a signal whose greatest sample is at a level in dB below full scale; silence stays silence."""
+    peak = np.abs(signal).max(initial=0.0)
+    return np.asarray(signal * (gain_of(level) / peak) if peak else signal)
+
+
+def pcm(signal: Signal) -> NDArray[np.int16]:
+    """Return a signal as a mixer takes it: stereo, 16 bits, (n, 2).
+
+    Raises:
+        ValueError: a sample lies beyond full scale, or is no number.
+
+    """
+    if not np.abs(signal).max(initial=0.0) <= 1:  # NaN too is not
+        raise ValueError("a signal lies beyond full scale")
+    stereo = place(signal, 0.0) if signal.ndim == 1 else signal
+    return np.ascontiguousarray(np.round(32_767 * stereo).astype(np.int16))
