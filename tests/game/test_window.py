@@ -23,13 +23,13 @@ def setting(window: Window, name: str) -> object:
 
 def test_a_setting_chosen_with_real_keys_survives_a_restart(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
-        window.key("Down", "Down", "Down", "Down", "Return")  # Settings
+        window.key("Down", "Down", "Down", "Down", "Down", "Return")  # Settings
         window.key("Down", "Return")  # Reduced motion
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         window.key("Escape")
         assert window.close() == 0
     with start(display, tmp_path / "user") as window:
-        window.key("Down", "Down", "Down", "Down", "Return", "Down", "Return")
+        window.key("Down", "Down", "Down", "Down", "Down", "Return", "Down", "Return")
         window.wait_for(lambda: setting(window, "reduced_motion") is False, "the setting to change back")
         assert window.close() == 0
 
@@ -38,7 +38,7 @@ def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_
     with start(display, tmp_path / "user") as window:
         window.resize(900, 760)
         scale, top = 900 / 1280, (760 - 900 * 9 / 16) / 2
-        window.click(round(90 * scale), round(552 * scale + top))  # Settings
+        window.click(round(90 * scale), round(578 * scale + top))  # Settings
         window.click(round(464 * scale), round((152 + 72 + 28) * scale + top))
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         assert window.close() == 0
