@@ -46,7 +46,7 @@ _PAID: Final = pygame.Rect(868, 478, 384, 80)
 _SAID: Final = pygame.Rect(868, 612, 384, 50)
 _CONTROLS: Final = 676.0
 _WITNESSES: Final = 64
-_EVERY: Final = 12  # frames between two looks at the history
+_EVERY: Final = 12  # frames between two looks at the history; each chart has its turn in one of them
 _CHARTS: Final = (
     ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),
     ("mean_return", (436, 456, 360, 128), None, "{:.0f}"),
@@ -67,7 +67,7 @@ class Train:
         self._context: Context | None = None
         self._was_running = self._alive = False
         self._frame = 0
-        self._told = -1  # points of the history that the charts have
+        self._told = [-1] * len(_CHARTS)  # points of the history that each chart has
         self._left: SavedRun | None = None  # by the last visit, without a name
         self._scrub: Checkpoint | None = None
         self._net: NeuralNetwork | None = None
@@ -151,11 +151,11 @@ class Train:
             self.knobs.set_running(self._alive)
         still = self._settings.reduced_motion
         self._frame += 1
-        if self._frame % _EVERY == 0:
-            self._set_charts()
+        self._look_at_history(self._frame % _EVERY)
         self.swarm.update(still)
-        self.charts.update(at_once=still)
         self._view.update(at_once=still)
+        looks = insight is not before[1] or (self._inside == 0 and self._view.busy)
+        self.charts.update(at_once=still, turn=not looks)  # what takes a millisecond or two takes turns
         self._strip.update(at_once=still)
         self._name_controls()
         return self._form.update()
@@ -195,7 +195,8 @@ class Train:
         self._advice.clear()
         self._seen.clear()
         self._dead = None
-        self._scrub, self._net, self._told = None, None, -1
+        self._scrub, self._net = None, None
+        self._told = [-1] * len(_CHARTS)
         if resume is None:
             self.knobs.set_config(config, seed)
 
@@ -266,7 +267,7 @@ class Train:
             assert self._context is not None
             if note := self.student.compare(runs[number].name, runs[number].folder):
                 self._context.note(note)
-            self._told = -1
+            self._told = [-1] * len(_CHARTS)
 
         return Push(Picking(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
 
@@ -355,21 +356,24 @@ class Train:
                 self._dead = dead_units(self._net, np.array(self._seen))
                 self._seen.clear()
 
-    def _set_charts(self) -> None:
+    def _look_at_history(self, turn: int) -> None:
+        """Show what is new in it: a chart in each even turn, the rest in an odd one, so that no frame has it all."""
         history = self.student.history
-        if len(history) == self._told:
-            return
-        self._told = len(history)
-        if len(history):
+        if turn == 1 and len(history):
             self._strip.set(PARTS, history.parts[-1])
             if self.student.alive:
                 self._advice.follow(history, self.student.config, self._dead)
+        number, odd = divmod(turn, 2)
+        if odd or number >= len(_CHARTS) or self._told[number] == len(history):
+            return
+        self._told[number] = len(history)
         runs = [history, *(old for _, old in self.student.earlier)]
         end = max([10.0, *(float(run["seconds"][-1]) for run in runs if len(run))])
-        ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds))
-                 for each in history.checkpoints]  # fmt: skip
-        for chart, (name, *_) in zip(self.charts.charts, _CHARTS, strict=True):
-            chart.set(self._series(name), (0.0, end), ticks if name == "success" else ())
+        name, ticks = _CHARTS[number][0], list[Tick]()
+        if name == "success":
+            ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds))
+                     for each in history.checkpoints]  # fmt: skip
+        self.charts.charts[number].set(self._series(name), (0.0, end), ticks)
 
     def _series(self, name: str) -> list[Series]:
         runs = [(texts.TRAIN_THIS, self.student.history), *self.student.earlier]

@@ -303,10 +303,12 @@ class Charts:
         for number, chart in enumerate(self.charts):
             chart.mark(x, caption if number == 0 else "")
 
-    def update(self, at_once: bool = False) -> None:
-        """Let 1/60 s pass; the chart that has waited longest is drawn anew in the next frame."""
+    def update(self, at_once: bool = False, *, turn: bool = True) -> None:
+        """Let 1/60 s pass; on its `turn`, the chart that has waited longest is drawn anew in the next frame."""
         for chart in self.charts:
             chart.update(at_once, turn=False)
+        if not turn:
+            return
         patient = max(self.charts, key=lambda chart: chart.waiting, default=None)
         if patient is not None and patient.waiting:
             patient.renew()

@@ -7,6 +7,7 @@ R, the pad's X, or a click on the name brings back what the preset says, where a
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -122,9 +123,8 @@ class SliderKnob(Knob):
     """A number, on one of the stops of its track."""
 
     def _at(self, value: Any) -> float:
-        """How far along the track a value stands, 0 to 1: stops are equally far from each other."""
-        stops = np.abs(np.array(self.dial.stops, dtype=float))  # they rise, or fall below 0
-        return float(np.interp(abs(value), stops, np.linspace(0.0, 1.0, len(stops))))
+        """How far along the track a value stands, 0 to 1."""
+        return _along(self.dial.stops, value)
 
     def _places(self) -> dict[float, Any]:
         """Where along the track it can stand: at a stop, or at the preset's value."""
@@ -288,6 +288,13 @@ class SeedKnob(Entry):
             canvas.line((min(x, self.box.right - 20), baseline + 5.5), (self.box.right, baseline + 5.5), HUMAN, 1)
         else:
             canvas.text(self.line.text, (x, baseline), size=SMALL, colour=HUMAN if self.waits else MUTE)
+
+
+@lru_cache(maxsize=1024)
+def _along(stops: tuple[Any, ...], value: Any) -> float:
+    """Return how far a value is from the first stop to the last: they are equally far from each other."""
+    sizes = np.abs(np.array(stops, dtype=float))  # they rise, or fall below 0
+    return float(np.interp(abs(value), sizes, np.linspace(0.0, 1.0, len(sizes))))
 
 
 def draw_row(canvas: Canvas, widget: Widget, *, changed: bool) -> None:

@@ -139,6 +139,11 @@ class NetView:
         self._phase = (self._phase + _FLOW) % 2.0
         self._due |= self._stale and self._rested >= _REST
 
+    @property
+    def busy(self) -> bool:
+        """Whether the next frame draws a part of new sheets, or is to begin that."""
+        return self._due or self._painting is not None
+
     # Where things are, in points
 
     @property

@@ -14,11 +14,11 @@ from ai.lander import Outcome
 from game.render import View
 from game.ui.canvas import Canvas
 from game.ui.tokens import NET, Colour
-from game.world.paint import mix
 
 _SPACING: Final = 0.62  # metres between dots
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
-_STRETCH: Final = 16  # points of a trail drawn in one colour
+_FINEST: Final = 24  # points of a trail that is done: it is smooth, and there are many to draw
+_STRETCH: Final = 12  # points of a trail drawn in one colour
 
 
 def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6) -> None:
@@ -52,6 +52,7 @@ class Trails:
     def __init__(self, count: int, keep: int = 12, stride: int = _TRAIL_STRIDE) -> None:
         self._open: list[list[tuple[float, float]]] = [[] for _ in range(count)]
         self._done: deque[_Trail] = deque(maxlen=keep)
+        self._keep = keep
         self._fade = 0.1 ** (1 / keep)
         self._stride = stride
         self._step = 0
@@ -65,10 +66,10 @@ class Trails:
             for way, place, state in zip(self._open, position.tolist(), outcome.tolist(), strict=True):
                 if state == Outcome.FLYING:
                     way.append(place)
-        for slot in np.flatnonzero(ended):
+        for slot in np.flatnonzero(ended)[-self._keep :]:
             points = [*self._open[slot], position[slot].tolist()]
             if len(points) > 1:
-                self._done.append(_Trail(np.array(points), int(outcome[slot])))
+                self._done.append(_Trail(_thinned(np.array(points)), int(outcome[slot])))
         for trail in self._done:
             trail.age += 1 / 60
 
@@ -88,6 +89,12 @@ class Trails:
             _draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6)
 
 
+def _thinned(points: Doubles) -> Doubles:
+    """Return some of the points (k, 2), the first and the last among them."""
+    count = len(points)
+    return points if count <= _FINEST else points[np.linspace(0, count - 1, _FINEST).astype(int)]
+
+
 def _draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float) -> None:
     """Draw a line as if translucent: each stretch is mixed with what lies under its middle."""
     places = points.tolist()
@@ -97,4 +104,4 @@ def _draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, streng
         x, y = stretch[len(stretch) // 2]
         if area.collidepoint(x, y):
             under = surface.get_at((int(x), int(y)))
-            pygame.draw.aalines(surface, mix((under.r, under.g, under.b), colour, strength), False, stretch)
+            pygame.draw.aalines(surface, under.lerp(colour, strength), False, stretch)

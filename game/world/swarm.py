@@ -57,7 +57,7 @@ class LearningSwarm:
         last = self.sight
         if last is None or len(last.outcome) != len(sight.outcome):
             count = len(sight.outcome)
-            self._trails = Trails(count, _KEEP, stride=1)
+            self._trails = Trails(count, _KEEP, stride=2)
             fresh = np.ones(count, bool)
         else:
             moved = np.hypot(*(poses[:, :2] - self._now[:, :2]).T)
