@@ -45,7 +45,9 @@ class SceneManager:
         self.top.draw(canvas, alpha)
 
     def apply(self, transition: Transition | None) -> None:
-        """Do what a scene asked for."""
+        """Do what a scene asked for, and let it be heard."""
+        if transition is not None:
+            self._context.sound.play("back" if isinstance(transition, Pop) else "choose")
         match transition:
             case Push(scene):
                 if self._stack:

@@ -18,6 +18,7 @@ from game.ghost import Ghost
 from game.outcomes import outcome_card
 from game.render import Camera
 from game.scene import Pop, Push, Transition
+from game.sounds.flight import FlightSound
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints
 from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
@@ -62,7 +63,7 @@ class Play:
         if self._context is not None:
             return
         self._context = context
-        self._controls, self._settings = context.controls, context.settings
+        self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
         self._begin(self._new_seed() if self._seed is None else self._seed)
 
@@ -110,6 +111,7 @@ class Play:
         self._look_ahead()
         ended = np.array([flight.over and not was_over])
         self._stage.follow(np.array([flight.hand is Hand.NETWORK]), ended)
+        self._heard.follow(self._stage.thrust[0])
         if not self._settings.reduced_motion:
             self._camera.follow(flight.env.position[0])
         self._steps += 1
@@ -175,6 +177,7 @@ class Play:
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
         self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
+        self._heard = FlightSound(self._sound, self.flight.env)
         self._camera = Camera()
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
@@ -201,6 +204,7 @@ class Play:
     def _hand_over(self) -> None:
         if self.flight.hand_over():
             self._sweep = 0.0
+            self._sound.play("to_network" if self.flight.hand is Hand.NETWORK else "to_human")
         elif self._network.flyer is None and self._context is not None:
             self._context.note(texts.NO_NETWORK.format(problem=self._network.problem))
 

@@ -19,6 +19,7 @@ from game.flight import Swarm
 from game.mind import PANEL, Mind
 from game.render import Camera, View
 from game.scene import Pop, Push, Transition
+from game.sounds.flight import FlightSound
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
@@ -119,6 +120,7 @@ class Watch:
             while self._due >= 1:
                 self._due -= 1
                 self._fly()
+            self._heard.follow(self._stage.thrust[self.shown], self.shown)
         if not self._settings.reduced_motion:
             self._time += STEP
         return self._form.update()
@@ -145,10 +147,12 @@ class Watch:
     def _begin(self) -> None:
         assert self._network.flyer is not None
         assert self._seed is not None
+        assert self._context is not None
         count = COUNTS[self._count]
         self.swarm = Swarm(count, self._seed, self._network.flyer)
         self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed), self._settings.reduced_motion)
         self._stage.blue[:] = 1.0
+        self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._camera = Camera()
         self._mind = Mind()

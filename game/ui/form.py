@@ -44,7 +44,7 @@ class Form:
         self._context, self._on_back = context, on_back
         self._index = 0
         self._held_steps = 0
-        self.used = False
+        self.used = self._pressed = False
 
     @property
     def typing(self) -> bool:
@@ -86,6 +86,13 @@ class Form:
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Take one event; the mouse's are in points."""
+        before, self._pressed = (self.focused, _reading(self.focused)), False
+        outcome = self._take(event)
+        if outcome is None:  # another scene has a sound of its own
+            self._sound(*before)
+        return outcome
+
+    def _take(self, event: pygame.event.Event) -> Transition | None:
         self.used = True
         if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             return self._handle_mouse(event)
@@ -106,6 +113,7 @@ class Form:
             self._move(command)
         elif command is Command.CONFIRM and widget:
             self._show_focus()
+            self._pressed = True
             return widget.press()
         elif command in (Command.BACK, Command.PAUSE) and self._on_back:
             return self._on_back()
@@ -133,6 +141,9 @@ class Form:
             if widget.hover_point(*event.pos) and not moves and not any(other.held for other in self.widgets):
                 self._index = index
         self._show_focus()
+        self._pressed = event.type == pygame.MOUSEBUTTONUP and any(
+            widget.held and widget.hover_point(*event.pos) for widget in self.widgets
+        )
         self.used = self.manager.process_events(event)
         return next((outcome for widget in self.widgets if (outcome := _outcome(widget)) is not None), None)
 
@@ -148,12 +159,29 @@ class Form:
         self._held_steps = self._held_steps + 1 if steer else 0
         since = self._held_steps - _REPEAT_AFTER
         if since >= 0 and since % _REPEAT_EVERY == 0 and self.focused:
-            self.focused.shift(-1 if steer == 1 else 1)
+            widget, reading = self.focused, _reading(self.focused)
+            widget.shift(-1 if steer == 1 else 1)
+            self._sound(widget, reading)
+
+    def _sound(self, focused: Widget | None, reading: object) -> None:
+        """Let what came of an event be heard, given which widget was in focus before, and what it showed."""
+        if self.focused is not focused:
+            if not self.controls.mouse_in_use:  # which goes over widgets on its way to others
+                self._context.sound.play("move")
+        elif _reading(focused) != reading:
+            self._context.sound.play("adjust")
+        elif self._pressed and focused and type(focused).press is not Widget.press:
+            self._context.sound.play("choose")
 
     def _show_focus(self) -> None:
         for index, widget in enumerate(self.widgets):
             widget.focused = index == self._index
             widget.ringed = not self._context.controls.mouse_in_use
+
+
+def _reading(widget: Widget | None) -> object:
+    """Return what a widget is set to, if it can be set."""
+    return getattr(widget, "value", getattr(widget, "index", None))
 
 
 def _outcome(widget: Widget) -> Transition | None:

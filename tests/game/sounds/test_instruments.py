@@ -1,4 +1,5 @@
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -86,7 +87,7 @@ def test_the_pad_is_quiet_wide_and_moves_slowly():
 
 def test_the_altitude_tone_climbs_evenly():
     notes = [rung(number) for number in range(RUNGS)]
-    assert all(1.05 < high / low < 1.2 for low, high in zip(notes, notes[1:], strict=False))
+    assert all(1.05 < high / low < 1.2 for low, high in pairwise(notes))
     for number in range(0, RUNGS, 5):
         assert (
             band(altitude_key(number), 0.97 * notes[number], 1.03 * notes[number]) > 0.4

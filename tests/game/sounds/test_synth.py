@@ -58,7 +58,7 @@ def test_noise_has_the_spectrum_asked_for_and_no_seam():
     signal = synth.noise(rng(), 2.0, synth.band_pass(400, 800, 4))
     assert len(signal) == 2 * RATE
     assert np.sqrt(np.mean(signal**2)) == pytest.approx(1)
-    assert power_between(signal, 300, 1100) > 0.97
+    assert power_between(signal, 300, 1100) > 0.95
     assert seam(signal) < 5
 
 
@@ -106,7 +106,7 @@ def test_signals_add_up_late_or_not():
 def test_panning_keeps_the_power(pan):
     left, right = synth.pan_gains(pan)
     assert left**2 + right**2 == pytest.approx(2)
-    assert np.sign(right - left) == np.sign(round(pan, 9))
+    assert np.sign(round(right - left, 9)) == np.sign(pan)
     assert synth.place(np.ones(4), pan).shape == (4, 2)
 
 
