@@ -48,7 +48,7 @@ MENU: Final = {
     "train": ("Train", "Teach a network from nothing, and see it learn."),
     "digits": ("Draw a digit", "A network reads your handwriting, and shows how it knows."),
     "physics": ("Physics", "Stacks, slopes, impacts: the engine, to look into and take hold of."),
-    "settings": ("Settings", "Screen, motion, colours, keys."),
+    "settings": ("Settings", "Screen, motion, colours, sound, keys."),
     "quit": ("Quit", "Back to Earth."),
 }
 
@@ -60,6 +60,17 @@ SETTINGS: Final = {
     "colour_safe": ("Colours for every eye", "Good and beyond limits, told apart without red and green."),
     "show_hints": ("Hints", "The keys while you fly, and a word of advice after a crash."),
 }
+SOUND_TITLE: Final = "SOUND"
+SOUND_PROBLEM: Final = "Nothing is heard: no sound device was found."
+SOUND_GROUPS: Final = {
+    "effects": "Flight",
+    "interface": "Clicks",
+    "ambience": "Background",
+    "altitude": "Altitude tone",
+}
+SOUND_SHARE: Final = "{percent} %"
+SOUND_OFF: Final = "off"
+SOUND_ALTITUDE: Final = "Height as notes: their pace is your speed, their side the pad's."
 SWATCH_GOOD: Final = "within limits"
 SWATCH_WARN: Final = "beyond limits"
 KEYS_TITLE: Final = "CONTROLS"

@@ -11,17 +11,23 @@ from game import texts
 from game.context import Context
 from game.controls import BUTTON_WORDS, KEYS, Command, Held
 from game.scene import Pop, Transition
+from game.sounds.instruments import GROUPS, altitude_key
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.sky import NightSky
 from game.ui.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
-from game.ui.widgets import Toggle, Word
+from game.ui.widgets import Slider, Toggle, Word
 
 ROWS: Final = ("full_screen", "reduced_motion", "colour_safe", "show_hints")
 _WIDTH: Final = 416
 _FIRST_ROW: Final = 152
-_ROW: Final = 72
+_ROW: Final = 64
+_SOUND: Final = 448  # top of the first volume
+_SOUND_ROW: Final = 36
+_BACK: Final = 624
+# What is heard when a volume is changed, beside the click of the slider itself and what goes on anyway.
+_SAMPLES: Final = {"effects": "touchdown", "altitude": altitude_key(9)}
 _KEYS_LEFT: Final = 704
 _KEYS: Final[tuple[tuple[Command | Held, ...], ...]] = (
     (Held.MAIN,),
@@ -36,10 +42,10 @@ _KEYS: Final[tuple[tuple[Command | Held, ...], ...]] = (
 
 
 class SettingsScene:
-    """Toggles on the left, the keys on the right."""
+    """Toggles and volumes on the left, the keys on the right."""
 
     def enter(self, context: Context) -> None:
-        """Build a toggle for every row."""
+        """Build a toggle for every row, and a slider for every volume."""
         self._context = context
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
         self._form = Form(context, on_back=Pop)
@@ -48,8 +54,9 @@ class SettingsScene:
             label, hint = texts.SETTINGS[name]
             value = getattr(context.settings, name)
             self._form.add(Toggle(self._form.manager, box, label, value, self._changes(name), hint=hint))
-        back = (MARGIN, _FIRST_ROW + len(ROWS) * _ROW + 24, 96, 32)
-        self._form.add(Word(self._form.manager, back, texts.BACK, Pop, size=18))
+        for number, group in enumerate(GROUPS):
+            self._form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
+        self._form.add(Word(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
 
     def exit(self) -> None:
         """Nothing is held: every change was saved as it was made."""
@@ -71,6 +78,7 @@ class SettingsScene:
         canvas.text(texts.SETTINGS_TITLE, (MARGIN, 88), size=34, weight="light")
         self._form.draw(canvas)
         self._draw_swatches(canvas, _FIRST_ROW + ROWS.index("colour_safe") * _ROW + 28)
+        self._draw_sound(canvas)
         self._draw_keys(canvas)
         word = self._context.controls.word
         hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.BACK), texts.HINT_BACK)]
@@ -82,6 +90,26 @@ class SettingsScene:
             self._context.apply_settings()
 
         return change
+
+    def _volume(self, group: str, box: pygame.typing.RectLike) -> Slider:
+        context, name = self._context, f"{group}_volume"
+
+        def change(value: float) -> None:
+            setattr(context.settings, name, value)
+            context.apply_settings()
+            if group in _SAMPLES:
+                context.sound.play(_SAMPLES[group])
+
+        label, value = texts.SOUND_GROUPS[group], getattr(context.settings, name)
+        return Slider(self._form.manager, box, label, value, (0.0, 1.0), change, step=0.1, figure=_loudness)
+
+    def _draw_sound(self, canvas: Canvas) -> None:
+        title = canvas.text(texts.SOUND_TITLE, (MARGIN, _SOUND - 12), size=LABEL, weight="medium", colour=MUTE)
+        if self._context.sound.problem:
+            canvas.marker("triangle", (title.right + 18, _SOUND - 16), 9, canvas.palette.warn)
+            canvas.text(texts.SOUND_PROBLEM, (title.right + 30, _SOUND - 12), size=SMALL, colour=canvas.palette.warn)
+        below = _SOUND + len(GROUPS) * _SOUND_ROW + 12
+        canvas.text(texts.SOUND_ALTITUDE, (MARGIN, below), size=SMALL, colour=MUTE)
 
     def _draw_swatches(self, canvas: Canvas, middle: float) -> None:
         left = MARGIN + _WIDTH + 40
@@ -104,6 +132,10 @@ class SettingsScene:
             canvas.text(_key_names(command), (_KEYS_LEFT + 192, y), size=TEXT - 1, colour=MUTE)
             button = pad or (BUTTON_WORDS.get(command, "") if isinstance(command, Command) else "")
             canvas.text(button, (pad_left, y), size=TEXT - 1, colour=MUTE, align="right")
+
+
+def _loudness(volume: float) -> str:
+    return texts.SOUND_SHARE.format(percent=round(100 * volume)) if volume else texts.SOUND_OFF
 
 
 def _key_names(command: Command | Held) -> str:

@@ -121,7 +121,7 @@ def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
     game.click((90, 578))
     assert game.top_name == "SettingsScene"
     game.frames(3)
-    game.click((80, 480))
+    game.click((80, 640))
     assert game.top_name == "Menu"
 
 
