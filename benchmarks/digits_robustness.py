@@ -83,8 +83,8 @@ TEMPLATES = (
 )  # fmt: skip
 
 
-def drawn(digit, rng, size=520):
-    """Return a canvas with a digit of a random style, place, size, slant and pen."""
+def template_strokes(digit, rng, size=520):
+    """Return the strokes of a digit of a random style, place, size and slant on a canvas."""
     styles = TEMPLATES[digit]
     style = styles[rng.integers(len(styles))]
     height = rng.uniform(0.3, 0.8) * size
@@ -106,7 +106,12 @@ def drawn(digit, rng, size=520):
     everything = np.concatenate(strokes)
     low, high = everything.min(axis=0), everything.max(axis=0)
     at = 15 + rng.random(2) * np.maximum(size - 30 - (high - low), 0) - low
-    return draw_strokes([points + at for points in strokes], (size, size), rng.uniform(0.015, 0.07) * size)
+    return [points + at for points in strokes]
+
+
+def drawn(digit, rng, size=520):
+    """Return a canvas with such a digit, drawn by a pen of a random width."""
+    return draw_strokes(template_strokes(digit, rng, size), (size, size), rng.uniform(0.015, 0.07) * size)
 
 
 def aside(image):

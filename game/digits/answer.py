@@ -97,7 +97,7 @@ def _draw_chosen(canvas: Canvas, reading: Reading, name: str) -> None:
             digit=first, percent=share, other=second, other_percent=second_share
         )  # fmt: skip
         _draw_verdict(canvas, "triangle", texts.DIGITS_UNSURE, canvas.palette.warn)
-        canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE, tabular=True)
+        canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE)
         return
     canvas.text(str(first), (LEFT - 6, _BASELINE), size=_SIZES[0], weight="extralight")
     if verdict is Verdict.SURE:
@@ -106,18 +106,18 @@ def _draw_chosen(canvas: Canvas, reading: Reading, name: str) -> None:
         _draw_verdict(canvas, "ring", texts.DIGITS_LIKELY.format(percent=share), INK)
     if probabilities[second] >= 0.005:
         words = texts.DIGITS_OR.format(digit=second, percent=second_share)
-        canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE, tabular=True)
+        canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE)
 
 
 def _draw_verdict(canvas: Canvas, sign: str, words: str, colour: tuple[int, int, int]) -> None:
     canvas.marker(sign, (LEFT + 5, 200), 10, colour)  # type: ignore[arg-type]
-    canvas.text(words, (LEFT + 20, 205), size=TEXT, colour=colour, tabular=True)
+    canvas.text(words, (LEFT + 20, 205), size=TEXT, colour=colour)
 
 
 def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
     first, _ = best_two(reading.probabilities[name])
     sure = reading.verdict(name) is not Verdict.UNSURE
-    canvas.text(texts.DIGITS_NETWORKS[name], (RIGHT, 92), size=LABEL, colour=MUTE, align="right")
+    canvas.text(texts.DIGITS_NETWORKS[name], (RIGHT, 122), size=LABEL, colour=MUTE, align="right")
     figure = str(first) if sure else "?"
     canvas.text(figure, (RIGHT, _BASELINE), size=_SIZES[1], weight="light", colour=MUTE, align="right")
     words = percent(reading.probabilities[name][first]) if sure else texts.DIGITS_UNSURE

@@ -28,36 +28,38 @@ AMBER: Final = _shades(MUTE, HUMAN)
 
 def picture(values: Numbers, size: tuple[int, int], shades: npt.NDArray[np.uint8] = GREY) -> pygame.Surface:
     """Return (height, width) numbers within -1 to 1 at a size in pixels, every number a sharp rectangle."""
-    surface = pygame.Surface(size)
-    pygame.surfarray.blit_array(surface, _coloured(_grown(values[None], size)[0], shades))
-    return surface
+    return mosaic(values[None], 1, size, 0, shades)
 
 
-def mosaic(tiles: Numbers, columns: int, tile: int, gap: int, shades: npt.NDArray[np.uint8] = SIGNED) -> pygame.Surface:
-    """Return (n, height, width) tiles row by row, `tile` pixels wide each, on a transparent ground."""
+def mosaic(
+    tiles: Numbers, columns: int, size: tuple[int, int], gap: float, shades: npt.NDArray[np.uint8] = SIGNED
+) -> pygame.Surface:
+    """Return (n, height, width) tiles row by row, with gaps between them, at a size in pixels."""
     rows = -(-len(tiles) // columns)
-    large = _grown(tiles, (tile, tile))
-    pitch = tile + gap
-    surface = pygame.Surface((columns * pitch - gap, rows * pitch - gap), pygame.SRCALPHA)
-    field = np.zeros((rows * columns, pitch, pitch), np.float32)
-    field[: len(tiles), :tile, :tile] = large
-    inked = np.zeros_like(field, np.uint8)
-    inked[: len(tiles), :tile, :tile] = 255
-    width, height = surface.get_size()
-    pygame.surfarray.pixels3d(surface)[...] = _coloured(_joined(field, columns)[:height, :width], shades)
-    pygame.surfarray.pixels_alpha(surface)[...] = _joined(inked, columns)[:height, :width].T
+    row, y, below = _places(rows, tiles.shape[1], size[1], gap)
+    column, x, beside = _places(columns, tiles.shape[2], size[0], gap)
+    tile = row[:, None] * columns + column
+    blank = below[:, None] | beside | (tile >= len(tiles))
+    values = tiles[np.minimum(tile, len(tiles) - 1), y[:, None], x]
+    surface = pygame.Surface(size, pygame.SRCALPHA)
+    pygame.surfarray.pixels3d(surface)[...] = _coloured(values, shades)
+    pygame.surfarray.pixels_alpha(surface)[...] = np.where(blank, 0, 255).T
     return surface
 
 
-def _grown(tiles: Numbers, size: tuple[int, int]) -> Numbers:
-    (width, height), (_, rows, columns) = size, tiles.shape
-    down, across = np.arange(height) * rows // height, np.arange(width) * columns // width
-    return tiles[:, down[:, None], across]
+def height_of(count: int, columns: int, shape: tuple[int, int], width: float, gap: float) -> float:
+    """Return how tall a mosaic is whose cells are squares."""
+    tile = (width + gap) / columns - gap
+    return -(-count // columns) * (tile * shape[0] / shape[1] + gap) - gap
 
 
-def _joined(tiles: npt.NDArray[Any], columns: int) -> npt.NDArray[Any]:
-    _, height, width = tiles.shape
-    return tiles.reshape(-1, columns, height, width).swapaxes(1, 2).reshape(-1, columns * width)
+def _places(count: int, cells: int, pixels: int, gap: float) -> tuple[npt.NDArray[np.intp], ...]:
+    """Return for each pixel along a side the number of its tile and the cell in there, and whether it is a gap."""
+    pitch = (pixels + gap) / count
+    at = np.arange(pixels) + 0.5
+    tile = np.minimum(at // pitch, count - 1).astype(np.intp)
+    within = (at - tile * pitch) / (pitch - gap)
+    return tile, np.minimum(within * cells, cells - 1).astype(np.intp), within >= 1
 
 
 def _coloured(values: npt.NDArray[Any], shades: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:

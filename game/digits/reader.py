@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.ink import BOX, SIDE, Image, Stages, stages, stroke_stages
+from ai.ink import SIDE, Image, Stages, stages, stroke_stages
 from ai.strokes import Stroke
 
 if TYPE_CHECKING:
@@ -128,11 +128,16 @@ class Reader:
         between = np.zeros((1, outputs[-1].shape[-1]), np.float32)
         between[0, first], between[0, second] = 1, -1
         spoken = classifier.network.input_gradient(shaped, between).reshape(SIDE, SIDE) * image
-        return Explanation(_normalised(spoken), _filters(classifier, outputs), _layers(classifier, outputs))
+        layers = _layers(classifier, outputs)
+        if not image.any():
+            layers = [np.zeros_like(layer) for layer in layers]
+        return Explanation(_normalised(spoken), _filters(classifier, outputs), layers)
 
 
 def _normalised(values: Numbers) -> Numbers:
-    return np.asarray(values / max(float(np.abs(values).max()), 1e-9), np.float32)
+    """Return values within -1 to 1 by their roots, so that small ones are seen as well."""
+    parts = values / max(float(np.abs(values).max()), 1e-9)
+    return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)
 
 
 def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
@@ -155,6 +160,3 @@ def _layers(classifier: DigitClassifier, outputs: list[Numbers]) -> list[Numbers
     values = [out[0] for layer, out in zip(classifier.network.layers, outputs, strict=True)
               if isinstance(layer, ActivationLayer) and out.shape[-1] > len("0123456789")]  # fmt: skip
     return [_normalised(value.transpose(2, 0, 1) if value.ndim == 3 else value) for value in values]
-
-
-EMPTY: Final = Stages(*(np.zeros((side, side), np.float32) for side in (BOX, BOX, BOX, BOX, SIDE)))

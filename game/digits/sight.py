@@ -11,8 +11,8 @@ import pygame
 from ai.ink import Image
 from game import texts
 from game.digits.answer import best_two
-from game.digits.pictures import AMBER, GREY, mosaic, picture
-from game.digits.reader import Explanation, Numbers, Reading
+from game.digits.pictures import AMBER, GREY, height_of, mosaic, picture
+from game.digits.reader import Explanation, Numbers, Reading, Verdict
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
 from game.ui.widgets import PointsManager, Toggle, draw_switch
@@ -63,7 +63,7 @@ class Sight:
         self._draw_stages(canvas, steps)
         if why is None:
             return
-        self._draw_why(canvas, reading.probabilities[name])
+        self._draw_why(canvas, reading, name)
         self._draw_filters(canvas, name)
         self._draw_layers(canvas, why)
 
@@ -74,18 +74,8 @@ class Sight:
             return
         size = canvas.px(_WHY[2])
         self._saliency = picture(why.saliency, (size, size), AMBER)
-        gap = max(1, canvas.px(_GAP))
-        self._filters = mosaic(why.filters, 8, _cell(canvas.px(RIGHT - _FILTERS[0]), 8, gap), gap)
-        self._layers = [self._layer(canvas, layer, gap) for layer in why.layers]
-
-    def _layer(self, canvas: Canvas, layer: Numbers, gap: int) -> pygame.Surface:
-        width = canvas.px(RIGHT - LEFT)
-        if layer.ndim == 1:
-            columns = min(50 if len(layer) % 50 == 0 else 64, len(layer))
-            gap = max(1, gap // 2)
-            return mosaic(layer[:, None, None], columns, _cell(width, columns, gap), gap)
-        columns = 16 if len(layer) <= 32 else 32
-        return mosaic(layer, columns, _cell(width, columns, gap), gap)
+        self._filters = _mosaic(canvas, why.filters, 8, RIGHT - _FILTERS[0], _GAP)
+        self._layers = [_layer(canvas, layer) for layer in why.layers]
 
     def _draw_stages(self, canvas: Canvas, steps: list[bool]) -> None:
         _label(canvas, texts.DIGITS_SEES, (LEFT, 42))
@@ -100,11 +90,14 @@ class Sight:
             canvas.text(words, (left + _TILE / 2, _TILES_TOP + _TILE + 16), size=LABEL, colour=colour, align="centre",
                         alpha=1.0 if taken else 0.5)  # fmt: skip
 
-    def _draw_why(self, canvas: Canvas, probabilities: Numbers) -> None:
+    def _draw_why(self, canvas: Canvas, reading: Reading, name: str) -> None:
         left, top, size = _WHY
-        first, second = best_two(probabilities)
-        _label(canvas, texts.DIGITS_WHY.format(digit=first, other=second), (left, top - 12))
         canvas.surface.blit(self._saliency, (canvas.px(left), canvas.px(top)))
+        if reading.verdict(name) is Verdict.EMPTY:
+            _label(canvas, texts.DIGITS_WHY_EMPTY, (left, top - 12))
+            return
+        first, second = best_two(reading.probabilities[name])
+        _label(canvas, texts.DIGITS_WHY.format(digit=first, other=second), (left, top - 12))
         _legend(canvas, texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), (left, top + size + 17))
 
     def _draw_filters(self, canvas: Canvas, name: str) -> None:
@@ -138,8 +131,18 @@ def _legend(canvas: Canvas, words: tuple[str, ...], colours: tuple[Colour, ...],
         x += 12 + canvas.text(word, (x + 12, y), size=LABEL, colour=MUTE).width + 12
 
 
-def _cell(width: int, columns: int, gap: int) -> int:
-    return max(1, (width + gap) // columns - gap)
+def _layer(canvas: Canvas, layer: Numbers) -> pygame.Surface:
+    width = RIGHT - LEFT
+    if layer.ndim == 3:
+        return _mosaic(canvas, layer, 11 if len(layer) <= 33 else 32, width, _GAP)
+    return _mosaic(canvas, layer[:, None, None], 50 if len(layer) % 50 == 0 else 64, width, _GAP / 2)
+
+
+def _mosaic(canvas: Canvas, tiles: Numbers, columns: int, width: float, gap: float) -> pygame.Surface:
+    """Return tiles that fill a width in points."""
+    columns = min(columns, len(tiles))
+    height = height_of(len(tiles), columns, (tiles.shape[1], tiles.shape[2]), width, gap)
+    return mosaic(tiles, columns, (canvas.px(width), canvas.px(height)), gap * canvas.scale)
 
 
 def _fitted(image: Image, side: int) -> pygame.Surface:

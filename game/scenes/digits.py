@@ -200,8 +200,10 @@ class Digits:
         words = [texts.DIGITS_NETWORKS[name] for name in NAMES]
         width = sum(round(typeface.width(word, TEXT, "regular")) + 24 for word in words)
         self._tabs = add(Choice(manager, (left, top, width, height), "", words, NAMES.index(self.chosen), self._choose))
-        for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear))):
-            add(Word(manager, (PAD.left + 88 * number, _BELOW, 64, 24), word, press, size=SMALL + 1))
+        self._under = [
+            add(Word(manager, (PAD.left + 80 * number, _BELOW, 56, 24), word, press, size=SMALL + 1))
+            for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)))
+        ]
         self._rows = [add(DigitRow(manager, digit, self._correct)) for digit in range(10)]
         for number, step in enumerate(STEPS):
             add(StageSwitch(manager, number, partial(self._switch, step)))
@@ -233,10 +235,12 @@ class Digits:
             for line in wrapped(canvas, words, SMALL, _RIGHT - LEFT)[:2]:
                 canvas.text(line, (LEFT, 560 + 34 * number), size=SMALL, colour=canvas.palette.warn)
         controls = self._context.controls
-        pad, word = controls.pad_in_use, controls.word
+        word = controls.word
+        keys = (word(Command.HANDOVER), word(Command.RETRY)) if controls.pad_in_use else ("Z", "C")
+        for key, widget in zip(keys, self._under, strict=True):
+            left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
+            canvas.text(key, (left, widget.baseline), size=SMALL, weight="medium")
         draw_hints(canvas, [
-            (word(Command.HANDOVER) if pad else "Z", texts.DIGITS_UNDO.lower()),
-            (word(Command.RETRY) if pad else "C", texts.DIGITS_CLEAR.lower()),
             (word(Command.NEXT), texts.DIGITS_HINT_NETWORK),
             (word(Command.BACK), texts.HINT_BACK),
         ], (PAD.left, VIEW_SIZE[1] - 40))  # fmt: skip
