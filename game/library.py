@@ -27,6 +27,8 @@ LONGEST_NAME: Final = 40
 _TRASH_KEPT: Final = 8
 _GAMES: Final = 16  # that may train at the same time
 _OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
+_NEW: Final = ".new"  # and one that it has not finished
+_STALE: Final = 3600.0  # seconds after which nobody will finish it any more
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
 
 
@@ -307,10 +309,12 @@ class Library:
         return []
 
     def _recover(self) -> None:
-        """Put back runs whose replacement was interrupted."""
+        """Put back runs whose replacement was interrupted, and clear away what was never finished."""
         for path in list(self.folder.iterdir()):
             if path.name.endswith(_OLD) and path.name[0] == "." and path.name[1] != ".":
                 recover_folder(self.folder / path.name[1 : -len(_OLD)])
+            elif path.name.endswith(_NEW) and path.name[0] == "." and time.time() - path.stat().st_mtime > _STALE:
+                shutil.rmtree(path, ignore_errors=True)
 
 
 def _claims(path: Path, hidden: bool = False) -> bool:

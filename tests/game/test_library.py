@@ -332,6 +332,14 @@ def test_a_save_that_was_stopped_between_its_renames_is_put_back(library: Librar
     assert found.seed == 4
 
 
+def test_what_a_save_never_finished_is_cleared_away_in_time(library: Library):
+    old, fresh = add(library, "..training.new"), add(library, ".run.new")
+    os.utime(old, (1e9, 1e9))
+    assert library.runs() == []
+    assert not old.exists()
+    assert fresh.exists()
+
+
 def test_the_library_and_the_networks_agree(library: Library, trained: Path, tmp_path: Path):
     shutil.copytree(trained, library.folder / "mine")
     shutil.copytree(trained, library.folder / "classic")

@@ -1,5 +1,6 @@
 """The training screen, through real pygame events and with a real worker beside it."""
 
+import gc
 import threading
 import time
 from collections.abc import Callable
@@ -12,13 +13,17 @@ import pytest
 
 from ai.config import PRESETS
 from ai.rewards import RewardWeights
+from ai.runs import resume_run
 from ai.training import Training
 from game import texts
 from game.library import Library
+from game.scene import Push
 from game.scenes.dialog import Asking, Naming
 from game.scenes.menu import Menu
 from game.scenes.play import Play
 from game.scenes.train import Train
+from game.student import Student
+from game.ui.netview import NetView
 from game.worker import State
 from tests.game.driver import Driver
 
@@ -200,20 +205,40 @@ def test_numbers_that_run_away_are_told(train: Driver) -> None:
     assert isinstance(train.top, Train)
 
 
-def test_ten_visits_leave_no_process_and_no_thread(game: Driver) -> None:
+def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(train: Driver) -> None:
+    scene = train.top
+    for number in range(4):
+        start(train)
+        scene._save_as(f"run {number}")
+        time.sleep(0.05 * number)
+        for child in active_children():
+            child.kill()
+        wait(train, lambda: scene.student.state is State.FAILED)
+        assert train.top is scene
+    for run in scene.student.library.runs():
+        assert not run.problem
+        assert resume_run(run.folder).agent.decisions > 0
+
+
+def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     threads = threading.active_count()
-    for _ in range(10):
+    for visit in range(10):
         assert isinstance(game.top, Menu)
-        game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
-        assert isinstance(game.top, Train)
-        game.top.knobs.set_config(SMALL, 0)
+        scene = Train()
+        game.app.scenes.apply(Push(scene))
+        game.frames(2)
+        if isinstance(game.top, Asking):  # about the run of the visit before
+            game.key(pygame.K_ESCAPE)
+        scene.knobs.set_config(SMALL, 0)
         game.key(pygame.K_RETURN)
-        game.frames(5)
+        if visit % 4 == 0:  # the others leave while it starts
+            wait(game, lambda scene=scene: scene.student.sight)
         game.key(pygame.K_ESCAPE)
-        game.keys(pygame.K_UP, pygame.K_UP)
         assert not active_children()
-    time.sleep(0.2)
-    assert threading.active_count() <= threads + 1
+    del scene
+    wait(game, lambda: threading.active_count() <= threads)
+    gc.collect()
+    assert not [each for each in gc.get_objects() if isinstance(each, Train | Student | NetView)]
 
 
 def test_closing_the_game_ends_the_worker(train: Driver) -> None:
