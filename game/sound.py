@@ -121,12 +121,10 @@ class Sound:
         sound = self._sound(key)
         if self._muted or gain < _SILENT or since < _APART or sound is None:
             return
-        channel = pygame.mixer.find_channel()
-        if channel is None:
-            return
-        channel.play(sound)
-        channel.set_volume(*np.minimum(gain * pan_gains(pan), 1.0).tolist())
-        self._begun[key] = self._step
+        channel = sound.play()  # on none of those reserved for loops
+        if channel is not None:
+            channel.set_volume(*np.minimum(gain * pan_gains(pan), 1.0).tolist())
+            self._begun[key] = self._step
 
     def loop(self, key: str, volume: float) -> None:
         """Keep a sound going at that volume, 0 to 1, in this step; one not asked for again dies away."""
