@@ -71,7 +71,7 @@ def test_a_fix_that_cannot_be_kept_says_why(tmp_path, data, misread):
     [(np.zeros((28, 28)), 3), (np.full((28, 28), np.nan), 3), (np.ones((28, 28)), 10), (np.ones((28, 28)), -1)],
 )
 def test_what_is_no_drawing_or_no_digit_is_refused(data, image, digit):
-    with pytest.raises(ValueError, match="digit|learn"):
+    with pytest.raises(ValueError, match=r"digit|learn"):
         list(steps_to_fix(DigitClassifier.load(CLASSIC), image, digit, data, np.random.default_rng(0)))
 
 
