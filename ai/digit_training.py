@@ -106,8 +106,9 @@ class DigitTraining:
         targets = np.full((len(batch), 10), config.smoothing / 10, np.float32)
         targets[np.arange(len(batch)), labels] += 1 - config.smoothing
 
-        self.optimizer.learning_rate = self.learning_rate
-        rate = self.learning_rate
+        self.optimizer.learning_rate = rate = self.learning_rate
+        for layer in network.layers:
+            layer.rng = rng  # dropout's
         outputs = network.forward_propagate(self.classifier.shaped(images))
         loss = network.cost(outputs, targets)
         accuracy = float((outputs.argmax(axis=1) == labels).mean())

@@ -40,6 +40,7 @@ def add_commands(commands: Any) -> None:
 def _train(arguments: argparse.Namespace) -> int:
     from ai.digit_runs import resume_digit_run, save_digit_run
     from ai.digit_training import DigitTraining
+    from ai.nn.folder import check_folder
 
     output = arguments.output or arguments.resume
     if output is None:
@@ -53,6 +54,7 @@ def _train(arguments: argparse.Namespace) -> int:
     except ValueError as error:
         return fail(str(error))
     try:
+        check_folder(output)
         _advance(training, arguments.seconds, output)
         described = save_digit_run(training, output, final=True)
     except FloatingPointError as error:

@@ -18,13 +18,8 @@ def atomic_folder(target: str | Path) -> Iterator[Path]:
     can delete what somebody keeps there. One writer at a time for each target.
     """
     target = Path(target).resolve()
-    new, old = _beside(target, "new"), _beside(target, "old")
-    recover_folder(target)
-    if target.exists() and not _is_replaceable(target):
-        raise FileExistsError(f"{target} holds something else than a model, and is left as it is")
-    shutil.rmtree(new, ignore_errors=True)
+    new, old = _make_new(target), _beside(target, "old")
     shutil.rmtree(old, ignore_errors=True)
-    new.mkdir(parents=True)
     try:
         yield new
         for path in [*new.rglob("*"), new]:
@@ -40,6 +35,11 @@ def atomic_folder(target: str | Path) -> Iterator[Path]:
     shutil.rmtree(old, ignore_errors=True)
 
 
+def check_folder(target: str | Path) -> None:
+    """Raise the OSError that `atomic_folder` would begin with, long before there is anything to write."""
+    _make_new(Path(target).resolve()).rmdir()
+
+
 def recover_folder(target: str | Path) -> None:
     """Put the old folder back if a save was stopped between its two renames. Call it before reading."""
     target = Path(target).resolve()
@@ -47,6 +47,17 @@ def recover_folder(target: str | Path) -> None:
     if not target.exists() and old.is_dir():
         with suppress(OSError):
             old.rename(target)
+
+
+def _make_new(target: Path) -> Path:
+    """Return an empty folder beside the target, if that may be replaced."""
+    recover_folder(target)
+    if target.exists() and not _is_replaceable(target):
+        raise FileExistsError(f"{target} holds something else than a model, and is left as it is")
+    new = _beside(target, "new")
+    shutil.rmtree(new, ignore_errors=True)
+    new.mkdir(parents=True)
+    return new
 
 
 def _beside(target: Path, suffix: str) -> Path:

@@ -68,7 +68,8 @@ def test_held_out_images_are_never_learnt_from(data):
 
 
 def test_a_resumed_run_goes_on_as_if_it_had_never_stopped(data, tmp_path):
-    whole, first = DigitTraining(SMALL, 5, data), DigitTraining(SMALL, 5, data)
+    config = SMALL.changed(dropout=0.3)
+    whole, first = DigitTraining(config, 5, data), DigitTraining(config, 5, data)
     for _ in range(13):
         first.advance()
     save_digit_run(first, tmp_path / "run")
@@ -169,10 +170,13 @@ def test_what_cannot_be_done_is_said_in_a_line(arguments, message, capsys, tmp_p
 
 
 @pytest.mark.usefixtures("few")
-def test_a_folder_with_something_else_is_left_alone(tmp_path, capsys):
+@pytest.mark.parametrize("output", ["letters", "letters/dear.txt/run"])
+def test_a_folder_that_cannot_be_written_is_named_before_anything_is_learnt(tmp_path, capsys, monkeypatch, output):
     (tmp_path / "letters").mkdir()
     (tmp_path / "letters" / "dear.txt").write_text("you")
+    monkeypatch.delattr(DigitTraining, "advance")
     options = ["--preset", "classic", "--epochs", "1", "--set", "held_out=100"]
-    assert main(["train-digits", *options, "--output", str(tmp_path / "letters")]) == 1
+    assert main(["train-digits", *options, "--output", str(tmp_path / output)]) == 1
     assert "letters" in capsys.readouterr().err
     assert (tmp_path / "letters" / "dear.txt").read_text() == "you"
+    assert [path.name for path in tmp_path.iterdir()] == ["letters"]
