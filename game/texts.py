@@ -627,3 +627,7 @@ DIGITS_MEASURING: Final = "Measuring …"
 DIGITS_NOT_MEASURED: Final = "Not measured: {problem}"
 DIGITS_HINT: Final = "Switch a step off, and see what the networks then read of digits drawn anywhere."
 DIGITS_PROBLEM: Final = "{name} can't be read: {problem}"
+
+# Fix it
+FIX_NOT_KEPT: Final = "It could not be kept: {problem}"
+FIX_NOT_UNDONE: Final = "It could not be undone: {problem}"
