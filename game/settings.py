@@ -21,9 +21,9 @@ class Settings:
     reduced_motion: bool = False
     colour_safe: bool = False
     show_hints: bool = True
-    effects_volume: float = 0.8  # every number is a share, 0 to 1
-    interface_volume: float = 0.6
-    ambience_volume: float = 0.6
+    effects_volume: float = 0.9  # every number is a share, 0 to 1
+    interface_volume: float = 0.7
+    ambience_volume: float = 0.7
     altitude_volume: float = 0.0  # of the tone that lets one hear height and speed; 0 is off
     model: str = ""  # the network last chosen to fly; empty for the game's own
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is

@@ -17,7 +17,8 @@ _ENDS: Final = {
     Outcome.OUT_OF_BOUNDS: "lost",
     Outcome.TIMED_OUT: "lost",
 }
-_WARN_AHEAD: Final = 1.6  # seconds to the ground within which too fast is worth a warning
+_HARD_BRAKING: Final = 0.8  # share of the greatest deceleration from which on a fall is worth a warning
+_REACTION: Final = 0.4  # seconds until a warned pilot brakes
 _WARN_TILT_BELOW: Final = 6.0  # metres
 _WARN_EVERY: Final = 40  # steps
 # The altitude tone has a note for every half metre near the ground, and for every metre above.
@@ -67,7 +68,7 @@ class FlightSound:
         env = self._env
         self._slot, self._time = slot, float(env.time[slot])
         self._outcome = Outcome(int(env.outcome[slot]))
-        self._down = env.contacts[slot].copy()
+        self._down, self._fall = env.contacts[slot].copy(), 0.0
         self._touched = bool(self._down.any())
         self._rung, self._since_note = -1, 0
 
@@ -76,25 +77,34 @@ class FlightSound:
         env, slot = self._env, self._slot
         down = env.contacts[slot]
         if (down & ~self._down).any() and env.outcome[slot] != Outcome.CRASHED:
-            self._sound.play("touchdown", 0.3 + 0.7 * min(1.0, float(env.impact[slot, 0]) / env.limits.touch_speed))
+            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / env.limits.touch_speed))
             if not self._touched:
                 self._sound.play("contact")
             self._touched = True
-        self._down = down.copy()
+        self._down, self._fall = down.copy(), -float(env.velocity[slot, 1])
 
     def _warn(self) -> None:
         """Warn of what would be a crash soon; of two things, in turns."""
         env, slot = self._env, self._slot
-        height, descent = float(env.altitude[slot]), -float(env.velocity[slot, 1])
         warnings = []
-        if descent > env.limits.touch_speed and height < _WARN_AHEAD * descent:
+        if self._falls_too_fast():
             warnings.append("too_fast")
-        if env.tilt[slot] > env.limits.touch_tilt and height < _WARN_TILT_BELOW:
+        if env.tilt[slot] > env.limits.touch_tilt and env.altitude[slot] < _WARN_TILT_BELOW:
             warnings.append("too_tilted")
         self._rest = max(0, self._rest - 1)
         if warnings and not self._rest:
             self._sound.play(warnings[self._turn % len(warnings)])
             self._rest, self._turn = _WARN_EVERY, self._turn + 1
+
+    def _falls_too_fast(self) -> bool:
+        """Whether hardly less than full thrust, from now on, would bring it down as slowly as it must be."""
+        env, slot = self._env, self._slot
+        descent = -float(env.velocity[slot, 1])
+        if descent <= env.limits.touch_speed:
+            return False
+        braking = env.params.main_thrust / env.params.mass - env.params.gravity
+        left = float(env.altitude[slot]) - (0.0 if env.actions[slot] >= 3 else _REACTION * descent)
+        return descent**2 - env.limits.touch_speed**2 > 2 * max(left, 0.0) * _HARD_BRAKING * braking
 
     def _sound_height(self) -> None:
         """Strike a note for each step of height that is passed, so that their pace is the speed, on the pad's side."""

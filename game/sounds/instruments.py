@@ -199,10 +199,10 @@ def altitude_key(number: int) -> str:
 
 # In the order in which they are made: what is heard first comes first.
 INSTRUMENTS: Final[dict[str, Instrument]] = {
-    "move": Instrument(partial(_tick, semitones=26, seconds=0.035), "interface", -24),
-    "choose": Instrument(partial(_steps, notes=(14, 21)), "interface", -19),
-    "back": Instrument(partial(_steps, notes=(14, 7)), "interface", -20),
-    "adjust": Instrument(partial(_tick, semitones=21, seconds=0.03), "interface", -23),
+    "move": Instrument(partial(_tick, semitones=26, seconds=0.035), "interface", -19),
+    "choose": Instrument(partial(_steps, notes=(14, 21)), "interface", -17),
+    "back": Instrument(partial(_steps, notes=(14, 7)), "interface", -18),
+    "adjust": Instrument(partial(_tick, semitones=21, seconds=0.03), "interface", -19),
     "to_network": Instrument(partial(_steps, notes=(9, 16)), "interface", -17),
     "to_human": Instrument(partial(_steps, notes=(9, 2)), "interface", -17),
     "engine": Instrument(_engine, "effects", -11, loops=True),
@@ -212,8 +212,8 @@ INSTRUMENTS: Final[dict[str, Instrument]] = {
     "too_fast": Instrument(_too_fast, "effects", -20),
     "too_tilted": Instrument(_too_tilted, "effects", -17),
     "touchdown": Instrument(_thud, "effects", -9),
-    "contact": Instrument(_bell, "effects", -18),
-    "crash": Instrument(_crash, "effects", -5),
+    "contact": Instrument(_bell, "effects", -15),
+    "crash": Instrument(_crash, "effects", -6),
     "landed": Instrument(_landed, "effects", -12),
     "lost": Instrument(_lost, "effects", -15),
     # The ear hears low notes less well.

@@ -57,7 +57,7 @@ def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_
     assert sound.heard() == []
     game.keys(*[DOWN] * 5)
     sound.heard()
-    for heard in [["adjust"]] * 4 + [[]]:  # clicks, from 60 % up to all there is
+    for heard in [["adjust"]] * 3 + [[]]:  # clicks, from 70 % up to all there is
         game.key(RIGHT)
         assert sound.heard() == heard
 
