@@ -10,9 +10,10 @@ import numpy as np
 
 from ai.agent import DeepQAgent
 from ai.config import Config
-from ai.env import Bools, Floats, Ints
-from ai.lander import NUM_ACTIONS, NUM_FEATURES
+from ai.env import Bools, Doubles, Floats, Ints
+from ai.lander import NUM_ACTIONS
 from ai.pilots import COAST
+from ai.wishes import Wishes, in_question
 
 # Points of reward that the guardian's action must bring more than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
@@ -53,6 +54,7 @@ class Decision:
     rule: Ints  # (n,) of Rule
     values: Floats  # (n, pads, 6) what each action is worth on the way to each pad
     feasible: Bools  # (n, 6) which actions the pilot could have had
+    likely: Doubles  # (n, pads) how likely it is that each pad is meant
 
     @property
     def overridden(self) -> Bools:
@@ -71,6 +73,10 @@ class CoPilot:
     best is. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more
     on the way to every pad by a margin, which falls from without limit at assist 0 to nothing at 1.
 
+    Of several pads, only those count that may still be meant, by what the pilot has done so far (`ai.wishes`); with
+    `reads_wishes` off, all do. Hands off, the co-pilot flies to the likeliest. So it remembers from one decision to
+    the next, which should be some 1/15 s; `forget` makes it ready for another flight.
+
     `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with.
     """
 
@@ -81,12 +87,15 @@ class CoPilot:
         mode: Mode | str = Mode.TOLERANCE,
         *,
         reward_scale: float | None = None,
+        reads_wishes: bool = True,
     ) -> None:
         self.agent = agent
         self.assist = assist
         self.mode = Mode(mode)
         config = agent.config if isinstance(agent, DeepQAgent) else Config()
         self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
+        self.reads_wishes = reads_wishes
+        self._wishes = Wishes(self.reward_scale)
 
     @property
     def assist(self) -> float:
@@ -99,6 +108,10 @@ class CoPilot:
             raise ValueError(f"assist runs from 0 to 1, not {assist}")
         self._assist = assist
 
+    def forget(self, mask: Bools | None = None) -> None:
+        """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
+        self._wishes.forget(mask)
+
     def share(self, observation: Floats, pilot_action: Any) -> tuple[Ints, Bools]:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
 
@@ -110,29 +123,38 @@ class CoPilot:
 
     def decide(self, observation: Floats, pilot_action: Any) -> Decision:
         """Do what `share` does, and say why."""
-        values, pilot = self._values(observation), np.atleast_1d(pilot_action)
-        if pilot.shape != (len(values),) or pilot.dtype.kind not in "iu":
-            raise ValueError(f"pilot actions must be {len(values)} whole numbers, not {pilot.dtype} {pilot.shape}")
-        if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
-            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
-        assist = np.where(pilot == COAST, 1.0, self.assist)
-        weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
-        best, feasible = weigh(values, pilot, assist)
-        candidates = np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS,
-                               best - best % _STEERS + pilot % _STEERS, best])  # fmt: skip
-        rows = np.arange(len(pilot))
-        rule = feasible[rows, candidates].argmax(axis=0)
-        action = candidates[rule, rows]
-        rule[(pilot == COAST) & (action != pilot)] = Rule.HANDS_OFF
-        return Decision(action, pilot, best, rule, values, feasible)
-
-    def _values(self, observation: Floats) -> Floats:
-        """Return what the agent thinks of every action, (n, pads, 6)."""
         observation = np.atleast_2d(observation)
         if observation.ndim == 2:
             observation = observation[:, None]
-        values = self.agent.q_values(observation.reshape(-1, NUM_FEATURES))
-        return values.reshape(*observation.shape[:2], NUM_ACTIONS)
+        slots, pads, features = observation.shape
+        pilot = np.atleast_1d(pilot_action)
+        if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
+            raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
+        if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
+        values = self.agent.q_values(observation.reshape(-1, features)).reshape(slots, pads, NUM_ACTIONS)
+        likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
+        assist = np.where(pilot == COAST, 1.0, self.assist)
+        weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
+        best, feasible = weigh(meant, pilot, assist)
+        candidates = np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS,
+                               best - best % _STEERS + pilot % _STEERS, best])  # fmt: skip
+        rows = np.arange(slots)
+        rule = feasible[rows, candidates].argmax(axis=0)
+        action = candidates[rule, rows]
+        rule[(pilot == COAST) & (action != pilot)] = Rule.HANDS_OFF
+        return Decision(action, pilot, best, rule, values, feasible, likely)
+
+    def _read(self, values: Floats, pilot: Ints, away: Floats) -> tuple[Doubles, Floats]:
+        """Return how likely each pad is meant, (n, pads), and the values with the likeliest's where a pad is not."""
+        slots, pads, _ = values.shape
+        if pads == 1 or not self.reads_wishes:
+            return np.full((slots, pads), 1.0 / pads), values
+        likely = self._wishes.watch(values, pilot)
+        likeliest = (likely - 1e-6 * away).argmax(axis=1)[:, None]  # among equals, the nearest
+        open_ = in_question(likely) & (pilot != COAST)[:, None]
+        pad = np.where(open_, np.arange(pads), likeliest)
+        return likely, values[np.arange(slots)[:, None], pad]
 
     def _tolerate(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
         """Return the co-pilot's action (n,) and the feasible ones (n, 6): those as good as `assist` (n,) asks for."""

@@ -89,6 +89,49 @@ def test_what_harms_on_the_way_to_every_pad_is_overridden(mode):
     assert overridden[0]
 
 
+LEFT, RIGHT = (0, 0.02, -0.02, 0, 0.02, -0.02), (0, -0.02, 0.02, 0, -0.02, 0.02)
+
+
+def test_a_pilot_who_heads_for_one_pad_is_understood():
+    copilot = CoPilot(valuer(LEFT, RIGHT), 0.9, "guardian")
+    first = copilot.decide(seen(1, 2), [1])
+    assert first.likely.shape == (1, 2)
+    for _ in range(30):
+        copilot.share(seen(1, 2), [1])
+    decision = copilot.decide(seen(1, 2), [2])  # now that the left one is meant, this must be a slip
+    assert decision.likely[0, 0] > 0.9
+    assert decision.action[0] == 1
+    copilot.forget()
+    assert copilot.decide(seen(1, 2), [2]).action[0] == 2
+
+
+def test_with_all_pads_open_nothing_is_read_into_actions():
+    copilot = CoPilot(valuer(LEFT, RIGHT), 0.9, "guardian", reads_wishes=False)
+    for _ in range(30):
+        copilot.share(seen(1, 2), [1])
+    assert copilot.share(seen(1, 2), [2])[0][0] == 2
+
+
+def test_only_the_slots_asked_for_are_forgotten():
+    copilot = CoPilot(valuer(LEFT, RIGHT, LEFT, RIGHT), 0.9)
+    for _ in range(30):
+        copilot.share(seen(2, 2), [1, 1])
+    copilot.forget(np.array([True, False]))
+    likely = copilot.decide(seen(2, 2), [COAST, COAST]).likely
+    assert likely[0].tolist() == [0.5, 0.5]
+    assert likely[1, 0] > 0.9
+
+
+def test_hands_off_flies_to_the_likeliest_pad_or_to_the_nearest():
+    copilot = CoPilot(valuer(LEFT, RIGHT), 0.2)
+    observation = seen(1, 2)
+    observation[0, :, 0] = (3.0, -1.0)
+    assert copilot.share(observation, [COAST])[0][0] % 3 == 2
+    for _ in range(30):
+        copilot.share(observation, [1])
+    assert copilot.share(observation, [COAST])[0][0] % 3 == 1
+
+
 def test_the_margin_of_the_guardian_falls_with_assist():
     rng = np.random.default_rng(3)
     values, pilot = rng.normal(scale=0.1, size=(1000, 6)), rng.integers(1, 6, 1000)
