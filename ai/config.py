@@ -32,8 +32,12 @@ def knob(
     choices: tuple[str, ...] = (),
     log: bool = False,
     live: bool = False,
+    offers: tuple[Any, ...] = (),
 ) -> Any:
-    """Describe a field: its help, group, range or choices, scale, and whether it may change during a run."""
+    """Describe a field: its help, group, range or choices, scale, and whether it may change during a run.
+
+    `offers` are a few values for a screen, of a field whose range says too little.
+    """
     described = {
         "help": help,
         "group": group,
@@ -42,6 +46,7 @@ def knob(
         "choices": choices,
         "log": log,
         "live": live,
+        "offers": offers,
     }
     if isinstance(default, RewardWeights):
         return field(default_factory=RewardWeights, metadata=described)
@@ -70,7 +75,8 @@ class Config:
     horizon: int = knob(300_000, "Decisions over which the learning rate falls.",
                         "learning", low=1_000, high=10_000_000, log=True)
 
-    hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024)
+    hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,
+                                   offers=((16, 16), (32, 32), (64, 64), (128, 128), (256, 256), (64, 64, 64)))
     activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
     layer_normalisation: bool = knob(True, "Keep each layer's inputs in range: steadier learning.", "network")
     dueling: bool = knob(False, "Estimate the state and the advantage of each action apart.", "network")

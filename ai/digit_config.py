@@ -45,11 +45,12 @@ class DigitConfig:
     held_out: int = knob(5_000, "Training images that are never learnt from, to choose by.",
                          "learning", low=0, high=30_000)
 
-    filters: tuple[int, ...] = knob((32, 64), "Filters of each convolution, each followed by pooling; or none.",
-                                    "network", low=1, high=256)
+    filters: tuple[int, ...] = knob((32, 64), "Filters of each convolution, each followed by pooling.",
+                                    "network", low=1, high=256, offers=((8,), (16,), (8, 16), (16, 32), (32, 64)))
     convolutions: bool = knob(True, "Look at images through small windows that slide over them.", "network")
     kernel: int = knob(5, "Pixels along a window.", "network", low=1, high=9)
-    hidden: tuple[int, ...] = knob((128,), "Units in each hidden layer.", "network", low=1, high=2048)
+    hidden: tuple[int, ...] = knob((128,), "Units in each hidden layer.", "network", low=1, high=2048,
+                                   offers=((32,), (128,), (512,), (100, 50), (256, 128)))
     activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
     output_activation: bool = knob(False, "Bend the outputs as well.", "network")
     dropout: float = knob(0.3, "Share of hidden values left out of each step.", "network", low=0.0, high=0.9)

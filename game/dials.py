@@ -1,4 +1,4 @@
-"""The knobs of a training run, made from what `ai.config.Config` says of its own fields."""
+"""The knobs of a training run, made from what its configuration says of its own fields."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ WEIGHTS: Final = "weights"
 _LADDER: Final = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)  # times a power of ten
 _SHARES: Final = (0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)  # of a weight's default
 _COSTS: Final = (0.0, -0.01, -0.02, -0.03, -0.05, -0.1, -0.2, -0.3, -0.5, -1.0)  # for a part that is not paid yet
-_LAYERS: Final = ((16, 16), (32, 32), (64, 64), (128, 128), (256, 256), (64, 64, 64))
 _FEW: Final = 32  # whole numbers that a track holds one by one
 _EVEN_STEPS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 _EVEN: Final = 20  # steps on an even track, at the most
+
+Configuration = Any  # `ai.config.Config` or another dataclass of fields described like its own
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Dial:
     """One knob: a field of the configuration, or one part of its reward weights.
 
     Attributes:
-        field: the field of Config that changes.
+        field: the field of the configuration that changes.
         part: which of the weights, if that field is the weights.
         page: the group it is shown with.
         live: whether it may change while a run goes on.
@@ -49,22 +50,22 @@ class Dial:
         """What it is called among other knobs: the field, and the part after a dot."""
         return f"{self.field}.{self.part}" if self.part else self.field
 
-    def read(self, config: Config) -> Any:
+    def read(self, config: Configuration) -> Any:
         """Return the value it has in a configuration."""
         value = getattr(config, self.field)
         return getattr(value, self.part) if self.part else value
 
-    def write(self, config: Config, value: Any) -> Config:
+    def write(self, config: Configuration, value: Any) -> Configuration:
         """Return the configuration with another value; raises ValueError for an impossible one."""
         if self.part:
             value = RewardWeights(**{**asdict(config.weights), self.part: value})
         return config.changed(**{self.field: value})
 
 
-def dials() -> list[Dial]:
-    """Return every knob there is, in the order in which the configuration has them."""
+def dials(of: type[Configuration] = Config) -> list[Dial]:
+    """Return every knob there is of a class of configurations, in the order in which it has them."""
     made = []
-    for item in fields(Config):
+    for item in fields(of):
         if item.name == WEIGHTS:
             made += [_weight(part, bool(item.metadata["live"])) for part in fields(RewardWeights)]
         elif stops := _stops(item):
@@ -116,14 +117,12 @@ def _stops(item: Field[Any]) -> tuple[Any, ...]:
     """Return the values a field may take on a knob; none if it is not to be turned."""
     described, default = item.metadata, item.default
     low, high = described["low"], described["high"]
-    if described["choices"]:
-        return tuple(described["choices"])
+    if stops := described["choices"] or described["offers"]:
+        return tuple(stops)
     if item.type == "bool":
         return (False, True)
     if low is None:
         return ()
-    if isinstance(default, tuple):
-        return _LAYERS
     if item.type == "int":
         return _whole_stops(int(low), int(high))
     if not described["log"] and low >= 0.8 and high <= 1.0:  # a factor: what matters is how far from 1 it is

@@ -6,16 +6,68 @@ What may change while a run goes on changes at once. What takes a new run waits 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Final
 
-from ai.config import PRESETS, Config
+from ai.config import PRESETS
 from ai.sabotage import SABOTAGES, sabotaged
 from game import texts
-from game.dials import dials
+from game.dials import Configuration, Dial, dials
 
 SEED: Final = "seed"
 Named = tuple[str, str]  # a preset, and what it was sabotaged by or nothing
+
+
+@dataclass(frozen=True)
+class Family:
+    """What there is to choose from for one kind of run.
+
+    Attributes:
+        dials: every knob.
+        presets: configurations by name.
+        words: what a preset is called, and a sentence about it, by its name.
+        sabotages: the same of what can be taken away from a preset, if anything.
+        seed_page: the page of knobs that the seed stands on.
+
+    """
+
+    dials: tuple[Dial, ...]
+    presets: Mapping[str, Configuration]
+    words: Mapping[str, tuple[str, str]]
+    seed_page: str
+    sabotages: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def config_of(self, named: Named) -> Configuration:
+        """Return what a name stands for."""
+        base, sabotage = named
+        return sabotaged(self.presets[base], sabotage) if sabotage else self.presets[base]
+
+    def nearest(self, config: Configuration) -> Named:
+        """Return the preset, or the sabotage of one, with the fewest fields different; a preset if it is as near."""
+        every: list[Named] = [(base, sabotage) for sabotage in ("", *self.sabotages) for base in self.presets]
+        given = config.to_json()
+
+        def distance(named: Named) -> int:
+            other = self.config_of(named).to_json()
+            return sum(given[name] != other[name] for name in given)
+
+        return min(every, key=distance)
+
+    def word(self, named: Named) -> str:
+        """Return what the player reads for it."""
+        base, sabotage = named
+        return self.sabotages[sabotage][0] if sabotage else self.words.get(base, (base.capitalize(), ""))[0]
+
+    def sentence(self, named: Named) -> str:
+        """Return what there is to say about it."""
+        base, sabotage = named
+        return self.sabotages[sabotage][1] if sabotage else self.words.get(base, ("", ""))[1]
+
+
+LANDER: Final = Family(
+    tuple(dials()), PRESETS, texts.PRESETS, "lander", {name: texts.SABOTAGES[name] for name in SABOTAGES}
+)
 
 
 class Tuning:
@@ -37,26 +89,28 @@ class Tuning:
 
     def __init__(
         self,
-        config: Config,
+        config: Configuration,
         seed: int,
         on_change: Callable[[str, Any], None],
-        on_restart: Callable[[Config, int], None],
+        on_restart: Callable[[Configuration, int], None],
+        family: Family = LANDER,
     ) -> None:
-        self.dials = {dial.name: dial for dial in dials()}
+        self.family = family
+        self.dials = {dial.name: dial for dial in family.dials}
         self._on_change, self._on_restart = on_change, on_restart
         self.running = False
-        self.named, self.draft = nearest(config), config
+        self.named, self.draft = family.nearest(config), config
         self.set_config(config, seed)
 
-    def set_config(self, config: Config, seed: int) -> None:
+    def set_config(self, config: Configuration, seed: int) -> None:
         """Hold a configuration that came from elsewhere; nobody is told."""
         if config != self.draft:
-            self.named = nearest(config)
+            self.named = self.family.nearest(config)
         self._named_held = self.named
         self.config = self.draft = config
         self.seed = self.draft_seed = seed
         self.problem = ""
-        self.put_aside: tuple[Config, Named] | None = None
+        self.put_aside: tuple[Configuration, Named] | None = None
 
     def set_running(self, running: bool) -> None:
         """A run has begun, or is over: without one, nothing has to wait."""
@@ -65,14 +119,14 @@ class Tuning:
             self._hold(self.draft, self.draft_seed)
 
     @property
-    def home(self) -> Config:
+    def home(self) -> Configuration:
         """The preset that this began as, whole."""
-        return PRESETS[self.named[0]]
+        return self.family.presets[self.named[0]]
 
     @property
     def changed(self) -> bool:
         """Whether this is not what its name says."""
-        return self.draft != config_of(self.named)
+        return bool(self.draft != self.family.config_of(self.named))
 
     @property
     def waiting(self) -> list[str]:
@@ -100,7 +154,7 @@ class Tuning:
         """Take a preset or a sabotage whole; knobs that were turned can be had back."""
         aside = (self.draft, self.named) if self.changed else None
         self.problem = ""
-        self._propose(config_of(named), named)
+        self._propose(self.family.config_of(named), named)
         self.put_aside = None if self.waiting else aside
 
     def apply(self) -> None:
@@ -116,13 +170,13 @@ class Tuning:
         else:
             self.draft, self.draft_seed, self.named = self.config, self.seed, self._named_held
 
-    def _propose(self, config: Config, named: Named) -> None:
+    def _propose(self, config: Configuration, named: Named) -> None:
         """Take a whole configuration: at once if that can be, or to wait for a new run."""
         self.draft, self.named = config, named
         if not self.running or all(self.dials[name].live for name in self._different(config, self.config)):
             self._hold(config, self.seed)
 
-    def _hold(self, config: Config, seed: int) -> None:
+    def _hold(self, config: Configuration, seed: int) -> None:
         """Let these hold from now on, and tell of all that is different."""
         names = self._different(config, self.config)
         reseeded = seed != self.seed
@@ -134,41 +188,10 @@ class Tuning:
         if reseeded:
             self._on_change(SEED, seed)
 
-    def _different(self, a: Config, b: Config) -> list[str]:
+    def _different(self, a: Configuration, b: Configuration) -> list[str]:
         return [name for name, dial in self.dials.items() if dial.read(a) != dial.read(b)]
 
 
 def _in_words(problem: str) -> str:
     """Call the fields in a message what the player calls them."""
     return re.sub(r"\b[a-z_]+\b", lambda found: texts.KNOBS.get(found[0], found[0]), problem)
-
-
-def config_of(named: Named) -> Config:
-    """Return what a name stands for."""
-    base, sabotage = named
-    return sabotaged(PRESETS[base], sabotage) if sabotage else PRESETS[base]
-
-
-def nearest(config: Config) -> Named:
-    """Return the preset, or the sabotage of one, with the fewest fields different; a preset if it is as near."""
-    every: list[Named] = [(base, "") for base in PRESETS]
-    every += [(base, sabotage) for base in PRESETS for sabotage in SABOTAGES]
-    given = config.to_json()
-
-    def distance(named: Named) -> int:
-        other = config_of(named).to_json()
-        return sum(given[name] != other[name] for name in given)
-
-    return min(every, key=distance)
-
-
-def word(named: Named) -> str:
-    """Return what the player reads for it."""
-    base, sabotage = named
-    return texts.SABOTAGES[sabotage][0] if sabotage else texts.PRESETS.get(base, (base.capitalize(), ""))[0]
-
-
-def sentence(named: Named) -> str:
-    """Return what there is to say about it."""
-    base, sabotage = named
-    return texts.SABOTAGES[sabotage][1] if sabotage else texts.PRESETS.get(base, ("", ""))[1]

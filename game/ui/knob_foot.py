@@ -9,7 +9,7 @@ import pygame
 from game import texts
 from game.controls import Command, Controls
 from game.dials import figure, label
-from game.tuning import Tuning, sentence, word
+from game.tuning import Tuning
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints
 from game.ui.knob import Knob, SeedKnob
@@ -34,11 +34,11 @@ def draw_foot(
     elif tuning.waiting:
         _draw_notice(canvas, box, texts.KNOBS_STARTS_ANEW, _listed(tuning.waiting))
     elif tuning.put_aside:
-        line = texts.KNOBS_PUT_ASIDE_LINE.format(name=word(tuning.named))
+        line = texts.KNOBS_PUT_ASIDE_LINE.format(name=tuning.family.word(tuning.named))
         _draw_notice(canvas, box, texts.KNOBS_PUT_ASIDE, line)
     else:
         y = first - (_ABOVE if picking else 0.0)
-        for number, part in enumerate(((focused and focused.help) or sentence(tuning.named)).split("\n")):
+        for number, part in enumerate(((focused and focused.help) or tuning.family.sentence(tuning.named)).split("\n")):
             y = _write(canvas, part, (box.left, y), box.width, INK if number else MUTE) + 6
         if isinstance(focused, Knob | SeedKnob):
             _draw_marks(canvas, box, focused, controls)

@@ -7,11 +7,10 @@ from typing import Any, Final
 
 import pygame
 
-from ai.config import PRESETS, Config
-from ai.sabotage import MEASURED, SABOTAGES
+from ai.sabotage import MEASURED
 from game import texts
-from game.dials import Dial, label, pages
-from game.tuning import SEED, Named, Tuning, word
+from game.dials import Configuration, Dial, label, pages
+from game.tuning import LANDER, SEED, Family, Named, Tuning
 from game.ui import knob_foot, typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
@@ -20,7 +19,6 @@ from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITL
 from game.ui.widgets import Choice, PointsManager, Widget, Word, mix
 
 _KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
-_SEED_PAGE: Final = "lander"
 _HEAD: Final = 34  # from the top to the line under the presets
 _BASELINE: Final = 21.5  # of the presets
 _TABS: Final = 36  # from there to the first row: the tabs are in between
@@ -39,9 +37,10 @@ class Knobs:
         box: where, in points; the dots of what was changed are up to 16 points to the left of it.
         config: what to begin with.
         seed: the seed of that.
-        on_change: hears of every knob that has changed, by its name in Config ("weights.time" for a part of the
-            reward, "seed" for the seed), and of its value: while a run goes on, of those alone that may.
+        on_change: hears of every knob that has changed, by its name in the configuration ("weights.time" for a part of
+            the reward, "seed" for the seed), and of its value: while a run goes on, of those alone that may.
         on_restart: asked for a new run with another configuration and seed, once the player has applied them.
+        family: the kind of run, with all there is to choose from.
 
     """
 
@@ -49,13 +48,14 @@ class Knobs:
         self,
         form: Form,
         box: pygame.typing.RectLike,
-        config: Config,
+        config: Configuration,
         seed: int,
         on_change: Callable[[str, Any], None],
-        on_restart: Callable[[Config, int], None],
+        on_restart: Callable[[Configuration, int], None],
+        family: Family = LANDER,
     ) -> None:
-        self._form, self._box = form, pygame.Rect(box)
-        self._tuning = Tuning(config, seed, on_change, on_restart)
+        self._form, self._box, self._family = form, pygame.Rect(box), family
+        self._tuning = Tuning(config, seed, on_change, on_restart, family)
         self._pages = pages(self._tuning.dials.values())
         self._page = 0
         self._picking = False
@@ -64,7 +64,7 @@ class Knobs:
         self._lay()
 
     @property
-    def config(self) -> Config:
+    def config(self) -> Configuration:
         """What holds now; what waits to be applied is not in it."""
         return self._tuning.config
 
@@ -76,7 +76,7 @@ class Knobs:
     @property
     def name(self) -> str:
         """The preset or the sabotage that this is or began as, in the player's words."""
-        return word(self._tuning.named)
+        return self._family.word(self._tuning.named)
 
     @property
     def changed(self) -> bool:
@@ -94,7 +94,7 @@ class Knobs:
             self._tuning.set_running(running)
             self._lay()
 
-    def set_config(self, config: Config, seed: int) -> None:
+    def set_config(self, config: Configuration, seed: int) -> None:
         """Show a configuration that came from elsewhere, such as a run that was loaded; nobody is called."""
         self._tuning.set_config(config, seed)
         self._picking = False
@@ -112,7 +112,7 @@ class Knobs:
         if self.changed:
             self._draw_changed(canvas)
         if self._picking:
-            heading = texts.SABOTAGE_HEADING.format(name=word((self._tuning.named[0], ""))).upper()
+            heading = texts.SABOTAGE_HEADING.format(name=self._family.word((self._tuning.named[0], ""))).upper()
             canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
         focused = self._form.focused if self._form.focused in self._widgets else None
         knob_foot.draw_foot(canvas, self._box, self._tuning, focused, self._form.controls, picking=self._picking)
@@ -159,9 +159,12 @@ class Knobs:
         top = box.top + 5
         chosen = _Title(manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named))
         others: list[tuple[str, Callable[[], None]]] = [
-            (word((base, "")), self._loads((base, ""))) for base in PRESETS if (base, "") != named
+            (self._family.word((base, "")), self._loads((base, "")))
+            for base in self._family.presets
+            if (base, "") != named
         ]
-        others.append((texts.SABOTAGE_LEAVE, self._leave) if self._picking else (texts.SABOTAGE, self._pick))
+        if self._family.sabotages:
+            others.append((texts.SABOTAGE_LEAVE, self._leave) if self._picking else (texts.SABOTAGE, self._pick))
         right, made = float(box.right), []
         for name, press in reversed(others):
             width = _width(name, SMALL)
@@ -180,7 +183,7 @@ class Knobs:
         for dial in self._tuning.dials.values():
             if dial.page == page:
                 rows.append(_KINDS[dial.kind](manager, self._row(len(rows)), dial, self._turned, self._seek))
-        if page == _SEED_PAGE:
+        if page == self._family.seed_page:
             rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), self._seeded))
         return rows
 
@@ -194,13 +197,16 @@ class Knobs:
     def _make_picks(self) -> list[Widget]:
         """What can be taken away, in two columns."""
         base, (left, top) = self._tuning.named[0], self._box.topleft
-        half = (len(SABOTAGES) + 1) // 2
+        sabotages = self._family.sabotages
+        half = (len(sabotages) + 1) // 2
         picks: list[Widget] = []
-        for number, name in enumerate(SABOTAGES):
+        for number, name in enumerate(sabotages):
             column, row = divmod(number, half)
             box = (left + column * self._box.width // 2, top + _HEAD + 38 + row * _PITCH, 160, _PITCH)
-            pick = Word(self._form.manager, box, word((base, name)), self._loads((base, name)), size=SMALL + 1)
-            told = texts.SABOTAGES[name][1:] if base == MEASURED else texts.SABOTAGES[name][1:2]
+            pick = Word(
+                self._form.manager, box, self._family.word((base, name)), self._loads((base, name)), size=SMALL + 1
+            )
+            told = sabotages[name][1:] if base == MEASURED else sabotages[name][1:2]
             pick.help = "\n".join(told)
             picks.append(pick)
         return picks

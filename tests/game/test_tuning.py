@@ -8,7 +8,7 @@ from ai.rewards import RewardWeights
 from ai.sabotage import SABOTAGES, sabotaged
 from game import texts
 from game.dials import dials, figure, pages
-from game.tuning import Tuning, nearest, sentence, word
+from game.tuning import LANDER, Tuning
 
 DIALS = {dial.name: dial for dial in dials()}
 
@@ -175,7 +175,7 @@ def test_parts_of_the_reward_are_named_apart(tuning: Tuning, heard: list[Any]):
 def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(tuning: Tuning, heard: list[Any]):
     tuning.set_config(PRESETS["classic"].changed(discount=0.95), 3)
     assert (tuning.named, tuning.seed, tuning.changed) == (("classic", ""), 3, True)
-    assert nearest(sabotaged(PRESETS["modern"], "no_shaping")) == ("modern", "no_shaping")
+    assert LANDER.nearest(sabotaged(PRESETS["modern"], "no_shaping")) == ("modern", "no_shaping")
     assert not heard
 
 
@@ -188,6 +188,6 @@ def test_a_run_that_begins_with_what_was_chosen_keeps_its_name(tuning: Tuning):
 
 @pytest.mark.parametrize("name", SABOTAGES)
 def test_every_sabotage_has_its_words(name: str):
-    assert word(("modern", name)) == texts.SABOTAGES[name][0]
+    assert LANDER.word(("modern", name)) == texts.SABOTAGES[name][0]
     assert len(texts.SABOTAGES[name]) == 3
-    assert sentence(("modern", name))
+    assert LANDER.sentence(("modern", name))
