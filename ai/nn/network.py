@@ -1,6 +1,6 @@
 """The network: a list of layers, the cost they are to lower, and one flat vector of all they learn."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Literal, Self
@@ -49,7 +49,8 @@ class NeuralNetwork:
         layer.rng = layer.rng or self.rng.spawn(1)[0]
         layer.dtype = self.dtype
         self.layers.append(layer)
-        self.__dict__.pop("_flat", None)
+        for name in ("_flat", "_row_steps"):  # made anew when needed
+            self.__dict__.pop(name, None)
         return self
 
     @property
@@ -70,21 +71,33 @@ class NeuralNetwork:
     def _flat(self) -> tuple[Array, Array]:
         return pack((parameter for layer in self.layers for parameter in layer.parameters), self.dtype)
 
+    @cached_property
+    def _row_steps(self) -> list[Callable[[Array], Array]]:
+        steps, values = [], self.values
+        for layer in self.layers:
+            size = sum(parameter.value.size for parameter in layer.parameters)
+            steps.append(layer.row_step(values[:size]))
+            values = values[size:]
+        return steps
+
     def predict(self, input_data: npt.ArrayLike) -> Array:
         """Return the output for a batch (batch, inputs), or one example (inputs,), as a new array.
 
         Inputs of a network for images are (batch, height, width, channels), or without the batch as well.
-        Leaves no trace: a backward pass may still follow the last `forward_propagate`.
+        Leaves no trace: a backward pass may still follow the last `forward_propagate`. One example at a time
+        is for one thread at a time.
         """
         data: Array = np.asarray(input_data, self.dtype)
         if data.ndim == 4 and len(data) > IMAGES:
             return np.concatenate([self.predict(part) for part in np.split(data, range(IMAGES, len(data), IMAGES))])
-        row = data.ndim == 2 and len(data) == 1
-        if row:
-            data = data[0]  # NumPy adds vectors three times faster than matrices of one row
+        if data.ndim == 2 and len(data) == 1:
+            data = data[0]  # NumPy handles vectors three times faster than matrices of one row
+            for step in self._row_steps:
+                data = step(data)
+            return data[None]
         for layer in self.layers:
             data = layer.predict(data)
-        return data[None] if row else data
+        return data
 
     def activations(self, input_data: npt.ArrayLike) -> list[Array]:
         """Return what each layer gives for a batch or one example; the last is what `predict` returns."""

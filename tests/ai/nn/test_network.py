@@ -8,6 +8,7 @@ from ai.nn import (
     ActivationLayer,
     Adam,
     CostFunctions,
+    DuelingLayer,
     FullyConnectedLayer,
     LayerNormalisation,
     NeuralNetwork,
@@ -170,3 +171,24 @@ def test_what_predict_returned_stays():
     network.train(XOR_X, XOR_Y)
     network.predict(XOR_X[::-1])
     np.testing.assert_array_equal(first, kept)
+
+
+@pytest.mark.parametrize("head", [FullyConnectedLayer, DuelingLayer])
+def test_a_batch_of_one_is_predicted_as_among_others_whatever_became_of_the_network(head):
+    rng = np.random.default_rng(3)
+    x = rng.normal(size=(4, 5))
+    network = NeuralNetwork(*CostFunctions.use_mse(), dtype=np.float64).add_layer(FullyConnectedLayer(5, 7))
+
+    def agrees(some: NeuralNetwork) -> None:
+        np.testing.assert_allclose(np.concatenate([some.predict(row[None]) for row in x]), some.predict(x), rtol=1e-12)
+
+    agrees(network)
+    network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh())).add_layer(LayerNormalisation(7))
+    agrees(network.add_layer(head(7, 3)))
+    network.values = rng.normal(size=network.values.shape)
+    agrees(network)
+    twin = network.copy()
+    agrees(twin)
+    twin.values = 0 * twin.values
+    assert not twin.predict(x[:1]).any()
+    assert network.predict(x[:1]).all()
