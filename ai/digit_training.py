@@ -109,10 +109,11 @@ class DigitTraining:
         self.optimizer.learning_rate = rate = self.learning_rate
         for layer in network.layers:
             layer.rng = rng  # dropout's
-        outputs = network.forward_propagate(self.classifier.shaped(images))
-        loss = network.cost(outputs, targets)
-        accuracy = float((outputs.argmax(axis=1) == labels).mean())
-        network.backward_propagate(network.cost.derivative(outputs, targets))
+        with np.errstate(over="ignore", invalid="ignore"):  # the optimizer finds what is not finite
+            outputs = network.forward_propagate(self.classifier.shaped(images))
+            loss = network.cost(outputs, targets)
+            accuracy = float((outputs.argmax(axis=1) == labels).mean())
+            network.backward_propagate(network.cost.derivative(outputs, targets))
         if not math.isfinite(self.optimizer.step(network.values, network.gradients)):
             raise FloatingPointError("the gradient is no longer finite; a lower learning rate may help")
         self.step += 1

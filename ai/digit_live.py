@@ -1,0 +1,222 @@
+"""A run that teaches a network to read digits, to be watched and steered while it goes on; like `ai.live`."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.digit_config import DigitConfig
+from ai.digit_runs import resume_digit_run, save_digit_run
+from ai.digit_training import LIVE, DigitTraining
+from ai.digits import DIGITS
+from ai.messages import Change, Refused
+
+POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
+KEEP_SECONDS: Final = 20.0
+EXAMPLES: Final = 12  # misread images of a kind that are shown
+_SLICE: Final = 100  # images of those held out that are read between two steps
+_SHARE: Final = 0.25  # of the time that goes into reading them
+
+
+@dataclass(frozen=True)
+class DigitsBegun:
+    """The first word of a run: what it is made with, which for a resumed run is what it was begun with."""
+
+    config: DigitConfig
+    seed: int
+    step: int
+    steps: int  # there will be in all
+
+
+@dataclass(frozen=True)
+class DigitPoint:
+    """How a run stands; loss and accuracy are means of the batches since the last point."""
+
+    may_thin: ClassVar = True
+
+    seconds: float  # spent learning
+    step: int
+    epoch: float
+    loss: float
+    accuracy: float  # as they were learnt from: bent, and with dropout
+    learning_rate: float
+    images_per_second: float
+
+
+@dataclass(frozen=True)
+class Score:
+    """The part of the images held out that the network reads, as it would be kept now."""
+
+    seconds: float
+    accuracy: float
+
+
+@dataclass(frozen=True, eq=False)
+class Confusion:
+    """How the images held out are read.
+
+    Attributes:
+        table: (10, 10) how often each digit (row) was read as which (column).
+        cells: (n, 2) row and column of some that were misread, at most EXAMPLES of each kind.
+        images: (n, 28, 28) uint8, those images.
+
+    """
+
+    newest_only: ClassVar = True
+
+    table: npt.NDArray[np.int64]
+    cells: npt.NDArray[np.int64]
+    images: npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """The run is on the disk, or why it is not; `test` is the accuracy on the test images once it is finished."""
+
+    folder: Path
+    problem: str = ""
+    test: float | None = None
+
+
+Message = DigitsBegun | DigitPoint | Score | Confusion | Kept | Refused
+
+
+def live_digits(
+    config: DigitConfig, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None, data: Any = None
+) -> Generator[list[Message], Change | None, None]:
+    """Train to the last epoch; every turn is a learning step, and yields what there is to tell.
+
+    The steps are those of `ai.digit_training.run_digits`. A turn that is sent a `Change` turns a live knob, without
+    a step. The run keeps itself in `keep` now and then, when it is over and when it is closed. With `resume`, it
+    goes on from what was kept there, with the settings of that. Raises what `DigitTraining` and `resume_digit_run`
+    raise, and FloatingPointError when the numbers run away.
+    """
+    training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
+    run = _LiveDigits(training, keep)
+    command = yield [DigitsBegun(training.config, training.seed, training.step, training.steps)]
+    try:
+        while not training.done:
+            command = yield (run.advance() if command is None else run.change(command))
+        yield run.finish()
+    finally:
+        run.end()
+
+
+class _HeldOut:
+    """The images held out, read by the network as it was when this was begun, a slice at a time."""
+
+    def __init__(self, training: DigitTraining) -> None:
+        self._classifier = training.current()
+        self._images, self._labels = training.held_images, training.held_labels
+        self._read: list[npt.NDArray[np.intp]] = []
+        self._at = 0
+
+    def go_on(self) -> bool:
+        """Read a slice; whether that was the last."""
+        part = self._images[self._at : self._at + _SLICE]
+        self._read.append(self._classifier.predict(part).argmax(axis=1))
+        self._at += _SLICE
+        return self._at >= len(self._images)
+
+    def told(self, at: float) -> list[Message]:
+        """Return what there is to say of it, of a network that had learnt for so many seconds."""
+        labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
+        table = np.zeros((DIGITS, DIGITS), np.int64)
+        np.add.at(table, (labels, read), 1)
+        kinds = labels * DIGITS + read
+        wrong = np.flatnonzero(labels != read)
+        chosen = np.sort(np.concatenate([wrong[:0], *(wrong[kinds[wrong] == kind][:EXAMPLES]
+                                                      for kind in np.unique(kinds[wrong]))]))  # fmt: skip
+        images = (self._images[chosen] * 255).astype(np.uint8)
+        accuracy = float(table.trace() / len(labels))
+        return [Score(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)]
+
+
+class _LiveDigits:
+    """A DigitTraining, what has not been told of it yet, and where it is kept."""
+
+    def __init__(self, training: DigitTraining, keep: Path | None) -> None:
+        self.training, self._folder = training, keep
+        self._batches: list[tuple[float, float]] = []  # loss and accuracy
+        self._point_at = training.seconds
+        self._keep_at = training.seconds + KEEP_SECONDS
+        self._kept = training.step
+        self._trouble = ""
+        self._reading: _HeldOut | None = None
+        self._learning = self._looking = 0.0  # seconds
+
+    def advance(self) -> list[Message]:
+        """Take one step; return what there is to tell of it."""
+        training, told = self.training, list[Message]()
+        began = training.clock()
+        progress = training.advance()
+        stepped = training.clock()
+        training.seconds += stepped - began
+        self._learning += stepped - began
+        self._batches.append((progress.loss, progress.accuracy))
+        if training.seconds >= self._point_at:
+            self._point_at = training.seconds + POINT_SECONDS
+            loss, accuracy = np.mean(self._batches, axis=0).tolist()
+            self._batches.clear()
+            told.append(DigitPoint(training.seconds, progress.step, progress.epoch, loss, accuracy,
+                                   progress.learning_rate, progress.images_per_second))  # fmt: skip
+        if self._looking <= _SHARE * self._learning:
+            told += self._look()
+            self._looking += training.clock() - stepped
+        if self._folder and training.seconds >= self._keep_at:
+            self._keep_at = training.seconds + KEEP_SECONDS
+            told += self._keep()
+        return told
+
+    def change(self, command: Change) -> list[Message]:
+        """Turn a live knob; the answer is a refusal or nothing."""
+        try:
+            if command.name not in LIVE:
+                raise ValueError(f"{command.name} cannot change while a run goes on")
+            self.training.change(self.training.config.changed(**{command.name: command.value}))
+        except ValueError as error:
+            return [Refused(command, str(error))]
+        return []
+
+    def finish(self) -> list[Message]:
+        """Read all that is held out once more, measure the test images, and keep what came of it."""
+        told: list[Message] = []
+        if len(self.training.held_images):
+            reading = _HeldOut(self.training)
+            while not reading.go_on():
+                pass
+            told = reading.told(self.training.seconds)
+        return told + self._keep(final=True)
+
+    def end(self) -> None:
+        """Keep what has not been kept."""
+        if self._folder and self._kept != self.training.step:
+            self._keep()
+
+    def _look(self) -> list[Message]:
+        """Read some of what is held out."""
+        if not len(self.training.held_images):
+            return []
+        self._reading = self._reading or _HeldOut(self.training)
+        if not self._reading.go_on():
+            return []
+        reading, self._reading = self._reading, None
+        return reading.told(self.training.seconds)
+
+    def _keep(self, final: bool = False) -> list[Message]:
+        """Write the run; tell of it when it is final, or when something new went wrong."""
+        if self._folder is None:
+            return []
+        problem, test = "", None
+        try:
+            test = save_digit_run(self.training, self._folder, final=final).get("test")
+            self._kept = self.training.step
+        except (OSError, ValueError) as error:
+            problem = getattr(error, "strerror", None) or str(error)
+        new, self._trouble = problem != self._trouble, problem
+        return [Kept(self._folder, problem, test)] if final or new else []

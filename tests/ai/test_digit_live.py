@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+
+from ai import digit_live
+from ai.digit_config import DIGIT_PRESETS
+from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Kept, Score, live_digits
+from ai.digit_runs import resume_digit_run
+from ai.digit_training import DigitTraining
+from ai.digits import DigitClassifier
+from ai.messages import Change, Refused
+from ai.mnist import load_part
+
+SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, averaging=0.9)
+
+
+@pytest.fixture(scope="module")
+def data():
+    images, labels = load_part("test")
+    return images[:700], labels[:700]
+
+
+@pytest.fixture(autouse=True)
+def every_step(monkeypatch):
+    """Tell of every step, however fast they are."""
+    monkeypatch.setattr(digit_live, "POINT_SECONDS", 0.0)
+
+
+def kinds(told, kind):
+    return [each for each in told if isinstance(each, kind)]
+
+
+def test_a_run_tells_how_it_begins_how_it_stands_and_what_it_misreads(data):
+    told = [each for turn in live_digits(SMALL, 4, data=data) for each in turn]
+    assert told[0] == DigitsBegun(SMALL, 4, 0, 30)
+    points, scores = kinds(told, DigitPoint), kinds(told, Score)
+    assert points[0].step == 1
+    assert [one.seconds for one in points] == sorted(one.seconds for one in points)
+    assert scores[-1].accuracy > scores[0].accuracy
+    confusion = kinds(told, Confusion)[-1]
+    assert confusion.table.sum() == 200
+    assert confusion.table.trace() / 200 == scores[-1].accuracy
+    assert len(confusion.images) == len(confusion.cells) > 0
+    for row, column in {tuple(cell) for cell in confusion.cells.tolist()}:
+        shown = (confusion.cells == (row, column)).all(axis=1).sum()
+        assert row != column
+        assert shown == min(confusion.table[row, column], digit_live.EXAMPLES)
+
+
+def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
+    for _ in live_digits(SMALL, 4, keep=tmp_path / "run", data=data):
+        pass
+    training = DigitTraining(SMALL, 4, data)
+    while not training.done:
+        training.advance()
+    kept = DigitClassifier.load(tmp_path / "run")
+    np.testing.assert_array_equal(kept.network.values, training.best_classifier().network.values)
+
+
+def test_a_finished_run_is_kept_with_its_accuracy_on_the_test_images(data, tmp_path):
+    told = [each for turn in live_digits(SMALL, 4, keep=tmp_path / "run", data=data) for each in turn]
+    (kept,) = kinds(told, Kept)
+    assert kept.folder == tmp_path / "run"
+    assert kept.test > 0.2
+
+
+def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
+    run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
+    for _ in range(8):
+        next(run)
+    run.close()
+    assert resume_digit_run(tmp_path / "run", data=data).step == 7
+    again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
+    assert next(again) == [DigitsBegun(SMALL, 4, 7, 30)]
+
+
+def test_live_knobs_turn_and_others_are_refused(data):
+    run = live_digits(SMALL, data=data)
+    next(run)
+    assert run.send(Change("learning_rate", 1e-4)) == []
+    (refused,) = run.send(Change("hidden", (3,)))
+    assert isinstance(refused, Refused)
+    assert isinstance(run.send(Change("augmentation", 7.0))[0], Refused)
+    rates = [each.learning_rate for turn in run for each in kinds(turn, DigitPoint)]
+    assert max(rates) <= 1e-4
+
+
+def test_a_full_disk_is_told_of_once_and_the_run_goes_on(data, tmp_path, monkeypatch):
+    monkeypatch.setattr(digit_live, "KEEP_SECONDS", 0.0)
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(digit_live, "save_digit_run", full)
+    told = [each for turn in live_digits(SMALL, keep=tmp_path / "run", data=data) for each in turn]
+    assert [each.problem for each in kinds(told, Kept)] == ["No space left on device"] * 2  # at first, and at the end
+    assert kinds(told, DigitPoint)[-1].step > 1
+
+
+def test_without_images_held_out_there_is_no_confusion(data):
+    told = [each for turn in live_digits(SMALL.changed(held_out=0, epochs=1), data=data) for each in turn]
+    assert not kinds(told, Confusion)
+    assert kinds(told, DigitPoint)
+
+
+def test_numbers_that_run_away_end_the_run_with_a_reason(data, tmp_path):
+    wild = SMALL.changed(optimizer="sgd", learning_rate=1.0, activation="relu", output_activation=False, warm_up=0.0)
+    with pytest.raises(FloatingPointError, match="learning rate"):
+        for _ in live_digits(wild.changed(hidden=(512, 512), epochs=20), keep=tmp_path / "run", data=data):
+            pass
