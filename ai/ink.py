@@ -22,7 +22,7 @@ CENTRE: Final = 14.5  # from the image's edge: the middle of pixel 14
 STROKE_WIDTH: Final = 2.4  # pixels: the mean of MNIST's training images, as `stroke_width` measures them
 CELLS: Final = 5  # along a pixel: the grid on which strokes are measured and changed
 MARGIN: Final = 2  # pixels of it around the box, room for strokes that grow
-SPACING: Final = 1.0  # cells from one point of a stroke to the next: more of them change nothing that can be seen
+SPACING: Final = 1.5  # cells from one point of a stroke to the next: more of them change nothing that can be seen
 LARGEST_GROWTH: Final = 2.0  # how far ink is enlarged once its strokes are thinner: a dot stays a dot
 
 Image = npt.NDArray[np.float32]

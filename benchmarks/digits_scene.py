@@ -34,7 +34,7 @@ from game.scenes.digits import Digits
 from game.settings import Settings
 
 LIMIT = 16.0
-EACH = 20
+EACH = 10
 
 
 class Hand:

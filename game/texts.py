@@ -379,6 +379,18 @@ KNOBS: Final = {
     "reward_scale": "Reward scale",
     "weights": "Reward",
     "seed": "Seed",
+    # and those of ai.digit_config.DigitConfig that have other names
+    "epochs": "Epochs",
+    "smoothing": "Label smoothing",
+    "averaging": "Averaging",
+    "held_out": "Held out",
+    "filters": "Filters",
+    "convolutions": "Convolutions",
+    "kernel": "Window",
+    "output_activation": "Bent outputs",
+    "dropout": "Dropout",
+    "augmentation": "Augmentation",
+    "original": "Left as they are",
 }
 KNOB_PAGES: Final = {
     "learning": "Learning",
@@ -389,7 +401,13 @@ KNOB_PAGES: Final = {
     "lander": "Lander",
     "reward": "Reward",
 }
-KNOB_WORDS: Final = {"sgd": "plain", "mse": "squared", "relu": "ReLU", "leaky_relu": "leaky"}
+KNOB_WORDS: Final = {
+    "sgd": "plain",
+    "mse": "squared",
+    "softmax_cross_entropy": "entropy",
+    "relu": "ReLU",
+    "leaky_relu": "leaky",
+}
 KNOB_SWITCH: Final = ("off", "on")
 # The parts of the reward: what each is called, and what it pays
 KNOB_WEIGHTS: Final = {
@@ -585,6 +603,7 @@ HINTS: Final = {
     "small_memory": "Its memory holds only a few batches: it forgets what it has just learnt.",
     "overfed": "Few landers for so many learning steps: it sees the same again and again.",
     "random": "It still acts at random most of the time: ε is high.",
+    "clipped": "Nearly every gradient is cut short: great errors count no more than small ones.",
     "plateau": "It has stopped getting better.",
 }
 
@@ -626,8 +645,56 @@ DIGITS_READS_AS: Final = "{name} reads {percent}"
 DIGITS_MEASURING: Final = "Measuring …"
 DIGITS_NOT_MEASURED: Final = "Not measured: {problem}"
 DIGITS_HINT: Final = "Switch a step off, and see what the networks then read of digits drawn anywhere."
+DIGITS_FIX_HOW: Final = "Wrong? Tap the right digit, or press its key."
+DIGITS_FIXING: Final = "Learning it in the background …"
+DIGITS_FIXED: Final = "A {digit} with {now} now, with {before} before."
+DIGITS_FIX_COST: Final = "Test images it reads: {before:.2%} → {after:.2%}"
+DIGITS_FIX_NEEDLESS: Final = "It is sure of a {digit} already."
+DIGITS_NOT_FIXED: Final = "Not learnt"
+DIGITS_UNDO_FIX: Final = "Undo the fix"
 DIGITS_PROBLEM: Final = "{name} can't be read: {problem}"
 
 # Fix it
 FIX_NOT_KEPT: Final = "It could not be kept: {problem}"
 FIX_NOT_UNDONE: Final = "It could not be undone: {problem}"
+
+# Train: the network large, and knobs that were turned
+TRAIN_CLOSER: Final = "Look closer"
+TRAIN_CLOSER_BACK: Final = "Back to the swarm"
+TRAIN_REVERTED: Final = "back to a checkpoint"
+NET_TITLE: Final = "Inside the network"
+NET_SHOWS: Final = ("weights", "activations", "gradients")
+NET_LINES: Final = {
+    "weights": "What it has learnt: blue lines push the next unit up, orange ones pull it down.",
+    "activations": "What it thinks now, for what the best lander senses: how much each line adds or takes away.",
+    "gradients": "What learning moves: light runs back from the error along the lines that change most.",
+}
+
+# Train a network to read digits: the scene
+PUPIL_TITLE: Final = "Train it here"
+PUPIL_LINE: Final = "Press Start: a network that has never seen a digit learns to read."
+PUPIL_LOADING: Final = "Unpacking 60,000 handwritten digits …"
+PUPIL_FIGURES: Final = "epoch {epoch:.2f} of {epochs} · {seconds:.0f} s · {rate:,.0f} images a second"
+PUPIL_READ: Final = "% read of what was held out"
+PUPIL_TESTED: Final = "% read of the 10,000 test images"
+PUPIL_STOP: Final = "Stop"
+PUPIL_GO_ON: Final = "Go on with the last run"
+PUPIL_DREAM: Final = "Let it dream"
+PUPIL_QUIZ: Final = "Quiz it"
+PUPIL_CHARTS: Final = {"loss": "LOSS", "accuracy": "READ RIGHT, %"}
+PUPIL_HELD_OUT: Final = "held out"
+PUPIL_BATCHES: Final = "as it learns"
+PUPIL_SAVED: Final = "Saved as {name}."
+PUPIL_NOTHING: Final = "There is no network yet: press Start, and let it learn for a while."
+PUPIL_NAMING: Final = "What shall this network be called?"
+PUPIL_NAME: Final = "{preset} reader"
+PUPIL_PRESETS: Final = {
+    "modern": ("Modern", "Looks through small windows: slow to learn, and the best reader by far."),
+    "classic": ("Classic", "Looks at all pixels at once: quick to learn, and good enough for neat hands."),
+}
+MATRIX_TITLE: Final = "WHAT IT MISREADS"
+MATRIX_AXES: Final = "rows: what it is · columns: what it reads"
+MATRIX_RIGHT: Final = "A {digit}, read as a {digit}"
+MATRIX_WRONG: Final = "A {digit}, read as a {read}"
+MATRIX_COUNT: Final = "{count} of {shown} · {percent:.1f} %"
+MATRIX_EMPTY: Final = "It fills as the network learns."

@@ -9,7 +9,6 @@ import numpy as np
 
 from game import texts
 from game.digits.reader import LEAST_INK, Numbers, Reading, Verdict
-from game.scene import Transition
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
 from game.ui.widgets import PointsManager, Widget, mix
@@ -31,7 +30,7 @@ class DigitRow(Widget):
 
     """
 
-    def __init__(self, manager: PointsManager, digit: int, on_press: Callable[[int], Transition | None]) -> None:
+    def __init__(self, manager: PointsManager, digit: int, on_press: Callable[[int], None]) -> None:
         box = (LEFT - 10, _FIRST_ROW + digit * _ROW - _ROW // 2, RIGHT - LEFT + 20, _ROW)
         super().__init__(manager, box, str(digit))
         self.digit, self._on_press = digit, on_press
@@ -39,9 +38,9 @@ class DigitRow(Widget):
         self._shown = (0.0, 0.0)
         self.best = False
 
-    def press(self) -> Transition | None:
+    def press(self) -> None:
         """Say that this is what was drawn."""
-        return self._on_press(self.digit)
+        self._on_press(self.digit)
 
     def ease(self, at_once: bool) -> None:
         """Let the bars follow."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from functools import lru_cache
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,7 @@ import pygame
 from game.ui.tokens import HUMAN, INK, MUTE, NET, NIGHT0, PALETTE, Colour
 
 Numbers = npt.NDArray[np.float32]
+_GAP: Final = 255  # the colour that is none
 _BACK: Final = np.array(NIGHT0, float)
 
 
@@ -36,14 +38,16 @@ def mosaic(
 ) -> pygame.Surface:
     """Return (n, height, width) tiles row by row, with gaps between them, at a size in pixels."""
     rows = -(-len(tiles) // columns)
-    row, y, below = _places(rows, tiles.shape[1], size[1], gap)
-    column, x, beside = _places(columns, tiles.shape[2], size[0], gap)
-    tile = row[:, None] * columns + column
-    blank = below[:, None] | beside | (tile >= len(tiles))
-    values = tiles[np.minimum(tile, len(tiles) - 1), y[:, None], x]
-    surface = pygame.Surface(size, pygame.SRCALPHA)
-    pygame.surfarray.pixels3d(surface)[...] = _coloured(values, shades)
-    pygame.surfarray.pixels_alpha(surface)[...] = np.where(blank, 0, 255).T
+    row, y = _places(rows, tiles.shape[1], size[1], gap)
+    column, x = _places(columns, tiles.shape[2], size[0], gap)
+    numbers = np.full((rows * columns, tiles.shape[1] + 1, tiles.shape[2] + 1), _GAP, np.uint8)
+    numbers[: len(tiles), :-1, :-1] = np.clip(tiles, -1, 1) * 127 + 127
+    field = numbers.reshape(rows, columns, *numbers.shape[1:]).swapaxes(1, 2).reshape(rows * numbers.shape[1], -1)
+    pixels = field[row * numbers.shape[1] + y][:, column * numbers.shape[2] + x]
+    surface = pygame.Surface(size, depth=8)
+    surface.set_palette([*shades.tolist(), (0, 0, 0)])
+    surface.set_colorkey(_GAP)
+    pygame.surfarray.blit_array(surface, pixels.T)
     return surface
 
 
@@ -53,16 +57,11 @@ def height_of(count: int, columns: int, shape: tuple[int, int], width: float, ga
     return -(-count // columns) * (tile * shape[0] / shape[1] + gap) - gap
 
 
-def _places(count: int, cells: int, pixels: int, gap: float) -> tuple[npt.NDArray[np.intp], ...]:
-    """Return for each pixel along a side the number of its tile and the cell in there, and whether it is a gap."""
+@lru_cache(maxsize=64)
+def _places(count: int, cells: int, pixels: int, gap: float) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Return for each pixel along a side the number of its tile and of the cell in there; `cells` is the gap."""
     pitch = (pixels + gap) / count
     at = np.arange(pixels) + 0.5
     tile = np.minimum(at // pitch, count - 1).astype(np.intp)
     within = (at - tile * pitch) / (pitch - gap)
-    return tile, np.minimum(within * cells, cells - 1).astype(np.intp), within >= 1
-
-
-def _coloured(values: npt.NDArray[Any], shades: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-    """Return (width, height, 3), as pygame has it."""
-    colours: npt.NDArray[np.uint8] = shades[(np.clip(values.T, -1, 1) * 127 + 127).astype(np.intp)]
-    return colours
+    return tile, np.minimum(within * cells, cells).astype(np.intp)

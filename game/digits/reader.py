@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 NAMES: Final = ("modern", "classic")
 SURE: Final = 0.9  # nine in ten test images that are read rightly are read with more than that
 LIKELY: Final = 0.65  # and 99 in a hundred
-LEAST_INK: Final = 18.0  # pixels: the thinnest of the test images has 25, a dot 5
+LEAST_INK, MOST_INK = 18.0, 200.0  # pixels: test images have 25 to 257, 99 in a hundred up to 186, a dot has 5
 Numbers = npt.NDArray[np.float32]
 _log = logging.getLogger("tranquility")
 
@@ -59,13 +59,15 @@ class Reading:
     probabilities: dict[str, Numbers]
 
     def verdict(self, name: str) -> Verdict:
-        """Return how far a network's answer can be trusted."""
-        if not self.stages.centred.any():
+        """Return how far a network's answer can be trusted: all the way only if the others answer the same."""
+        ink = float(self.stages.centred.sum())
+        if ink == 0 or name not in self.probabilities:
             return Verdict.EMPTY
         surest = float(self.probabilities[name].max())
-        if self.stages.centred.sum() < LEAST_INK or surest < LIKELY:
+        if surest < LIKELY or not LEAST_INK < ink < MOST_INK:
             return Verdict.UNSURE
-        return Verdict.SURE if surest >= SURE else Verdict.LIKELY
+        agreed = len({int(values.argmax()) for values in self.probabilities.values()}) == 1
+        return Verdict.SURE if surest >= SURE and agreed else Verdict.LIKELY
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,28 +93,32 @@ class Reader:
     classifiers: dict[str, DigitClassifier] = field(default_factory=dict)
     problems: dict[str, str] = field(default_factory=dict)
 
-    @classmethod
-    def load(cls, folder: Path) -> Reader:
-        """Read the networks in a folder. Never raises."""
-        reader = cls()
-        for name in NAMES:
-            reader.put(name, folder / name)
-        return reader
+    def load(self, name: str, *folders: Path) -> bool:
+        """Read a network from the first folder that has a sound one; `problems` then says what was wrong before.
 
-    def put(self, name: str, folder: Path) -> bool:
-        """Read one network; if that fails, what was there stays, and false is returned."""
+        Never raises; false if there is none, and what was there stays.
+        """
+        self.problems.pop(name, None)
+        for folder in folders:
+            problem = self._load(name, folder)
+            if not problem:
+                return True
+            self.problems.setdefault(name, problem)
+        return False
+
+    def _load(self, name: str, folder: Path) -> str:
+        """Read one network, or return what is wrong with it."""
         from ai.digits import DigitClassifier
         from ai.nn import ModelFormatError
 
-        self.problems.pop(name, None)
         try:
             self.classifiers[name] = DigitClassifier.load(folder)
         except ModelFormatError as error:
-            self.problems[name] = error.problems[0] if error.problems else str(error)
+            return error.problems[0] if error.problems else str(error)
         except Exception as error:  # a damaged folder may fail in any way, and none may end the game
             _log.exception("reading %s", folder)
-            self.problems[name] = str(error) or type(error).__name__
-        return name not in self.problems
+            return str(error) or type(error).__name__
+        return ""
 
     def read(self, strokes: Sequence[Stroke], ink: npt.ArrayLike, switches: Switches) -> Reading:
         """Let all networks read a drawing."""

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Final
 
+import numpy as np
 import pygame
 
 from ai.ink import Image
 from game import texts
 from game.digits.answer import best_two
-from game.digits.pictures import AMBER, GREY, height_of, mosaic, picture
+from game.digits.pictures import AMBER, height_of, mosaic, picture
 from game.digits.reader import Explanation, Numbers, Reading, Verdict
 from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
+from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, Colour
 from game.ui.widgets import PointsManager, Toggle, draw_switch
 
 LEFT: Final = 900.0
@@ -147,14 +147,15 @@ def _mosaic(canvas: Canvas, tiles: Numbers, columns: int, width: float, gap: flo
 
 def _fitted(image: Image, side: int) -> pygame.Surface:
     """Return an image of any shape in a square, small ones with sharp pixels."""
+    coarse = max(image.shape) // side
+    if coarse > 1:
+        rows, columns = (max(1, length // coarse) for length in image.shape)
+        part = np.pad(image, [(0, max(0, coarse - length)) for length in image.shape])
+        image = part[: rows * coarse, : columns * coarse].reshape(rows, coarse, columns, coarse).mean(axis=(1, 3))
     height, width = image.shape
     scale = side / max(height, width)
-    size = (max(1, math.floor(width * scale)), max(1, math.floor(height * scale)))
-    if scale >= 1:
-        grown = picture(image, size, GREY)
-    else:
-        grown = pygame.transform.smoothscale(picture(image, (width, height), GREY), size)
+    size = (max(1, round(width * scale)), max(1, round(height * scale)))
     surface = pygame.Surface((side, side))
-    surface.fill(GREY[len(GREY) // 2].tolist())
-    surface.blit(grown, ((side - size[0]) // 2, (side - size[1]) // 2))
+    surface.fill(NIGHT0)
+    surface.blit(picture(image, size), ((side - size[0]) // 2, (side - size[1]) // 2))
     return surface

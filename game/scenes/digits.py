@@ -9,11 +9,12 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.digit_stages import StageAccuracy, stage_accuracy
 from game import texts
 from game.context import Context
 from game.controls import Command, translate
 from game.digits.answer import LEFT, DigitRow, draw_answer, percent
+from game.digits.fixing import Fixing
+from game.digits.measuring import Measuring
 from game.digits.pad import DrawingPad
 from game.digits.reader import NAMES, Explanation, Numbers, Reader, Switches, Verdict
 from game.digits.sight import LEFT as SIGHT_LEFT
@@ -25,14 +26,20 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
-from game.ui.tokens import LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.ui.tokens import HUMAN, LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.ui.widgets import Choice, Word
-from game.worker import State, Worker
 
 PAD: Final = pygame.Rect(40, 70, 520, 520)
 _TABS: Final = (232, 26, 24)  # left, top and height of the row beside the title
 _BELOW: Final = 602  # top of the words under the pad
 _RIGHT: Final = 1244.0
+_FIX: Final = (LEFT, 554.0)
+_FIX_WIDTH: Final = 250.0
+_DIGITS: Final = {
+    **{pygame.K_0 + digit: digit for digit in range(10)},
+    **{pygame.K_KP1 + digit - 1: digit for digit in range(1, 10)},
+    pygame.K_KP0: 0,
+}
 
 
 class Digits:
@@ -49,11 +56,10 @@ class Digits:
         self.pad = DrawingPad(PAD)
         self._context: Context | None = None
         self._switches = Switches()
-        self._worker: Worker | None = None
-        self._accuracy: dict[Switches, StageAccuracy] = {}
         self._sight = Sight()
         self._seen = -1
         self._why: Explanation | None = None
+        self._unfix: Word | None = None
 
     def enter(self, context: Context) -> None:
         """Read the networks and build the widgets, the first time."""
@@ -61,21 +67,26 @@ class Digits:
             return
         self._context = context
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
-        self._reader = Reader.load(context.models_dir / "digits")
+        self._fixing = Fixing(context.user_dir, context.models_dir)
+        self._reader = Reader()
+        self._measuring = Measuring(lambda: {name: self._fixing.folder(name) for name in self._reader.classifiers})
+        for name in NAMES:
+            self._load(name)
         if self.chosen not in self._reader.classifiers:
             self.chosen = next(iter(self._reader.classifiers), self.chosen)
         self._form = Form(context, on_back=Pop)
         self._add_words()
         self._look()
+        self._offer_undo()
 
     def exit(self) -> None:
         """Lift the pen."""
         self.pad.lift()
 
     def close(self) -> None:
-        """End the process that measures."""
-        if self._worker:
-            self._worker.close()
+        """End the processes that measure and learn."""
+        self._fixing.close()
+        self._measuring.close()
 
     @property
     def canvas_rect(self) -> pygame.Rect:
@@ -98,6 +109,8 @@ class Digits:
             self.pad.undo()
         elif event.type == pygame.KEYDOWN and event.key in (pygame.K_c, pygame.K_DELETE):
             self.pad.clear()
+        elif event.type == pygame.KEYDOWN and event.key in _DIGITS:
+            self._correct(_DIGITS[event.key])
         else:
             return self._obey(event)
         return None
@@ -118,7 +131,8 @@ class Digits:
         """Look at what has been drawn since, and hear what was measured."""
         if self._seen != self.pad.revision:
             self._look()
-        self._listen()
+        self._measuring.listen()
+        self._follow_fix()
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -134,6 +148,11 @@ class Digits:
         self._draw_words(canvas)
 
     # Reading
+
+    def _load(self, name: str) -> None:
+        """Read a network with what the player has taught it, or without if that is damaged."""
+        assert self._context is not None
+        self._reader.load(name, self._fixing.folder(name), self._context.models_dir / "digits" / name)
 
     def _look(self) -> None:
         """Let the networks read what is on the pad."""
@@ -162,35 +181,64 @@ class Digits:
     def _switch(self, step: str, on: bool) -> None:
         self._switches = replace(self._switches, **{step: on})
         self._look()
-        if self._worker is None:
-            assert self._context is not None
-            folder = self._context.models_dir / "digits"
-            self._worker = Worker(stage_accuracy, {name: folder / name for name in self._reader.classifiers})
-            self._worker.pause()  # it works when it is asked
-            self._ask(Switches())
-        self._ask(self._switches)
+        self._measuring.ask(self._switches)
 
-    def _ask(self, switches: Switches) -> None:
-        if self._worker and switches not in self._accuracy:
-            self._worker.send(asdict(switches))
+    # Putting it right
 
-    def _listen(self) -> None:
-        if self._worker:
-            for told in self._worker.poll():
-                self._accuracy[Switches(**dict(told.steps))] = told
+    def _correct(self, digit: int) -> None:
+        """Teach the chosen network that what is drawn is this digit."""
+        image = self.reading.stages.centred
+        if image.any() and self.chosen in self._reader.classifiers:
+            self._fixing.begin(self.chosen, image, digit)
 
-    def _accuracy_words(self) -> str:
-        if self._worker is None:
-            return texts.DIGITS_HINT
-        told = self._accuracy.get(self._switches)
-        if told is None:
-            failed = self._worker.state is State.FAILED
-            return texts.DIGITS_NOT_MEASURED.format(problem=self._worker.problem) if failed else texts.DIGITS_MEASURING
-        reads = ", ".join(
-            texts.DIGITS_READS_AS.format(name=texts.DIGITS_NETWORKS[name], percent=percent(part))
-            for name, part in told.read.items()
-        )
-        return texts.DIGITS_READS.format(count=told.count) + reads + "."
+    def _undo_fix(self) -> None:
+        if self._fixing.undo(self.chosen):
+            self._take_anew(self.chosen)
+
+    def _follow_fix(self) -> None:
+        if self._fixing.poll():
+            self._take_anew(self._fixing.name)
+
+    def _take_anew(self, name: str) -> None:
+        """Go on with a network that is another one now."""
+        self._load(name)
+        self._look()
+        self._offer_undo()
+        self._measuring.anew(self._switches)
+
+    def _offer_undo(self) -> None:
+        """Show the word that undoes a fix while there is one."""
+        wanted = self._fixing.count(self.chosen) > 0
+        if wanted and self._unfix is None:
+            box = (LEFT, _FIX[1] + 48, 96, 24)
+            self._unfix = Word(self._form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
+            self._form.replace([], [self._unfix])
+        elif self._unfix and not wanted:
+            self._form.replace([self._unfix], [])
+            self._unfix = None
+
+    def _fix_lines(self) -> tuple[str, str]:
+        """Return what to say of a fix that is possible, goes on or is done."""
+        fixing, step, fixed = self._fixing, self._fixing.step, self._fixing.fixed
+        if fixing.problem:
+            return texts.DIGITS_NOT_FIXED, fixing.problem
+        if fixing.busy:
+            return texts.DIGITS_FIXING, percent(step.probability) if step else ""
+        if fixed and not fixed.steps:
+            return texts.DIGITS_FIX_NEEDLESS.format(digit=fixed.digit), ""
+        if fixed:
+            before, now = map(percent, fixed.probability)
+            first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
+            return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
+        empty = self.reading.verdict(self.chosen) is Verdict.EMPTY
+        return ("", "") if empty else (texts.DIGITS_FIX_HOW, "")
+
+    def _draw_fix(self, canvas: Canvas) -> None:
+        x, y = _FIX
+        first, second = self._fix_lines()
+        canvas.text(first, (x, y), size=SMALL, colour=HUMAN)
+        for number, line in enumerate(wrapped(canvas, second, SMALL, _FIX_WIDTH)[:2]):
+            canvas.text(line, (x, y + 20 + 16 * number), size=SMALL, colour=MUTE)
 
     # Words
 
@@ -213,6 +261,7 @@ class Digits:
         if NAMES[index] in self._reader.classifiers:
             self.chosen = NAMES[index]
             self._look()
+            self._offer_undo()
         else:
             self._tabs.index = NAMES.index(self.chosen)
 
@@ -222,18 +271,18 @@ class Digits:
     def _clear(self) -> None:
         self.pad.clear()
 
-    def _correct(self, digit: int) -> Transition | None:
-        return None
-
     def _draw_words(self, canvas: Canvas) -> None:
         assert self._context is not None
-        for number, line in enumerate(wrapped(canvas, self._accuracy_words(), LABEL, _RIGHT - SIGHT_LEFT)):
+        self._draw_fix(canvas)
+        for number, line in enumerate(
+            wrapped(canvas, self._measuring.words(self._switches), LABEL, _RIGHT - SIGHT_LEFT)
+        ):
             canvas.text(line, (SIGHT_LEFT, 184 + 15 * number), size=LABEL, colour=MUTE)
         problems = self._reader.problems.items()
         for number, (name, problem) in enumerate(problems):
             words = texts.DIGITS_PROBLEM.format(name=texts.DIGITS_NETWORKS[name], problem=problem)
             for line in wrapped(canvas, words, SMALL, _RIGHT - LEFT)[:2]:
-                canvas.text(line, (LEFT, 560 + 34 * number), size=SMALL, colour=canvas.palette.warn)
+                canvas.text(line, (LEFT, 640 + 34 * number), size=SMALL, colour=canvas.palette.warn)
         controls = self._context.controls
         word = controls.word
         keys = (word(Command.HANDOVER), word(Command.RETRY)) if controls.pad_in_use else ("Z", "C")

@@ -1,0 +1,66 @@
+"""What steps of preprocessing are worth, measured in a process of its own while the screen goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+from ai.digit_stages import StageAccuracy, stage_accuracy
+from game import texts
+from game.digits.answer import percent
+from game.digits.reader import Switches
+from game.worker import State, Worker
+
+
+class Measuring:
+    """Measures each way of setting the switches once; `listen` once a frame. `folders` gives networks by name."""
+
+    def __init__(self, folders: Callable[[], dict[str, Path]]) -> None:
+        self._folders = folders
+        self._worker: Worker | None = None
+        self._asked: set[Switches] = set()
+        self.found: dict[Switches, StageAccuracy] = {}
+
+    def ask(self, switches: Switches) -> None:
+        """Have it measured how much is read with such switches, if it is not known."""
+        if self._worker is None:
+            self._worker = Worker(stage_accuracy, self._folders())
+            self._worker.pause()  # it works when it is asked
+        if switches not in self._asked:
+            self._asked.add(switches)
+            self._worker.send(asdict(switches))
+
+    def anew(self, switches: Switches) -> None:
+        """Forget everything, for the networks have changed, and measure again if anything was measured."""
+        if self._worker:
+            self.close()
+            self._worker = None
+            self._asked.clear()
+            self.found.clear()
+            self.ask(switches)
+
+    def listen(self) -> None:
+        """Hear what was measured."""
+        if self._worker:
+            for told in self._worker.poll():
+                self.found[Switches(**dict(told.steps))] = told
+
+    def words(self, switches: Switches) -> str:
+        """Return what is known about such switches, or what to do to know more."""
+        if self._worker is None:
+            return texts.DIGITS_HINT
+        told = self.found.get(switches)
+        if told is None:
+            failed = self._worker.state is State.FAILED
+            return texts.DIGITS_NOT_MEASURED.format(problem=self._worker.problem) if failed else texts.DIGITS_MEASURING
+        reads = ", ".join(
+            texts.DIGITS_READS_AS.format(name=texts.DIGITS_NETWORKS[name], percent=percent(part))
+            for name, part in told.read.items()
+        )
+        return texts.DIGITS_READS.format(count=told.count) + reads + "."
+
+    def close(self) -> None:
+        """End the process."""
+        if self._worker:
+            self._worker.close()
