@@ -1,0 +1,69 @@
+import json
+
+import numpy as np
+import pytest
+
+import main
+from ai import copilot_table
+from ai.agent import DeepQAgent
+from ai.copilot import Mode
+from ai.copilot_cli import MODEL
+from ai.copilot_table import ALONE, OPEN, one_pad, three_pads
+
+
+@pytest.fixture(scope="module")
+def agent():
+    return DeepQAgent.load(MODEL)
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """A table small enough for a test."""
+    monkeypatch.setattr(copilot_table, "PILOTS", {name: copilot_table.PILOTS[name] for name in ("laggy", "none")})
+    monkeypatch.setattr(copilot_table, "WISHFUL", ("laggy",))
+    monkeypatch.setattr(copilot_table, "GROUNDS", 1)
+    monkeypatch.setattr(copilot_table, "ONE_PAD", ((ALONE, 0.0), (Mode.TOLERANCE, 0.6), (Mode.GUARDIAN, 0.4)))
+    monkeypatch.setattr(copilot_table, "THREE_PADS", ((ALONE, 0.0), (Mode.GUARDIAN, 0.4), (OPEN, 0.4)))
+
+
+def test_the_co_pilot_helps_on_one_pad(agent, few):
+    rows = list(one_pad(agent, agent, 40))
+    assert [(row.pilot, row.mode) for row in rows] == [
+        ("laggy", "alone"), ("laggy", "tolerance"), ("laggy", "guardian"),
+        ("none", "alone"), ("none", "tolerance"), ("none", "guardian"), ("co-pilot", "alone"),
+    ]  # fmt: skip
+    for row in rows:
+        assert row.success + row.crash + row.out_of_bounds + row.time_out == pytest.approx(1.0)
+        assert row.own_pad == row.success
+        assert (row.overridden == 0) == (row.mode == "alone")
+    laggy, tolerant, guarded, nobody, *flown, network = rows
+    assert min(tolerant.success, guarded.success) > laggy.success + 0.45
+    assert nobody.success == 0.0
+    assert {row.success for row in flown} == {network.success}  # hands off, the network flies
+    assert network.success > 0.95
+
+
+def test_the_co_pilot_brings_a_pilot_to_the_pad_they_have_in_mind(agent, few):
+    alone, guarded, all_open = three_pads(agent, agent, 40)
+    assert guarded.own_pad > alone.own_pad + 0.3
+    assert all_open.own_pad > alone.own_pad
+    assert guarded.own_pad <= guarded.success
+
+
+def test_the_table_follows_from_the_seed(agent, few):
+    assert list(one_pad(agent, agent, 5, seed=3)) == list(one_pad(agent, agent, 5, seed=3))
+
+
+def test_the_command_prints_both_tables(few, capsys):
+    assert main.main(["copilot-table", "--episodes", "2", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [len(told["one_pad"]), len(told["three_pads"])] == [7, 3]
+    assert np.isfinite([row["mean_return"] for row in told["one_pad"]]).all()
+    assert main.main(["copilot-table", "--episodes", "2"]) == 0
+    assert "own pad" in capsys.readouterr().out
+
+
+def test_the_command_says_what_is_wrong(capsys, tmp_path):
+    assert main.main(["copilot-table", "--episodes", "0"]) == 1
+    assert main.main(["copilot-table", "--model", str(tmp_path)]) == 1
+    assert str(tmp_path) in capsys.readouterr().err
