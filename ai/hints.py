@@ -51,8 +51,11 @@ class Hint:
 class Recent:
     """A run's curves as the rules see them, with a few questions that several of them ask."""
 
-    def __init__(self, history: History, config: Config, dead_share: float | None) -> None:
-        self.history, self.config, self.dead_share = history, config, dead_share
+    def __init__(
+        self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
+    ) -> None:
+        self.history, self.config = history, config
+        self.dead_share, self.clipped_share = dead_share, clipped_share
         self.count = len(history.points)
 
     def last(self, name: str, points: int = 8) -> float:
@@ -146,6 +149,11 @@ def _overfed(run: Recent) -> bool:
     return config.updates * config.batch_size > 500 * config.num_envs
 
 
+def _clipped(run: Recent) -> bool:
+    """Most gradients are shortened to one length: then how wrong an estimate is no longer counts."""
+    return (run.clipped_share or 0.0) > 0.6
+
+
 def returns(config: Config) -> tuple[float, float]:
     """Return the least and the most that a flight could earn, as the network sees it."""
     weights = config.weights
@@ -229,6 +237,12 @@ def _more_memory(run: Recent) -> Mapping[str, Any]:
     return {"replay_size": max(10_000, 100 * run.config.batch_size)}
 
 
+def _longer(run: Recent) -> Mapping[str, Any]:
+    """Let gradients be longer; where they already may be, let the steps be shorter."""
+    clip = run.config.gradient_clip
+    return {"gradient_clip": 10.0} if clip < 10.0 else _slower(3)(run)
+
+
 # The most severe first.
 RULES: Final = (
     Rule("loss_explodes", _loss_explodes, _slower(10)),
@@ -240,6 +254,7 @@ RULES: Final = (
     Rule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory),
     Rule("overfed", _overfed, lambda _: {"num_envs": 256}),
     Rule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
+    Rule("clipped", _clipped, _longer),
     Rule("plateau", _plateau, _for_plateau),
 )
 
@@ -259,10 +274,17 @@ class Adviser:
         self._rests: dict[str, float] = {}  # until when each is quiet
         self._before: dict[str, Any] = {}  # what the last remedy has changed
 
-    def advise(self, history: History, config: Config, dead_share: float | None = None) -> Hint | None:
+    def advise(
+        self,
+        history: History,
+        config: Config,
+        dead_share: float | None = None,
+        clipped_share: float | None = None,
+    ) -> Hint | None:
         """Return what to show now, if anything; call it as often as there is news.
 
-        `dead_share` is the share of hidden units that never come alive, where somebody has counted them.
+        Where somebody has counted them, `dead_share` is the share of hidden units that never come alive, and
+        `clipped_share` that of the gradients which were cut short.
         """
         self.config = config
         if not len(history.points):
@@ -271,7 +293,7 @@ class Adviser:
         if now < self._now:
             self.reset()
         self._now = now
-        run = Recent(history, config, dead_share)
+        run = Recent(history, config, dead_share, clipped_share)
         holding = {rule.name: rule for rule in RULES if rule.holds(run)}
         self._since = {name: self._since.get(name, now) for name in holding}
         if self.shown is not None and now - self._shown_since < STAY:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import Field, asdict, dataclass, fields
+from functools import cache
 from typing import Any, Final, Literal
 
 from ai.config import Config
@@ -96,8 +97,12 @@ def figure(value: Any) -> str:
 
 def told(changes: Mapping[str, Any]) -> str:
     """Write what changes as the player reads it, given values by the names of dials."""
-    names = {dial.name: dial.label for dial in dials()}
-    return ", ".join(f"{names.get(name, name)} {figure(value)}" for name, value in changes.items())
+    return ", ".join(f"{_labels().get(name, name)} {figure(value)}" for name, value in changes.items())
+
+
+@cache
+def _labels() -> dict[str, str]:
+    return {dial.name: dial.label for dial in dials()}
 
 
 def _kind(item: Field[Any]) -> Kind:

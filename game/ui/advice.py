@@ -13,6 +13,7 @@ from ai.history import History
 from game import texts
 from game.ui.canvas import Canvas
 from game.ui.form import Form
+from game.ui.prose import wrapped
 from game.ui.tokens import HUMAN, LABEL, SMALL
 from game.ui.widgets import Word
 
@@ -39,9 +40,11 @@ class Advice:
         """Whether there is anything to see."""
         return bool(self._words)
 
-    def follow(self, history: History, config: Config, dead_share: float | None) -> None:
+    def follow(
+        self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
+    ) -> None:
         """Look at the run again; call it when there is news."""
-        self._lay(self.adviser.advise(history, config, dead_share))
+        self._lay(self.adviser.advise(history, config, dead_share, clipped_share))
 
     def clear(self) -> None:
         """Begin anew with another run."""
@@ -106,15 +109,3 @@ class Advice:
         """Leave the remedy as it is."""
         self.adviser.undo()
         self._lay(None)
-
-
-def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
-    """Break a sentence into lines that fit."""
-    lines = [""]
-    for word in text.split():
-        longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and canvas.text_width(longer, size=size) > width:
-            lines.append(word)
-        else:
-            lines[-1] = longer
-    return lines

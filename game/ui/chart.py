@@ -1,7 +1,7 @@
-"""Live line charts over one x axis: smoothed lines over raw points, several runs, a cursor and a marker.
+"""A live line chart: smoothed lines over raw points, several runs, a cursor and a marker.
 
-A chart is drawn onto a sheet that is kept until its numbers, its limits or the window change; only what
-follows the mouse is drawn every frame. `Charts` lets several take turns, so that no frame draws more than one.
+It is drawn onto a sheet that is kept until its numbers, its limits or the window change; only what follows the
+mouse is drawn every frame.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, 
 from game.ui.tooltip import Row, draw_tooltip
 from game.world.paint import mix
 
-__all__ = ["RUN_STYLES", "Chart", "Charts", "Series", "Tick", "draw_legend"]
+__all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
 
 _HEADER: Final = 24.0  # from the top of the box to the highest line
 _FOOT: Final = 18.0  # from the lowest line to the bottom of the box
@@ -42,7 +42,8 @@ class Chart:
     """One chart in a box of points.
 
     `read` writes a value, `read_x` a place on the x axis. `limits` fixes the vertical axis; otherwise it
-    follows the numbers, and a few that have exploded are cut off and marked by an arrow.
+    follows the numbers, and a few that have exploded are cut off and marked by an arrow. On a `log` axis, what is
+    not positive makes a gap.
     """
 
     def __init__(
@@ -53,15 +54,19 @@ class Chart:
         limits: Limits | None = None,
         read: Callable[[float], str] = plotting.compact,
         read_x: Callable[[float], str] = texts.CHART_SECONDS.format,
+        log: bool = False,
     ) -> None:
         self.box = pygame.FRect(box)
-        self.label, self.read, self.read_x = label, read, read_x
+        self.label, self.read_x = label, read_x
+        self._value: Callable[[float], float] = (lambda height: 10.0**height) if log else float
+        self._make_grid = plotting.decades if log else plotting.grid
+        self._log, self._read = log, read
         self.fixed = limits
         self.redraws = 0  # how often the sheet was drawn
         self._runs: list[Run] = []
         self._ticks: tuple[Tick, ...] = ()
         self._x_range: Limits = (0.0, 1.0)
-        self._lines = plotting.grid(*(limits or (0.0, 1.0)))
+        self._lines = self._make_grid(*(limits or (0.0, 1.0)))
         self._shown = self._goal
         self._traces: list[Numbers] = []
         self._cursor: float | None = None
@@ -82,6 +87,10 @@ class Chart:
         """The lowest and the highest value of the vertical axis, where it is going."""
         return self._goal
 
+    def read(self, height: float) -> str:
+        """Write the value at a height of the vertical axis."""
+        return self._read(self._value(height))
+
     @property
     def _goal(self) -> Limits:
         return self.fixed or (float(self._lines[0]), float(self._lines[-1]))
@@ -90,7 +99,7 @@ class Chart:
 
     def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = ()) -> None:
         """Show these runs, the current one first; the same numbers again cost nothing. Call it when new ones came."""
-        runs = [Run(each) for each in series]
+        runs = [Run(each, log=self._log) for each in series]
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
         span = (start, end) if end > start else (start, start + 1.0)
         if (
@@ -114,7 +123,7 @@ class Chart:
         shown = [run.y[(run.x >= start) & (run.x <= end)] for run in self._runs]
         span = plotting.robust_range(np.concatenate(shown)) if shown else None
         if span is not None:
-            self._lines = plotting.steady_grid(span, self._lines)
+            self._lines = plotting.steady_grid(span, self._lines, self._make_grid)
 
     def mark(self, x: float | None, caption: str = "") -> None:
         """Let an upright line stand at x, with a dot on the current run's curve and a caption; None for none."""
@@ -209,14 +218,14 @@ class Chart:
 
     def _paint_grid(self, sheet: Canvas, plot: pygame.FRect) -> None:
         low, high = self._shown
-        lines = plotting.grid(*self.fixed) if self.fixed else self._lines
+        lines = self._make_grid(*self.fixed) if self.fixed else self._lines
         for number, value in enumerate(lines):
             up = (float(value) - low) / (high - low)
             if -0.01 <= up <= 1.01:
                 y = plot.bottom - up * plot.height
                 sheet.line((plot.x, y), (plot.right, y), LINE)
                 if number in (0, len(lines) - 1):
-                    text = plotting.round_number(float(value))
+                    text = plotting.round_number(self._value(float(value)))
                     sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES, tabular=True)
         start, end = (self.read_x(x) for x in self._x_range)
         y = plot.bottom + 15
@@ -279,44 +288,6 @@ class Chart:
         away = {tick: abs(self.place(tick.x, 0.0)[0] - across) for tick in self._ticks}
         near = [tick for tick in self._ticks if away[tick] <= _REACH]
         return min(near, key=lambda tick: (tick.kind != "knob", away[tick]), default=None)
-
-
-class Charts:
-    """Charts over one x axis, which share the cursor and the marker and take turns at being drawn anew."""
-
-    def __init__(self, charts: Sequence[Chart]) -> None:
-        self.charts = tuple(charts)
-
-    def hover(self, point: Point | None) -> float | None:
-        """Let the cursors follow the mouse; the chart under it tells its values. Returns the x there."""
-        x = self.x_at(point) if point else None
-        for chart in self.charts:
-            chart.point_to(x, pointed=point is not None and chart.x_at(point) is not None)
-        return x
-
-    def x_at(self, point: Point) -> float | None:
-        """Return the x under a point of the canvas, or None outside all charts."""
-        return next((x for chart in self.charts if (x := chart.x_at(point)) is not None), None)
-
-    def mark(self, x: float | None, caption: str = "") -> None:
-        """Put the marker at x in every chart, its caption in the first."""
-        for number, chart in enumerate(self.charts):
-            chart.mark(x, caption if number == 0 else "")
-
-    def update(self, at_once: bool = False, *, turn: bool = True) -> None:
-        """Let 1/60 s pass; on its `turn`, the chart that has waited longest is drawn anew in the next frame."""
-        for chart in self.charts:
-            chart.update(at_once, turn=False)
-        if not turn:
-            return
-        patient = max(self.charts, key=lambda chart: chart.waiting, default=None)
-        if patient is not None and patient.waiting:
-            patient.renew()
-
-    def draw(self, canvas: Canvas) -> None:
-        """Draw all charts; the one with the read-out last, so that nothing lies over it."""
-        for chart in sorted(self.charts, key=lambda chart: chart._pointed):
-            chart.draw(canvas)
 
 
 def _eased(shown: Limits, goal: Limits) -> Limits:

@@ -6,7 +6,7 @@ All arrays; no surfaces. Columns and rows are pixels of the plot, counted from i
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -87,9 +87,23 @@ def grid(low: float, high: float, most: int = 4) -> Numbers:
     return np.arange(first, last + 1) * step
 
 
-def steady_grid(span: Limits, before: Numbers | None) -> Numbers:
+def decades(low: float, high: float) -> Numbers:
+    """Return the logarithms of round numbers that enclose low to high, themselves logarithms, and of tens between."""
+    low, high = max(low, -300.0), min(max(high, low + 1e-9), 300.0)
+    first = max(step for step in _round_logarithms(low) if step <= low + _ROUNDING)
+    last = min(step for step in _round_logarithms(high) if step >= high - _ROUNDING)
+    tens = np.arange(math.ceil(first + _ROUNDING), last - _ROUNDING)
+    return np.array([first, *tens, last])
+
+
+def _round_logarithms(near: float) -> Numbers:
+    """Return the logarithms of 1, 2, 5 and 10 times the power of ten below."""
+    return math.floor(near + _ROUNDING) + np.log10((1.0, 2.0, 5.0, 10.0))
+
+
+def steady_grid(span: Limits, before: Numbers | None, make: Callable[[float, float], Numbers] = grid) -> Numbers:
     """Return grid lines for a range: the ones from before while they hold it and do not leave it small."""
-    lines = grid(*span)
+    lines = make(*span)
     if before is None or span[0] < before[0] or span[1] > before[-1]:
         return lines
     return lines if lines[-1] - lines[0] < 0.6 * (before[-1] - before[0]) else before

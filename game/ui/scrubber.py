@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from game.scene import Transition
 from game.ui.canvas import Canvas
-from game.ui.chart import Charts
+from game.ui.charts import Charts
 from game.ui.tokens import INK
 from game.ui.widgets import OnPress, PointsManager, Widget
 

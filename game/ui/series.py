@@ -55,16 +55,20 @@ class Tick:
 
 
 class Run:
-    """A series with its numbers copied: whatever becomes of the arrays, the chart shows these."""
+    """A series with its numbers copied: whatever becomes of the arrays, the chart shows these.
 
-    def __init__(self, series: Series) -> None:
+    For a `log` axis, `y` is the logarithm to base 10, NaN where there is none.
+    """
+
+    def __init__(self, series: Series, *, log: bool = False) -> None:
         self.series = series
         self.look = (series.name, series.colour, series.dash, series.smooth)
         x, y = np.array(series.x, float).ravel(), np.array(series.y, float).ravel()
         length = min(len(x), len(y))
         placed = np.isfinite(x[:length])
         self.x: Numbers = x[:length][placed]
-        self.y: Numbers = y[:length][placed]
+        y = y[:length][placed]
+        self.y: Numbers = np.log10(np.where(y > 0, y, np.nan)) if log else y
 
     def same(self, other: Run) -> bool:
         """Say whether the other would be drawn alike."""

@@ -92,6 +92,12 @@ def test_each_rule_holds_for_what_it_is_about(name: str, curve: Curve, config: C
     assert holding(curve, config) == {name}
 
 
+def test_gradients_that_are_cut_short_are_counted():
+    for share, found in ((0.9, {"clipped"}), (0.4, set())):
+        run = Recent(history(points()), MODERN, clipped_share=share)
+        assert {rule.name for rule in RULES if rule.holds(run)} == found
+
+
 def test_dead_units_are_counted_where_units_can_die():
     assert holding(points(), dead_share=0.7) == {"dead_units"}
     assert holding(points(), dead_share=0.3) == set()
@@ -155,6 +161,8 @@ def test_what_a_flight_can_pay_follows_the_weights():
         ("hovers", points(), MODERN, {"weights.time": -0.3}),
         ("overfed", points(), sabotaged(MODERN, "one_lander"), {"num_envs": 256}),
         ("random", points(), MODERN.changed(epsilon_end=0.5), {"epsilon_end": 0.05}),
+        ("clipped", points(), MODERN.changed(gradient_clip=0.1), {"gradient_clip": 10.0}),
+        ("clipped", points(), MODERN, {"learning_rate": 7e-4}),
         ("random", points(), PRESETS["classic"], {"epsilon_decay": 0.995}),
         ("plateau", points(), sabotaged(MODERN, "no_n_step"), {"n_step": 10}),
     ],

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from game.ui import plotting
 from game.ui.canvas import Canvas
-from game.ui.chart import RUN_STYLES, Chart, Charts, Series, Tick
+from game.ui.chart import RUN_STYLES, Chart, Series, Tick
+from game.ui.charts import Charts
 from game.ui.strip import PART_COLOURS, Strip, signed
 
 BOX = (40, 450, 372, 128)
@@ -319,6 +320,31 @@ def test_charts_take_turns_and_rest(canvas: Canvas) -> None:
     assert most == 1
     assert 6 * 8 <= total <= 6 * 10
     assert min(chart.redraws for chart in charts.charts) >= 8
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "lines"),
+    [(0.3, 700.0, [0.2, 1, 10, 100, 1000]), (1.0, 10.0, [1, 10]), (2.1, 4.0, [2, 5]), (0.9, 1.1, [0.5, 1, 2]),
+     (3.0, 3.0, [2, 5]), (1e-300, 1e300, None)],
+)  # fmt: skip
+def test_decades_enclose_what_is_shown(low: float, high: float, lines: list[float] | None) -> None:
+    found = 10 ** plotting.decades(np.log10(low), np.log10(high))
+    if lines is None:
+        assert np.isfinite(found).all()
+    else:
+        np.testing.assert_allclose(found, lines)
+
+
+def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_they_are(canvas: Canvas) -> None:
+    chart = Chart((40, 40, 300, 100), "LOSS", log=True)
+    x = np.arange(4.0)
+    chart.set([Series(x, [1.0, 10.0, 100.0, 0.0], "this run", smooth=False)], (0, 3))
+    chart.update(at_once=True)
+    chart.draw(canvas)
+    heights = [chart.place(0.0, np.log10(value))[1] for value in (1.0, 10.0, 100.0)]
+    assert heights[0] - heights[1] == pytest.approx(heights[1] - heights[2])
+    assert chart.read(2.0) == "100"
+    assert chart._runs[0].last() == 2.0
 
 
 def test_a_new_window_size_is_drawn_at_once(canvas: Canvas) -> None:

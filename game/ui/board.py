@@ -1,0 +1,119 @@
+"""The charts of a run, with other runs beside it; a marker on them chooses one of its checkpoints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from ai.history import Alteration, Checkpoint, History
+from ai.live import REVERTED
+from game import texts
+from game.dials import told
+from game.ui.canvas import Canvas
+from game.ui.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
+from game.ui.charts import Charts
+
+_TURNS: Final = 12  # in which the charts look at the history, one in every other: no frame has all of it
+_SHORTEST: Final = 10.0  # seconds that the axis spans at least
+_LEGEND: Final = (40.0, 450.0)
+_STEPPED: Final = ("epsilon", "stage")  # curves without noise
+_CHARTS: Final = (
+    ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),
+    ("mean_return", (436, 456, 360, 128), None, "{:.0f}"),
+    ("loss", (40, 594, 172, 112), None, "{:.3g}"),
+    ("mean_q", (234, 594, 172, 112), None, "{:.2f}"),
+    ("epsilon", (428, 594, 172, 112), (0.0, 1.0), "{:.2f}"),
+    ("stage", (622, 594, 174, 112), (0.0, 3.0), "{:.0f}"),
+)
+
+Runs = Sequence[tuple[str, History]]  # by name; the one that goes on comes first
+
+
+class Board:
+    """Six charts over one axis of seconds.
+
+    Attributes:
+        chosen: the checkpoint under the marker, if there is one.
+
+    """
+
+    def __init__(self) -> None:
+        self.charts = Charts([
+            Chart(box, texts.TRAIN_CHARTS[name], limits=limits, read=partial(_written, form), log=name == "loss")
+            for name, box, limits, form in _CHARTS
+        ])  # fmt: skip
+        self._turn = 0
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin anew with another run, or with others beside it."""
+        self.chosen: Checkpoint | None = None
+        self.charts.mark(None)
+        self._told = [-1] * len(_CHARTS)  # points of the history that each chart has
+        self._legend: list[Series] = []
+
+    def look(self, runs: Runs) -> None:
+        """Take what is new in the first run; call it once a frame."""
+        self._turn = (self._turn + 1) % _TURNS
+        number, odd = divmod(self._turn, 2)
+        points = len(runs[0][1])
+        if odd or number >= len(_CHARTS) or self._told[number] == points:
+            return
+        self._told[number] = points
+        end = max([_SHORTEST, *(float(run["seconds"][-1]) for _, run in runs if len(run))])
+        name = _CHARTS[number][0]
+        series = _series(name, runs)
+        self.charts.charts[number].set(series, (0.0, end), _ticks(runs[0][1]) if number == 0 else ())
+        if number == 0:
+            self._legend = series if len(series) > 1 else []
+
+    def choose(self, place: float | int, checkpoints: Sequence[Checkpoint]) -> None:
+        """Choose the checkpoint at so many seconds, or one further left or right for a whole -1 or 1."""
+        if not checkpoints:
+            return
+        if isinstance(place, int):
+            places = [each.decisions for each in checkpoints]
+            last = (
+                places.index(self.chosen.decisions) if self.chosen and self.chosen.decisions in places else len(places)
+            )
+            self.chosen = checkpoints[min(max(last + place, 0), len(checkpoints) - 1)]
+        else:
+            self.chosen = min(checkpoints, key=lambda each: abs(each.seconds - place))
+        self.charts.mark(self.chosen.seconds, texts.TRAIN_CHECKPOINT.format(seconds=self.chosen.seconds))
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the charts, and which line is which."""
+        if self._legend:
+            draw_legend(canvas, self._legend, _LEGEND)
+        self.charts.draw(canvas)
+
+
+def _series(name: str, runs: Runs) -> list[Series]:
+    factor = 100.0 if name == "success" else 1.0
+    return [
+        Series(run["seconds"], factor * run[name], title, colour, dash, smooth=name not in _STEPPED)
+        for (title, run), (colour, dash) in zip(runs, RUN_STYLES, strict=False)
+        if len(run)
+    ]
+
+
+def _ticks(history: History) -> list[Tick]:
+    """Return the moments worth a mark: checkpoints, and knobs that were turned."""
+    ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds)) for each in history.checkpoints]
+    if history.alterations and len(history):
+        when = np.interp([each.decisions for each in history.alterations], history["decisions"], history["seconds"])
+        ticks += [
+            Tick(seconds, _told(each), "knob") for each, seconds in zip(history.alterations, when.tolist(), strict=True)
+        ]
+    return ticks
+
+
+def _told(turn: Alteration) -> str:
+    return texts.TRAIN_REVERTED if turn.name == REVERTED else told({turn.name: turn.after})
+
+
+def _written(form: str, value: float) -> str:
+    return form.format(value).replace("-", "−")
