@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 from game.app import App
 from game.context import Context
 from game.scene import Scene
+from game.scenes.digits import Digits
 from game.scenes.menu import Menu
 from game.scenes.physics import Physics
 from game.scenes.play import Play
@@ -35,6 +36,7 @@ PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("play", Play(seed=12), {5: pygame.K_TAB}, 170),
     ("watch", Watch(64, seed=3), {}, 260),
     ("train", Train(), {5: pygame.K_RETURN}, 30),
+    ("digits", Digits(), {}, 150),
     ("physics", Physics("heap"), {60: pygame.K_c}, 400),
 )
 
@@ -49,12 +51,26 @@ def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
             if frame in keys:
                 for kind in (pygame.KEYDOWN, pygame.KEYUP):
                     pygame.event.post(pygame.event.Event(kind, key=keys[frame], mod=0))
+            if isinstance(scene, Digits):
+                _move_pen(scene, frame)
             app.tick()
         while isinstance(scene, Train) and not _has_learnt(scene):  # it learns by a clock of its own
             app.tick()
             time.sleep(1 / 60)
         pygame.image.save(app.canvas.surface, ROOT / "docs" / "images" / f"{name}.png")
         app.close()
+
+
+def _move_pen(scene: Digits, frame: int) -> None:
+    """Draw a two by the mouse's events, one a frame."""
+    arc = [(0.5 + 0.2 * np.cos(angle), 0.34 + 0.2 * np.sin(angle)) for angle in np.radians(np.arange(200, 401, 8))]
+    base = [(0.3 + 0.04 * step, 0.8 + 0.01 * np.sin(step)) for step in range(11)]
+    way = [*arc, *np.linspace(arc[-1], base[0], 14)[1:], *base[1:]]
+    if frame <= len(way):
+        kinds = {0: pygame.MOUSEBUTTONDOWN, len(way): pygame.MOUSEBUTTONUP}
+        place = np.array(way[min(frame, len(way) - 1)]) * scene.canvas_rect.size + scene.canvas_rect.topleft
+        kind = kinds.get(frame, pygame.MOUSEMOTION)
+        pygame.event.post(pygame.event.Event(kind, pos=place.tolist(), rel=(0, 0), button=1, buttons=(1, 0, 0)))
 
 
 def _has_learnt(scene: Train) -> bool:

@@ -57,8 +57,8 @@ class DigitRow(Widget):
         colour = INK if self.best else mix(MUTE, INK, self.warmth)
         canvas.text(self.label, (LEFT, y + 5), size=TEXT, colour=colour, tabular=True)
         chosen, other = self._shown
-        canvas.bar((left, y - 2, RIGHT - left, 4), chosen if chosen > 0.004 else 0, NET if self.best else MUTE)
-        if other > 0.004:
+        canvas.bar((left, y - 2, RIGHT - left, 4), chosen if chosen > 0.01 else 0, NET if self.best else MUTE)
+        if other > 0.01:
             canvas.pill((left, y + 5, max((RIGHT - left) * other, 2), 2), MUTE, 0.8)
 
 
@@ -116,7 +116,8 @@ def _draw_verdict(canvas: Canvas, sign: str, words: str, colour: tuple[int, int,
 def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
     first, _ = best_two(reading.probabilities[name])
     sure = reading.verdict(name) is not Verdict.UNSURE
-    canvas.text(texts.DIGITS_NETWORKS[name], (RIGHT, 122), size=LABEL, colour=MUTE, align="right")
+    label = canvas.text(texts.DIGITS_NETWORKS[name], (RIGHT, 122), size=LABEL, colour=MUTE, align="right")
+    canvas.pill((label.left - 22, 117, 16, 2), MUTE)  # its bars below are as thin
     figure = str(first) if sure else "?"
     canvas.text(figure, (RIGHT, _BASELINE), size=_SIZES[1], weight="light", colour=MUTE, align="right")
     words = percent(reading.probabilities[name][first]) if sure else texts.DIGITS_UNSURE
