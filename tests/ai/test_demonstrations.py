@@ -1,0 +1,118 @@
+import numpy as np
+import pytest
+
+from ai.agent import DeepQAgent
+from ai.config import PRESETS
+from ai.demonstrations import Demonstration, demonstrate, read, relive, takeover, taught, teach, write
+from ai.ground import hilly
+from ai.lander import LanderEnv
+from ai.pilots import ScriptedPilot
+
+MODERN = PRESETS["modern"]
+
+
+@pytest.fixture(scope="module")
+def landings():
+    return demonstrate(ScriptedPilot(), 3, seed=5, spawn="near")
+
+
+def test_a_landing_is_remembered_as_if_the_agent_had_flown_it(landings):
+    config = MODERN.changed(n_step=1)
+    cells = relive(landings[0], config)
+    env = LanderEnv(1, landings[0].seed, "near", frame_skip=4, weights=config.weights)
+    observation, pilot, total = env.reset(), ScriptedPilot(), 0.0
+    for row in range(len(cells.action)):
+        assert np.array_equal(cells.state[row], observation[0])
+        action = pilot.act(observation)
+        assert cells.action[row] == action[0]
+        result = env.step(action)
+        observation, total = result.observation, total + result.reward[0]
+    assert result.succeeded[0]
+    assert cells.terminal.tolist() == [False] * (len(cells.action) - 1) + [True]
+    # Its engines are counted as switched in physics steps, not in decisions: the same, but for rounding.
+    assert cells.reward.sum() / config.reward_scale == pytest.approx(total, abs=0.1)
+
+
+def test_only_what_follows_a_takeover_is_an_example(landings):
+    whole = landings[0]
+    begins = 4 * (len(whole.actions) // 8)
+    part = Demonstration(whole.seed, whole.actions, "near", begins)
+    config = MODERN.changed(n_step=1)
+    all_, some = relive(whole, config), relive(part, config)
+    assert len(some.action) == len(all_.action) - begins // 4
+    assert np.array_equal(some.state, all_.state[begins // 4 :])
+    assert takeover([True, False, True, True]) == 2
+    assert takeover([True, True]) == 0
+    assert takeover([True, False]) == 2
+
+
+def test_a_flight_among_hills_is_about_the_pad_it_landed_on():
+    env = LanderEnv(1, 3, "random", frame_skip=4, ground=hilly(np.random.default_rng(8)))
+    env.target[:] = 1
+    observation, actions = env.reset(), []
+    while env.outcome[0] == 0:
+        action = ScriptedPilot().act(observation)
+        observation = env.step(action).observation
+        actions += [int(action[0])] * 4
+    assert env.landed_on[0] == 1
+    flown = tuple(actions[: env.steps[0]])
+    assert relive(Demonstration(3, flown, ground=8, pad=1), MODERN) is not None
+    assert relive(Demonstration(3, flown, ground=8, pad=0), MODERN) is None
+    assert relive(Demonstration(3, flown, ground=8, pad=9), MODERN) is None
+
+
+def test_what_does_not_land_is_not_taught(landings):
+    agent = DeepQAgent(config=taught(MODERN))
+    fall = Demonstration(0, (0,) * 600)
+    assert relive(fall, MODERN) is None
+    assert teach(agent, [*landings, fall]) == 3
+    flown = sum(-(-len(landing.actions) // 4) for landing in landings)
+    assert len(agent.replay) == len(agent.successes) == flown
+
+
+@pytest.mark.parametrize("preset", ["modern", "classic"])
+def test_an_agent_learns_from_demonstrations_alone(landings, preset):
+    agent = DeepQAgent(config=taught(PRESETS[preset]).changed(warm_up=64), rng=np.random.default_rng(0))
+    teach(agent, landings)
+    cells = relive(landings[0], agent.config)
+
+    def agreement():
+        return (agent.act(cells.state) == cells.action).mean()
+
+    before = agreement()
+    assert agent.learn() is not None
+    assert agent.train_count == 2 * agent.config.updates  # the second pass is over the successes
+    for _ in range(150):
+        agent.learn()
+    assert agreement() != before
+
+
+def test_demonstrations_are_kept_in_a_file(landings, tmp_path):
+    path = tmp_path / "new" / "flights.json"
+    assert read(path) == []
+    write(path, landings)
+    assert read(path) == landings
+    assert [file.name for file in path.parent.iterdir()] == ["flights.json"]
+
+
+KNOWN = '"format": "tranquility demonstrations", "version": 1'
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["", "[]", "{}", f"{{{KNOWN}}}", f'{{{KNOWN}, "flights": [{{"seed": 1}}]}}',
+     f'{{{KNOWN}, "flights": [{{"seed": 1, "actions": [7]}}]}}'],
+)  # fmt: skip
+def test_a_damaged_file_is_named(content, tmp_path):
+    path = tmp_path / "flights.json"
+    path.write_text(content)
+    with pytest.raises(ValueError, match=r"flights\.json"):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"actions": ()}, {"actions": (6,)}, {"spawn": "nowhere"}, {"seed": -1}, {"actions": (0.5,)}]
+)
+def test_what_cannot_have_been_flown_is_refused(wrong):
+    with pytest.raises(ValueError, match=r"flight|whole numbers"):
+        Demonstration(**{"seed": 0, "actions": (0,)} | wrong)
