@@ -433,7 +433,7 @@ KNOBS_UNDO: Final = "Undo"
 KNOBS_PUT_ASIDE: Final = "Your knobs"
 KNOBS_PUT_ASIDE_LINE: Final = "were put aside for {name}."
 PRESETS: Final = {
-    "modern": ("Modern", "The fastest learner we could build: in a minute or two, it lands."),
+    "modern": ("Modern", "The fastest learner we could build: within a minute, it lands."),
     "classic": ("Classic", "Deep Q-learning as one first meets it: slow, and never quite steady."),
 }
 
@@ -694,15 +694,18 @@ PUPIL_PRESETS: Final = {
 }
 MATRIX_TITLE: Final = "WHAT IT MISREADS"
 MATRIX_AXES: Final = "rows: what it is · columns: what it reads"
-MATRIX_RIGHT: Final = "A {digit}, read as a {digit}"
-MATRIX_WRONG: Final = "A {digit}, read as a {read}"
+MATRIX_RIGHT: Final = "{digit}, read rightly"
+MATRIX_WRONG: Final = "{digit}, read as {read}"
 MATRIX_COUNT: Final = "{count} of {shown} · {percent:.1f} %"
 MATRIX_EMPTY: Final = "It fills as the network learns."
 
+# A digit with its article
+NUMERALS: Final = ("a 0", "a 1", "a 2", "a 3", "a 4", "a 5", "a 6", "a 7", "an 8", "a 9")
+
 # Dream
-DREAM_TITLE: Final = "Dream a {digit}"
-DREAM_LINE: Final = "From nothing, ink flows to where it makes the network surer of a {digit}."
-DREAM_READS: Final = "read as a {digit}, {percent}"
+DREAM_TITLE: Final = "Dream {numeral}"
+DREAM_LINE: Final = "From nothing, ink flows to where it makes the network surer of {numeral}."
+DREAM_READS: Final = "read as {numeral}, {percent}"
 DREAM_ALL: Final = "ALL TEN"
 DREAM_CALM: Final = "Calm"
 DREAM_CALM_HELP: Final = "Calm: soft, steady, and no more ink than a digit has. Wild, at 0: all that the network would fall for."
@@ -715,7 +718,7 @@ HINT_DIGIT: Final = "another digit"
 # Quiz
 QUIZ_TITLE: Final = "Quiz"
 QUIZ_LINE: Final = "It reads your hand, and you read strangers'. Who reads better?"
-QUIZ_DRAW: Final = "Draw a {digit}"
+QUIZ_DRAW: Final = "Draw {digit}"
 QUIZ_DRAW_HOW: Final = "Press Done, and the network says what it reads."
 QUIZ_READ: Final = "What is this?"
 QUIZ_READ_HOW: Final = "A stranger wrote it. Press the digit."
@@ -723,11 +726,11 @@ QUIZ_DONE: Final = "Done"
 QUIZ_NEXT: Final = "Next"
 QUIZ_AGAIN: Final = "Play again"
 QUIZ_NOTHING: Final = "Draw something first."
-QUIZ_NET_RIGHT: Final = "It reads a {read}, {percent}: its point."
-QUIZ_NET_WRONG: Final = "It reads a {read}, {percent}: no point for it."
-QUIZ_YOU_RIGHT: Final = "A {digit}, it is: your point."
-QUIZ_YOU_WRONG: Final = "It was meant as a {digit}."
-QUIZ_NET_TOO: Final = "The network reads a {read}, {percent}."
+QUIZ_NET_RIGHT: Final = "It reads {read}, {percent}: its point."
+QUIZ_NET_WRONG: Final = "It reads {read}, {percent}: no point."
+QUIZ_YOU_RIGHT: Final = "It was meant as {digit}: your point."
+QUIZ_YOU_WRONG: Final = "It was meant as {digit}."
+QUIZ_NET_TOO: Final = "The network reads {read}, {percent}."
 QUIZ_ROUND: Final = "ROUND {number} OF {count}"
 QUIZ_SIDES: Final = ("you", "network")
 QUIZ_OF: Final = "of {count} read"

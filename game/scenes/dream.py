@@ -1,0 +1,213 @@
+"""Dream: what a network thinks a digit looks like, drawn by the network itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pygame
+
+from ai.digit_dream import STEPS
+from ai.digit_dream import Dream as Image
+from ai.ink import SIDE
+from game import texts
+from game.context import Context
+from game.controls import Command, translate
+from game.digits.answer import LEFT, DigitRow, percent
+from game.digits.pictures import Numbers, picture
+from game.scene import Pop, Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.prose import wrapped
+from game.ui.sky import NightSky
+from game.ui.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.ui.widgets import Choice, PointsManager, Slider, Widget, Word
+
+if TYPE_CHECKING:
+    from ai.digits import DigitClassifier
+
+_DIGITS: Final = 10
+_FRAME: Final = pygame.Rect(40, 86, 504, 504)  # eighteen points to a pixel
+_RIGHT: Final = 900.0
+_TILE: Final = 60
+_PITCH: Final = 71.0
+_COLUMNS: Final = 5
+_FAINTEST: Final = 0.3  # what is dimmer than that is not shown as if it were bright
+_CALM: Final = 0.7
+
+
+class Tile(Widget):
+    """A small picture of one dream; pressing it brings it to the middle."""
+
+    def __init__(self, manager: PointsManager, digit: int, on_press: Callable[[int], None]) -> None:
+        row, column = divmod(digit, _COLUMNS)
+        super().__init__(manager, (_RIGHT + column * _PITCH, 58 + row * (_TILE + 28), _TILE, _TILE), str(digit))
+        self.digit, self._on_press = digit, on_press
+        self.chosen = False
+        self.image: Numbers | None = None
+
+    def press(self) -> None:
+        """Look at it."""
+        self._on_press(self.digit)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the picture and its digit."""
+        box = self.box
+        area = canvas.rect(*box)
+        if self.image is not None:
+            canvas.surface.blit(picture(_bright(self.image), area.size), area)
+        pygame.draw.rect(canvas.surface, NET if self.chosen else LINE, area, max(1, canvas.px(1)))
+        if self.ringed and self.warmth > 0.02:
+            canvas.outline(box.inflate(8, 8), 6, INK, 1, 0.6 * self.warmth)
+        canvas.text(self.label, (box.centerx, box.bottom + 16), size=SMALL, align="centre",
+                    colour=INK if self.chosen else self.tint())  # fmt: skip
+
+
+class Dream:
+    """Dreams of all ten digits, one of them large. `drawing` (28, 28) is one more thing that they may begin with.
+
+    Attributes:
+        digit: the one that is looked at.
+        dreams: of each digit; the one looked at comes first, then the others.
+
+    """
+
+    def __init__(self, classifier: DigitClassifier, digit: int = 0, drawing: Numbers | None = None) -> None:
+        self.digit = digit if digit in range(_DIGITS) else 0
+        self._classifier = classifier
+        self._drawing = drawing if drawing is not None and drawing.any() else None
+        self._calm, self._from_drawing = _CALM, False
+        self._context: Context | None = None
+
+    def enter(self, context: Context) -> None:
+        """Build the widgets, and fall asleep."""
+        if self._context is not None:
+            return
+        self._context = context
+        self._sky = NightSky(np.random.default_rng(13), ember=0.2, stars=24)
+        self._form = Form(context, on_back=Pop)
+        self._add_widgets()
+        self.restart()
+
+    def exit(self) -> None:
+        """Nothing is held."""
+
+    def restart(self) -> None:
+        """Begin all dreams anew."""
+        assert self._context is not None
+        start = self._drawing if self._from_drawing else None
+        seed = int(self._context.rng.integers(1 << 31))
+        self.dreams = [
+            Image(self._classifier, digit, np.random.default_rng((seed, digit)), start, self._calm)
+            for digit in range(_DIGITS)
+        ]
+        self._show()
+
+    def choose(self, digit: int) -> None:
+        """Look at another digit."""
+        self.digit = digit
+        self._show()
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Choose a digit by its key, dream again, or what a widget means."""
+        if event.type == pygame.KEYDOWN and pygame.K_0 <= event.key <= pygame.K_9:
+            self.choose(event.key - pygame.K_0)
+            return None
+        match translate(event):
+            case Command.NEXT:
+                self.choose((self.digit + 1) % _DIGITS)
+            case Command.PREVIOUS:
+                self.choose((self.digit - 1) % _DIGITS)
+            case Command.RETRY:
+                self.restart()
+            case _:
+                return self._form.handle_event(event)
+        return None
+
+    def update(self) -> Transition | None:
+        """Take one step: of the dream that is looked at, or of the next that is not over."""
+        dream = next((each for each in (self.dreams[self.digit], *self.dreams) if not each.done), None)
+        if dream is not None:
+            dream.advance()
+            self._show()
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the dream, what the network reads in it, and the others."""
+        self._sky.draw(canvas)
+        dream = self.dreams[self.digit]
+        canvas.text(texts.DREAM_TITLE.format(numeral=texts.NUMERALS[self.digit]), (_FRAME.left, 45), size=TITLE)
+        canvas.text(
+            texts.DREAM_LINE.format(numeral=texts.NUMERALS[self.digit]), (_FRAME.left, 68), size=SMALL, colour=MUTE
+        )
+        area = canvas.rect(*_FRAME)
+        small = picture(_bright(dream.image), (SIDE, SIDE)).convert(canvas.surface)
+        canvas.surface.blit(pygame.transform.smoothscale(small, area.size), area)
+        pygame.draw.rect(canvas.surface, LINE, area, 1)
+        steps = texts.DREAM_STEPS.format(step=dream.step, steps=STEPS)
+        canvas.text(steps, (_FRAME.right, _FRAME.bottom + 20), size=LABEL, colour=MUTE, align="right", tabular=True)
+        best = int(dream.probabilities.argmax())
+        canvas.text(str(self.digit), (LEFT - 6, 172), size=124, weight="extralight", colour=NET)
+        words = texts.DREAM_READS.format(
+            numeral=texts.NUMERALS[best], percent=percent(float(dream.probabilities[best]))
+        )
+        colour = canvas.palette.good if best == self.digit else canvas.palette.warn
+        canvas.marker("check" if best == self.digit else "triangle", (LEFT + 5, 203), 10, colour)
+        canvas.text(words, (LEFT + 18, 208), size=TEXT, colour=colour, tabular=True)
+        canvas.text(texts.DREAM_ALL, (_RIGHT, 42), size=LABEL, colour=MUTE, weight="medium")
+        for number, line in enumerate(wrapped(canvas, texts.DREAM_CALM_HELP, LABEL, 344)):
+            canvas.text(line, (_RIGHT, 312 + 16 * number), size=LABEL, colour=MUTE)
+        self._form.draw(canvas)
+        self._draw_hints(canvas)
+
+    # Widgets
+
+    def _add_widgets(self) -> None:
+        manager, add = self._form.manager, self._form.add
+        self._rows = [add(DigitRow(manager, digit, self.choose)) for digit in range(_DIGITS)]
+        self._tiles = [add(Tile(manager, digit, self.choose)) for digit in range(_DIGITS)]
+        self._slider = add(Slider(manager, (_RIGHT, 258, 344, 28), texts.DREAM_CALM, self._calm, (0.0, 1.0),
+                                  self._set_calm, step=0.1, label_width=90, figure_width=40,
+                                  figure="{:.1f}".format))  # fmt: skip
+        if self._drawing is not None:
+            add(Choice(manager, (_RIGHT, 372, 344, 28), texts.DREAM_START, texts.DREAM_STARTS, 0, self._set_start,
+                       label_width=110))  # fmt: skip
+        width = typeface.width(texts.DREAM_AGAIN, TEXT, "regular")
+        add(Word(manager, (_RIGHT, 416, width, 28), texts.DREAM_AGAIN, self.restart))
+        self._form.focus(self._tiles[self.digit])
+
+    def _set_calm(self, calm: float) -> None:
+        self._calm = calm
+        self.restart()
+
+    def _set_start(self, index: int) -> None:
+        self._from_drawing = index == 1
+        self.restart()
+
+    def _show(self) -> None:
+        """Let the widgets show how the dreams stand."""
+        for tile, dream in zip(self._tiles, self.dreams, strict=True):
+            tile.image, tile.chosen = dream.image, tile.digit == self.digit
+        probabilities = self.dreams[self.digit].probabilities
+        for row in self._rows:
+            row.values = (float(probabilities[row.digit]), 0.0)
+            row.best = row.digit == self.digit
+
+    def _draw_hints(self, canvas: Canvas) -> None:
+        assert self._context is not None
+        controls = self._context.controls
+        pad, word = controls.pad_in_use, controls.word
+        key = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}" if pad else "0 – 9"
+        draw_hints(canvas, [
+            (key, texts.HINT_DIGIT),
+            (word(Command.RETRY), texts.DREAM_AGAIN.lower()),
+            (word(Command.BACK), texts.HINT_BACK),
+        ], (_FRAME.left, VIEW_SIZE[1] - 40))  # fmt: skip
+
+
+def _bright(image: Numbers) -> Numbers:
+    """Return an image as bright as it can be shown; one with hardly any ink stays dim."""
+    return np.asarray(image / max(float(image.max()), _FAINTEST), np.float32)

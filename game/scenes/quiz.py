@@ -1,0 +1,291 @@
+"""Quiz: the game asks for digits to be drawn, shows others to be read, and keeps the score of both sides."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pygame
+
+from ai.ink import preprocess_strokes
+from ai.mnist import TEST, MnistError, load_part
+from game import texts
+from game.context import Context
+from game.controls import Command, translate
+from game.digits.answer import LEFT, percent
+from game.digits.contest import ROUNDS, Contest, Round
+from game.digits.pad import DrawingPad
+from game.digits.pictures import picture
+from game.scene import Pop, Transition
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.prose import wrapped
+from game.ui.sky import NightSky
+from game.ui.tokens import FIGURE, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, TITLE, VIEW_SIZE, Colour
+from game.ui.widgets import OnPress, Word
+
+if TYPE_CHECKING:
+    from ai.digits import DigitClassifier
+
+_PAD: Final = pygame.Rect(40, 86, 504, 504)
+_QUESTION: Final = 132.0  # the baselines of what is asked, and of what came of it
+_VERDICT: Final = 308.0
+_COLUMN: Final = 236.0  # width of what is said
+_KEYPAD: Final = (LEFT, 176.0)  # ten words to answer with
+_WORDS: Final = 404.0
+_SCORES: Final = (900.0, 1082.0)  # where each side's figure stands
+_TILE: Final = 60.0
+_PITCH: Final = 71.0
+_TRACK: Final = (900.0, 250.0)  # of the rounds that are over
+
+
+class Quiz:
+    """A contest of ten rounds.
+
+    Attributes:
+        contest: the questions, the answers and the score.
+        pad: what is drawn on.
+
+    """
+
+    contest: Contest
+
+    def __init__(self, classifier: DigitClassifier) -> None:
+        self._classifier = classifier
+        self.pad = DrawingPad(_PAD)
+        self._context: Context | None = None
+
+    def enter(self, context: Context) -> None:
+        """Find strangers' digits, and begin."""
+        if self._context is not None:
+            return
+        self._context = context
+        self._sky = NightSky(np.random.default_rng(14), ember=0.2, stars=24)
+        self._form = Form(context, on_back=Pop)
+        self._strangers: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 28, 28), np.float32), np.zeros(0, np.uint8))
+        try:
+            self._strangers = load_part(TEST)
+        except MnistError as error:
+            context.note(texts.QUIZ_NO_STRANGERS.format(problem=error))
+        self._keypad = [self._word(texts_of, (_KEYPAD[0] + 46 * (digit % 5), _KEYPAD[1] + 52 * (digit // 5)),
+                                   partial(self._read, digit), FIGURE)
+                        for digit, texts_of in enumerate(map(str, range(10)))]  # fmt: skip
+        self._go_word = self._word(texts.QUIZ_DONE, (LEFT, _WORDS), self._go)
+        self._shown: list[Word] = []
+        self.restart()
+
+    def exit(self) -> None:
+        """Lift the pen."""
+        self.pad.lift()
+
+    @property
+    def canvas_rect(self) -> pygame.Rect:
+        """The drawing area, in the window's pixels."""
+        assert self._context is not None
+        return self._context.in_window(self.pad.rect)
+
+    def restart(self) -> None:
+        """Begin a new contest."""
+        assert self._context is not None
+        self.contest = Contest(self._classifier, *self._strangers, self._context.rng)
+        self._ask()
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Draw, answer by a digit's key, or do what a word means."""
+        current = self.contest.round
+        drawing = current is not None and current.kind == "draw" and current.answer is None
+        if drawing and self.pad.handle_event(event):
+            return None
+        if event.type == pygame.KEYDOWN and pygame.K_0 <= event.key <= pygame.K_9:
+            self._read(event.key - pygame.K_0)
+        elif event.type == pygame.KEYDOWN and event.key == pygame.K_z:
+            self._undo()
+        elif event.type == pygame.KEYDOWN and event.key in (pygame.K_c, pygame.K_DELETE):
+            self._clear()
+        else:
+            return self._obey(event)
+        return None
+
+    def _obey(self, event: pygame.event.Event) -> Transition | None:
+        match translate(event):
+            case Command.HANDOVER if event.type != pygame.KEYDOWN:  # Tab moves the focus
+                self._undo()
+            case Command.RETRY:
+                self._clear()
+            case _:
+                return self._form.handle_event(event)
+        return None
+
+    def update(self) -> Transition | None:
+        """Let the words ease."""
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the question, the pad or a stranger's digit, and the score."""
+        self._sky.draw(canvas)
+        canvas.text(texts.QUIZ_TITLE, (_PAD.left, 45), size=TITLE)
+        canvas.text(texts.QUIZ_LINE, (_PAD.left, 68), size=SMALL, colour=MUTE)
+        current = self.contest.round
+        if current is None:
+            self.pad.draw(canvas, HUMAN)
+            self._draw_end(canvas)
+        else:
+            if current.kind == "draw":
+                self.pad.draw(canvas, HUMAN)
+            elif current.image is not None:
+                area = canvas.rect(*_PAD)
+                canvas.surface.blit(picture(current.image, area.size), area)
+                pygame.draw.rect(canvas.surface, LINE, area, 1)
+            self._draw_question(canvas, current)
+        self._draw_score(canvas)
+        self._form.draw(canvas)
+        self._draw_hints(canvas)
+
+    # The game
+
+    def _ask(self) -> None:
+        """Make ready for the round that comes."""
+        self.pad = DrawingPad(_PAD)
+        self._lay()
+
+    def _go(self) -> None:
+        """Hand in the drawing, go to the next round, or begin anew."""
+        current = self.contest.round
+        if current is None:
+            self.restart()
+        elif current.answer is not None:
+            self.contest.go_on()
+            self._ask()
+        elif current.kind == "draw":
+            self._submit()
+
+    def _submit(self) -> None:
+        assert self._context is not None
+        image = preprocess_strokes(self.pad.strokes)
+        if image.any():
+            self.pad.lift()
+            self.contest.submit(image)
+            self._lay()
+        else:
+            self._context.note(texts.QUIZ_NOTHING)
+
+    def _read(self, digit: int) -> None:
+        self.contest.read(digit)
+        self._lay()
+
+    def _undo(self) -> None:
+        if self.contest.round and self.contest.round.answer is None:
+            self.pad.undo()
+
+    def _clear(self) -> None:
+        if self.contest.round and self.contest.round.answer is None:
+            self.pad.clear()
+
+    # Words
+
+    def _word(self, label: str, place: tuple[float, float], press: OnPress, size: float = TEXT) -> Word:
+        width = max(typeface.width(label, size, "regular"), 28)
+        return Word(self._form.manager, (*place, width, size * 1.25 + 9), label, press, size=size, weight="light")
+
+    def _lay(self) -> None:
+        """Offer the words that mean something now."""
+        current = self.contest.round
+        if current and current.kind == "read" and current.answer is None:
+            wanted = self._keypad
+        else:
+            label = texts.QUIZ_AGAIN if not current else texts.QUIZ_DONE if current.answer is None else texts.QUIZ_NEXT
+            if label != self._go_word.label:
+                self._go_word = self._word(label, (LEFT, _WORDS), self._go)
+            wanted = [self._go_word]
+        if wanted != self._shown:
+            for widget in self._form.widgets[:]:
+                self._form.widgets.remove(widget)
+            for word in wanted:
+                self._form.add(word)
+            self._form.focus(wanted[0])
+            self._shown = wanted
+
+    # The picture
+
+    def _draw_question(self, canvas: Canvas, current: Round) -> None:
+        number = texts.QUIZ_ROUND.format(number=self.contest.place + 1, count=ROUNDS)
+        canvas.text(number, (LEFT, _QUESTION - 40), size=LABEL, colour=MUTE, weight="medium", tabular=True)
+        draws = current.kind == "draw"
+        question = texts.QUIZ_DRAW.format(digit=texts.NUMERALS[current.digit]) if draws else texts.QUIZ_READ
+        canvas.text(question, (LEFT, _QUESTION), size=FIGURE, weight="light")
+        if current.answer is None:
+            how = texts.QUIZ_DRAW_HOW if draws else texts.QUIZ_READ_HOW
+            for line_number, line in enumerate(wrapped(canvas, how, SMALL, _COLUMN)):
+                canvas.text(line, (LEFT, _QUESTION + 28 + 18 * line_number), size=SMALL, colour=MUTE)
+            return
+        assert current.probabilities is not None
+        best = int(current.probabilities.argmax())
+        numeral = texts.NUMERALS
+        share = percent(float(current.probabilities[best]))
+        read = {"read": numeral[best], "percent": share, "digit": numeral[current.digit]}
+        whose, colour = (NET, canvas.palette.good) if current.right else (MUTE, canvas.palette.warn)
+        shown = str(current.answer)
+        canvas.text(shown, (LEFT - 6, 262), size=124, weight="extralight",
+                    colour=(whose if draws else HUMAN) if current.right else MUTE)  # fmt: skip
+        words = {
+            (True, True): texts.QUIZ_NET_RIGHT, (True, False): texts.QUIZ_NET_WRONG,
+            (False, True): texts.QUIZ_YOU_RIGHT, (False, False): texts.QUIZ_YOU_WRONG,
+        }[draws, current.right].format(**read)  # fmt: skip
+        canvas.marker("check" if current.right else "cross", (LEFT + 5, _VERDICT - 5), 10, colour)
+        canvas.text(words, (LEFT + 18, _VERDICT), size=TEXT, colour=colour, tabular=True)
+        if not draws:
+            canvas.text(texts.QUIZ_NET_TOO.format(**read), (LEFT, _VERDICT + 26), size=SMALL, colour=MUTE)
+
+    def _draw_end(self, canvas: Canvas) -> None:
+        (you, asked), (net, drawn) = self.contest.score("read"), self.contest.score("draw")
+        canvas.text(texts.QUIZ_OVER[self.contest.lead], (LEFT, _QUESTION), size=TITLE,
+                    colour={1: HUMAN, 0: INK, -1: NET}[self.contest.lead])  # fmt: skip
+        told = texts.QUIZ_OVER_LINE.format(you=you, asked=asked, net=net, drawn=drawn)
+        for number, line in enumerate(wrapped(canvas, told, SMALL, _COLUMN)):
+            canvas.text(line, (LEFT, _QUESTION + 28 + 18 * number), size=SMALL, colour=MUTE)
+
+    def _draw_score(self, canvas: Canvas) -> None:
+        sides: tuple[tuple[int, int], ...] = (self.contest.score("read"), self.contest.score("draw"))
+        for (right, count), x, name, colour in zip(sides, _SCORES, texts.QUIZ_SIDES, (HUMAN, NET), strict=True):
+            canvas.text(name.upper(), (x, 92), size=LABEL, colour=MUTE, weight="medium")
+            figure = canvas.text(str(right), (x - 2, 146), size=FIGURE * 1.6, weight="light", colour=colour,
+                                 tabular=True)  # fmt: skip
+            if count:
+                words = texts.QUIZ_OF.format(count=count)
+                canvas.text(words, (figure.right + 8, 146), size=SMALL, colour=MUTE, tabular=True)
+        left, top = _TRACK
+        for number, each in enumerate(self.contest.rounds):
+            row, column = number % 2, number // 2  # what the player drew above, what strangers wrote below
+            place = (left + column * _PITCH, top + row * (_TILE + 34))
+            _draw_tile(canvas, each, place, current=number == self.contest.place)
+
+    def _draw_hints(self, canvas: Canvas) -> None:
+        assert self._context is not None
+        controls, current = self._context.controls, self.contest.round
+        pad, word = controls.pad_in_use, controls.word
+        hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.BACK), texts.HINT_BACK)]
+        if current and current.answer is None and current.kind == "draw":
+            hints[:0] = [
+                (word(Command.HANDOVER) if pad else "Z", texts.DIGITS_UNDO.lower()),
+                (word(Command.RETRY) if pad else "C", texts.DIGITS_CLEAR.lower()),
+            ]
+        elif current and current.answer is None and not pad:
+            hints[:1] = [("0 – 9", texts.HINT_CHOOSE)]
+        draw_hints(canvas, hints, (_PAD.left, VIEW_SIZE[1] - 40))
+
+
+def _draw_tile(canvas: Canvas, each: Round, place: tuple[float, float], *, current: bool) -> None:
+    """Draw what was read in a round, and whether rightly; of one that is to come, only its place."""
+    area = canvas.rect(*place, _TILE, _TILE)
+    edge: Colour = INK if current else LINE
+    canvas.fill(area, NIGHT0)
+    if each.answer is not None and each.image is not None:
+        canvas.surface.blit(picture(each.image, area.size), area)
+        sign, colour = ("check", canvas.palette.good) if each.right else ("cross", canvas.palette.warn)
+        canvas.marker(sign, (place[0] + 6, place[1] + _TILE + 13), 9, colour)  # type: ignore[arg-type]
+        canvas.text(str(each.answer), (place[0] + 17, place[1] + _TILE + 17), size=SMALL, tabular=True,
+                    colour=NET if each.kind == "draw" else HUMAN)  # fmt: skip
+    pygame.draw.rect(canvas.surface, edge, area, max(1, canvas.px(1)))
