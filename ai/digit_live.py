@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Final
@@ -14,7 +14,7 @@ from ai.digit_config import DigitConfig
 from ai.digit_runs import resume_digit_run, save_digit_run
 from ai.digit_training import LIVE, DigitTraining
 from ai.digits import DIGITS
-from ai.messages import Change, Refused
+from ai.messages import Change, Refused, Save
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 KEEP_SECONDS: Final = 20.0
@@ -84,25 +84,27 @@ class Kept:
 
 
 Message = DigitsBegun | DigitPoint | Score | Confusion | Kept | Refused
+Command = Change | Save
 
 
 def live_digits(
     config: DigitConfig, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None, data: Any = None
-) -> Generator[list[Message], Change | None, None]:
+) -> Generator[list[Message], Command | None, None]:
     """Train to the last epoch; every turn is a learning step, and yields what there is to tell.
 
-    The steps are those of `ai.digit_training.run_digits`. A turn that is sent a `Change` turns a live knob, without
-    a step. The run keeps itself in `keep` now and then, when it is over and when it is closed. With `resume`, it
-    goes on from what was kept there, with the settings of that. Raises what `DigitTraining` and `resume_digit_run`
-    raise, and FloatingPointError when the numbers run away.
+    The steps are those of `ai.digit_training.run_digits`. A turn that is sent a `Change` turns a live knob, a `Save`
+    writes the run to one more folder, without a step. The run keeps itself in `keep` now and then, when it is over
+    and when it is closed. With `resume`, it goes on from what was kept there, with the settings of that. Raises what
+    `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when the numbers run away.
     """
+    yield []  # unpacking the images takes a while: let it be known that there is somebody
     training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
     run = _LiveDigits(training, keep)
     command = yield [DigitsBegun(training.config, training.seed, training.step, training.steps)]
     try:
         while not training.done:
-            command = yield (run.advance() if command is None else run.change(command))
-        yield run.finish()
+            command = yield (run.advance() if command is None else run.carry_out(command))
+        yield from run.finish()
     finally:
         run.end()
 
@@ -173,8 +175,10 @@ class _LiveDigits:
             told += self._keep()
         return told
 
-    def change(self, command: Change) -> list[Message]:
-        """Turn a live knob; the answer is a refusal or nothing."""
+    def carry_out(self, command: Command) -> list[Message]:
+        """Turn a live knob, for which the answer is a refusal or nothing, or save."""
+        if isinstance(command, Save):
+            return [Kept(command.folder, self._written(command.folder)[0])]
         try:
             if command.name not in LIVE:
                 raise ValueError(f"{command.name} cannot change while a run goes on")
@@ -183,15 +187,14 @@ class _LiveDigits:
             return [Refused(command, str(error))]
         return []
 
-    def finish(self) -> list[Message]:
+    def finish(self) -> Iterator[list[Message]]:
         """Read all that is held out once more, measure the test images, and keep what came of it."""
-        told: list[Message] = []
         if len(self.training.held_images):
             reading = _HeldOut(self.training)
             while not reading.go_on():
-                pass
-            told = reading.told(self.training.seconds)
-        return told + self._keep(final=True)
+                yield []
+            yield reading.told(self.training.seconds)
+        yield self._keep(final=True)
 
     def end(self) -> None:
         """Keep what has not been kept."""
@@ -212,11 +215,15 @@ class _LiveDigits:
         """Write the run; tell of it when it is final, or when something new went wrong."""
         if self._folder is None:
             return []
-        problem, test = "", None
-        try:
-            test = save_digit_run(self.training, self._folder, final=final).get("test")
+        problem, test = self._written(self._folder, final)
+        if not problem:
             self._kept = self.training.step
-        except (OSError, ValueError) as error:
-            problem = getattr(error, "strerror", None) or str(error)
         new, self._trouble = problem != self._trouble, problem
         return [Kept(self._folder, problem, test)] if final or new else []
+
+    def _written(self, folder: Path, final: bool = False) -> tuple[str, float | None]:
+        """Write the run; return what went wrong, and the accuracy on the test images if it is final."""
+        try:
+            return "", save_digit_run(self.training, folder, final=final).get("test")
+        except (OSError, ValueError) as error:
+            return getattr(error, "strerror", None) or str(error), None

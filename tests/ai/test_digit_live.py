@@ -7,7 +7,7 @@ from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Kept, Score, live_
 from ai.digit_runs import resume_digit_run
 from ai.digit_training import DigitTraining
 from ai.digits import DigitClassifier
-from ai.messages import Change, Refused
+from ai.messages import Change, Refused, Save
 from ai.mnist import load_part
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, averaging=0.9)
@@ -65,17 +65,28 @@ def test_a_finished_run_is_kept_with_its_accuracy_on_the_test_images(data, tmp_p
 
 def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
     run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
-    for _ in range(8):
+    for _ in range(9):
         next(run)
     run.close()
     assert resume_digit_run(tmp_path / "run", data=data).step == 7
     again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
-    assert next(again) == [DigitsBegun(SMALL, 4, 7, 30)]
+    assert [next(again), next(again)] == [[], [DigitsBegun(SMALL, 4, 7, 30)]]
+
+
+def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
+    run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
+    for _ in range(9):
+        next(run)
+    assert run.send(Save(tmp_path / "named")) == [Kept(tmp_path / "named")]
+    assert resume_digit_run(tmp_path / "named", data=data).step == 7
+    (tmp_path / "file").write_text("in the way")
+    (refused,) = run.send(Save(tmp_path / "file" / "named"))
+    assert refused.problem
 
 
 def test_live_knobs_turn_and_others_are_refused(data):
     run = live_digits(SMALL, data=data)
-    next(run)
+    next(run), next(run)
     assert run.send(Change("learning_rate", 1e-4)) == []
     (refused,) = run.send(Change("hidden", (3,)))
     assert isinstance(refused, Refused)

@@ -1,0 +1,155 @@
+"""The confusion matrix: what is read as what, with a misread digit in each cell; and all of a cell side by side."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.digit_live import Confusion
+from game import texts
+from game.controls import Command, translate
+from game.digits.pictures import picture
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, Colour
+from game.ui.widgets import PointsManager, Widget
+
+_DIGITS: Final = 10
+_ARROWS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}
+_COUNT: Final = 10.5  # the size of a cell's figure
+_COLUMNS: Final = 4  # of misread digits
+_GAP: Final = 8.0
+
+
+class Matrix(Widget):
+    """Ten rows, what a digit is, by ten columns, what it is read as. Mouse and arrows choose a cell.
+
+    Attributes:
+        cell: the chosen one, row and column.
+
+    """
+
+    def __init__(self, manager: PointsManager, box: pygame.typing.RectLike) -> None:
+        super().__init__(manager, box, "")
+        self.confusion: Confusion | None = None
+        self.cell = (0, 0)
+        self._chosen = False  # by the player; until then it is the one that is misread most often
+        self._of: tuple[object, ...] = ()
+        self._sheet: Canvas | None = None
+
+    @property
+    def pitch(self) -> float:
+        """From one cell to the next, in points."""
+        return self.box.width / _DIGITS
+
+    def set(self, confusion: Confusion | None) -> None:
+        """Show what is misread now; None for nothing yet."""
+        self.confusion = confusion
+        if confusion is None:
+            self._chosen = False
+        elif not self._chosen:
+            wrong = confusion.table * (1 - np.eye(_DIGITS, dtype=np.int64))
+            row, column = divmod(int(wrong.argmax()), _DIGITS)
+            self.cell = (row, column)
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Go to the next cell; beyond the last one, the focus goes on."""
+        command = translate(event)
+        if command not in _ARROWS:
+            return False
+        row, column = (now + step for now, step in zip(self.cell, _ARROWS[command], strict=True))
+        if not (0 <= row < _DIGITS and 0 <= column < _DIGITS):
+            return False
+        self._choose(row, column)
+        return True
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Choose the cell under the mouse."""
+        if event.type == pygame.MOUSEMOTION and self.hover_point(*event.pos):
+            across, down = event.pos[0] - self.box.left, event.pos[1] - self.box.top
+            self._choose(*(min(int(way / self.pitch), _DIGITS - 1) for way in (down, across)))
+        return super().process_event(event)
+
+    def _choose(self, row: int, column: int) -> None:
+        self.cell, self._chosen = (row, column), True
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the cells, kept until they change, and the chosen one's edge."""
+        super().paint(canvas)
+        if self._sheet is None or self._of != (self.confusion, canvas.scale):
+            self._of = (self.confusion, canvas.scale)
+            self._sheet = self._painted(canvas)
+        canvas.surface.blit(self._sheet.surface, (canvas.px(self.box.left), canvas.px(self.box.top)))
+        pitch = self.pitch
+        for digit in range(_DIGITS):
+            at = (digit + 0.5) * pitch
+            row, column = self.cell
+            canvas.text(str(digit), (self.box.left - 12, self.box.top + at + 4), size=SMALL, align="centre",
+                        colour=INK if digit == row else MUTE)  # fmt: skip
+            canvas.text(str(digit), (self.box.left + at, self.box.top - 7), size=SMALL, align="centre",
+                        colour=INK if digit == column else MUTE)  # fmt: skip
+        if self.confusion is not None:
+            left, top = (self.box.left + self.cell[1] * pitch, self.box.top + self.cell[0] * pitch)
+            canvas.outline((left, top, pitch, pitch), 4, INK, 1.5, 0.5 + 0.5 * self.warmth)
+
+    def _painted(self, canvas: Canvas) -> Canvas:
+        sheet, pitch = canvas.sheet(self.box.width + 1, self.box.height + 1), self.pitch
+        for number in range(_DIGITS + 1):
+            sheet.line((0, number * pitch), (self.box.width, number * pitch), LINE)
+            sheet.line((number * pitch, 0), (number * pitch, self.box.height), LINE)
+        if self.confusion is None:
+            return sheet
+        table = self.confusion.table
+        first = {tuple(cell): number for number, cell in reversed(list(enumerate(self.confusion.cells.tolist())))}
+        for row, column in np.argwhere(table).tolist():
+            area = sheet.rect(column * pitch + 1, row * pitch + 1, pitch - 1, pitch - 1)
+            middle, bottom = (column + 0.5) * pitch, (row + 1) * pitch
+            if row == column:
+                share = table[row, row] / max(table[row].sum(), 1)
+                shade = tuple(round(a + (b - a) * 0.45 * share) for a, b in zip(NIGHT0, NET, strict=True))
+                sheet.fill(area, shade)
+                sheet.text(f"{100 * share:.0f}" if share < 0.995 else f"{100 * share:.4g}"[:4],
+                           (middle, bottom - pitch / 2 + 4), size=LABEL, align="centre", tabular=True)  # fmt: skip
+            elif (row, column) in first:
+                image = self.confusion.images[first[row, column]] / np.float32(255)
+                sheet.surface.blit(picture(image, area.size), area)
+                _draw_count(sheet, int(table[row, column]), (column + 1) * pitch - 1, bottom - 1)
+        return sheet
+
+    # The chosen cell
+
+    def draw_cell(self, canvas: Canvas, box: pygame.typing.RectLike) -> None:
+        """Say what the chosen cell means, and draw the digits that were misread so."""
+        if self.confusion is None:
+            return
+        (row, column), area = self.cell, pygame.FRect(box)
+        count, shown = int(self.confusion.table[row, column]), int(self.confusion.table[row].sum())
+        right = row == column
+        words = texts.MATRIX_RIGHT if right else texts.MATRIX_WRONG
+        canvas.text(words.format(digit=row, read=column), (area.left, area.top + 14), size=TEXT)
+        share = texts.MATRIX_COUNT.format(count=count, shown=shown, percent=100 * count / max(shown, 1))
+        canvas.text(share, (area.left, area.top + 34), size=SMALL, colour=MUTE, tabular=True)
+        if right or not count:
+            return
+        found = self.confusion.images[(self.confusion.cells == (row, column)).all(axis=1)]
+        side = (area.width - (_COLUMNS - 1) * _GAP) / _COLUMNS
+        for number, image in enumerate(found):
+            down, across = divmod(number, _COLUMNS)
+            place = (area.left + across * (side + _GAP), area.top + 48 + down * (side + _GAP))
+            if place[1] + side > area.bottom + 1:
+                break
+            tile = canvas.rect(*place, side, side)
+            canvas.surface.blit(picture(image / np.float32(255), tile.size), tile)
+
+
+def _draw_count(sheet: Canvas, count: int, right: float, bottom: float) -> None:
+    """Write how often, in the corner of a cell."""
+    words, colour = str(count), _warn(sheet)
+    width = sheet.text_width(words, size=_COUNT) + 4
+    sheet.fill(sheet.rect(right - width, bottom - 12, width, 12), NIGHT0)
+    sheet.text(words, (right - 2, bottom - 2), size=_COUNT, colour=colour, align="right")
+
+
+def _warn(sheet: Canvas) -> Colour:
+    return sheet.palette.warn

@@ -1,0 +1,301 @@
+"""Train it here: a network learns to read digits in a process of its own; the window shows it, and what is misread."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pygame
+
+from ai.digit_config import DIGIT_PRESETS, DigitConfig
+from game import texts
+from game.context import Context
+from game.controls import Command, translate
+from game.dials import dials
+from game.digits.fixing import FIXES
+from game.digits.matrix import Matrix
+from game.digits.pupil import Curves, Pupil
+from game.scene import Pop, Push, Transition
+from game.tuning import Family
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.chart import RUN_STYLES, Chart, Series, draw_legend
+from game.ui.charts import Charts
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.knobs import Knobs
+from game.ui.prose import wrapped
+from game.ui.sky import NightSky
+from game.ui.tokens import FIGURE, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.ui.widgets import OnPress, Word
+from game.worker import State
+
+if TYPE_CHECKING:
+    from ai.digits import DigitClassifier
+
+FAMILY: Final = Family(tuple(dials(DigitConfig)), DIGIT_PRESETS, texts.PUPIL_PRESETS, "images")
+RUNS: Final = "runs"  # in the player's folder of digits
+_WIDTH: Final = 836.0  # the panel has the rest
+_LEFT: Final = 40.0
+_PANEL: Final = 868.0
+_KNOBS: Final = pygame.Rect(868, 20, 384, 436)
+_CHARTS: Final = {"loss": (40, 146, 372, 152), "accuracy": (440, 146, 372, 152)}
+_MATRIX: Final = pygame.Rect(70, 372, 320, 320)
+_CELL: Final = pygame.Rect(440, 346, 372, 346)
+_SAID: Final = 500.0  # where a problem is told of
+_EVERY: Final = 12  # frames between two drawings of the charts
+_BATCHES: Final = (MUTE, (2.0, 4.0))
+
+
+class DigitTrainingScene:
+    """The charts, the matrix, the knobs."""
+
+    pupil: Pupil
+
+    def __init__(self) -> None:
+        self._context: Context | None = None
+        self._was_running = self._alive = False
+        self._frame = 0
+        self._told: tuple[object, ...] = ()
+        self.stop_word: Word | None = None
+
+    def enter(self, context: Context) -> None:
+        """Build the screen; when a scene above has gone, the run goes on."""
+        if self._context is not None:
+            if self._was_running:
+                self.pupil.resume()
+            return
+        self._context, self._settings = context, context.settings
+        self.pupil = Pupil(context.user_dir / FIXES / RUNS)
+        self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
+        self.charts = Charts([
+            Chart(_CHARTS["loss"], texts.PUPIL_CHARTS["loss"], read="{:.3g}".format),
+            Chart(_CHARTS["accuracy"], texts.PUPIL_CHARTS["accuracy"], read="{:.2f}".format),
+        ])  # fmt: skip
+        self._form = Form(context, on_back=self._leave)
+        self._add_words()
+        self.knobs = Knobs(
+            self._form, _KNOBS, DIGIT_PRESETS["classic"], 0, self._turned, self._begin, FAMILY
+        )  # fmt: skip
+        self.matrix = self._form.add(Matrix(self._form.manager, _MATRIX))
+        self._form.focus(self.start_word)
+
+    def exit(self) -> None:
+        """Rest while another scene has the window."""
+        self._was_running = self.pupil.state in (State.RUNNING, State.STARTING)
+        self.pupil.pause()
+
+    def close(self) -> None:
+        """End the run's process; what it has learnt is kept."""
+        if self._context is not None:
+            self.pupil.close()
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Start, pause, stop, turn knobs, look closer."""
+        if event.type == pygame.MOUSEMOTION:
+            self.charts.hover(event.pos)
+        outcome = self._form.handle_event(event)
+        if outcome is None and not self._form.used:
+            match translate(event):
+                case Command.STEP:
+                    self.pupil.step()
+                case Command.HANDOVER:
+                    self._toggle()
+        return outcome
+
+    def update(self) -> Transition | None:
+        """Listen to the worker, and let the picture ease."""
+        assert self._context is not None
+        for note in self.pupil.poll():
+            self._context.note(note)
+        if self.pupil.begun:
+            self.pupil.begun = False
+            self.knobs.set_config(self.pupil.config, self.pupil.seed)
+        if self.pupil.alive != self._alive:
+            self._alive = self.pupil.alive
+            self.knobs.set_running(self._alive)
+        if self.matrix.confusion is not self.pupil.confusion:
+            self.matrix.set(self.pupil.confusion)
+        self._frame += 1
+        if self._frame % _EVERY == 0:
+            self._set_charts()
+            self._name_words()
+        self.charts.update(at_once=self._settings.reduced_motion)
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the figures, the charts, the matrix and the panel."""
+        self._sky.draw(canvas)
+        canvas.fill(canvas.rect(_WIDTH, 0, VIEW_SIZE[0] - _WIDTH, VIEW_SIZE[1]), PANEL)
+        self._draw_title(canvas)
+        canvas.line((_LEFT, 318), (_WIDTH - 24, 318), LINE)
+        heading = canvas.text(texts.MATRIX_TITLE, (_LEFT, 340), size=LABEL, colour=MUTE, weight="medium")
+        canvas.text(texts.MATRIX_AXES, (heading.right + 12, 340), size=LABEL, colour=MUTE)
+        if self.matrix.confusion is None:
+            canvas.text(texts.MATRIX_EMPTY, (_CELL.left, _CELL.top + 14), size=SMALL, colour=MUTE)
+        self.matrix.draw_cell(canvas, _CELL)
+        self.knobs.draw(canvas)
+        self._draw_said(canvas)
+        self._form.draw(canvas)
+        self.charts.draw(canvas)
+
+    # The run
+
+    def _toggle(self) -> None:
+        if self.pupil.state is State.PAUSED:
+            self.pupil.resume()
+        elif self.pupil.alive:
+            self.pupil.pause()
+        else:
+            self._begin(self.knobs.config, self.knobs.seed)
+        self._name_words()
+
+    def _begin(self, config: DigitConfig, seed: int, resume: bool = False) -> None:
+        assert self._context is not None
+        if note := self.pupil.begin(config, seed, resume=resume):
+            self._context.note(note)
+        self.matrix.set(None)
+        if not resume:
+            self.knobs.set_config(config, seed)
+
+    def _stop_or_go_on(self) -> None:
+        """Stop the run, or go on with the one that was not finished."""
+        if self.pupil.alive:
+            self.pupil.stop()
+        elif self.pupil.unfinished:
+            self._begin(self.knobs.config, self.knobs.seed, resume=True)
+        self._name_words()
+
+    def _turned(self, name: str, value: object) -> None:
+        self.pupil.change(name, value)
+
+    def _leave(self) -> Transition:
+        self.pupil.close()
+        return Pop()
+
+    def _save(self) -> Transition | None:
+        from game.scenes.dialog import Naming
+
+        if not (self.pupil.kept or self.pupil.alive):
+            self._say(texts.PUPIL_NOTHING)
+            return None
+        suggestion = texts.PUPIL_NAME.format(preset=self.knobs.name)
+        return Push(Naming(self, texts.PUPIL_NAMING, suggestion, self._save_as))
+
+    def _save_as(self, name: str) -> str:
+        problem, alive = self.pupil.save(name), self.pupil.alive
+        if not problem and not alive:
+            self._say(texts.PUPIL_SAVED.format(name=name))
+        return problem
+
+    def _dream(self) -> Transition | None:
+        from game.scenes.dream import Dream
+
+        classifier = self._classifier()
+        return Push(Dream(classifier, self.matrix.cell[0])) if classifier else None
+
+    def _quiz(self) -> Transition | None:
+        from game.scenes.quiz import Quiz
+
+        classifier = self._classifier()
+        return Push(Quiz(classifier)) if classifier else None
+
+    def _classifier(self) -> DigitClassifier | None:
+        """Return the network as it was last kept; if there is none, say so."""
+        from ai.digits import DigitClassifier
+
+        if not self.pupil.kept:
+            self._say(texts.PUPIL_NOTHING)
+            return None
+        try:
+            return DigitClassifier.load(self.pupil.unsaved)
+        except (OSError, ValueError) as error:
+            self._say(str(error))
+            return None
+
+    def _say(self, words: str) -> None:
+        assert self._context is not None
+        self._context.note(words)
+
+    # The picture
+
+    def _add_words(self) -> None:
+        def add(x: float, y: float, label: str, press: OnPress) -> Word:
+            width = typeface.width(label, TEXT, "regular")
+            return self._form.add(Word(self._form.manager, (x, y, width, 28), label, press))
+
+        self.start_word = add(_PANEL, 664, texts.TRAIN_START, self._toggle)
+        self.save_word = add(_PANEL + 316, 664, texts.TRAIN_SAVE, self._save)
+        self.dream_word = add(_PANEL, 624, texts.PUPIL_DREAM, self._dream)
+        self.quiz_word = add(_PANEL + 120, 624, texts.PUPIL_QUIZ, self._quiz)
+        self._name_words()
+
+    def _name_words(self) -> None:
+        pupil = self.pupil
+        running = pupil.state in (State.RUNNING, State.STARTING)
+        self.start_word.label = (
+            texts.TRAIN_PAUSE if running else texts.TRAIN_RESUME if pupil.state is State.PAUSED else texts.TRAIN_START
+        )
+        stop = texts.PUPIL_STOP if pupil.alive else texts.PUPIL_GO_ON if pupil.unfinished else ""
+        old = self.stop_word
+        if stop != (old.label if old else ""):
+            box = (_PANEL + 80, 664, typeface.width(stop, TEXT, "regular"), 28)
+            self.stop_word = Word(self._form.manager, box, stop, self._stop_or_go_on) if stop else None
+            before = [self.start_word, *([old] if old else [])]
+            self._form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
+
+    def _set_charts(self) -> None:
+        curves = self.pupil.curves
+        told = (curves.seconds, len(curves.points), len(curves.scores), len(self.pupil.earlier))
+        if told == self._told:
+            return
+        self._told = told
+        runs = [(texts.TRAIN_THIS, curves), *self.pupil.earlier]
+        end = max(10.0, *(each.seconds for _, each in runs))
+        losses, accuracies = [], []
+        for (name, each), (colour, dash) in zip(runs, RUN_STYLES, strict=False):
+            if each.points:
+                seconds = [point.seconds for point in each.points]
+                losses.append(Series(seconds, [point.loss for point in each.points], name, colour, dash))
+                scores = ([score.seconds for score in each.scores], [100 * score.accuracy for score in each.scores])
+                accuracies.append(Series(*scores, name, colour, dash, smooth=False))
+        if curves.points:
+            accuracies.append(_batches(curves))
+        for chart, series in zip(self.charts.charts, (losses, accuracies), strict=True):
+            chart.set(series, (0.0, end))
+
+    def _draw_title(self, canvas: Canvas) -> None:
+        canvas.text(texts.PUPIL_TITLE, (_LEFT, 46), size=TITLE)
+        pupil, curves = self.pupil, self.pupil.curves
+        if not curves.points:
+            line = texts.PUPIL_LOADING if pupil.alive else texts.PUPIL_LINE
+            canvas.text(line, (_LEFT, 68), size=SMALL, colour=MUTE)
+        else:
+            last = curves.points[-1]
+            line = texts.PUPIL_FIGURES.format(epoch=last.epoch, epochs=pupil.config.epochs, seconds=last.seconds,
+                                              rate=last.images_per_second)  # fmt: skip
+            canvas.text(line, (_LEFT, 68), size=SMALL, colour=MUTE, tabular=True)
+            draw_legend(canvas, [Series((), (), texts.PUPIL_HELD_OUT), _batches(curves)], (440, 118))
+        part = pupil.test if pupil.test is not None else curves.scores[-1].accuracy if curves.scores else None
+        if part is not None:
+            words = texts.PUPIL_READ if pupil.test is None else texts.PUPIL_TESTED
+            figure = canvas.text(f"{100 * part:.2f}", (_LEFT - 1, 118), size=FIGURE, weight="light", tabular=True,
+                                 colour=canvas.palette.good)  # fmt: skip
+            canvas.text(words, (figure.right + 8, 118), size=SMALL, colour=MUTE)
+        assert self._context is not None
+        word = self._context.controls.word
+        draw_hints(canvas, [(word(Command.BACK), texts.HINT_BACK)], (_WIDTH - 24, 46), from_right=True)
+
+    def _draw_said(self, canvas: Canvas) -> None:
+        if problem := self.pupil.problem:
+            warn = canvas.palette.warn
+            canvas.marker("cross", (_PANEL + 5, _SAID - 4), 10, warn)
+            for number, line in enumerate(wrapped(canvas, problem, SMALL, 360)[:4]):
+                canvas.text(line, (_PANEL + 18, _SAID + 17 * number), size=SMALL, colour=warn)
+
+
+def _batches(curves: Curves) -> Series:
+    """Return the accuracy of the batches as they are learnt from."""
+    colour, dash = _BATCHES
+    return Series([point.seconds for point in curves.points], [100 * point.accuracy for point in curves.points],
+                  texts.PUPIL_BATCHES, colour, dash)  # fmt: skip
