@@ -4,21 +4,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import Final
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from ai.env import Bools, Doubles, Floats, Ints
+from ai.ground import PADS, Ground, hilly
 from ai.lander import PARAMS, LanderEnv, Outcome
+from ai.pilots import COAST
 from engine.integrate import integrate_position, integrate_velocity
 from engine.world import DT
-from game.networks import Flyer
+from game.cockpit.hands import OWN, Hands
+from game.networks import Flyer, Thinker
+
+if TYPE_CHECKING:
+    from ai.copilot import CoPilot, Decision
 
 # A network decides every so many physics steps, in training and here.
 DECISION_STEPS: Final = 4
 # Steps that an ended flight of a swarm stays to be seen.
 _REST_STEPS: Final = 75
 _PATH_STRIDE: Final = 4
+_PROFILE_REACH: Final = 30.0  # metres to both sides of which the ground's height is kept
+_PROFILE_STEP: Final = 0.02
 
 
 class Hand(Enum):
@@ -53,26 +62,52 @@ class Poses:
 
 @dataclass
 class Recording:
-    """All it takes to fly a flight again, bit for bit: where it began, and what was done in every step."""
+    """All it takes to fly a flight again, bit for bit: where it began, and what was done in every step.
+
+    `hands` says who did it: of a shared stick, the person where they got what they asked for.
+    """
 
     seed: int
     spawn: str
+    pads: int = 1
     actions: list[int] = field(default_factory=list)
     hands: list[Hand] = field(default_factory=list)
 
 
 class Flight:
-    """One lander, flown by a person, by a network, or by both in turns."""
+    """One lander, flown by a person, by a network, by both in turns, or by both together.
 
-    def __init__(self, seed: int, network: Flyer | None = None, spawn: str = "random") -> None:
-        self.env = LanderEnv(1, seed, spawn, frame_skip=1)
+    Args:
+        seed: what the start, the ground and the mishaps of the hands follow from.
+        network: whom to hand over to.
+        spawn: where it begins.
+        pads: 1 on a plain, or 3 among hills.
+        hands: what the keys pass through, a name of `game.cockpit.hands.HANDS`.
+
+    Attributes:
+        copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
+        decision: the latest one of the co-pilot's; None while it does not share the stick.
+        asked: the action that the hands asked for in the last step.
+        overridden: whether something else was flown than hands on the stick asked for.
+
+    """
+
+    def __init__(
+        self, seed: int, network: Flyer | None = None, spawn: str = "random", *, pads: int = 1, hands: str = OWN
+    ) -> None:
+        self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
         self.observation: Floats = self.env.reset()
-        self.network = network
         self.hand = Hand.HUMAN
-        self.recording = Recording(seed, spawn)
+        self.recording = Recording(seed, spawn, pads)
         self.poses = Poses(self.env)
-        self._decision = 0
-        self._held_for = 0
+        self.asked, self.overridden = COAST, False
+        self.decision: Decision | None = None
+        self._hands = Hands(hands, seed, DECISION_STEPS)
+        self._chosen = COAST
+        self._held_for = self._yours = 0
+        self.copilot: CoPilot | None = None
+        self.change_network(network)
+        self._aim(np.zeros(pads))
 
     @property
     def outcome(self) -> Outcome:
@@ -85,43 +120,105 @@ class Flight:
         return self.outcome is not Outcome.FLYING
 
     @property
+    def flown_by(self) -> Hand:
+        """Whose action the last step was."""
+        return self.recording.hands[-1] if self.recording.hands else self.hand
+
+    @property
     def share(self) -> float:
         """The person's share of the steps flown, 0 to 1."""
-        hands = self.recording.hands
-        return hands.count(Hand.HUMAN) / len(hands) if hands else 1.0
+        return self._yours / len(self.recording.hands) if self.recording.hands else 1.0
+
+    @property
+    def shared(self) -> bool:
+        """Whether the person has the stick, and the co-pilot a say in it."""
+        return self.hand is Hand.HUMAN and self.copilot is not None and self.copilot.assist > 0
 
     def change_network(self, network: Flyer | None) -> None:
-        """Let another network take the stick from here on; without one, the person has it."""
+        """Let another network take the stick from here on, or share it; without one, the person has it."""
         self.network = network
-        self._held_for = 0
+        self._held_for, self.decision = 0, None
         if network is None:
             self.hand = Hand.HUMAN
+        before, self.copilot = self.copilot, None
+        if isinstance(network, Thinker):
+            from ai.copilot import CoPilot, Mode
+
+            self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)
+
+    def help(self, assist: float, mode: str) -> None:
+        """Let the co-pilot help so much, 0 to 1, and in that way, from the next decision on."""
+        if self.copilot:
+            self.copilot.assist, self.copilot.mode = assist, type(self.copilot.mode)(mode)
 
     def hand_over(self) -> bool:
         """Give the stick to the other one. False if there is no other, or nothing left to fly."""
         if self.over or (self.network is None and self.hand is Hand.HUMAN):
             return False
         self.hand = Hand.NETWORK if self.hand is Hand.HUMAN else Hand.HUMAN
-        self._held_for = 0  # a network that takes over decides at once
+        self._held_for, self.decision = 0, None  # who takes over decides at once
         return True
 
     def step(self, held: int) -> None:
-        """Fly 1/60 s; `held` is the action the person's hands ask for right now."""
+        """Fly 1/60 s; `held` is the action that the keys ask for right now."""
+        self.overridden = False
         if self.over:
             self.poses.take()
             return
-        action = held if self.hand is Hand.HUMAN else self._ask_network()
+        action, by = self._choose(held)
         self.observation = self.env.step(np.array([action])).observation
         self.recording.actions.append(action)
-        self.recording.hands.append(self.hand)
+        self.recording.hands.append(by)
+        self._yours += by is Hand.HUMAN
         self.poses.take()
+        if self.outcome is Outcome.LANDED:
+            self.env.target = self.env.landed_on
+
+    def _choose(self, held: int) -> tuple[int, Hand]:
+        """Return what the next step is flown with, and whose action that is."""
+        if self.hand is Hand.NETWORK:
+            self.asked = COAST
+            return self._ask_network(), Hand.NETWORK
+        self.asked = self._hands.ask(held, self.observation)
+        if not self.shared:
+            self.decision = None
+            if self._held_for == 0:
+                self._aim(np.zeros(len(self.env.ground.pads)))
+            self._held_for = (self._held_for + 1) % DECISION_STEPS
+            return self.asked, Hand.HUMAN
+        action = self._ask_copilot()
+        self.overridden = self.asked not in (COAST, action)
+        return action, Hand.HUMAN if action == self.asked != COAST else Hand.NETWORK
 
     def _ask_network(self) -> int:
         if self._held_for == 0:
             assert self.network is not None
-            self._decision = int(self.network.act(self.observation, held=self.env.actions)[0])
+            self._chosen = int(self.network.act(self.env.observe(), held=self.env.actions)[0])
         self._held_for = (self._held_for + 1) % DECISION_STEPS
-        return self._decision
+        return self._chosen
+
+    def _ask_copilot(self) -> int:
+        """Share a decision every few steps, and at once when something else is asked for: no tap is too short."""
+        assert self.copilot is not None
+        decision = self.decision
+        if decision is None or self._held_for == 0 or self.asked != decision.pilot[0]:
+            self.decision = decision = self.copilot.decide(self.env.observe_pads(), np.array([self.asked]))
+            self._held_for = 0
+            self._aim(decision.likely[0])
+        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        return int(decision.action[0])
+
+    def _aim(self, likely: Doubles) -> None:
+        """Turn read-outs and network to the pad that seems to be meant; among equals, to the nearest."""
+        away = np.abs(self.env.ground.middles[:, 0] - self.env.position[0, 0])
+        self.env.target[:] = int((likely - 1e-6 * away).argmax())
+
+
+def ground_of(seed: int, pads: int) -> Ground:
+    """Return the ground of a flight: a plain with one pad, or hills with as many as the game has sizes of."""
+    if pads == 1:
+        return Ground.flat()
+    return hilly(np.random.default_rng([seed, pads]), PADS[:pads])
 
 
 class Swarm:
@@ -178,17 +275,26 @@ def coast_path(env: LanderEnv, slot: int = 0, seconds: float = 9.0) -> Doubles:
         force=np.zeros_like(state.force[:1]),
     )
     path = [state.pose[0, body, :2].copy()]
+    lowest = env.ground.base + PARAMS.stand
     for _ in range(round(seconds / (_PATH_STRIDE * DT))):
         integrate_velocity(state, world.params, world.moving, world.gravity, _PATH_STRIDE * DT)
         integrate_position(state, world.moving, _PATH_STRIDE * DT)
-        x, y = state.pose[0, body, :2].tolist()
-        path.append(np.array((x, y)))
-        if y < surface_height(env, x, slot) + PARAMS.stand or abs(x) > env.limits.half_width:
+        path.append(state.pose[0, body, :2].copy())
+        if path[-1][1] < lowest or abs(path[-1][0]) > env.limits.half_width:
             break
-    return np.array(path)
+    way = np.array(path)
+    low = np.flatnonzero(way[1:, 1] < env.ground.height(way[1:, 0]) + PARAMS.stand)
+    return way[: low[0] + 2] if len(low) else way
 
 
-def surface_height(env: LanderEnv, x: float, slot: int = 0) -> float:
-    """Height of what lies under x: the pad's top or the moon."""
-    pad_x, pad_y = env.pad[slot].tolist()
-    return pad_y if abs(x - pad_x) <= env.pad_width[slot] / 2 else PARAMS.ground
+def surface_height(env: LanderEnv, x: float) -> float:
+    """Height of what lies under x: a pad's top, a hill, or the plain; to draw by."""
+    heights = _profile(env.ground)
+    return heights[min(max(round((x + _PROFILE_REACH) / _PROFILE_STEP), 0), len(heights) - 1)]
+
+
+@lru_cache(maxsize=8)
+def _profile(ground: Ground) -> list[float]:
+    """Return the ground's height at even steps, for many look-ups in a frame."""
+    heights: list[float] = ground.height(np.arange(-_PROFILE_REACH, _PROFILE_REACH, _PROFILE_STEP)).tolist()
+    return heights

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from ai.env import Doubles, Floats
+from ai.ground import Ground
 from ai.lander import LanderEnv, Outcome
 from game.flight import DECISION_STEPS, surface_height
 from game.networks import Flyer
@@ -23,10 +24,10 @@ class Forecast:
 
     """
 
-    def __init__(self, flyer: Flyer) -> None:
+    def __init__(self, flyer: Flyer, ground: Ground | None = None) -> None:
         self.path: Doubles = np.empty((0, 2))
         self._flyer = flyer
-        self._ahead = LanderEnv(1, 0, frame_skip=DECISION_STEPS)
+        self._ahead = LanderEnv(1, 0, frame_skip=DECISION_STEPS, ground=ground)
         self._observation: Floats = self._ahead.reset()
         self._places: list[Doubles] = []
 

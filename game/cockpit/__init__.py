@@ -1,0 +1,1 @@
+"""The cockpit: what a player chooses before a flight, and all that shows how the stick is shared."""
