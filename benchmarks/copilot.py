@@ -1,0 +1,60 @@
+"""How long one shared decision takes, with one pad and with three.
+
+    python -m benchmarks.copilot [--rounds 2000]
+
+A decision is all that the game does for it: observe the lander for every pad, value every action on the way to each,
+read which pad is meant, and choose. The network is the one that comes with the game.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
+
+import argparse
+import platform
+import time
+from pathlib import Path
+
+import numpy as np
+
+from ai.agent import DeepQAgent
+from ai.copilot import CoPilot, Mode
+from ai.ground import Ground, hilly
+from ai.lander import NUM_ACTIONS, LanderEnv
+
+MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
+
+
+def decisions(copilot: CoPilot, ground: Ground, rounds: int) -> tuple[float, float, float]:
+    """Median, 99th percentile and median of processor time, in milliseconds."""
+    env = LanderEnv(1, 0, frame_skip=1, ground=ground)
+    env.reset()
+    rng = np.random.default_rng(0)
+    took, worked = [], []
+    for _ in range(rounds):
+        pilot = rng.integers(0, NUM_ACTIONS, 1)
+        start, work = time.perf_counter(), time.process_time()
+        action, _ = copilot.share(env.observe_pads(), pilot)
+        took.append(time.perf_counter() - start)
+        worked.append(time.process_time() - work)
+        if env.step(action).ended[0]:
+            env.reset()
+            copilot.forget()
+    return float(np.median(took)) * 1e3, float(np.quantile(took, 0.99)) * 1e3, float(np.median(worked)) * 1e3
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--rounds", type=int, default=2000)
+    rounds = parser.parse_args().rounds
+    agent = DeepQAgent.load(MODEL)
+    print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
+    print("| | median | 99% within | processor time |\n|---|---|---|---|")
+    for name, ground in (("one pad", Ground.flat()), ("three pads", hilly(np.random.default_rng(0)))):
+        for mode in Mode:
+            median, most, work = decisions(CoPilot(agent, 0.5, mode), ground, rounds)
+            print(f"| {name}, {mode} | {median:.3f} ms | {most:.3f} ms | {work:.3f} ms |")
+
+
+if __name__ == "__main__":
+    main()
