@@ -41,7 +41,7 @@ class DigitConfig:
     smoothing: float = knob(0.05, "Share of each label given to all digits alike: less certainty, fewer slips.",
                             "learning", low=0.0, high=0.5, live=True)
     averaging: float = knob(0.998, "What is kept is a moving average of the weights, this slow; 0 for the last.",
-                            "learning", low=0.0, high=0.9999)
+                            "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999))
     held_out: int = knob(5_000, "Training images that are never learnt from, to choose by.",
                          "learning", low=0, high=30_000)
 

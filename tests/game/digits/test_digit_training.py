@@ -1,0 +1,196 @@
+"""Train it here: the screen, through real pygame events and with a real worker beside it."""
+
+import time
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.digit_config import DIGIT_PRESETS, DigitConfig, build_digit_network
+from ai.digit_live import Confusion
+from ai.digits import DigitClassifier
+from game import texts
+from game.dials import dials
+from game.digits.pupil import Pupil
+from game.scenes.dialog import Naming
+from game.scenes.digit_training import FAMILY, DigitTrainingScene
+from game.scenes.dream import Dream
+from game.scenes.quiz import Quiz
+from game.tuning import Tuning
+from game.worker import State
+from tests.game.driver import Driver
+
+SMALL = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
+
+
+def wait(driver: Driver, until: Callable[[], object], seconds: float = 90.0) -> None:
+    """Play frames until something holds; the limit is only there so that a failure ends."""
+    end = time.monotonic() + seconds
+    while not until():
+        assert time.monotonic() < end, "it never happened"
+        driver.frames(1)
+        time.sleep(0.005)
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver]) -> Driver:
+    driver = open_game(DigitTrainingScene())
+    driver.frames(2)
+    driver.top.knobs.set_config(SMALL, 3)
+    return driver
+
+
+def confusion() -> Confusion:
+    """4 is read as 9 twice, and 7 as 1 once."""
+    table = np.diag(np.full(10, 50))
+    table[4, 9], table[7, 1] = 2, 1
+    cells = np.array([(4, 9), (4, 9), (7, 1)])
+    return Confusion(table, cells, np.full((3, 28, 28), 99, np.uint8))
+
+
+# Knobs
+
+
+def test_every_setting_has_a_knob_and_a_word():
+    turned = dials(DigitConfig)
+    assert {dial.field for dial in turned} == {item.name for item in fields(DigitConfig)} <= set(texts.KNOBS)
+    for dial in turned:
+        assert len(dial.stops) > 1
+        for stop in dial.stops:
+            config = dial.write(DIGIT_PRESETS["modern"], stop)
+            assert dial.read(config) == stop
+            if dial.page == "network":
+                network = build_digit_network(config, np.random.default_rng(0))
+                assert network.predict(DigitClassifier(network).shaped(np.zeros((1, 28, 28)))).shape == (1, 10)
+
+
+def test_presets_are_named_and_no_sabotage_is_offered():
+    tuning = Tuning(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, FAMILY)
+    assert tuning.named == ("classic", "")
+    assert FAMILY.word(FAMILY.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
+
+
+# A run
+
+
+def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
+    scene = train.top
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: scene.pupil.confusion and scene.pupil.curves.points)
+    assert scene.pupil.config == SMALL
+    assert scene.pupil.confusion.table.sum() == 2_000
+    assert scene.matrix.confusion is scene.pupil.confusion
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: scene.pupil.state is State.PAUSED)
+    train.frames(5)
+    train.click(scene.stop_word.box.center)
+    wait(train, lambda: not scene.pupil.alive)
+    assert scene.pupil.state is State.ENDED
+    assert not scene.pupil.problem
+    assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
+    wait(train, lambda: scene.stop_word and scene.stop_word.label == texts.PUPIL_GO_ON)
+    stood = scene.pupil.curves.points[-1].step
+    scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
+    train.click(scene.stop_word.box.center)
+    wait(train, lambda: scene.pupil.curves.points)
+    assert scene.pupil.curves.points[0].step > stood - 1
+    assert scene.knobs.config == SMALL, "it goes on with its own settings"
+    assert len(scene.pupil.earlier) == 1
+    scene.pupil.close()
+
+
+def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, monkeypatch):
+    notes: list[str] = []
+    monkeypatch.setattr(train.top._context, "note", notes.append)
+    scene = train.top
+    for word in (scene.save_word, scene.dream_word, scene.quiz_word):
+        train.click(word.box.center)
+    assert notes == [texts.PUPIL_NOTHING] * 3
+    train.key(pygame.K_TAB)
+    scene._form.focus(scene.start_word)
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: scene.pupil.curves.points)
+    train.click(scene.save_word.box.center)
+    assert isinstance(train.top, Naming)
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    kept = tmp_path / "user" / "digits" / "runs" / texts.PUPIL_NAME.format(preset="Classic")
+    wait(train, lambda: (kept / "config.json").exists() and len(notes) == 4)
+    assert kept.name in notes[-1]
+    train.click(scene.stop_word.box.center)
+    wait(train, lambda: not scene.pupil.alive and scene.pupil.kept)
+    train.click(scene.dream_word.box.center)
+    assert isinstance(train.top, Dream)
+    train.key(pygame.K_ESCAPE)
+    train.click(scene.quiz_word.box.center)
+    assert isinstance(train.top, Quiz)
+
+
+def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
+    scene = train.top
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: scene.pupil.curves.points)
+    train.key(pygame.K_ESCAPE)
+    assert scene.pupil.state is State.ENDED
+    assert scene.pupil.unfinished
+
+
+def test_a_process_that_dies_is_told_of_and_another_can_be_started(train: Driver):
+    scene = train.top
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: scene.pupil.state is State.RUNNING)
+    scene.pupil._worker._process.kill()
+    wait(train, lambda: scene.pupil.state is State.FAILED)
+    assert "killed" in scene.pupil.problem
+    train.frames(20)
+    train.key(pygame.K_RETURN)
+    assert scene.pupil.alive
+
+
+# What is kept
+
+
+def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
+    pupil = Pupil(tmp_path)
+    pupil.unsaved.mkdir()
+    (pupil.unsaved / "config.json").write_text("old")
+    pupil.begin(SMALL, 0)
+    pupil.close()
+    assert (tmp_path / ".before" / "config.json").read_text() == "old"
+
+
+@pytest.mark.parametrize("name", ["..", "a/b", "", "con", "taken"])
+def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
+    (tmp_path / "taken").mkdir()
+    pupil = Pupil(tmp_path)
+    pupil.unsaved.mkdir()
+    assert pupil.save(name)
+    assert pupil.unsaved.exists()
+
+
+# The matrix
+
+
+def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
+    scene = train.top
+    scene.pupil.confusion = confusion()
+    train.frames(2)
+    assert scene.matrix.cell == (4, 9)
+    box, pitch = scene.matrix.box, scene.matrix.pitch
+    train.move((box.left + 1.5 * pitch, box.top + 7.5 * pitch))
+    assert scene.matrix.cell == (7, 1)
+    scene.pupil.confusion = confusion()
+    train.frames(2)
+    assert scene.matrix.cell == (7, 1)
+    train.resize((960, 540))
+    train.key(pygame.K_UP)
+    train.key(pygame.K_LEFT)
+    assert scene.matrix.cell == (6, 0)
+    train.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    assert scene.matrix.cell == (7, 0)
+    assert scene._form.focused is scene.matrix
+    train.keys(*[pygame.K_RIGHT] * 10)
+    assert scene._form.focused is not scene.matrix, "beyond the edge the focus goes on"
