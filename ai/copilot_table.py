@@ -26,18 +26,18 @@ PILOTS: Final[dict[str, MakePilot]] = {
     "none": lambda *_: NoPilot(),
 }
 WISHFUL: Final = ("full", "laggy", "noisy", "noisier")  # whoever has a pad in mind
-ASSISTS: Final = (0.2, 0.4, 0.6, 0.8, 1.0)
 GROUNDS: Final = 5  # different hills for the flights with a hidden wish
 ALONE: Final = "alone"
 COPILOT: Final = "co-pilot"  # the pilot of the row in which the network flies alone
 OPEN: Final = "guardian, all pads open"  # the same rule, with nothing read into what the pilot does
 
 Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
-ONE_PAD: Final[tuple[Help, ...]] = ((ALONE, 0.0), *((mode, assist) for mode in Mode for assist in ASSISTS))
+ONE_PAD: Final[tuple[Help, ...]] = (
+    (ALONE, 0.0), *((Mode.TOLERANCE, assist) for assist in (0.2, 0.4, 0.6, 0.8, 1.0)),
+    *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6)),
+)  # fmt: skip
 THREE_PADS: Final[tuple[Help, ...]] = (
-    (ALONE, 0.0), (Mode.TOLERANCE, 0.4), (Mode.TOLERANCE, 0.6),
-    (Mode.GUARDIAN, 0.2), (Mode.GUARDIAN, 0.4), (Mode.GUARDIAN, 0.6), (Mode.GUARDIAN, 0.8),
-    (OPEN, 0.4), (OPEN, 0.6),
+    (ALONE, 0.0), (Mode.TOLERANCE, 0.4), *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6, 0.8)), (OPEN, 0.4),
 )  # fmt: skip
 
 
