@@ -618,7 +618,7 @@ TRAIN_LEFT_DISCARD: Final = "Discard it"
 DIGITS_TITLE: Final = "Draw a digit"
 DIGITS_NETWORKS: Final = {"modern": "Modern", "classic": "Classic"}
 DIGITS_QUIZ: Final = "Quiz"
-DIGITS_TRAIN: Final = "Train it here"
+DIGITS_TRAIN: Final = "Train"
 DIGITS_DREAM: Final = "Dream"
 DIGITS_HINT_NETWORK: Final = "the other network"
 DIGITS_UNDO: Final = "Undo"
@@ -660,7 +660,7 @@ FIX_NOT_UNDONE: Final = "It could not be undone: {problem}"
 
 # Train: the network large, and knobs that were turned
 TRAIN_CLOSER: Final = "Look closer"
-TRAIN_CLOSER_BACK: Final = "Back to the swarm"
+TRAIN_CLOSER_BACK: Final = "Step back"
 TRAIN_REVERTED: Final = "back to a checkpoint"
 NET_TITLE: Final = "Inside the network"
 NET_SHOWS: Final = ("weights", "activations", "gradients")
@@ -738,3 +738,35 @@ QUIZ_OVER: Final = {1: "You read better", 0: "Even", -1: "The network reads bett
 QUIZ_OVER_LINE: Final = "You read {you} of {asked} strangers' digits; it read {net} of your {drawn}."
 QUIZ_NO_STRANGERS: Final = "No strangers' digits today: {problem}"
 HINT_DONE: Final = "done"
+
+# The cockpit: how the stick is shared
+DIAL_ENDS: Final = ("you", "network")
+DIAL_ASSISTS: Final = {"tolerance": "network assists {percent} %", "guardian": "network guards {percent} %"}
+DIAL_JOIN: Final = "  ·  "
+DIAL_NEEDS: Final = "{name} can fly, but can't share the stick: it doesn't weigh actions."
+CHECK_FLIGHT: Final = "Check flight"
+CHECK_ALONE: Final = "without help: this one shows your own skill"
+OVERRIDE_ADDS: Final = "+ {engine}"
+OVERRIDE_STOPS: Final = "− {engine}"
+OVERRIDE_TURNS: Final = "{engine}, not {other}"
+ENGINE_MAIN: Final = "main"
+ENGINES_STEER: Final = ("", "left", "right")
+INSIGHT_TITLE: Final = "What the network thinks"
+INSIGHT_ASKED: Final = "asked for"
+# What became of the person's action, by ai.copilot.Rule: a title, and why, in two lines
+INSIGHT_WHY: Final = {
+    "PILOT": ("Yours is flown", "{asked}: worth {worth} % of the best,", "and {assist} % is good enough."),
+    "PILOT_MAIN": ("It steers for you", "{asked}: worth {worth} % of the best,", "not {assist} %. The main engine is yours."),
+    "PILOT_STEER": ("It sees to the main engine", "{asked}: worth {worth} % of the best,", "not {assist} %. You steer."),
+    "COPILOT": ("It does this one", "{asked}: worth {worth} % of the best,", "not {assist} %, and nothing near it is."),
+    "HANDS_OFF": ("Hands off: it flies", "Touch anything, and you have", "the stick again."),
+    "ALONE": ("It flies alone", "Take the stick back,", "and you fly it together."),
+}
+INSIGHT_GUARDIAN: Final = {
+    True: "{points} points worse than its {best}.",
+    False: "{points} points from its {best}: too little.",
+}
+INSIGHT_MEANT: Final = "WHICH PAD YOU SEEM TO MEAN"
+PAD_NAMES: Final = {1: "wide  ×1", 3: "narrow  ×3", 5: "tiny  ×5"}
+SHARE_COPILOT: Final = "co-pilot {percent} %"
+SHARE_MOMENTS: Final = "stepped in {times} ×"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from functools import partial
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
@@ -19,7 +20,7 @@ from game.digits.pad import DrawingPad
 from game.digits.reader import NAMES, Explanation, Numbers, Reader, Switches, Verdict
 from game.digits.sight import LEFT as SIGHT_LEFT
 from game.digits.sight import STEPS, Sight, StageSwitch
-from game.scene import Pop, Transition
+from game.scene import Pop, Push, Scene, Transition
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
@@ -29,8 +30,12 @@ from game.ui.sky import NightSky
 from game.ui.tokens import HUMAN, LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.ui.widgets import Choice, Word
 
+if TYPE_CHECKING:
+    from ai.digits import DigitClassifier
+
 PAD: Final = pygame.Rect(40, 70, 520, 520)
 _TABS: Final = (232, 26, 24)  # left, top and height of the row beside the title
+_ELSEWHERE: Final = 398  # where the words that lead to other screens begin
 _BELOW: Final = 602  # top of the words under the pad
 _RIGHT: Final = 1244.0
 _FIX: Final = (LEFT, 554.0)
@@ -252,6 +257,10 @@ class Digits:
             add(Word(manager, (PAD.left + 80 * number, _BELOW, 56, 24), word, press, size=SMALL + 1))
             for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)))
         ]
+        for number, (word, press) in enumerate(
+            ((texts.DIGITS_QUIZ, self._quiz), (texts.DIGITS_TRAIN, self._train), (texts.DIGITS_DREAM, self._dream))
+        ):
+            add(Word(manager, (_ELSEWHERE + 58 * number, top, 46, height), word, press, size=TEXT))
         self._rows = [add(DigitRow(manager, digit, self._correct)) for digit in range(10)]
         for number, step in enumerate(STEPS):
             add(StageSwitch(manager, number, partial(self._switch, step)))
@@ -264,6 +273,29 @@ class Digits:
             self._offer_undo()
         else:
             self._tabs.index = NAMES.index(self.chosen)
+
+    def _quiz(self) -> Transition | None:
+        from game.scenes.quiz import Quiz
+
+        return self._with_chosen(Quiz)
+
+    def _train(self) -> Transition:
+        from game.scenes.digit_training import DigitTrainingScene
+
+        return Push(DigitTrainingScene())
+
+    def _dream(self) -> Transition | None:
+        """Dream of what was drawn."""
+        from game.scenes.dream import Dream
+
+        seen = self.probabilities
+        digit = 0 if seen is None else int(seen.argmax())
+        return self._with_chosen(lambda classifier: Dream(classifier, digit, self.reading.stages.centred))
+
+    def _with_chosen(self, make: Callable[[DigitClassifier], Scene]) -> Transition | None:
+        """Go to a screen that is about the chosen network, if it could be read."""
+        classifier = self._reader.classifiers.get(self.chosen)
+        return Push(make(classifier)) if classifier else None
 
     def _undo(self) -> None:
         self.pad.undo()

@@ -252,3 +252,17 @@ def test_menu_leads_to_drawing_and_back(open_game: Open):
     assert driver.top_name == "Digits"
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "Menu"
+
+
+@pytest.mark.parametrize(("word", "name"), [("Quiz", "Quiz"), ("Train", "DigitTrainingScene"), ("Dream", "Dream")])
+def test_words_lead_to_the_other_screens_and_the_drawing_is_kept(drawing: Driver, word: str, name: str):
+    draw(drawing, strokes(6))
+    digits = scene(drawing)
+    widget = next(widget for widget in digits._form.widgets if widget.label == word)
+    drawing.click(widget.box.center)
+    assert drawing.top_name == name
+    drawing.key(pygame.K_ESCAPE)
+    while drawing.top is not digits and drawing.top_name == "Pause":
+        drawing.keys(pygame.K_UP, pygame.K_RETURN)  # Leave
+    assert drawing.top is digits
+    assert guess(drawing) == 6
