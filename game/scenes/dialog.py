@@ -19,7 +19,7 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, Row
 from game.ui.prose import wrapped
-from game.ui.tokens import MUTE, NIGHT0, SMALL, TEXT
+from game.ui.tokens import FAINT, MUTE, NIGHT0, SMALL, TEXT
 from game.ui.widgets import OnPress, Word
 
 _LEFT, _WIDTH = 400, 480
@@ -61,8 +61,9 @@ class Dialog:
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
         self._below.draw(canvas, 1.0)
-        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.6)
-        canvas.panel(self.box, 0.96)
+        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.7)
+        canvas.panel(self.box, 1.0)
+        canvas.outline(self.box, 8, FAINT)
         left, top = self.box.left + _MARGIN, self.box.top
         canvas.text(self._question, (left, top + 40), size=TEXT)
         if self._more:

@@ -34,6 +34,8 @@ _LEFT: Final = 40.0
 _FLOOR: Final = 434.0  # where the charts begin
 _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 50)
+_TITLE: Final = pygame.Rect(24, 16, 300, 124)
+_WORDS: Final = pygame.Rect(684, 16, 136, 98)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
@@ -300,7 +302,9 @@ class Train:
         if not beside:
             words = ((texts.TRAIN_RUNS, self._open_runs), (texts.TRAIN_DUEL, self._duel),
                      (texts.TRAIN_COMPARE, self._compare))  # fmt: skip
-            beside = [self._word(_WIDTH - 136, 26 + 28 * row, 112, *word) for row, word in enumerate(words)]
+            beside = [
+                self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
+            ]
             self._scrubber = Scrubber(self._form.manager, self.board.charts, self._scrub_to, self._duel)
             beside.append(self._scrubber)
         self._form.replace(self._beside, beside)
@@ -323,6 +327,8 @@ class Train:
         )
 
     def _draw_title(self, canvas: Canvas) -> None:
+        for box in (_TITLE, _WORDS):  # landers fly behind
+            canvas.panel(box)
         canvas.text(texts.TRAIN_TITLE, (_LEFT, 46), size=TITLE)
         history, sight = self.student.history, self.student.sight
         if not len(history) or sight is None:

@@ -24,6 +24,7 @@ _SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # la
 _KEEP: Final = 16  # flights whose way stays to be seen
 _LONGEST_GAP: Final = 12.0  # frames between two sights that are still eased over
 _JUMP: Final = 4.0  # metres: further than any lander flies between two sights
+_LABEL: Final = (3.2, 1.6)  # metres that the word over a lander takes: nearer to each other, the best alone has one
 _MOON: Final = 5
 _EARTH: Final = (880.0, 150.0)  # points of the small picture: clear of the figures
 
@@ -99,9 +100,13 @@ class LearningSwarm:
         shown = ~marked & ~wrecked
         draw_fires(canvas, view, poses[shown & self._burning()], self._frame, size)
         draw_crowd(canvas, view, poses[shown], size)
-        for slot, word, colour in ((self._lucky % count, texts.SWARM_LUCKIEST, INK), (CAREFUL, texts.SWARM_BEST, NET)):
-            if not wrecked[slot] and (slot == CAREFUL or self._lucky % count != CAREFUL):
-                self._draw_marked(canvas, view, poses[slot], slot, (word if count > 1 else ""), colour, size)
+        lucky = self._lucky % count
+        apart = np.abs(poses[lucky, :2] - poses[CAREFUL, :2])
+        luckiest = texts.SWARM_LUCKIEST if (apart > _LABEL).any() or wrecked[CAREFUL] else ""
+        if not wrecked[lucky] and lucky != CAREFUL:
+            self._draw_marked(canvas, view, poses[lucky], lucky, luckiest, INK, size)
+        if not wrecked[CAREFUL]:
+            self._draw_marked(canvas, view, poses[CAREFUL], CAREFUL, texts.SWARM_BEST if count > 1 else "", NET, size)
         canvas.surface.set_clip(None)
 
     def _burning(self) -> Bools:
