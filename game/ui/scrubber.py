@@ -12,12 +12,13 @@ from game.ui.widgets import OnPress, PointsManager, Widget
 
 
 class Scrubber(Widget):
-    """Lies over the first chart. `on_move` gets a place on the axis as a float, or -1 or 1 as an int for a step."""
+    """Lies over the first row of charts. `on_move` gets a place on the axis as a float, or -1 or 1 as an int for a step."""
 
     def __init__(
         self, manager: PointsManager, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress
     ) -> None:
-        super().__init__(manager, charts.charts[0].box, "")
+        first, *others = (chart.box for chart in charts.charts)
+        super().__init__(manager, first.unionall([box for box in others if box.top == first.top]), "")
         self._charts, self._on_move, self._on_press = charts, on_move, on_press
 
     def press(self) -> Transition | None:

@@ -23,7 +23,9 @@ from game.scenes.menu import Menu
 from game.scenes.play import Play
 from game.scenes.train import Train
 from game.student import Student
+from game.ui import focus
 from game.ui.netview import NetView
+from game.ui.widgets import Widget
 from game.worker import State
 from tests.game.driver import Driver
 
@@ -179,6 +181,77 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
     wait(train, lambda: scene.student.state is State.RUNNING)
+
+
+def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    wait(train, lambda: scene.inside._network is not None)
+    train.click((1060, 530))
+    assert scene.inside.large
+    train.click((150, 102))
+    assert scene.inside._view.show == "activations"
+    train.frames(3)
+    train.key(pygame.K_ESCAPE)
+    assert train.top is scene
+    assert not scene.inside.large
+    scene._form.focus(scene.inside._closer)
+    train.key(pygame.K_RETURN)
+    assert scene.inside.large
+    train.key(pygame.K_RETURN)
+    assert not scene.inside.large
+    assert scene._form.focused is scene.inside._closer
+
+
+PAD = {
+    "up": pygame.CONTROLLER_BUTTON_DPAD_UP, "down": pygame.CONTROLLER_BUTTON_DPAD_DOWN,
+    "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT, "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
+    "confirm": pygame.CONTROLLER_BUTTON_A, "back": pygame.CONTROLLER_BUTTON_B,
+}  # fmt: skip
+KEYS = {
+    "up": pygame.K_UP, "down": pygame.K_DOWN, "left": pygame.K_LEFT, "right": pygame.K_RIGHT,
+    "confirm": pygame.K_RETURN, "back": pygame.K_ESCAPE,
+}  # fmt: skip
+
+
+def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
+    scene = train.top
+    form = scene._form
+    for page in range(len(scene.knobs._pages)):
+        scene.knobs._turn_page(page)
+        boxes = [widget.box for widget in form.widgets]
+        reached, frontier = {0}, [0]
+        while frontier:
+            index = frontier.pop()
+            turns = type(form.widgets[index]).shift is not Widget.shift  # left and right turn it, and lead nowhere
+            ways = (focus.UP, focus.DOWN) if turns else (focus.UP, focus.DOWN, focus.LEFT, focus.RIGHT)
+            fresh = {focus.neighbour(boxes, index, way) for way in ways} - reached
+            reached |= fresh
+            frontier += fresh
+        missed = [widget.label or type(widget).__name__ for n, widget in enumerate(form.widgets) if n not in reached]
+        assert missed == [], scene.knobs._pages[page]
+
+
+@pytest.mark.parametrize("device", ["keys", "pad"])
+def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: str) -> None:
+    def press(name: str) -> None:
+        train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
+
+    scene = train.top
+    press("confirm")
+    wait(train, lambda: len(scene.student.history) >= 2)
+    press("confirm")
+    wait(train, lambda: scene.student.state is State.PAUSED)
+    press("right")
+    assert scene._form.focused is scene._step_word
+    scene._form.focus(scene._save_word)
+    press("confirm")
+    assert isinstance(train.top, Naming)
+    press("confirm")
+    assert train.top is scene
+    wait(train, scene.student.library.runs)
+    press("back")
+    assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
 
 def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp_path: Path) -> None:
