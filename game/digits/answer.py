@@ -1,4 +1,4 @@
-"""The answer in the middle: what the chosen network says, how sure it is, and the other beside it."""
+"""The answer in the middle: what the chosen network says, how sure it is, the other beside it, and putting it right."""
 
 from __future__ import annotations
 
@@ -8,13 +8,16 @@ from typing import Final
 import numpy as np
 
 from game import texts
+from game.digits.fixing import Fixing
 from game.digits.reader import LEAST_INK, Numbers, Reading, Verdict
 from game.ui.canvas import Canvas
-from game.ui.tokens import INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
+from game.ui.prose import wrapped
+from game.ui.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
 from game.ui.widgets import PointsManager, Widget, mix
 
 LEFT: Final = 624.0
 RIGHT: Final = 848.0
+FIX_TOP: Final = 554.0
 _BASELINE: Final = 172.0
 _FIRST_ROW: Final = 272
 _ROW: Final = 26
@@ -122,3 +125,26 @@ def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
     canvas.text(figure, (RIGHT, _BASELINE), size=_SIZES[1], weight="light", colour=MUTE, align="right")
     words = percent(reading.probabilities[name][first]) if sure else texts.DIGITS_UNSURE
     canvas.text(words, (RIGHT, 205), size=SMALL, colour=MUTE, align="right", tabular=True)
+
+
+def draw_fix(canvas: Canvas, fixing: Fixing, *, same: bool) -> None:
+    """Write how to put a wrong answer right, how that goes on, or what it has done; `same` to what is still drawn."""
+    first, second = _fix_lines(fixing, same)
+    canvas.text(first, (LEFT, FIX_TOP), size=SMALL, colour=HUMAN)
+    for number, line in enumerate(wrapped(canvas, second, SMALL, RIGHT + 30 - LEFT)[:2]):
+        canvas.text(line, (LEFT, FIX_TOP + 20 + 16 * number), size=SMALL, colour=MUTE)
+
+
+def _fix_lines(fixing: Fixing, same: bool) -> tuple[str, str]:
+    step, fixed = fixing.step, fixing.fixed
+    if fixing.busy:
+        return texts.DIGITS_FIXING, percent(step.probability) if step else ""
+    if fixing.problem and same:
+        return texts.DIGITS_NOT_FIXED, fixing.problem
+    if fixed is None or not same:
+        return texts.DIGITS_FIX_HOW, ""
+    if not fixed.steps:
+        return texts.DIGITS_FIX_NEEDLESS.format(digit=fixed.digit), ""
+    before, now = map(percent, fixed.probability)
+    first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
+    return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])

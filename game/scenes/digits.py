@@ -13,7 +13,7 @@ import pygame
 from game import texts
 from game.context import Context
 from game.controls import Command, translate
-from game.digits.answer import LEFT, DigitRow, draw_answer, percent
+from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.fixing import Fixing
 from game.digits.measuring import Measuring
 from game.digits.pad import DrawingPad
@@ -27,7 +27,7 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
-from game.ui.tokens import HUMAN, LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.ui.tokens import LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.ui.widgets import Choice, Word
 
 if TYPE_CHECKING:
@@ -38,8 +38,6 @@ _TABS: Final = (232, 26, 24)  # left, top and height of the row beside the title
 _ELSEWHERE: Final = 398  # where the words that lead to other screens begin
 _BELOW: Final = 602  # top of the words under the pad
 _RIGHT: Final = 1244.0
-_FIX: Final = (LEFT, 554.0)
-_FIX_WIDTH: Final = 250.0
 _DIGITS: Final = {
     **{pygame.K_0 + digit: digit for digit in range(10)},
     **{pygame.K_KP1 + digit - 1: digit for digit in range(1, 10)},
@@ -65,6 +63,7 @@ class Digits:
         self._seen = -1
         self._why: Explanation | None = None
         self._unfix: Word | None = None
+        self._fix_of = -1  # the drawing, by its revision, that was put right last
 
     def enter(self, context: Context) -> None:
         """Read the networks and build the widgets, the first time."""
@@ -195,6 +194,7 @@ class Digits:
         image = self.reading.stages.centred
         if image.any() and self.chosen in self._reader.classifiers:
             self._fixing.begin(self.chosen, image, digit)
+            self._fix_of = self.pad.revision
 
     def _undo_fix(self) -> None:
         if self._fixing.undo(self.chosen):
@@ -215,35 +215,12 @@ class Digits:
         """Show the word that undoes a fix while there is one."""
         wanted = self._fixing.count(self.chosen) > 0
         if wanted and self._unfix is None:
-            box = (LEFT, _FIX[1] + 48, 96, 24)
+            box = (LEFT, FIX_TOP + 48, 96, 24)
             self._unfix = Word(self._form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
             self._form.replace([], [self._unfix])
         elif self._unfix and not wanted:
             self._form.replace([self._unfix], [])
             self._unfix = None
-
-    def _fix_lines(self) -> tuple[str, str]:
-        """Return what to say of a fix that is possible, goes on or is done."""
-        fixing, step, fixed = self._fixing, self._fixing.step, self._fixing.fixed
-        if fixing.problem:
-            return texts.DIGITS_NOT_FIXED, fixing.problem
-        if fixing.busy:
-            return texts.DIGITS_FIXING, percent(step.probability) if step else ""
-        if fixed and not fixed.steps:
-            return texts.DIGITS_FIX_NEEDLESS.format(digit=fixed.digit), ""
-        if fixed:
-            before, now = map(percent, fixed.probability)
-            first = texts.DIGITS_FIXED.format(digit=fixed.digit, before=before, now=now)
-            return first, texts.DIGITS_FIX_COST.format(before=fixed.accuracy[0], after=fixed.accuracy[1])
-        empty = self.reading.verdict(self.chosen) is Verdict.EMPTY
-        return ("", "") if empty else (texts.DIGITS_FIX_HOW, "")
-
-    def _draw_fix(self, canvas: Canvas) -> None:
-        x, y = _FIX
-        first, second = self._fix_lines()
-        canvas.text(first, (x, y), size=SMALL, colour=HUMAN)
-        for number, line in enumerate(wrapped(canvas, second, SMALL, _FIX_WIDTH)[:2]):
-            canvas.text(line, (x, y + 20 + 16 * number), size=SMALL, colour=MUTE)
 
     # Words
 
@@ -305,7 +282,8 @@ class Digits:
 
     def _draw_words(self, canvas: Canvas) -> None:
         assert self._context is not None
-        self._draw_fix(canvas)
+        if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
+            draw_fix(canvas, self._fixing, same=self._fix_of == self.pad.revision)
         for number, line in enumerate(
             wrapped(canvas, self._measuring.words(self._switches), LABEL, _RIGHT - SIGHT_LEFT)
         ):

@@ -238,7 +238,8 @@ def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, con
     assert digits._fixing.busy
     wait_for(drawing, lambda: not digits._fixing.busy)
     assert guess(drawing) == 7
-    assert "→" in digits._fix_lines()[1]
+    assert digits._fixing.fixed.digit == 7
+    drawing.frames(2)
     assert (context.user_dir / "digits" / "modern").is_dir()
     word = next(widget for widget in digits._form.widgets if widget.label == "Undo the fix")
     drawing.click(word.box.center)
