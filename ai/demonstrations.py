@@ -26,7 +26,7 @@ from ai.spawns import SPAWNS
 
 FORMAT: Final = "tranquility demonstrations"
 VERSION: Final = 1
-MOST: Final = 200  # flights kept; the oldest make room
+MOST: Final = 50  # flights kept; the oldest make room, since each takes a moment to be flown again
 _LONGEST: Final = 25 * 60  # physics steps of a flight
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from ai.agent import DeepQAgent
 from ai.config import Config
+from ai.demonstrations import read, teach
 from ai.env import Ints, StepResult
 from ai.history import PARTS, Alteration, Checkpoint, Entry, History, Point, Validation
 from ai.lander import NUM_ACTIONS, NUM_FEATURES, LanderEnv
@@ -38,21 +39,30 @@ CAREFUL: Final = 0  # the lander with the fewest random actions; the last one ha
 
 
 def live(
-    config: Config, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None
+    config: Config,
+    seed: int = 0,
+    *,
+    keep: Path | None = None,
+    resume: Path | None = None,
+    demonstrations: Path | None = None,
 ) -> Generator[tuple[Message, ...], Command | None, None]:
     """Train landers without end; every turn is one decision of all landers, and yields what there is to tell.
 
     The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
     without a decision, and yields the answer. The run saves itself to `keep` now and then and when it is closed.
-    With `resume`, it goes on from a saved run, with the settings, seed and history of that.
+    With `resume`, it goes on from a saved run, with the settings, seed and history of that. With `demonstrations`,
+    a file of `ai.demonstrations`, the agent remembers those as well from the start.
 
-    Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's,
-    and FloatingPointError, which names the learning step and the likely cause, when the numbers run away.
+    Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's and
+    for a damaged file of demonstrations, and FloatingPointError, which names the learning step and the likely cause,
+    when the numbers run away.
     """
+    lessons = [] if demonstrations is None else read(demonstrations)
     if resume is None:
         run = _LiveRun(Training(config, seed), History(), keep)
     else:
         run = _LiveRun(resume_run(resume), History.read(resume), keep)
+    teach(run.training.agent, lessons)
     try:
         told = run.begin()
         while True:

@@ -11,7 +11,9 @@ ROOT = Path(__file__).parents[1]
 STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
-LATE = {"ai.cli": {"tqdm"}, "ai.digits_cli": {"tqdm"}, "ai.gym_task": {"gymnasium"}}
+LATE = {
+    "ai.cli": {"tqdm"}, "ai.digits_cli": {"tqdm"}, "ai.copilot_cli": {"tqdm"}, "ai.gym_task": {"gymnasium"},
+}  # fmt: skip
 # What is there for the users of an extra alone.
 EXTRA = {"ai.gym_lander": {"gymnasium"}}
 

@@ -6,6 +6,7 @@ from ai.config import PRESETS
 from ai.demonstrations import Demonstration, demonstrate, read, relive, takeover, taught, teach, write
 from ai.ground import hilly
 from ai.lander import LanderEnv
+from ai.live import Insight, live
 from ai.pilots import ScriptedPilot
 
 MODERN = PRESETS["modern"]
@@ -93,6 +94,20 @@ def test_demonstrations_are_kept_in_a_file(landings, tmp_path):
     write(path, landings)
     assert read(path) == landings
     assert [file.name for file in path.parent.iterdir()] == ["flights.json"]
+
+
+def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path):
+    path = tmp_path / "flights.json"
+    write(path, landings)
+    config = taught(PRESETS["classic"])
+    lonely, led = live(config), live(config, demonstrations=path)
+    told = []
+    for run in (lonely, led):
+        next(run)
+        told.append([message for message in next(run) if isinstance(message, Insight)])
+        run.close()
+    assert not told[0][-1:] or not told[0][-1].gradients.any()  # still warming up
+    assert told[1][-1].gradients.any()
 
 
 KNOWN = '"format": "tranquility demonstrations", "version": 1'
