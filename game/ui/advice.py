@@ -32,6 +32,8 @@ class Advice:
     ) -> None:
         self._form, self._box, self._turn, self._go_back = form, box, turn, go_back
         self.adviser = Adviser(Config())
+        self._moment = 0  # of the run as it was last seen, in decisions
+        self._came_from: int | None = None  # the moment at which a remedy went back
         self._hint: Hint | None = None
         self._words: list[Word] = []
 
@@ -44,6 +46,8 @@ class Advice:
         self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
     ) -> None:
         """Look at the run again; call it when there is news."""
+        if len(history):
+            self._moment = int(history["decisions"][-1])
         self._lay(self.adviser.advise(history, config, dead_share, clipped_share))
 
     def clear(self) -> None:
@@ -92,6 +96,7 @@ class Advice:
         back_to = self._hint.back_to if self._hint else None
         for name, value in self.adviser.apply().items():
             self._turn(name, value)
+        self._came_from = None if back_to is None else self._moment
         if back_to is not None:
             self._go_back(back_to)
         self._lay(None)
@@ -99,6 +104,8 @@ class Advice:
     def _undo(self) -> None:
         for name, value in self.adviser.undo().items():
             self._turn(name, value)
+        if self._came_from is not None:
+            self._go_back(self._came_from)
         self._lay(None)
 
     def _dismiss(self) -> None:

@@ -1,0 +1,56 @@
+"""The hint on the training screen, with a run that flew better before."""
+
+from dataclasses import replace
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.config import PRESETS
+from ai.history import Checkpoint, History
+from game.context import Context
+from game.ui.advice import Advice
+from game.ui.form import Form
+from tests.ai.test_hints import HEALTHY
+
+MODERN = PRESETS["modern"]
+
+
+@pytest.fixture
+def collapsed() -> History:
+    run = History()
+    for number in range(400):
+        success = 0.97 if number < 300 else 0.2
+        run.append(replace(HEALTHY, seconds=number / 10, decisions=1000.0 * number, episodes=9.0 * number,
+                           success=success, landed=success))  # fmt: skip
+    run.append(Checkpoint(20.0, 200_000, 0.97, np.zeros(3, np.float32)))
+    run.append(Checkpoint(39.0, 390_000, 0.2, np.zeros(3, np.float32)))
+    return run
+
+
+def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, collapsed: History) -> None:
+    pygame.font.init()
+    turned: list[tuple[str, float]] = []
+    gone_to: list[int] = []
+    form = Form(context)
+    box = pygame.Rect(868, 612, 384, 50)
+    advice = Advice(form, box, lambda name, value: turned.append((name, value)), gone_to.append)
+    growing = History()
+    for checkpoint in collapsed.checkpoints:
+        growing.append(checkpoint)
+    for row in collapsed.points:
+        values = row.tolist()
+        growing.append(replace(HEALTHY, seconds=values[0], decisions=values[1], episodes=values[2],
+                               success=values[3], landed=values[3]))  # fmt: skip
+        advice.follow(growing, MODERN)
+    assert advice.adviser.shown is not None
+    assert advice.adviser.shown.name == "collapsed"
+    form.widgets[0].press()
+    assert gone_to == [200_000]
+    applied = dict(turned)
+    assert applied["learning_rate"] < MODERN.learning_rate
+    assert advice.shown, "the way back is offered"
+    form.widgets[0].press()
+    assert gone_to == [200_000, 399_000]
+    assert dict(turned)["learning_rate"] == MODERN.learning_rate
+    assert not advice.shown
