@@ -19,7 +19,7 @@ from ai.spawns import SPAWNS
 
 CURRICULUM: Final = "curriculum"
 LANDER: Final = "lander"
-_DEFAULT_WEIGHTS: Final = RewardWeights()
+_HASTE: Final = RewardWeights(time=-0.5, switch=-0.05)  # quick, and without flickering jets
 
 
 def knob(
@@ -49,7 +49,7 @@ def knob(
         "offers": offers,
     }
     if isinstance(default, RewardWeights):
-        return field(default_factory=RewardWeights, metadata=described)
+        return field(default_factory=lambda: default, metadata=described)
     return field(default=default, metadata=described)
 
 
@@ -67,12 +67,12 @@ class Config:
     n_step: int = knob(10, "How many rewards are summed before the network's own estimate takes over.",
                        "learning", low=1, high=20)
     batch_size: int = knob(256, "How many memories each step learns from.", "learning", low=8, high=1024, live=True)
-    updates: int = knob(8, "Learning steps after each decision of all landers.", "learning", low=1, high=32, live=True)
+    updates: int = knob(12, "Learning steps after each decision of all landers.", "learning", low=1, high=32, live=True)
     optimizer: str = knob("adam", "How a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("huber", "How a wrong estimate is measured.", "learning", choices=("mse", "huber"))
     gradient_clip: float = knob(10.0, "A longer gradient is shortened to this.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
-    horizon: int = knob(300_000, "Decisions over which the learning rate falls.",
+    horizon: int = knob(600_000, "Decisions over which the learning rate falls and care sets in.",
                         "learning", low=1_000, high=10_000_000, log=True)
 
     hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,
@@ -85,7 +85,7 @@ class Config:
     output_scale: float = knob(0.1, "Shrinks the last layer's first weights, so that early guesses are near 0.",
                                "network", low=0.01, high=1.0, log=True)
 
-    replay_size: int = knob(300_000, "How many memories are kept.", "memory", low=100, high=1_000_000, log=True)
+    replay_size: int = knob(1_000_000, "How many memories are kept.", "memory", low=100, high=1_000_000, log=True)
     replay_prune: int = knob(1, "How many of the oldest go when memory is full.", "memory", low=1, high=100_000)
     warm_up: int = knob(5_000, "Memories before learning begins.", "memory", low=1, high=50_000)
     prioritised: bool = knob(False, "Replay surprising memories more often.", "memory")
@@ -122,12 +122,12 @@ class Config:
                              "lander", low=0.0, high=1.0, live=True)
     num_envs: int = knob(256, "Landers at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps to a decision.", "lander", low=1, high=12)
-    spawn: str = knob("practice", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
-    care: float = knob(1.0, "While training, a touch may be only so hard, as a share of the real limits.",
+    spawn: str = knob("thorough", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
+    care: float = knob(0.8, "How hard a touch may be by the end of the horizon, as a share of the real limits.",
                        "lander", low=0.3, high=1.0)
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
-    weights: RewardWeights = knob(_DEFAULT_WEIGHTS, "What each part of the reward pays.", "lander", live=True)  # noqa: RUF009
+    weights: RewardWeights = knob(_HASTE, "What each part of the reward pays.", "lander", live=True)  # noqa: RUF009
     # fmt: on
 
     def __post_init__(self) -> None:
@@ -197,7 +197,7 @@ PRESETS: Final[dict[str, Config]] = {
         optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh", layer_normalisation=False,
         output_scale=1.0, replay_size=1500, replay_prune=1000, warm_up=64, mirror=False, success_pass=True,
         double=False, target_every=50, target_rate=1.0, fly_target=False, epsilon_decay=0.999,
-        epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0,
+        epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0, care=1.0,
         spawn=CURRICULUM, reward_scale=0.1, weights=RewardWeights(time=-0.1),
     ),
 }  # fmt: skip

@@ -23,6 +23,7 @@ from ai.lander import (
     engines_switched,
 )
 from ai.pilots import Pilot
+from ai.schedule import linear
 from ai.spawns import Curriculum
 
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
@@ -113,8 +114,7 @@ class LanderTask:
         """Make the landers to train with."""
         config = self.config
         spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
-        limits = LIMITS.stricter(config.care)
-        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, limits=limits, weights=config.weights)
+        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.weights)
 
     def change(self, config: Config, env: Env) -> None:
         """Take over the live knobs of another configuration, here and in the landers."""
@@ -122,6 +122,11 @@ class LanderTask:
         self.action_chances = _action_chances(config)
         if isinstance(env, LanderEnv):
             env.weights = config.weights
+
+    def follow(self, decisions: int, env: Env) -> None:
+        """Tighten the limits of a touch, from the real ones to as careful as is asked for."""
+        if isinstance(env, LanderEnv):
+            env.limits = LIMITS.stricter(linear(1.0, self.config.care, decisions, self.config.horizon))
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
         """Fly so many flights at once from random spawns."""

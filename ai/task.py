@@ -60,6 +60,9 @@ class Task(Protocol):
     def change(self, config: Config, env: Env) -> None:
         """Take over the live knobs of another configuration, here and in an environment that `make_env` made."""
 
+    def follow(self, decisions: int, env: Env) -> None:
+        """Bring what changes with experience up to date in an environment that `make_env` made."""
+
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Score:
         """Measure a pilot over so many episodes, which follow from `seed`."""
 

@@ -104,6 +104,7 @@ class Training:
         """Let every lander take one decision, learn from it, and evaluate if it is time."""
         agent, env, flights = self.agent, self.env, self.flights
         epsilon = self.epsilon
+        self.task.follow(agent.decisions, env)
         actions = agent.act(self.observation, self._spread(epsilon), self._held)
         result = env.step(actions)
         agent.remember(self.observation, actions, result, result.succeeded)

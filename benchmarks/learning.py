@@ -4,7 +4,7 @@
     python -m benchmarks.learning --runs 30 120 [--seeds 5] [--preset modern] [--set NAME=VALUE ...]
 
 Ours is the modern preset. The rival has the settings its authors tuned for Gymnasium's lunar lander and flies
-ours through Gymnasium, one decision at a time, from the same practice spawns. Every second of training (the
+ours through Gymnasium, one decision at a time, from the same spawns. Every second of training (the
 rival: every ten) the network flies 500 random validation spawns greedily, and the best so far is kept. What is
 told of it are its flights from 2,000 other spawns, which had no say in the choice; a share counts as reached when
 the network then kept first lands it there. `--runs` measures what is kept after so many seconds instead, on random
@@ -128,7 +128,7 @@ def theirs(seed: int) -> Iterator[Checkpoint]:
     from stable_baselines3 import DQN
 
     torch.set_num_threads(1)
-    env = gymnasium.make("ai.gym_lander:tranquility/Lander-v0", spawn="practice")
+    env = gymnasium.make("ai.gym_lander:tranquility/Lander-v0", spawn=PRESETS["modern"].spawn)
     model = DQN("MlpPolicy", env, seed=seed, device="cpu", **TUNED)
     spent = 0.0
     while True:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ai.config import Config
-from ai.lander import LanderEnv, Outcome
+from ai.lander import LIMITS, LanderEnv, Outcome
 from ai.nn import ModelFormatError
 from ai.pilots import NoPilot, ScriptedPilot
 from ai.runs import TrainingClock, resume_run, save_run
@@ -156,3 +156,12 @@ def test_a_curriculum_run_climbs_its_stages():
     assert isinstance(training.env, LanderEnv)
     assert training.advance().stage == 3
     assert (training.env.outcome == Outcome.FLYING).all()
+
+
+def test_care_sets_in_over_the_horizon():
+    training = Training(SMALL.changed(care=0.5, horizon=1000), evaluate_every=0)
+    held = []
+    for _ in range(127):
+        held.append(training.env.limits.touch_speed / LIMITS.touch_speed)
+        training.advance()
+    np.testing.assert_allclose(held, [1.0, *np.maximum(0.5, 1 - 0.5 * np.arange(126) * 8 / 1000)])
