@@ -26,6 +26,8 @@ class Command(Enum):
     FASTER = auto()
     NEXT = auto()
     PREVIOUS = auto()
+    CHOICES = auto()
+    MODE = auto()
     FULLSCREEN = auto()
     SCREENSHOT = auto()
 
@@ -57,6 +59,8 @@ KEYS: Final[dict[Command | Held, tuple[int, ...]]] = {
     Command.FASTER: (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_KP_PLUS, pygame.K_RIGHTBRACKET),
     Command.NEXT: (pygame.K_n, pygame.K_PAGEDOWN),
     Command.PREVIOUS: (pygame.K_b, pygame.K_PAGEUP),
+    Command.CHOICES: (pygame.K_c,),
+    Command.MODE: (pygame.K_g,),
     Command.FULLSCREEN: (pygame.K_F11,),
     Command.SCREENSHOT: (pygame.K_F12,),
 }
@@ -74,6 +78,8 @@ BUTTONS: Final[dict[Command | Held, tuple[int, ...]]] = {
     Command.PAUSE: (pygame.CONTROLLER_BUTTON_START,),
     Command.RETRY: (pygame.CONTROLLER_BUTTON_X,),
     Command.STEP: (pygame.CONTROLLER_BUTTON_RIGHTSTICK,),
+    Command.CHOICES: (pygame.CONTROLLER_BUTTON_BACK,),
+    Command.MODE: (pygame.CONTROLLER_BUTTON_LEFTSTICK,),
     Command.PREVIOUS: (pygame.CONTROLLER_BUTTON_LEFTSHOULDER,),
     Command.NEXT: (pygame.CONTROLLER_BUTTON_RIGHTSHOULDER,),
 }
@@ -88,6 +94,8 @@ STICK_COMMANDS: Final[dict[Command, tuple[int, int]]] = {
     Command.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1),
     Command.UP: (pygame.CONTROLLER_AXIS_LEFTY, -1),
     Command.DOWN: (pygame.CONTROLLER_AXIS_LEFTY, 1),
+    Command.SLOWER: (pygame.CONTROLLER_AXIS_RIGHTX, -1),
+    Command.FASTER: (pygame.CONTROLLER_AXIS_RIGHTX, 1),
 }
 STICK_PUSHED: Final = 20000
 STICK_RELEASED: Final = 12000
@@ -103,6 +111,8 @@ KEY_WORDS: Final[dict[Command, str]] = {
     Command.FASTER: "+",
     Command.NEXT: "N",
     Command.PREVIOUS: "B",
+    Command.CHOICES: "C",
+    Command.MODE: "G",
     Command.FULLSCREEN: "F11",
     Command.SCREENSHOT: "F12",
 }
@@ -115,6 +125,10 @@ BUTTON_WORDS: Final[dict[Command, str]] = {
     Command.STEP: "R3",
     Command.NEXT: "RB",
     Command.PREVIOUS: "LB",
+    Command.SLOWER: "R ←",
+    Command.FASTER: "R →",
+    Command.CHOICES: "View",
+    Command.MODE: "L3",
 }
 _KEY_COMMANDS: Final = {key: c for c, keys in KEYS.items() if isinstance(c, Command) for key in keys}
 _BUTTON_COMMANDS: Final = {b: c for c, buttons in BUTTONS.items() if isinstance(c, Command) for b in buttons}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ai.env import Bools, Doubles, Floats, Ints
-from ai.ground import PADS, Ground, hilly
+from ai.ground import Ground, hilly
 from ai.lander import PARAMS, LanderEnv, Outcome
 from ai.pilots import COAST
 from engine.integrate import integrate_position, integrate_velocity
@@ -215,10 +215,8 @@ class Flight:
 
 
 def ground_of(seed: int, pads: int) -> Ground:
-    """Return the ground of a flight: a plain with one pad, or hills with as many as the game has sizes of."""
-    if pads == 1:
-        return Ground.flat()
-    return hilly(np.random.default_rng([seed, pads]), PADS[:pads])
+    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size there is."""
+    return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
 
 
 class Swarm:

@@ -145,13 +145,15 @@ def draw_centred_bars(
         canvas.line((middle, y - 4), (middle, y + 4), MUTE)
 
 
-def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
+def draw_share(
+    canvas: Canvas, left: float, top: float, width: float, human: float, other: str = texts.SHARE_NETWORK
+) -> None:
     """Say how much of a flight the person flew and how much the network."""
     you = round(100 * human)
     if you:
         canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
     if you < 100:
-        network = texts.SHARE_NETWORK.format(percent=100 - you)
+        network = other.format(percent=100 - you)
         canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right")
     edge = width * human
     if human > 0:

@@ -26,6 +26,13 @@ class Settings:
     ambience_volume: float = 0.7
     altitude_volume: float = 0.0  # of the tone that lets one hear height and speed; 0 is off
     model: str = ""  # the network last chosen to fly; empty for the game's own
+    assist: float = 0.0  # how much the co-pilot helps a person who flies
+    copilot: str = "tolerance"  # and when, a Mode of ai.copilot
+    three_pads: bool = False  # among hills, instead of one on a plain
+    hands: str = "own"  # what the keys pass through, of game.cockpit.hands
+    check_flights: bool = False  # every fifth flight without help
+    teach: bool = False  # whether good landings are kept for a network to learn from
+    explain: bool = True  # whether a panel says what the co-pilot thinks
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
 
     def to_dict(self) -> dict[str, Any]:

@@ -756,8 +756,8 @@ INSIGHT_ASKED: Final = "asked for"
 # What became of the person's action, by ai.copilot.Rule: a title, and why, in two lines
 INSIGHT_WHY: Final = {
     "PILOT": ("Yours is flown", "{asked}: worth {worth} % of the best,", "and {assist} % is good enough."),
-    "PILOT_MAIN": ("It steers for you", "{asked}: worth {worth} % of the best,", "not {assist} %. The main engine is yours."),
-    "PILOT_STEER": ("It sees to the main engine", "{asked}: worth {worth} % of the best,", "not {assist} %. You steer."),
+    "PILOT_MAIN": ("It steers for you", "{asked}: worth {worth} % of the best,", "not {assist} %. Main is yours."),
+    "PILOT_STEER": ("It sees to main", "{asked}: worth {worth} % of the best,", "not {assist} %. You steer."),
     "COPILOT": ("It does this one", "{asked}: worth {worth} % of the best,", "not {assist} %, and nothing near it is."),
     "HANDS_OFF": ("Hands off: it flies", "Touch anything, and you have", "the stick again."),
     "ALONE": ("It flies alone", "Take the stick back,", "and you fly it together."),

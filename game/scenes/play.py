@@ -10,6 +10,8 @@ import pygame
 from ai.env import Doubles
 from game import hud, networks, texts
 from game.clock import STEP
+from game.cockpit.cockpit import Cockpit
+from game.cockpit.hands import HANDS, OWN
 from game.context import Context
 from game.controls import Command, translate
 from game.flight import Flight, Hand, coast_path
@@ -24,14 +26,13 @@ from game.ui.hints import draw_hints
 from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
 from game.ui.widgets import OnPress
 from game.world.backdrop import landscape
-from game.world.pad import draw_pad
+from game.world.ground import draw_ground
 from game.world.paths import draw_dotted
 from game.world.stage import Stage
 
 _PATH_EVERY: Final = 6  # steps between predictions
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
-_SWEEP: Final = 0.16
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
 _AWAY_STEPS: Final = 10
 
@@ -52,7 +53,6 @@ class Play:
         self._context: Context | None = None
         self.waiting, self._let_go = True, False
         self._time = 0.0
-        self._sweep = 1.0  # how far the line at the top has swept since the stick changed hands
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._steps = self._since_end = 0
         self._card: hud.Card | None = None
@@ -68,7 +68,9 @@ class Play:
         self._begin(self._new_seed() if self._seed is None else self._seed)
 
     def exit(self) -> None:
-        """Keep the flight for the way back."""
+        """Keep the flight for the way back, and what the dial was turned to."""
+        assert self._context is not None
+        self._context.apply_settings()
 
     def retry(self) -> None:
         """Fly again from the same start."""
@@ -78,6 +80,9 @@ class Play:
         """Hand over, begin again, pause."""
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
+        if self._cockpit.take(event):
+            self._name_what_lacks()
+            return None
         match translate(event):
             case Command.PAUSE:
                 return Pop() if self._leaves else self._pause()
@@ -96,6 +101,7 @@ class Play:
     def update(self) -> Transition | None:
         """Fly one step of 1/60 s."""
         self._let_pass()
+        self._cockpit.ease()
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
         if self._waits():
@@ -105,12 +111,15 @@ class Play:
         was_over = flight.over
         if not was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = hud.flight_readouts(flight.env)
+        self._cockpit.help()
         flight.step(self._controls.action)
         if self._ghost:
             self._ghost.step()
         self._look_ahead()
         ended = np.array([flight.over and not was_over])
-        self._stage.follow(np.array([flight.hand is Hand.NETWORK]), ended)
+        if not was_over:
+            self._cockpit.follow()
+        self._stage.follow(np.array([flight.flown_by is Hand.NETWORK]), ended)
         self._heard.follow(self._stage.thrust[0])
         if not self._settings.reduced_motion:
             self._camera.follow(flight.env.position[0])
@@ -129,8 +138,10 @@ class Play:
         landscape(canvas.surface.get_size(), self._settings.reduced_motion).draw(
             canvas, self._camera, self._time, alpha
         )
-        centre = (float(env.pad[0, 0]), float(env.pad[0, 1]))
-        draw_pad(canvas, view, centre, float(env.pad_width[0]), self._time)
+        draw_ground(canvas, view, env.ground, self._time)
+        self._cockpit.draw_behind(canvas)
+        if flight.over:
+            self._cockpit.track.draw(canvas, view)
         draw_dotted(canvas, view, self._path, HUMAN)
         if self._forecast and not flight.over:
             draw_dotted(canvas, view, self._forecast.path, NET)
@@ -138,6 +149,7 @@ class Play:
             self._ghost.draw(canvas, view, alpha)
         self._stage.draw_lander(canvas, view, pose)
         self._stage.draw_dust(canvas, view, alpha)
+        self._cockpit.draw_beside(canvas, view, pose)
         self._draw_hud(canvas)
         if self._card is not None and self._card_shown > 0:
             rival = self._ghost.row(env) if self._ghost else None
@@ -150,7 +162,6 @@ class Play:
         if not self._settings.reduced_motion:
             self._time += STEP
         self._away += self._away > 0
-        self._sweep += (1.0 - self._sweep) * (1.0 if self._settings.reduced_motion else _SWEEP)
 
     def _look_ahead(self) -> None:
         """Predict where the craft goes if nobody touches anything, and where the network would take it."""
@@ -172,7 +183,9 @@ class Play:
 
     def _begin(self, seed: int) -> None:
         self.waiting, self._let_go = True, False
-        self.flight = Flight(seed, self._network.flyer)
+        pads, hands = (1, OWN) if self._rival else self._chosen()
+        self.flight = Flight(seed, self._network.flyer, pads=pads, hands=hands)
+        self._cockpit = Cockpit(self.flight, self._settings)
         self._ghost = Ghost(self._rival, self._rival_name, seed) if self._rival else None
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
@@ -183,12 +196,16 @@ class Play:
         self._card = None
         self._path = coast_path(self.flight.env)
         self._forecast = self._new_forecast()
-        self._sweep = 1.0
         self._steps = self._since_end = 0
 
     def _new_forecast(self) -> Forecast | None:
         ahead = None if self._ghost else self._network.flyer  # beside a ghost, one blue path is enough
-        return Forecast(ahead) if ahead else None
+        return Forecast(ahead, self.flight.env.ground) if ahead else None
+
+    def _chosen(self) -> tuple[int, str]:
+        """Return how many pads there are, and what hands fly, as the player wants it."""
+        hands = self._settings.hands
+        return 3 if self._settings.three_pads else 1, hands if hands in HANDS else OWN
 
     def _load_network(self) -> None:
         assert self._context is not None
@@ -203,10 +220,17 @@ class Play:
 
     def _hand_over(self) -> None:
         if self.flight.hand_over():
-            self._sweep = 0.0
             self._sound.play("to_network" if self.flight.hand is Hand.NETWORK else "to_human")
         elif self._network.flyer is None and self._context is not None:
             self._context.note(texts.NO_NETWORK.format(problem=self._network.problem))
+
+    def _name_what_lacks(self) -> None:
+        """Say why turning the dial does nothing, where it does nothing."""
+        assert self._context is not None
+        if self._settings.assist > 0 and self.flight.copilot is None:
+            network = self._network
+            text = texts.DIAL_NEEDS if network.flyer else texts.NO_NETWORK
+            self._context.note(text.format(name=network.name, problem=network.problem))
 
     def _go_on(self) -> None:
         """After a landing to a new start, after a crash to the same one."""
@@ -254,9 +278,7 @@ class Play:
         return 1.0 if self._settings.reduced_motion else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
 
     def _draw_hud(self, canvas: Canvas) -> None:
-        network_flies = self.flight.hand is Hand.NETWORK
-        text = texts.NETWORK_FLIES if network_flies else texts.YOU_FLY
-        hud.draw_hand(canvas, text, NET if network_flies else HUMAN, self._sweep)
+        self._cockpit.draw_top(canvas)
         if self._ghost:
             hud.draw_corner(canvas, texts.DUEL, texts.DUEL_RIVAL.format(name=self._ghost.name))
         else:

@@ -21,14 +21,16 @@ _LAMP: Final = 0.20  # height of a lamp above the deck
 _MARGIN: Final = 0.6
 
 
-def draw_pad(canvas: Canvas, view: View, centre: tuple[float, float], width: float, time: float) -> None:
-    """Draw a pad whose top has its middle at `centre`; `time` in seconds lets the lamps breathe."""
+def draw_pad(
+    canvas: Canvas, view: View, centre: tuple[float, float], width: float, time: float, floor: float = PARAMS.ground
+) -> None:
+    """Draw a pad whose top has its middle at `centre` and that stands on `floor`; lamps breathe with `time` in s."""
     colour = canvas.palette.good
-    deck, (left, top) = _paint(view.pixels_per_metre, width, colour)
+    deck, (left, top) = _paint(view.pixels_per_metre, width, round(centre[1] - floor, 2), colour)
     x, y = view.pixels(centre)
     corner = (round(float(x)) - left, round(float(y)) - top)
     pool = _pool(view.pixels_per_metre, width, colour)
-    ground = view.pixels((centre[0], PARAMS.ground - 0.05))
+    ground = view.pixels((centre[0], floor - 0.05))
     surface = canvas.surface
     surface.blit(
         pool,
@@ -45,11 +47,12 @@ def draw_pad(canvas: Canvas, view: View, centre: tuple[float, float], width: flo
         canvas.dot(lamp, 0.085 * metre, mix(colour, (255, 255, 255), 0.45))
 
 
-@lru_cache(maxsize=4)
-def _paint(pixels_per_metre: float, width: float, colour: Colour) -> tuple[pygame.Surface, tuple[int, int]]:
-    """Return the deck, and where in it the middle of its top is."""
+@lru_cache(maxsize=8)
+def _paint(
+    pixels_per_metre: float, width: float, height: float, colour: Colour
+) -> tuple[pygame.Surface, tuple[int, int]]:
+    """Return the deck of a pad that is so high, and where in it the middle of its top is."""
     scale = pixels_per_metre * _FACTOR
-    height = PARAMS.pad_top - PARAMS.ground
     half = math.ceil((width / 2 + _MARGIN) * pixels_per_metre)
     above, below = math.ceil(_MARGIN * pixels_per_metre), math.ceil((height + 0.25) * pixels_per_metre)
     sheet = pygame.Surface((2 * half * _FACTOR, (above + below) * _FACTOR), pygame.SRCALPHA)
@@ -89,7 +92,7 @@ def _dashes(quad: object, inset: float, colour: Colour) -> None:
              (middle - 0.14, -0.245))  # fmt: skip
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _pool(pixels_per_metre: float, width: float, colour: Colour) -> pygame.Surface:
     """Return the lamps' light on the regolith around the pad."""
     half_width, half_height = (width / 2 + 2.6) * pixels_per_metre, 0.75 * pixels_per_metre

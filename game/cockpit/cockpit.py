@@ -1,0 +1,81 @@
+"""Everything of the co-pilot that is seen in a flight, in one place for the scene that flies it."""
+
+from __future__ import annotations
+
+import pygame
+
+from ai.env import Doubles
+from game import texts
+from game.cockpit.dial import Dial, draw_title
+from game.cockpit.insight import Insight
+from game.cockpit.overrides import Overrides
+from game.cockpit.track import Track
+from game.controls import Command, translate
+from game.flight import Flight, Hand
+from game.render import View
+from game.settings import Settings
+from game.ui.canvas import Canvas
+from game.ui.tokens import HUMAN
+
+_MODES = ("tolerance", "guardian")
+
+
+class Cockpit:
+    """Of one flight; `help` before every step of it, `follow` after.
+
+    `alone` is a check flight: the dial is out of reach, and nobody helps.
+    """
+
+    def __init__(self, flight: Flight, settings: Settings, *, alone: bool = False) -> None:
+        self._flight, self._settings, self._alone = flight, settings, alone
+        self._dial = Dial(settings)
+        self.overrides = Overrides()
+        self.track = Track(flight)
+        self._insight = Insight(flight.env.ground)
+        self.helped = False  # whether the co-pilot shared the stick at any time
+        if settings.copilot not in _MODES:
+            settings.copilot = _MODES[0]
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Turn the dial, or change when the co-pilot steps in; whether the event meant that."""
+        if self._alone:
+            return False
+        if translate(event) is Command.MODE:
+            self._settings.copilot = _MODES[1 - _MODES.index(self._settings.copilot)]
+            return True
+        return self._dial.take(event)
+
+    def help(self) -> None:
+        """Let the co-pilot help as the dial says."""
+        self._flight.help(0.0 if self._alone else self._settings.assist, self._settings.copilot)
+
+    def follow(self) -> None:
+        """Note the step just flown."""
+        stepped_in = self.overrides.follow(self._flight)
+        self.track.follow(self._flight, stepped_in)
+        self._insight.follow(self._flight)
+        self.helped |= self._flight.shared
+
+    def ease(self) -> None:
+        """Let 1/60 s pass, whether or not anything flies."""
+        self._dial.follow(self._flight.hand)
+
+    def draw_behind(self, canvas: Canvas) -> None:
+        """Draw what the craft flies in front of."""
+        if self._settings.explain and self._insight.shown and not self._flight.over:
+            self._insight.draw(canvas, self._flight.share)
+
+    def draw_beside(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        """Draw what was changed of what the hands asked for."""
+        if not self._flight.over:
+            self.overrides.draw_word(canvas, view, pose)
+
+    def draw_top(self, canvas: Canvas) -> None:
+        """Say who flies, and who flew just now."""
+        flight = self._flight
+        if self._alone and flight.hand is Hand.HUMAN:
+            draw_title(canvas, texts.DIAL_JOIN.join((texts.CHECK_FLIGHT, texts.CHECK_ALONE)), ("circle", HUMAN, 0.8))
+            return
+        self._dial.draw(canvas, flight.hand, self.overrides.lamp(flight))
+        if self.helped:
+            self.overrides.draw_line(canvas)

@@ -1,0 +1,144 @@
+"""The panel that explains a shared step: what each action is worth, which were good enough, and whose it became."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Bools, Doubles, Floats
+from ai.ground import Ground
+from ai.lander import ACTION_NAMES, NUM_ACTIONS
+from ai.pilots import COAST
+from game import hud, texts
+from game.flight import DECISION_STEPS, Flight, Hand
+from game.networks import Thinker
+from game.ui.canvas import Canvas
+from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIEW_SIZE
+from game.world.paint import mix
+
+PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 64 - 244, 84, 264, 336)
+_PADS_HIGH: Final = 102  # what the rows of three pads add
+_LEFT: Final = PANEL.left + 20
+_WIDTH: Final = PANEL.width - 40
+_TRACK: Final = (_LEFT + 96, _WIDTH - 96)
+_FIRST: Final = PANEL.top + 64
+_ROW: Final = 24
+_WHY: Final = _FIRST + 6 * _ROW
+_EASE: Final = 0.35
+_STAYS: Final = 50  # steps that the word on an override is kept, to be read
+
+
+class Insight:
+    """Follows a flight that is shared, or that a network flies; `shown` while there is something to explain."""
+
+    def __init__(self, ground: Ground) -> None:
+        self.shown = False
+        self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
+        self._bars: Doubles = np.zeros(NUM_ACTIONS)
+        self._wanted: Doubles = np.zeros(NUM_ACTIONS)
+        self._feasible: Bools = np.ones(NUM_ACTIONS, dtype=bool)
+        self._likely: list[float] = []
+        self._asked: int | None = None
+        self._flown, self._threshold = COAST, 0.0
+        self._why: tuple[str, str, str] = ("", "", "")
+        self._kept = 0
+        self._seen: object = None
+
+    def follow(self, flight: Flight) -> None:
+        """Note the step just flown."""
+        if flight.over:
+            return
+        self.shown = flight.shared or (flight.hand is Hand.NETWORK and isinstance(flight.network, Thinker))
+        self._kept = max(0, self._kept - 1)
+        if flight.hand is Hand.NETWORK:
+            self._watch(flight)
+        elif flight.decision is not None and flight.decision is not self._seen:
+            self._explain(flight)
+        self._bars += _EASE * (self._wanted - self._bars)
+
+    def _watch(self, flight: Flight) -> None:
+        """Ask a network that flies alone for what it thinks."""
+        if not isinstance(flight.network, Thinker) or len(flight.recording.actions) % DECISION_STEPS != 1:
+            return
+        self._wanted = _worth(flight.network.q_values(flight.env.observe())[0])
+        self._feasible[:], self._threshold, self._asked = True, 0.0, None
+        self._flown, self._likely = flight.recording.actions[-1], []
+        self._why, self._kept = texts.INSIGHT_WHY["ALONE"], 0
+
+    def _explain(self, flight: Flight) -> None:
+        from ai.copilot import Mode, Rule
+
+        decision, copilot = flight.decision, flight.copilot
+        assert decision is not None
+        assert copilot is not None
+        self._seen = decision
+        values = decision.values[0, int(flight.env.target[0])]
+        self._wanted = _worth(values)
+        self._feasible = decision.feasible[0]
+        self._likely = decision.likely[0].tolist()
+        asked, best, self._flown = int(decision.pilot[0]), int(decision.best[0]), int(decision.action[0])
+        self._asked = None if asked == COAST else asked
+        guards = copilot.mode is Mode.GUARDIAN
+        self._threshold = 0.0 if guards else 1.0 if asked == COAST else copilot.assist
+        rule = Rule.HANDS_OFF if asked == COAST else Rule(int(decision.rule[0]))
+        if rule is Rule.PILOT and self._kept:
+            return  # there is more to be read about the override before
+        title, first, second = texts.INSIGHT_WHY[rule.name]
+        if guards and asked != COAST:
+            points = float(values[best] - values[asked]) / copilot.reward_scale
+            second = texts.INSIGHT_GUARDIAN[rule is not Rule.PILOT].format(
+                points=f"{points:.1f}", best=ACTION_NAMES[best])  # fmt: skip
+        words = {"asked": ACTION_NAMES[asked].capitalize(), "worth": round(100 * float(self._wanted[asked])),
+                 "assist": round(100 * copilot.assist)}  # fmt: skip
+        self._why = (title, first.format(**words), second.format(**words))
+        self._kept = _STAYS if rule not in (Rule.PILOT, Rule.HANDS_OFF) else 0
+
+    def draw(self, canvas: Canvas, share: float) -> None:
+        """Draw the panel; `share` is the person's share of the flight so far."""
+        pads = self._likely if len(self._likely) > 1 else []
+        lower = _PADS_HIGH if pads else 0
+        canvas.panel((PANEL.left, PANEL.top, PANEL.width, PANEL.height + lower))
+        canvas.text(texts.INSIGHT_TITLE, (_LEFT, PANEL.top + 34))
+        for action in range(NUM_ACTIONS):
+            self._draw_row(canvas, action)
+        if 0.0 < self._threshold < 1.0:
+            x = _TRACK[0] + self._threshold * _TRACK[1]
+            canvas.line((x, _FIRST - 9), (x, _FIRST + 5 * _ROW + 9), INK, alpha=0.7)
+            canvas.marker("triangle_down", (x, _FIRST - 13), 6, INK, 0.8)
+        title, *lines = self._why
+        canvas.line((_LEFT, _WHY), (_LEFT + _WIDTH, _WHY), LINE)
+        canvas.text(title, (_LEFT, _WHY + 26), colour=NET if self._kept else INK)
+        for number, line in enumerate(lines):
+            canvas.text(line, (_LEFT, _WHY + 48 + 18 * number), size=SMALL, colour=MUTE)
+        if pads:
+            self._draw_pads(canvas, pads, _WHY + 94)
+        hud.draw_share(canvas, _LEFT, _WHY + 104 + lower, _WIDTH, share, texts.SHARE_COPILOT)
+
+    def _draw_row(self, canvas: Canvas, action: int) -> None:
+        y = _FIRST + _ROW * action
+        flown, good = action == self._flown, bool(self._feasible[action])
+        canvas.text(ACTION_NAMES[action], (_LEFT, y + 4), size=SMALL, colour=INK if flown else MUTE,
+                    alpha=1.0 if good or flown else 0.5)  # fmt: skip
+        colour = NET if flown else mix(FAINT, NET, 0.45 if good else 0.12)
+        canvas.bar((_TRACK[0], y - 1.5, _TRACK[1], 3), float(self._bars[action]), colour)
+        if action == self._asked:
+            canvas.dot((_TRACK[0] + float(self._bars[action]) * _TRACK[1], y), 4, HUMAN)
+
+    def _draw_pads(self, canvas: Canvas, likely: list[float], top: float) -> None:
+        canvas.text(texts.INSIGHT_MEANT, (_LEFT, top), size=LABEL, colour=MUTE, weight="medium")
+        most = max(likely)
+        for number, (name, chance) in enumerate(zip(self._names, likely, strict=True)):
+            y = top + 20 + 22 * number
+            surest = chance == most
+            canvas.text(name, (_LEFT, y + 4), size=SMALL, colour=INK if surest else MUTE)
+            canvas.bar((_TRACK[0], y - 1.5, _TRACK[1], 3), chance, HUMAN if surest else mix(FAINT, HUMAN, 0.45))
+
+
+def _worth(values: Floats) -> Doubles:
+    """Return values (6,) above the least, as shares of the most."""
+    above = values - values.min()
+    most = float(above.max())
+    shares: Doubles = above / most if most > 0 and np.isfinite(most) else np.zeros(NUM_ACTIONS)
+    return shares

@@ -1,0 +1,137 @@
+"""What is seen of a shared stick: a lamp, a line of who flew, a word beside the craft, and what was not flown."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from itertools import groupby
+from typing import Final
+
+from ai.env import Doubles
+from ai.pilots import COAST
+from game import texts
+from game.flight import DECISION_STEPS, Flight, Hand
+from game.render import View
+from game.ui.canvas import Canvas
+from game.ui.shapes import Shape
+from game.ui.tokens import HUMAN, NET, SMALL, VIEW_SIZE, Colour
+from game.world import lander as art
+
+_LASTS: Final = 40  # steps that a word stays after the last override: long enough to be read
+_FADES: Final = 14
+_SAMPLES: Final = 120  # decisions on the line, eight seconds
+_STRIP: Final = (VIEW_SIZE[0] / 2 - 90, 77.0, 180.0)  # left, middle, width
+_DOTS: Final = 6  # of what was asked for and not flown
+_YOURS, _HANDED, _CHANGED = range(3)
+
+
+class Overrides:
+    """Follows a flight, step by step.
+
+    Attributes:
+        times: how often the co-pilot stepped in; what follows within a moment is the same time.
+
+    """
+
+    def __init__(self) -> None:
+        self.times = 0
+        self._since = _LASTS + _FADES
+        self._word = ""
+        self._asked = self._flown = COAST
+        self._now = _YOURS
+        self._line: deque[int] = deque(maxlen=_SAMPLES)
+
+    def follow(self, flight: Flight) -> bool:
+        """Note the step just flown; whether the co-pilot has just stepped in."""
+        begins = flight.overridden and self._since > _FADES
+        self._since = 0 if flight.overridden else self._since + 1
+        if flight.overridden:
+            self._asked, self._flown = flight.asked, flight.recording.actions[-1]
+            self._word = difference(self._asked, self._flown)
+            self._now = _CHANGED
+        self.times += begins
+        if len(flight.recording.actions) % DECISION_STEPS == 0 and not flight.over:
+            yours = flight.flown_by is Hand.HUMAN
+            self._line.append(_CHANGED if self._now == _CHANGED else _YOURS if yours else _HANDED)
+            self._now = _YOURS
+        return begins
+
+    @property
+    def strength(self) -> float:
+        """How bright the last override still is, 0 to 1."""
+        return min(1.0, max(0.0, (_LASTS + _FADES - self._since) / _FADES))
+
+    def lamp(self, flight: Flight) -> tuple[Shape, Colour, float]:
+        """Shape, colour and glow: a disc is whoever has the stick, a ring hands off, a diamond an override."""
+        if flight.hand is Hand.NETWORK:
+            return "circle", NET, 0.8
+        if self._since < _FADES:
+            return "diamond", NET, 1.6
+        if flight.shared and flight.flown_by is Hand.NETWORK and flight.asked == COAST:
+            return "ring", NET, 0.5
+        return "circle", HUMAN, 0.8
+
+    def draw_line(self, canvas: Canvas) -> None:
+        """Draw who flew in the last seconds: thin, and thick where the co-pilot stepped in."""
+        left, middle, width = _STRIP
+        step = width / _SAMPLES
+        x = left + width - step * len(self._line)
+        for kind, run in groupby(self._line):
+            length = step * len(list(run))
+            height = 7.0 if kind == _CHANGED else 1.0
+            colour, alpha = (HUMAN, 0.6) if kind == _YOURS else (NET, 1.0 if kind == _CHANGED else 0.6)
+            canvas.fill(canvas.rect(x, middle - height / 2, max(length, 1.0), height), colour, alpha)
+            x += length
+
+    def draw_word(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        """Say beside the craft what was changed, and dot the fire that was asked for and not lit."""
+        strength = self.strength
+        if strength <= 0:
+            return
+        if self._since < _FADES:
+            for start, away in _unlit(self._asked, self._flown):
+                _draw_unlit(canvas, view, pose, start, away)
+        x, y = view.points(pose[:2]).tolist()
+        metre = view.pixels_per_metre / view.scale
+        right = x < VIEW_SIZE[0] - 200
+        x += (1.5 if right else -1.5) * metre
+        y -= 0.4 * metre
+        canvas.marker("diamond", (x, y), 8, NET, strength)
+        canvas.text(self._word, (x + (9 if right else -9), y + 4), size=SMALL, colour=NET,
+                    align="left" if right else "right", alpha=strength)  # fmt: skip
+
+
+def difference(asked: int, flown: int) -> str:
+    """Say what became of an action that was changed, in engines."""
+    words = []
+    main, name = flown // 3 - asked // 3, texts.ENGINE_MAIN
+    if main:
+        words.append((texts.OVERRIDE_ADDS if main > 0 else texts.OVERRIDE_STOPS).format(engine=name))
+    before, after = (texts.ENGINES_STEER[action % 3] for action in (asked, flown))
+    if before != after:
+        form = texts.OVERRIDE_TURNS if before and after else texts.OVERRIDE_ADDS if after else texts.OVERRIDE_STOPS
+        words.append(form.format(engine=after or before, other=before))
+    return "  ".join(words)
+
+
+def _unlit(asked: int, flown: int) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+    """Where in the craft's frame fire was asked for and not lit, and which way it would have burnt."""
+    fires = []
+    if asked >= 3 > flown:
+        fires.append((art.NOZZLE, (0.0, -1.0)))
+    if asked % 3 and asked % 3 != flown % 3:
+        side = 1 if asked % 3 == 1 else 0  # steering left fires the right-hand jet
+        fires.append((art.JETS[side], (1.0 if side else -1.0, 0.0)))
+    return fires
+
+
+def _draw_unlit(
+    canvas: Canvas, view: View, pose: Doubles, start: tuple[float, float], away: tuple[float, float]
+) -> None:
+    x, y, angle = pose.tolist()
+    cos, sin = math.cos(angle), math.sin(angle)
+    reach = 0.34 if away[1] else 0.2
+    for number in range(_DOTS):
+        right, up = (at + reach * (number + 0.6) * way for at, way in zip(start, away, strict=True))
+        spot = view.points((x + right * cos - up * sin, y + right * sin + up * cos)).tolist()
+        canvas.dot(spot, 2.0 - 0.2 * number, HUMAN, 0.95 - 0.13 * number)

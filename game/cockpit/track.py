@@ -1,0 +1,57 @@
+"""The path a flight took, in the colours of who flew it, with the moments at which the co-pilot stepped in."""
+
+from __future__ import annotations
+
+from itertools import groupby, pairwise
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Doubles
+from game.flight import Flight, Hand
+from game.render import View
+from game.ui.canvas import Canvas
+from game.ui.tokens import HUMAN, NET
+
+_STRIDE: Final = 4  # steps between points
+_MOST_MARKS: Final = 24
+_DIM: Final = 0.62  # the path is a memory, and not to outshine what is there
+
+
+class Track:
+    """Grows with a flight; drawn once that is over."""
+
+    def __init__(self, flight: Flight) -> None:
+        self._points: list[Doubles] = [flight.env.position[0].copy()]
+        self._hands: list[Hand] = []
+        self.moments: list[Doubles] = []
+
+    def follow(self, flight: Flight, stepped_in: bool) -> None:
+        """Note the step just flown, and whether the co-pilot stepped in with it."""
+        here = flight.env.position[0]
+        if stepped_in:
+            self.moments.append(here.copy())
+        if len(flight.recording.actions) % _STRIDE == 0 or flight.over:
+            self._points.append(here.copy())
+            self._hands.append(flight.flown_by)
+
+    def draw(self, canvas: Canvas, view: View, shown: float = 1.0) -> None:
+        """Draw the path, `shown` 0 to 1 of it from the start, and a diamond for every moment."""
+        pixels = view.pixels(np.array(self._points)).tolist()
+        last = round(shown * len(self._hands))
+        ends = [0]
+        for _, run in groupby(self._hands[:last]):
+            ends.append(ends[-1] + len(list(run)))
+        for start, end in pairwise(ends):
+            colour = HUMAN if self._hands[start] is Hand.HUMAN else NET
+            faint = tuple(round(_DIM * part) for part in colour)
+            pygame.draw.aalines(canvas.surface, faint, False, pixels[start : end + 1])
+        if shown >= 1:
+            for place in self._marked():
+                canvas.marker("diamond", view.points(place).tolist(), 8, NET)
+
+    def _marked(self) -> list[Doubles]:
+        """Return the moments, or some of them where there are too many to be told apart."""
+        every = max(1, -(-len(self.moments) // _MOST_MARKS))
+        return self.moments[::every]

@@ -1,0 +1,90 @@
+"""The ground that is landed on: hills and knolls in front of the plain, and the pads."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Doubles
+from ai.ground import Ground
+from game.render import WORLD_WIDTH, View
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, SMALL
+from game.world.pad import draw_pad
+from game.world.paint import Picture, bell, clouds, layer
+from game.world.sky import SUN
+
+_REACH: Final = WORLD_WIDTH / 2 + 2.0  # metres to both sides that are painted
+_FOOT: Final = 0.55  # metres below the plain's line over which a hill fades into it
+_CREST_COLOUR: Final = np.array((44, 42, 64), np.float32)
+_FOOT_COLOUR: Final = np.array((20, 22, 38), np.float32)
+_WARM: Final = np.array((255, 150, 96), np.float32)
+_LIP: Final = 0.3  # metres that a knoll is lower than its pad
+
+
+def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float) -> None:
+    """Draw hills, if there are any, and pads; of several, each has its factor written beside it."""
+    if ground.hills:
+        sheet, left, top = paint_hills(ground, round(view.pixels_per_metre, 3))
+        corner = view.pixels((left, top)).tolist()
+        canvas.surface.blit(sheet, (round(corner[0]), round(corner[1])))
+    several = len(ground.pads) > 1
+    for pad in ground.pads:
+        floor = pad.top - _LIP if several else ground.base
+        draw_pad(canvas, view, (pad.x, pad.top), pad.width, time, floor)
+        if several:
+            spot = view.points((pad.right + 0.3, floor - 0.05)).tolist()
+            canvas.text(f"×{pad.factor}", spot, size=SMALL, colour=INK, weight="medium", alpha=0.8)
+
+
+@lru_cache(maxsize=2)
+def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[pygame.Surface, float, float]:
+    """Return the hills as a layer, and the place in metres of its top left corner."""
+    crest_x = np.arange(-_REACH, _REACH, 1 / pixels_per_metre)
+    crest = hills_height(ground, crest_x).astype(np.float32)
+    top = float(crest.max()) + 0.1
+    rows = top - np.arange(0.0, top - ground.base + _FOOT, 1 / pixels_per_metre, dtype=np.float32)[:, None]
+    below = crest - rows  # metres under the surface
+    rng = np.random.default_rng(round(1000 * top))
+    rise = np.clip((rows - ground.base) / (top - ground.base), 0, 1)[..., None]
+    colour = _FOOT_COLOUR + (0.35 + 0.65 * rise) * (_CREST_COLOUR - _FOOT_COLOUR)
+    picture = np.tile(colour, (1, len(crest), 1))
+    sunward, near = _sunlight(crest_x.astype(np.float32))
+    lean = _lean(below.shape, pixels_per_metre, rng)
+    slope = np.gradient(crest, crest_x).astype(np.float32) * sunward
+    picture = picture * (1 + 0.30 * np.clip(lean * sunward + 0.9 * slope, -1.2, 1.2))[..., None]
+    rim = np.exp(-np.clip(below, 0, None) / 0.05) * 0.6 + np.exp(-np.clip(below, 0, None) / 0.30) * 0.22
+    facing = np.clip(0.45 + 1.1 * slope, 0.10, 1.4)
+    picture += (rim * facing * (0.18 + 0.72 * near))[..., None] * _WARM * 0.62
+    foot = _FOOT * np.clip((crest - ground.base) / 0.8, 0, 1) ** 0.6  # none where there is no hill
+    cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (crest > ground.base + 0.01)
+    cover = cover * np.clip(1 + (rows - ground.base) / np.maximum(foot, 0.02), 0, 1) ** 1.5
+    return layer(picture.astype(np.float32), cover.astype(np.float32), rng), -_REACH, top
+
+
+def hills_height(ground: Ground, x: Doubles) -> Doubles:
+    """Height of the hills alone, without the pads on them, in metres at x (k,)."""
+    height = np.full(x.shape, ground.base)
+    for hill in ground.hills:
+        across, up = np.array(hill).T
+        height = np.maximum(height, np.interp(x, across, up))
+    return height
+
+
+def _sunlight(x: Picture) -> tuple[Picture, Picture]:
+    """Return for each column the sun's side, -1 left to 1 right, and how near its glow is, 0 to 1."""
+    middle = (SUN[0] - 0.5) * WORLD_WIDTH
+    width = len(x)
+    return -np.tanh((x - middle) / 3.0), bell(width, float(np.interp(middle, x, np.arange(width))), 0.30 * width)
+
+
+def _lean(shape: tuple[int, int], pixels_per_metre: float, rng: np.random.Generator) -> Picture:
+    """Return how far small folds lean to the right, about -1 to 1."""
+    rows, columns = shape
+    cells = (max(2.0, rows / pixels_per_metre / 1.1), columns / pixels_per_metre / 1.6)
+    bumps = clouds(shape, rng, cells, octaves=4, gain=0.5)
+    lean: Picture = np.clip(np.gradient(bumps, axis=1) * pixels_per_metre * 0.6, -1, 1)
+    return lean
