@@ -176,7 +176,8 @@ class Dream:
             add(Choice(manager, (_RIGHT, 372, 344, 28), texts.DREAM_START, texts.DREAM_STARTS, 0, self._set_start,
                        label_width=110))  # fmt: skip
         width = typeface.width(texts.DREAM_AGAIN, TEXT, "regular")
-        add(Word(manager, (_RIGHT, 416, width, 28), texts.DREAM_AGAIN, self.restart))
+        top = 372 if self._drawing is None else 416
+        add(Word(manager, (_RIGHT, top, width, 28), texts.DREAM_AGAIN, self.restart))
         self._form.focus(self._tiles[self.digit])
 
     def _set_calm(self, calm: float) -> None:
