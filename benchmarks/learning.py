@@ -46,6 +46,7 @@ TUNED = {
     "exploration_final_eps": 0.1, "policy_kwargs": {"net_arch": [256, 256]},
 }  # fmt: skip
 TUNED_STEPS = 100_000
+LANDER = "ai.gym_lander:tranquility/Lander-v0"
 
 
 @dataclass
@@ -61,23 +62,31 @@ class Kept:
 Checkpoint = tuple[float, int, Pilot, Callable[[], Pilot]]  # seconds, decisions, the pilot, how to keep it
 
 
-def followed(training: Iterator[Checkpoint]) -> Iterator[tuple[float, int, Pilot, bool]]:
-    """Yield seconds, decisions, the best pilot so far by validation, and whether it is a new one."""
+def followed(
+    training: Iterator[Checkpoint], validate: Callable[[Pilot], Any]
+) -> Iterator[tuple[float, int, Pilot, Any]]:
+    """Yield seconds, decisions, the best pilot so far by validation, and its score."""
     best, kept = None, None
     for seconds, decisions, pilot, keep in training:
-        score = evaluate(pilot, VALIDATION_FLIGHTS, VALIDATION_SEED)
-        if new := score.better_than(best):
+        score = validate(pilot)
+        if score.better_than(best):
             best, kept = score, keep()
         assert kept is not None
-        yield seconds, decisions, kept, new
+        yield seconds, decisions, kept, best
+
+
+def validated(pilot: Pilot) -> Evaluation:
+    """Fly the starts that choose the best network."""
+    return evaluate(pilot, VALIDATION_FLIGHTS, VALIDATION_SEED)
 
 
 def race(training: Iterator[Checkpoint], limit: float) -> tuple[list[Kept | None], float]:
     """The first network kept that lands each share, None for those not reached; and the last share seen."""
     reached: list[Kept | None] = [None] * len(SHARES)
-    last = 0.0
-    for seconds, decisions, pilot, new in followed(training):
-        if new:
+    last, seen = 0.0, None
+    for seconds, decisions, pilot, _ in followed(training, validated):
+        if pilot is not seen:
+            seen = pilot
             kept = Kept(seconds, decisions, evaluate(pilot, TEST_FLIGHTS, TEST_SEED))
             last = kept.test.success
             reached = [old or (kept if last >= share else None) for old, share in zip(reached, SHARES, strict=True)]
@@ -89,7 +98,7 @@ def race(training: Iterator[Checkpoint], limit: float) -> tuple[list[Kept | None
 def kept_after(training: Iterator[Checkpoint], moments: list[float]) -> Iterator[Kept]:
     """Yield what is kept after so many seconds, for each of the moments, which rise."""
     waiting = sorted(moments)
-    for seconds, decisions, pilot, _ in followed(training):
+    for seconds, decisions, pilot, _ in followed(training, validated):
         if seconds >= waiting[0]:
             test, hard = (evaluate(pilot, TEST_FLIGHTS, TEST_SEED, spawn) for spawn in ("random", "hard"))
             yield Kept(waiting.pop(0), decisions, test, hard)
@@ -121,15 +130,14 @@ class Flyer:
         return actions
 
 
-def theirs(seed: int) -> Iterator[Checkpoint]:
+def sb3_dqn(env: str, seed: int, **options: Any) -> Iterator[Checkpoint]:
     """Train one of stable-baselines3's without end, pausing every ten seconds."""
     import gymnasium
     import torch
     from stable_baselines3 import DQN
 
     torch.set_num_threads(1)
-    env = gymnasium.make("ai.gym_lander:tranquility/Lander-v0", spawn=PRESETS["modern"].spawn)
-    model = DQN("MlpPolicy", env, seed=seed, device="cpu", **TUNED)
+    model = DQN("MlpPolicy", gymnasium.make(env, **options), seed=seed, device="cpu", **TUNED)
     spent = 0.0
     while True:
         start = time.process_time()
@@ -172,7 +180,7 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
         print('\nto compare with stable-baselines3: pip install "tranquility[bench]"')
         return
     limit = arguments.rival_seconds
-    runs = [race(theirs(seed), limit) for seed in range(arguments.rival_seeds)]
+    runs = [race(sb3_dqn(LANDER, seed, spawn=config.spawn), limit) for seed in range(arguments.rival_seeds)]
     other = row("stable-baselines3's DQN, tuned", runs, limit)
     ratios = [f"over {limit / us:.0f}" if np.isinf(them) else f"{them / us:.0f}"
               for us, them in zip(mine, other, strict=True)]  # fmt: skip
