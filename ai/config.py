@@ -19,7 +19,7 @@ from ai.spawns import SPAWNS
 
 CURRICULUM: Final = "curriculum"
 LANDER: Final = "lander"
-_HASTE: Final = RewardWeights(time=-0.5, switch=-0.05)  # quick, and without flickering jets
+_HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without flickering jets
 
 
 def knob(

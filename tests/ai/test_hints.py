@@ -158,7 +158,7 @@ def test_what_a_flight_can_pay_follows_the_weights():
         ("hovers", points(), sabotaged(MODERN, "uniform_actions"), {"random_main": 0.3}),
         ("hovers", points(), sabotaged(MODERN, "no_practice"), {"spawn": "practice"}),
         ("hovers", points(), MODERN.changed(weights=RewardWeights(time=0.0)), {"weights.time": -0.2}),
-        ("hovers", points(), MODERN, {"weights.time": -0.75}),
+        ("hovers", points(), MODERN, {"weights.time": -0.6}),
         ("overfed", points(), sabotaged(MODERN, "one_lander"), {"num_envs": 256}),
         ("random", points(), MODERN.changed(epsilon_end=0.5), {"epsilon_end": 0.05}),
         ("clipped", points(), MODERN.changed(gradient_clip=0.1), {"gradient_clip": 10.0}),
@@ -241,9 +241,9 @@ def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once()
     run = history(points(**HOVERS), seconds=40.0 + REST)
     shown = watch(adviser, run)
     assert shown[-1] is not None
-    assert adviser.apply() == {"weights.time": -0.75}
+    assert adviser.apply() == {"weights.time": -0.6}
     assert adviser.can_undo
-    assert adviser.undo() == {"weights.time": -0.5}
+    assert adviser.undo() == {"weights.time": -0.4}
     assert not adviser.can_undo
     assert adviser.undo() == {}
 
