@@ -167,9 +167,9 @@ def test_an_impossible_value_changes_nothing_and_is_explained(tuning: Tuning, he
 
 
 def test_parts_of_the_reward_are_named_apart(tuning: Tuning, heard: list[Any]):
-    tuning.turn("weights.time", -0.4)
-    assert heard == [("weights.time", -0.4)]
-    assert tuning.config.weights == replace(PRESETS["modern"].weights, time=-0.4)
+    tuning.turn("weights.time", -0.6)
+    assert heard == [("weights.time", -0.6)]
+    assert tuning.config.weights == replace(PRESETS["modern"].weights, time=-0.6)
 
 
 def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(tuning: Tuning, heard: list[Any]):
