@@ -164,7 +164,10 @@ def draw_share(
 
 @dataclass(frozen=True)
 class Card:
-    """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better."""
+    """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better.
+
+    Of a shared flight, `stepped_in` is how often the co-pilot did. `left` is where the card stands.
+    """
 
     good: bool
     title: str
@@ -172,6 +175,9 @@ class Card:
     figures: tuple[tuple[str, str, str], ...]
     human: float
     advice: str = ""
+    score: str = ""
+    stepped_in: int | None = None
+    left: float = 400.0
 
 
 @dataclass(frozen=True)
@@ -198,13 +204,14 @@ def draw_card(
 ) -> None:
     """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted, and a rival's figures."""
     drop = 10 * (1 - shown)
-    left, top, width = CARD.left + 32, CARD.top - drop, CARD.width - 64
+    left, top, width = card.left + 32, CARD.top - drop, CARD.width - 64
     lower = _ADVICE_ROW if advise and card.advice else 0
-    canvas.panel((CARD.left, top, CARD.width, CARD.height + lower + (_RIVAL_ROWS if rival else 0)))
+    canvas.panel((card.left, top, CARD.width, CARD.height + lower + (_RIVAL_ROWS if rival else 0)))
     colour = canvas.palette.good if card.good else canvas.palette.warn
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
     canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
     canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
+    canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
     canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK)
     if lower:
         canvas.text(card.advice, (left, top + 110), size=SMALL, colour=MUTE)
@@ -218,7 +225,12 @@ def draw_card(
     if rival:
         _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 176), width)
         top += _RIVAL_ROWS
-    draw_share(canvas, left, top + 188, width, card.human)
+    shared = card.stepped_in is not None
+    draw_share(canvas, left, top + 188, width, card.human, texts.SHARE_COPILOT if shared else texts.SHARE_NETWORK)
+    if card.stepped_in:
+        words = canvas.text(texts.SHARE_MOMENTS.format(times=card.stepped_in), (left + width / 2 + 8, top + 188),
+                            size=SMALL, colour=MUTE, align="centre")  # fmt: skip
+        canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
     draw_hints(canvas, keys, (left, top + 244))
 

@@ -30,6 +30,17 @@ def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str],
     return (*figures, (texts.FROM_MIDDLE, f"{away:.1f}", "m"))
 
 
+def landing_score(env: LanderEnv, slot: int = 0) -> int:
+    """Points of a landing, 100 at most times the factor of its pad: fewer for a hard touch and off the middle."""
+    number = int(env.landed_on[slot])
+    if number < 0:
+        return 0
+    pad = env.ground.pads[number]
+    hard = min(1.0, float(env.impact[slot, 0]) / env.limits.touch_speed)
+    aside = min(1.0, abs(float(env.position[slot, 0]) - pad.x) / (pad.width / 2))
+    return pad.factor * round(100 - 40 * hard - 30 * aside)
+
+
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:
     """Name what broke the lander, and by how much."""
     cause = Cause(int(env.cause[slot]))

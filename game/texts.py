@@ -770,3 +770,63 @@ INSIGHT_MEANT: Final = "WHICH PAD YOU SEEM TO MEAN"
 PAD_NAMES: Final = {1: "wide  ×1", 3: "narrow  ×3", 5: "tiny  ×5"}
 SHARE_COPILOT: Final = "co-pilot {percent} %"
 SHARE_MOMENTS: Final = "stepped in {times} ×"
+SCORE: Final = "{points} points"
+SCORE_BEST: Final = "{points} points, your best"
+THREE_PADS: Final = "Three pads"
+OTHER_HANDS: Final = "with {hands} hands"
+SKILL_DAMAGED: Final = "The list of your flights was damaged and is kept as {name}. A new one begins."
+SKILL_UNREADABLE: Final = "The list of your flights could not be read: {reason}"
+SKILL_NOT_SAVED: Final = "This flight could not be written down: {reason}"
+TAUGHT: Final = "Kept as an example for a network to learn from."
+NOT_TAUGHT: Final = "This landing could not be kept as an example: {reason}"
+
+# Choices for the next flights
+CHOICES_TITLE: Final = "Your flights"
+CHOICES_HINT: Final = "choices"
+PAUSE_CHOICES: Final = "Choices: help, pads, hands"
+CHOICES_ASSIST: Final = "Network helps"
+CHOICES_ASSIST_OFF: Final = "no"
+CHOICES_ASSIST_HELP: Final = "While you fly. Let go of everything, and it flies. In flight: − and +, or the wheel."
+CHOICES_MODE: Final = "It steps in"
+CHOICES_MODES: Final = ("when yours is not as good", "only in need")
+CHOICES_MODES_HELP: Final = (
+    "Tolerance: your action is flown if it is worth nearly as much as the best, or else the nearest that is.",
+    "Guardian: your action is flown unless another is better by far, for every pad that you may mean.",
+)
+CHOICES_PADS: Final = "Pads"
+CHOICES_PADS_WORDS: Final = ("one, on the plain", "three, among hills")
+CHOICES_PADS_HELP: Final = (
+    "One pad, six metres wide.",
+    "Wide counts once, narrow three times, tiny five times. Choose in your head: nobody tells the co-pilot.",
+)
+CHOICES_HANDS: Final = "Hands"
+CHOICES_HANDS_WORDS: Final = {"own": "yours", "laggy": "laggy", "noisy": "noisy", "sensor": "no main engine"}
+CHOICES_HANDS_HELP: Final = {
+    "own": "Your keys, as you press them.",
+    "laggy": "Your keys arrive late: four times of five, the last action goes on. Let the network help.",
+    "noisy": "Every seventh main engine and turn is another than you asked for. Let the network help.",
+    "sensor": "You steer, and have no main engine: without the network's help you fall.",
+}
+CHOICES_CHECK: Final = ("Check flights", "Every fifth one without help, so that your own skill doesn't fade.")
+CHOICES_TEACH: Final = ("Teach it", "Your good landings are kept on this computer, for a network to learn from.")
+CHOICES_EXPLAIN: Final = ("Explain", "A panel says what the network thinks, and why it steps in.")
+CHOICES_FLY: Final = "Fly"
+CHOICES_LATER: Final = "Pads and hands change with the next flight."
+SKILL_TITLE: Final = "YOUR OWN SKILL"
+SKILL_FIGURE: Final = "landed, of the last {count} without help"
+SKILL_NONE: Final = "Flights without any help are drawn here."
+SKILL_BEST: Final = "best landing"
+SKILL_TAUGHT: Final = "landings to learn from"
+
+# Flights that are kept, and the logbook
+FLIGHT_NOT_KEPT: Final = "The flight could not be kept: {reason}"
+FLIGHT_NOT_DELETED: Final = "{name} could not be deleted: {reason}"
+FLIGHT_GONE: Final = "{name} is not there any more."
+FLIGHT_DAMAGED: Final = "{name} is damaged: {problem}"
+FLIGHT_TOO_LARGE: Final = "it is too large for a flight"
+FLIGHT_FORMAT: Final = "it is no {format}, version {version}"
+FLIGHT_START: Final = "no flight begins with seed {seed}, spawn {spawn} and {pads} pads"
+FLIGHT_ACTIONS: Final = "what was done in each step makes no sense"
+FLIGHT_LACKS: Final = "{name} is missing"
+FLIGHTS_UNREADABLE: Final = "The logbook {path} could not be read: {reason}"
+FLIGHTS_DAMAGED: Final = "{count} lines of {path} are damaged, and left as they are."

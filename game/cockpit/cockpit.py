@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
 import pygame
 
 from ai.env import Doubles
+from ai.lander import Outcome
 from game import texts
 from game.cockpit.dial import Dial, draw_title
+from game.cockpit.hands import OWN
 from game.cockpit.insight import Insight
+from game.cockpit.lesson import keep_lesson
 from game.cockpit.overrides import Overrides
+from game.cockpit.skill import Entry, Skill
 from game.cockpit.track import Track
 from game.controls import Command, translate
 from game.flight import Flight, Hand
+from game.hud import CARD, Card
+from game.outcomes import landing_score, outcome_card
 from game.render import View
 from game.settings import Settings
 from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN
+from game.ui.tokens import HUMAN, MARGIN, VIEW_SIZE
 
-_MODES = ("tolerance", "guardian")
+_MODES: Final = ("tolerance", "guardian")
+_CARD_LEFT: Final = float(MARGIN)  # where else a card may stand, to leave the path in sight
+_CARD_RIGHT: Final = float(VIEW_SIZE[0] - MARGIN - CARD.width)
 
 
 class Cockpit:
@@ -55,6 +67,30 @@ class Cockpit:
         self.track.follow(self._flight, stepped_in)
         self._insight.follow(self._flight)
         self.helped |= self._flight.shared
+
+    def write_down(self, skill: Skill, folder: Path, hands: str) -> str:
+        """Note a flight that is over, and keep it as an example if wished; return what to tell the player of that."""
+        flight = self._flight
+        alone = hands == OWN and not self.helped and flight.share == 1.0
+        landed = flight.outcome is Outcome.LANDED
+        skill.add(Entry(landed, alone, len(flight.env.ground.pads), landing_score(flight.env)))
+        if not (landed and self._settings.teach and hands == OWN):
+            return skill.problem
+        try:
+            return texts.TAUGHT if keep_lesson(flight, folder) else skill.problem
+        except (OSError, ValueError) as error:
+            return texts.NOT_TAUGHT.format(reason=error)
+
+    def card(self, best: int, view: View) -> Card:
+        """Return the card of the flight, which is over; `best` is the score to beat."""
+        env = self._flight.env
+        score = landing_score(env)
+        words = (texts.SCORE_BEST if score > best > 0 else texts.SCORE).format(points=score) if score else ""
+        card = replace(outcome_card(env, self._flight.share), score=words)
+        if not self.helped:
+            return card
+        left = self.track.beside((CARD.left, _CARD_LEFT, _CARD_RIGHT), CARD, view)
+        return replace(card, stepped_in=self.overrides.times, left=left)
 
     def ease(self) -> None:
         """Let 1/60 s pass, whether or not anything flies."""

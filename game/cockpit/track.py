@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import groupby, pairwise
 from typing import Final
 
@@ -35,6 +36,16 @@ class Track:
         if len(flight.recording.actions) % _STRIDE == 0 or flight.over:
             self._points.append(here.copy())
             self._hands.append(flight.flown_by)
+
+    def beside(self, lefts: Sequence[float], area: pygame.Rect, view: View) -> float:
+        """Return which of these an area of that size should begin at, to hide the least of the path."""
+        places = view.points(np.array(self._points))
+
+        def hidden(left: float) -> int:
+            inside = (places >= (left, area.top)) & (places <= (left + area.width, area.bottom))
+            return int(inside.all(axis=1).sum())
+
+        return min(lefts, key=hidden)
 
     def draw(self, canvas: Canvas, view: View, shown: float = 1.0) -> None:
         """Draw the path, `shown` 0 to 1 of it from the start, and a diamond for every moment."""

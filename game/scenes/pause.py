@@ -69,7 +69,7 @@ class Pause:
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, out of focus, and the column."""
         if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
-            self._picture = self._blur_below(canvas)
+            self._picture = blurred(canvas, self._below)
         canvas.surface.blit(self._picture, (0, 0))
         canvas.text(texts.PAUSE_TITLE, (MARGIN, 256), size=44, weight="extralight")
         self._form.draw(canvas)
@@ -77,19 +77,21 @@ class Pause:
         hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.PAUSE), texts.HINT_RESUME)]
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
-    def _blur_below(self, canvas: Canvas) -> pygame.Surface:
-        self._below.draw(canvas, 1.0)
-        width, height = canvas.surface.get_size()
-        small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 4), max(1, height // 4)))
-        blurred = pygame.transform.gaussian_blur(small, max(1, canvas.px(3)))
-        canvas.surface.blit(pygame.transform.smoothscale(blurred, (width, height)), (0, 0))
-        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.5)
-        return canvas.surface.copy()
-
     def _begin_anew(self) -> Transition:
         assert self._retry is not None
         self._retry()
         return Pop()
+
+
+def blurred(canvas: Canvas, below: Scene) -> pygame.Surface:
+    """Return a picture of a scene out of focus and dimmed, drawn where the canvas draws."""
+    below.draw(canvas, 1.0)
+    width, height = canvas.surface.get_size()
+    small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 4), max(1, height // 4)))
+    soft = pygame.transform.gaussian_blur(small, max(1, canvas.px(3)))
+    canvas.surface.blit(pygame.transform.smoothscale(soft, (width, height)), (0, 0))
+    canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.5)
+    return canvas.surface.copy()
 
 
 def _open_settings() -> Transition:

@@ -12,12 +12,12 @@ from game import hud, networks, texts
 from game.clock import STEP
 from game.cockpit.cockpit import Cockpit
 from game.cockpit.hands import HANDS, OWN
+from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command, translate
 from game.flight import Flight, Hand, coast_path
 from game.forecast import Forecast
 from game.ghost import Ghost
-from game.outcomes import outcome_card
 from game.render import Camera
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
@@ -51,7 +51,9 @@ class Play:
     def __init__(self, seed: int | None = None, rival: networks.Flyer | None = None, rival_name: str = "") -> None:
         self._seed, self._rival, self._rival_name = seed, rival, rival_name
         self._context: Context | None = None
+        self.flight: Flight
         self.waiting, self._let_go = True, False
+        self._hands = OWN
         self._time = 0.0
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._steps = self._since_end = 0
@@ -59,12 +61,15 @@ class Play:
         self._path: Doubles = np.empty((0, 2))
 
     def enter(self, context: Context) -> None:
-        """Begin the first flight, or go on with the one that was paused."""
+        """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
         if self._context is not None:
+            if self.waiting and not self._rival and self._chosen() != (self.flight.recording.pads, self._hands):
+                self.retry()
             return
         self._context = context
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
+        self._skill = Skill(context.user_dir)
         self._begin(self._new_seed() if self._seed is None else self._seed)
 
     def exit(self) -> None:
@@ -88,6 +93,8 @@ class Play:
                 return Pop() if self._leaves else self._pause()
             case Command.HANDOVER:
                 self._hand_over()
+            case Command.CHOICES:
+                return self._choose()
             case Command.RETRY:
                 self.retry()
             case Command.NEXT:
@@ -127,7 +134,7 @@ class Play:
         if flight.over:
             self._since_end += 1
             if self._card is None:
-                self._card = outcome_card(flight.env, flight.share)
+                self._finish()
         return None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -183,9 +190,12 @@ class Play:
 
     def _begin(self, seed: int) -> None:
         self.waiting, self._let_go = True, False
-        pads, hands = (1, OWN) if self._rival else self._chosen()
-        self.flight = Flight(seed, self._network.flyer, pads=pads, hands=hands)
-        self._cockpit = Cockpit(self.flight, self._settings)
+        pads, self._hands = (1, OWN) if self._rival else self._chosen()
+        check = self._settings.check_flights and self._skill.check_due and not self._rival
+        if check:
+            self._hands = OWN
+        self.flight = Flight(seed, None if check else self._network.flyer, pads=pads, hands=self._hands)
+        self._cockpit = Cockpit(self.flight, self._settings, alone=check)
         self._ghost = Ghost(self._rival, self._rival_name, seed) if self._rival else None
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
@@ -195,8 +205,16 @@ class Play:
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
         self._path = coast_path(self.flight.env)
-        self._forecast = self._new_forecast()
+        self._forecast = None if check else self._new_forecast()
         self._steps = self._since_end = 0
+
+    def _finish(self) -> None:
+        """Write a flight down that has just ended, and make its card."""
+        assert self._context is not None
+        self._card = self._cockpit.card(self._skill.best, self._camera.view(1.0))
+        told = "" if self._rival else self._cockpit.write_down(self._skill, self._context.user_dir, self._hands)
+        if told:
+            self._context.note(told)
 
     def _new_forecast(self) -> Forecast | None:
         ahead = None if self._ghost else self._network.flyer  # beside a ghost, one blue path is enough
@@ -221,7 +239,7 @@ class Play:
     def _hand_over(self) -> None:
         if self.flight.hand_over():
             self._sound.play("to_network" if self.flight.hand is Hand.NETWORK else "to_human")
-        elif self._network.flyer is None and self._context is not None:
+        elif self.flight.network is None and self._network.flyer is None and self._context is not None:
             self._context.note(texts.NO_NETWORK.format(problem=self._network.problem))
 
     def _name_what_lacks(self) -> None:
@@ -251,7 +269,14 @@ class Play:
         return Push(Pause(self, retry=self.retry, more=self._pause_words))
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        return [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
+        words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
+        return words if self._rival else [*words, (texts.PAUSE_CHOICES, self._choose)]
+
+    def _choose(self) -> Transition | None:
+        """Let the player choose how the next flights are flown; a duel is flown as it is."""
+        from game.scenes.choices import ChoicesScene
+
+        return None if self._rival else Push(ChoicesScene(self, self._skill, begun=not self.waiting))
 
     def _open_networks(self) -> Transition:
         from game.scenes.runs import Runs
@@ -283,8 +308,10 @@ class Play:
             hud.draw_corner(canvas, texts.DUEL, texts.DUEL_RIVAL.format(name=self._ghost.name))
         else:
             network = self._network
-            flown = texts.WITH_NETWORK.format(name=network.name) if network.flyer else texts.ALONE
-            hud.draw_corner(canvas, texts.FREE_FLIGHT, flown)
+            flown = texts.WITH_NETWORK.format(name=network.name) if self.flight.network else texts.ALONE
+            if self._hands != OWN:
+                flown = texts.OTHER_HANDS.format(hands=texts.CHOICES_HANDS_WORDS[self._hands])
+            hud.draw_corner(canvas, texts.THREE_PADS if self.flight.recording.pads > 1 else texts.FREE_FLIGHT, flown)
         hud.draw_readouts(canvas, self._readouts)
         if self.waiting:
             self._draw_opening(canvas)
@@ -303,7 +330,9 @@ class Play:
     def _draw_hints(self, canvas: Canvas) -> None:
         word = self._controls.word
         hints = [(word(Command.PAUSE), texts.HINT_LEAVE if self._leaves else texts.HINT_PAUSE)]
-        if self._network.flyer:
+        if not self._rival:
+            hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
+        if self.flight.network:
             taken = self.flight.hand is Hand.NETWORK
             hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
         draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)

@@ -1,0 +1,161 @@
+"""Choices: how the next flights are flown, and how the player's own skill has grown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Final
+
+import pygame
+
+from game import texts
+from game.cockpit.hands import HANDS
+from game.cockpit.lesson import lessons
+from game.cockpit.skill import RECENT, Skill
+from game.context import Context
+from game.controls import Command, translate
+from game.scene import Pop, Scene, Transition
+from game.scenes.pause import blurred
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, NIGHT0, SMALL, TITLE, VIEW_SIZE
+from game.ui.widgets import Choice, Slider, Toggle, Widget, Word
+
+MODES: Final = ("tolerance", "guardian")
+_WIDTH: Final = 560
+_LABELS: Final = 142
+_FIRST: Final = 136
+_ROW: Final = 48
+_TOGGLES: Final = _FIRST + 4 * _ROW + 56
+_TOGGLE_ROW: Final = 62
+_HELP: Final = _FIRST + 4 * _ROW + 16
+_CHART: Final = pygame.Rect(800, 152, 372, 176)
+
+
+class ChoicesScene:
+    """Stands over a flight. Each choice is kept the moment it is made; Escape, or Fly, goes back."""
+
+    def __init__(self, below: Scene, skill: Skill, *, begun: bool) -> None:
+        self._below, self._skill, self._begun = below, skill, begun
+        self._picture: pygame.Surface | None = None
+
+    def enter(self, context: Context) -> None:
+        """Build the rows."""
+        self._context = context
+        self._picture = None
+        self._taught = lessons(context.user_dir)
+        self._form = form = Form(context, on_back=Pop)
+        settings = context.settings
+        hands = list(HANDS)
+        help_ = Slider(form.manager, self._box(0), texts.CHOICES_ASSIST, settings.assist, (0.0, 1.0),
+                       self._changes("assist"), step=0.1, figure=_percent)  # fmt: skip
+        form.add(help_)
+        self._choice(1, texts.CHOICES_MODE, texts.CHOICES_MODES, _index(MODES, settings.copilot),
+                     lambda index: self._changes("copilot")(MODES[index]))  # fmt: skip
+        self._choice(2, texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
+                     lambda index: self._changes("three_pads")(bool(index)))  # fmt: skip
+        words = [texts.CHOICES_HANDS_WORDS[name] for name in hands]
+        self._choice(3, texts.CHOICES_HANDS, words, _index(hands, settings.hands),
+                     lambda index: self._changes("hands")(hands[index]))  # fmt: skip
+        for row, (name, (label, hint)) in enumerate((
+            ("check_flights", texts.CHOICES_CHECK), ("teach", texts.CHOICES_TEACH), ("explain", texts.CHOICES_EXPLAIN)
+        )):  # fmt: skip
+            box = (MARGIN, _TOGGLES + row * _TOGGLE_ROW, _WIDTH, 52)
+            form.add(Toggle(form.manager, box, label, getattr(settings, name), self._changes(name), hint=hint))
+        form.add(Word(form.manager, (MARGIN, 624, 96, 32), texts.CHOICES_FLY, Pop, size=18))
+
+    def exit(self) -> None:
+        """Nothing is held: every change was saved as it was made."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Leave it to the rows; the key that opened this closes it too."""
+        return Pop() if translate(event) is Command.CHOICES else self._form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Let the rows ease."""
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the flight below, out of focus, the rows and the curve."""
+        if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
+            self._picture = blurred(canvas, self._below)
+            canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.4)
+            self._picture = canvas.surface.copy()
+        canvas.surface.blit(self._picture, (0, 0))
+        canvas.text(texts.CHOICES_TITLE, (MARGIN, 96), size=34, weight="light")
+        self._form.draw(canvas)
+        canvas.text(self._help(), (MARGIN, _HELP), size=SMALL, colour=MUTE)
+        if self._begun:
+            canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
+        self._draw_skill(canvas)
+        word = self._context.controls.word
+        hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.BACK), texts.HINT_BACK)]
+        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+
+    @staticmethod
+    def _box(row: int) -> tuple[int, int, int, int]:
+        return MARGIN, _FIRST + row * _ROW, _WIDTH, 40
+
+    def _choice(self, row: int, label: str, words: tuple[str, ...] | list[str], index: int,
+                change: Callable[[int], None]) -> None:  # fmt: skip
+        form = self._form
+        form.add(Choice(form.manager, self._box(row), label, words, index, change, label_width=_LABELS, size=14))
+
+    def _changes(self, name: str) -> Callable[[object], None]:
+        def change(value: object) -> None:
+            setattr(self._context.settings, name, round(value, 2) if isinstance(value, float) else value)
+            self._context.apply_settings()
+
+        return change
+
+    def _help(self) -> str:
+        """Return a sentence on the row in focus."""
+        settings, widgets = self._context.settings, self._form.widgets
+        rows: dict[Widget, str] = dict(zip(widgets, (
+            texts.CHOICES_ASSIST_HELP, texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)],
+            texts.CHOICES_PADS_HELP[settings.three_pads], texts.CHOICES_HANDS_HELP.get(settings.hands, ""),
+        ), strict=False))  # fmt: skip
+        return rows.get(self._form.focused, "") if self._form.focused else ""
+
+    def _draw_skill(self, canvas: Canvas) -> None:
+        """Draw the share of landings among the last ten flights without help, after each of them."""
+        left, top, width, height = _CHART
+        canvas.text(texts.SKILL_TITLE, (left, top - 24), size=LABEL, colour=MUTE, weight="medium")
+        for share in (0.0, 0.5, 1.0):
+            y = top + height * (1 - share)
+            canvas.line((left, y), (left + width, y), FAINT, alpha=0.7)
+            canvas.text(_percent(share, zero="0 %"), (left + width + 12, y + 4), size=LABEL, colour=MUTE)
+        curve = self._skill.curve[-60:]
+        if not curve:
+            canvas.text(texts.SKILL_NONE, (left, top + height / 2 - 10), size=SMALL, colour=MUTE)
+        step = width / max(20, len(curve))
+        places = [(left + step * (number + 0.5), top + height * (1 - share)) for number, share in enumerate(curve)]
+        for start, end in pairwise(places):
+            canvas.line(start, end, HUMAN, 1.5)
+        for (x, _), landed in zip(places, self._skill.own[-60:], strict=True):
+            good = canvas.palette.good if landed else canvas.palette.warn
+            canvas.marker("check" if landed else "cross", (x, top + height + 16), 7, good)
+        if places:
+            canvas.dot(places[-1], 4, HUMAN)
+        self._draw_figures(canvas, top + height + 80)
+
+    def _draw_figures(self, canvas: Canvas, y: float) -> None:
+        left, own = _CHART.left, self._skill.own[-RECENT:]
+        if own:
+            figure = canvas.text(str(sum(own)), (left, y), size=FIGURE, weight="light", colour=HUMAN)
+            canvas.text(texts.SKILL_FIGURE.format(count=len(own)), (figure.right + 10, y), size=SMALL, colour=MUTE)
+        for row, (value, words) in enumerate((
+            (self._skill.best, texts.SKILL_BEST), (self._taught, texts.SKILL_TAUGHT)
+        )):  # fmt: skip
+            if value:
+                figure = canvas.text(str(value), (left, y + 44 + 36 * row), size=TITLE, weight="light", colour=INK)
+                canvas.text(words, (figure.right + 10, y + 44 + 36 * row), size=SMALL, colour=MUTE)
+
+
+def _index(names: tuple[str, ...] | list[str], name: str) -> int:
+    return names.index(name) if name in names else 0
+
+
+def _percent(share: float, zero: str = texts.CHOICES_ASSIST_OFF) -> str:
+    return texts.SOUND_SHARE.format(percent=round(100 * share)) if share else zero
