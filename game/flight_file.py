@@ -1,0 +1,160 @@
+"""A flight as a file: where it began, what was done in each physics step, and what came of it.
+
+A flight follows from its start and its actions, bit for bit, so that is all that is kept, in text that a person can
+read. Nothing in it can do more than be flown again.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any, Final
+
+from ai.lander import NUM_ACTIONS, Outcome
+from ai.spawns import SPAWNS
+from game import texts
+from game.flight import Hand, Recording
+
+FORMAT: Final = "tranquility flight"
+VERSION: Final = 1
+_LONGEST: Final = 120 * 60  # physics steps of a flight
+_LARGEST: Final = 1_000_000  # bytes
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A line of the logbook. Raises ValueError for what no flight can have come to.
+
+    Attributes:
+        when: the end of the flight, in seconds since 1970.
+        outcome: name of an Outcome.
+        seconds, fuel: how long it took; fuel in seconds of main engine.
+        touchdown: m/s into the surface; 0 where nothing was touched.
+        human: the person's share of it, 0 to 1.
+        alone: whether it was flown by their own hands from start to end, so that it says something of their skill.
+        network: who flew the rest, or might have.
+        pads: how many there were.
+        score: points for the landing.
+        course: name of a mission; empty for a free flight.
+        medal: 3 for gold, 2, 1, and 0 for none.
+        file: name of what it can be flown again from.
+
+    """
+
+    when: float
+    outcome: str
+    seconds: float
+    fuel: float
+    touchdown: float
+    human: float
+    alone: bool = False
+    network: str = ""
+    pads: int = 1
+    score: int = 0
+    course: str = ""
+    medal: int = 0
+    file: str = ""
+
+    def __post_init__(self) -> None:
+        figures = (self.when, self.seconds, self.fuel, self.touchdown, self.human)
+        if not all(isinstance(figure, (int, float)) and math.isfinite(figure) and figure >= 0 for figure in figures):
+            raise ValueError("a figure is no positive number")
+        if self.outcome not in Outcome.__members__ or self.human > 1:
+            raise ValueError(f"no flight ends as {self.outcome!r}, {self.human} of it by hand")
+        if not all(isinstance(word, str) for word in (self.network, self.course, self.file)):
+            raise ValueError("a name is no text")
+        if not all(isinstance(count, int) and count >= 0 for count in (self.alone, self.pads, self.score, self.medal)):
+            raise ValueError("a count is no whole number")
+        if Path(self.file).name != self.file:
+            raise ValueError("a file has no plain name")
+
+    @property
+    def landed(self) -> bool:
+        """Whether it ended well."""
+        return self.outcome == Outcome.LANDED.name
+
+
+@dataclass(frozen=True)
+class Record:
+    """A flight as its file has it: `end` is the last pose x, y, angle, to see whether it flies as it did."""
+
+    recording: Recording
+    entry: Entry
+    end: tuple[float, float, float]
+
+
+def read(path: Path) -> Record:
+    """Read a flight. Raises ValueError, which names the file and what is wrong with it."""
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise ValueError(texts.FLIGHT_TOO_LARGE)
+        return from_text(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise ValueError(texts.FLIGHT_GONE.format(name=path.name)) from error
+    except OSError as error:
+        raise ValueError(f"{path.name}: {error.strerror or error}") from error
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError(texts.FLIGHT_DAMAGED.format(name=path.name, problem=_said(error))) from error
+
+
+def write(path: Path, record: Record) -> None:
+    """Write a flight whole or not at all; not flushed to the disk, which would take frames. Raises OSError."""
+    temporary = path.with_name(f".{path.name}.part")
+    try:
+        temporary.write_text(to_text(record), encoding="utf-8")
+        temporary.replace(path)
+    except BaseException:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        raise
+
+
+def to_text(record: Record) -> str:
+    """Return what a flight's file holds."""
+    recording = record.recording
+    return json.dumps({
+        "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
+        "pads": recording.pads, "actions": _packed(recording.actions),
+        "hands": _packed(hand.value for hand in recording.hands), "end": record.end, "entry": asdict(record.entry),
+    }, indent=1) + "\n"  # fmt: skip
+
+
+def from_text(text: str) -> Record:
+    """Read what `to_text` wrote; raises ValueError, KeyError or TypeError for anything else."""
+    values = json.loads(text)
+    if values["format"] != FORMAT or values["version"] != VERSION:
+        raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION))
+    seed, spawn, pads = values["seed"], values["spawn"], values["pads"]
+    if not (isinstance(seed, int) and isinstance(pads, int) and seed >= 0 and pads in (1, 3) and spawn in SPAWNS):
+        raise ValueError(texts.FLIGHT_START.format(seed=seed, spawn=spawn, pads=pads))
+    actions = [int(word) for word in _unpacked(values["actions"])]
+    hands = [Hand(word) for word in _unpacked(values["hands"])]
+    if len(actions) != len(hands) or not all(0 <= action < NUM_ACTIONS for action in actions):
+        raise ValueError(texts.FLIGHT_ACTIONS)
+    x, y, angle = (float(number) for number in values["end"])
+    if not all(map(math.isfinite, (x, y, angle))):
+        raise ValueError(texts.FLIGHT_ACTIONS)
+    return Record(Recording(seed, spawn, pads, actions, hands), Entry(**values["entry"]), (x, y, angle))
+
+
+def _packed(words: Iterable[Any]) -> str:
+    """Write a row with many repetitions as "word*times word*times"."""
+    return " ".join(f"{word}*{len(list(same))}" for word, same in groupby(words))
+
+
+def _unpacked(text: str) -> list[str]:
+    """Read it; raises ValueError, before it takes much memory, for what is no such row."""
+    runs = [run.split("*") for run in text.split()]
+    counts = [int(count) for _, count in runs]
+    if any(count < 1 for count in counts) or sum(counts) > _LONGEST:
+        raise ValueError(texts.FLIGHT_ACTIONS)
+    return [word for (word, _), count in zip(runs, counts, strict=True) for _ in range(count)]
+
+
+def _said(error: Exception) -> str:
+    return texts.FLIGHT_LACKS.format(name=error.args[0]) if isinstance(error, KeyError) else str(error)

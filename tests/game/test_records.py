@@ -1,0 +1,186 @@
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ai.lander import Outcome
+from ai.pilots import ScriptedPilot
+from game import records
+from game.flight import Flight, Hand, Recording
+from game.flight_file import Entry, Record, from_text, to_text
+from game.records import Records, best, skill, totals
+
+NOON = 1_700_000_000.0
+
+
+def fly(seed: int = 3, *, by_hand: bool = False, pads: int = 1) -> Flight:
+    """A flight to its end: the scripted pilot's, or, by hand, a fall."""
+    flight = Flight(seed, ScriptedPilot(), pads=pads)
+    if not by_hand:
+        flight.hand_over()
+    while not flight.over:
+        flight.step(0)
+    return flight
+
+
+def entry(outcome: str = "LANDED", when: float = NOON, **figures) -> Entry:
+    return Entry(**{"when": when, "outcome": outcome, "seconds": 10.0, "fuel": 3.0, "touchdown": 0.5, "human": 1.0,
+                    "alone": True}
+                 | figures)  # fmt: skip
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Records:
+    return Records(tmp_path / "user")
+
+
+@pytest.mark.parametrize("pads", [1, 3])
+def test_a_flight_comes_back_from_its_file_and_flies_as_it_did(kept: Records, pads: int):
+    flight = fly(pads=pads)
+    line = kept.keep(flight, NOON, network="modern")
+    assert not kept.problem
+    record = kept.read(line.file)
+    assert record.recording == flight.recording
+    assert record.entry == line
+    again = Flight(record.recording.seed, spawn=record.recording.spawn, pads=record.recording.pads)
+    for action in record.recording.actions:
+        again.step(action)
+    assert again.outcome is Outcome.LANDED
+    assert again.poses.now[0].tolist() == list(record.end)
+
+
+def test_the_logbook_tells_who_flew_what_came_of_it_and_on_what(kept: Records):
+    kept.keep(fly(), NOON, network="modern")
+    kept.keep(fly(by_hand=True), NOON + 60, alone=True)
+    first, second = kept.entries()
+    assert (first.outcome, first.human, first.alone, first.network) == ("LANDED", 0.0, False, "modern")
+    assert (second.outcome, second.alone, second.fuel) == ("CRASHED", True, 0.0)
+    assert second.touchdown > 2
+    assert 0 < first.seconds < 25
+
+
+def test_a_flight_takes_little_room(kept: Records):
+    line = kept.keep(fly(), NOON)
+    assert (kept.folder / line.file).stat().st_size < 8_000
+
+
+def test_flights_that_end_at_one_moment_keep_a_file_each(kept: Records):
+    assert kept.keep(fly(), NOON).file != kept.keep(fly(), NOON).file
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda text: "",
+        lambda text: text[: len(text) // 2],
+        lambda text: "[]",
+        lambda text: text.replace('"version": 1', '"version": 9'),
+        lambda text: text.replace('"seed": 3', '"seed": -3'),
+        lambda text: text.replace('"random"', '"nowhere"'),
+        lambda text: text.replace('"actions": "', '"actions": "9*1 '),
+        lambda text: text.replace('"actions": "', '"actions": "0*99999999999 '),
+        lambda text: text.replace('"actions": "', '"actions": "0*-5 '),
+        lambda text: text.replace('"network*', '"nobody*'),
+        lambda text: text.replace('"LANDED"', '"FLOWN"'),
+        lambda text: text.replace('"pads": 1', '"pads": 2'),
+        lambda text: text.replace('"entry"', '"other"'),
+        lambda text: "[" * 100_000,
+        lambda text: " " * 2_000_000,
+    ],
+)
+def test_a_damaged_file_is_named_and_left_alone(kept: Records, spoil):
+    line = kept.keep(fly(), NOON)
+    path = kept.folder / line.file
+    path.write_text(spoiled := spoil(path.read_text()))
+    with pytest.raises(ValueError, match=line.file):
+        kept.read(line.file)
+    assert path.read_text() == spoiled
+
+
+def test_a_file_that_is_gone_is_named(kept: Records):
+    with pytest.raises(ValueError, match=r"flight\.json is not there"):
+        kept.read("flight.json")
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.text(max_size=200))
+def test_no_text_at_all_breaks_the_reader(text: str):
+    with pytest.raises((ValueError, KeyError, TypeError, AttributeError)):
+        from_text(text)
+
+
+def test_damaged_lines_of_the_logbook_are_counted_and_the_rest_is_read(kept: Records):
+    kept.keep(fly(), NOON)
+    with kept.logbook.open("a") as file:
+        file.write('nonsense\n{"when": 1}\n{"when": NaN, "outcome": "LANDED"}\n\n{"when": 17')  # a killed game
+    kept.keep(fly(), NOON + 1)
+    assert [line.when for line in kept.entries()] == [NOON, NOON + 1]
+    assert "4 lines" in kept.problem
+
+
+def test_a_line_cannot_lead_out_of_the_folder():
+    with pytest.raises(ValueError, match="plain name"):
+        entry(file="../settings.json")
+
+
+def test_without_a_disk_the_flight_is_lost_and_the_game_goes_on(tmp_path: Path):
+    (tmp_path / "user").write_text("a file where the folder should be")
+    records = Records(tmp_path / "user")
+    assert records.keep(fly(), NOON).landed
+    assert "could not be kept" in records.problem
+    assert records.entries() == []
+
+
+def test_old_files_make_room_but_the_best_and_the_logbook_stay(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(records, "RECENT", 6)
+    monkeypatch.setattr(records, "_SLACK", 2)
+    flight = fly()
+    good = [kept.keep(flight, NOON + second, alone=True).file for second in range(6)]
+    fall = fly(by_hand=True)
+    bad = [kept.keep(fall, NOON + 10 + second).file for second in range(9)]
+    (kept.folder / "mine.json").write_text("not in the logbook")
+    kept.keep(fall, NOON + 30)
+    assert set(good[:5]) <= kept.kept()
+    assert bad[0] not in kept.kept()
+    assert "mine.json" in kept.kept()
+    assert len(kept.entries()) == 16
+
+
+def test_a_flight_can_be_thrown_away_and_its_line_stays(kept: Records):
+    line = kept.keep(fly(), NOON)
+    assert kept.forget(line.file)
+    assert kept.kept() == set()
+    assert len(kept.entries()) == 1
+
+
+def test_best_are_landings_by_hand_by_points_and_in_missions_by_fuel():
+    lines = [entry(score=score, file=f"{score}.json") for score in (40, 20, 90, 10, 30, 50)]
+    lines += [entry(score=99, alone=False, file="helped"), entry("CRASHED", score=99, file="crash"), entry(score=99)]
+    lines += [entry(fuel=fuel, score=round(10 * fuel), medal=medal, course="wind", file=f"w{fuel}")
+              for fuel, medal in ((8.0, 1), (6.0, 3), (5.0, 1), (7.0, 3))]  # fmt: skip
+    lines += [entry(fuel=7.0, pads=3, file="p")]
+    wanted = ["90.json", "50.json", "40.json", "30.json", "20.json", "p", "w6.0", "w7.0", "w5.0", "w8.0"]
+    assert [line.file for line in best(lines)] == wanted
+
+
+def test_totals_and_skill_are_of_what_was_flown():
+    assert totals([]) == records.Totals()
+    assert skill([]) == []
+    outcomes = ["CRASHED", "LANDED", "LANDED", "TIMED_OUT", "LANDED"]
+    lines = [entry(outcome) for outcome in outcomes]
+    lines.insert(2, entry(alone=False))  # the network's landing says nothing of the person
+    assert totals(lines) == records.Totals(6, 4, 60.0, 18.0, 2)
+    assert skill(lines, window=2) == [0.0, 0.5, 1.0, 0.5, 0.5]
+
+
+@given(st.lists(st.sampled_from(range(6)), min_size=1, max_size=300), st.integers(0, 2**40))
+@settings(max_examples=50, deadline=None)
+def test_any_recording_survives_its_file(actions: list[int], seed: int):
+    hands = [Hand.HUMAN if action % 2 else Hand.NETWORK for action in actions]
+    recording = Recording(seed, "hard", 3, actions, hands)
+    record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
+    assert from_text(to_text(record)) == record
+    assert json.loads(to_text(record))["version"] == 1
