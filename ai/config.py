@@ -193,8 +193,8 @@ def _pays(weights: Any) -> bool:
 PRESETS: Final[dict[str, Config]] = {
     "modern": Config(),
     "classic": Config(
-        learning_rate=1e-3, final_learning_rate=1e-3, horizon=300_000, discount=0.99, n_step=1, batch_size=64, updates=1,
-        optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh", layer_normalisation=False,
+        learning_rate=1e-3, final_learning_rate=1e-3, horizon=300_000, discount=0.99, n_step=1, batch_size=64,
+        updates=1, optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh", layer_normalisation=False,
         output_scale=1.0, replay_size=1500, replay_prune=1000, warm_up=64, mirror=False, success_pass=True,
         double=False, target_every=50, target_rate=1.0, fly_target=False, epsilon_decay=0.999,
         epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0, care=1.0,
