@@ -49,6 +49,8 @@ VARIANTS: dict[str, dict[str, Any]] = {
     "same ε for all": {"epsilon_spread": 0.0},
     "uniform random actions": {"random_main": 0.5},
     "no practice spawns": {"spawn": "random"},
+    "real limits, no care": {"care": 1.0},
+    "8 learning steps a decision": {"updates": 8},
     "no steadiness": {"steadiness": 0.0},
     "no shaping": {"weights": WITHOUT_SHAPING},
     "replay of 10,000": {"replay_size": 10_000},
