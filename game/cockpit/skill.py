@@ -56,9 +56,9 @@ class Skill:
     def add(self, entry: Entry) -> None:
         """Write a flight down."""
         self.entries = [*self.entries, entry][-_MOST:]
-        self.problem = ""
         if not self._keeps:
             return
+        self.problem = ""
         try:
             write_atomically(self._path, json.dumps([asdict(each) for each in self.entries]) + "\n")
         except OSError as error:

@@ -70,6 +70,8 @@ class Play:
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
         self._skill = Skill(context.user_dir)
+        if self._skill.problem:
+            context.note(self._skill.problem)
         self._begin(self._new_seed() if self._seed is None else self._seed)
 
     def exit(self) -> None:

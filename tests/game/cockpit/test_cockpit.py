@@ -1,0 +1,263 @@
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander import PARAMS, Outcome
+from game import networks, texts
+from game.cockpit.overrides import difference
+from game.cockpit.skill import Entry, Skill
+from game.context import Context
+from game.flight import Hand
+from game.scenes.play import Play
+from game.settings import SettingsFile
+from game.ui.canvas import Canvas
+from tests.game.driver import Driver
+
+Open = Callable[..., Driver]
+COAST, LEFT, RIGHT, MAIN = range(4)
+
+
+class Wants:
+    """A network that thinks the main engine is worth 10, left 6, and the rest nothing."""
+
+    def q_values(self, observation: np.ndarray) -> np.ndarray:
+        return np.tile(np.array([0, 6, 0, 10, 0, 0], np.float32), (len(observation), 1))
+
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
+        return self.q_values(observation).argmax(axis=1)
+
+
+@pytest.fixture(autouse=True)
+def flown_by(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Wants()))
+
+
+def fly(open_game: Open, context: Context, **settings: object) -> Driver:
+    for name, value in settings.items():
+        setattr(context.settings, name, value)
+    context.settings_file.save(context.settings)
+    driver = open_game(Play(seed=4))
+    driver.frames(2)
+    return driver
+
+
+def play(driver: Driver) -> Play:
+    assert isinstance(driver.top, Play)
+    return driver.top
+
+
+def down(driver: Driver, key: int) -> None:
+    driver.post(pygame.KEYDOWN, key=key, mod=0, unicode="", scancode=0)
+
+
+def up(driver: Driver, key: int) -> None:
+    driver.post(pygame.KEYUP, key=key, mod=0, unicode="", scancode=0)
+
+
+def start_at(driver: Driver, *start: float) -> None:
+    play(driver).waiting = False
+    play(driver).flight.env.place(np.ones(1, bool), np.array([start]))
+
+
+def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    words: list[str] = []
+    monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: words.append(text) or pygame.FRect())
+    return words
+
+
+def test_the_dial_is_turned_by_keys_wheel_drag_and_stick_and_kept(open_game: Open, context: Context):
+    driver = fly(open_game, context)
+    settings = driver.app.context.settings
+    driver.keys(pygame.K_PLUS, pygame.K_PLUS, pygame.K_MINUS)
+    assert settings.assist == pytest.approx(0.1)
+    driver.post(pygame.MOUSEWHEEL, x=0, y=3)
+    assert settings.assist == pytest.approx(0.25)
+    for value in (30000, 0):
+        driver.axis(pygame.CONTROLLER_AXIS_RIGHTX, value)
+    assert settings.assist == pytest.approx(0.35)
+    driver.move((613, 59))
+    driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window((613, 59)), button=1)
+    driver.move((730, 90))
+    assert settings.assist == pytest.approx(1.0)
+    driver.move((694, 300))
+    driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window((694, 300)), button=1)
+    driver.move((100, 100))
+    assert settings.assist == pytest.approx(0.8)
+    driver.keys(pygame.K_g, pygame.K_ESCAPE)  # in the pause, it has been saved
+    saved = SettingsFile(context.user_dir).load()
+    assert (saved.assist, saved.copilot) == (pytest.approx(0.8), "guardian")
+    assert play_below(driver).waiting  # none of that has begun the flight
+
+
+def play_below(driver: Driver) -> Play:
+    driver.key(pygame.K_ESCAPE)
+    return play(driver)
+
+
+def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(
+    open_game: Open, context: Context, monkeypatch
+):
+    driver = fly(open_game, context, assist=0.5)
+    start_at(driver, 0, 16, 0, 0, 0, 0)
+    driver.frames(6)
+    flight, cockpit = play(driver).flight, play(driver)._cockpit
+    assert flight.env.actions[0] == MAIN
+    assert cockpit.overrides.lamp(flight)[0] == "ring"
+    down(driver, pygame.K_LEFT)
+    driver.frames(6)
+    assert flight.env.actions[0] == LEFT
+    assert cockpit.overrides.lamp(flight)[0] == "circle"
+    assert cockpit.overrides.times == 0
+    up(driver, pygame.K_LEFT)
+    words = written(monkeypatch)
+    down(driver, pygame.K_RIGHT)
+    driver.frames(6)
+    assert flight.env.actions[0] == MAIN
+    assert cockpit.overrides.lamp(flight)[0] == "diamond"
+    assert cockpit.overrides.times == len(cockpit.track.moments) == 1
+    assert difference(RIGHT, MAIN) in words
+    assert texts.INSIGHT_WHY["COPILOT"][0] in words
+
+
+def test_without_assist_nothing_of_the_co_pilot_is_seen_or_felt(open_game: Open, context: Context, monkeypatch):
+    driver = fly(open_game, context)
+    start_at(driver, 0, 16, 0, 0, 0, 0)
+    words = written(monkeypatch)
+    driver.frames(20)
+    assert set(play(driver).flight.recording.actions) == {COAST}
+    assert play(driver).flight.share == 1.0
+    assert texts.INSIGHT_TITLE not in words
+    assert texts.YOU_FLY in words
+
+
+def test_a_hundred_handovers_with_help_on_lose_no_input_and_stick_no_engine(open_game: Open, context: Context):
+    driver = fly(open_game, context, assist=0.5, three_pads=True)
+    held = False
+    for turn in range(100):
+        if turn % 10 == 0:
+            start_at(driver, 0, 18, 0, 0, 0, 0)
+        driver.key(pygame.K_TAB)
+        if turn % 3 == 0:
+            (up if held else down)(driver, pygame.K_LEFT)
+            held = not held
+        driver.frames(1)
+        flight = play(driver).flight
+        wanted = LEFT if held and flight.hand is Hand.HUMAN else MAIN
+        assert flight.env.actions[0] == wanted
+    driver.app.context.settings.assist = 0.0
+    if held:
+        up(driver, pygame.K_LEFT)
+    start_at(driver, 0, 18, 0, 0, 0, 0)
+    driver.frames(2)
+    assert flight.env.actions[0] == COAST
+
+
+def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_game: Open, context: Context, monkeypatch):
+    driver = fly(open_game, context, assist=0.5)
+    start_at(driver, 0, 5, 0, -1.0, 0, 0)
+    down(driver, pygame.K_RIGHT)
+    driver.frames(3)
+    driver.app.context.settings.assist = 0.0
+    up(driver, pygame.K_RIGHT)
+    start_at(driver, 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
+    words = written(monkeypatch)
+    driver.frames(140)
+    assert play(driver).flight.outcome is Outcome.LANDED
+    you = round(100 * play(driver).flight.share)
+    assert 0 < you < 100
+    assert texts.SHARE_YOU.format(percent=you) in words
+    assert texts.SHARE_COPILOT.format(percent=100 - you) in words
+    assert texts.SHARE_MOMENTS.format(times=1) in words
+    assert Skill(context.user_dir).entries[-1].alone is False
+
+
+@pytest.mark.parametrize("device", ["keys", "pad", "mouse"])
+def test_choices_are_made_with_any_device_and_the_waiting_flight_follows(
+    open_game: Open, context: Context, device: str
+):
+    driver = fly(open_game, context)
+    if device == "keys":
+        driver.keys(
+            pygame.K_c, pygame.K_RIGHT, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_DOWN, pygame.K_RIGHT
+        )
+        driver.key(pygame.K_ESCAPE)
+    elif device == "pad":
+        right, below = pygame.CONTROLLER_BUTTON_DPAD_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_DOWN
+        for button in (pygame.CONTROLLER_BUTTON_BACK, right, below, below, right, below, right):
+            driver.button(button)
+        driver.button(pygame.CONTROLLER_BUTTON_B)
+    else:
+        driver.key(pygame.K_c)
+        for place in ((242, 156), (380, 252), (282, 300), (72, 640)):
+            driver.click(place)
+    settings = driver.app.context.settings
+    assert settings.assist == pytest.approx(0.1)
+    assert settings.three_pads
+    assert settings.hands == "laggy"
+    assert play(driver).waiting
+    assert len(play(driver).flight.env.ground.pads) == 3
+    assert play(driver)._hands == "laggy"
+
+
+def test_pads_and_hands_do_not_change_under_a_flight_that_has_begun(open_game: Open, context: Context):
+    driver = fly(open_game, context)
+    start_at(driver, 0, 16, 0, 0, 0, 0)
+    driver.frames(3)
+    flight = play(driver).flight
+    driver.keys(pygame.K_c, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_c)
+    assert play(driver).flight is flight
+    driver.key(pygame.K_n)
+    assert len(play(driver).flight.env.ground.pads) == 3
+
+
+def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Open, context: Context):
+    skill = Skill(context.user_dir)
+    for _ in range(4):
+        skill.add(Entry(landed=True, alone=False))
+    driver = fly(open_game, context, check_flights=True, assist=0.8, hands="noisy")
+    start_at(driver, 0, 16, 0, 0, 0, 0)
+    driver.keys(pygame.K_TAB, pygame.K_PLUS)
+    driver.frames(10)
+    assert driver.app.context.settings.assist == pytest.approx(0.8)
+    assert set(play(driver).flight.recording.actions) == {COAST}
+    start_at(driver, 8, 3, 0, -4, 0, 0)
+    driver.frames(60)
+    assert Skill(context.user_dir).entries[-1] == Entry(landed=False, alone=True)
+    driver.key(pygame.K_n)
+    driver.key(pygame.K_TAB)
+    assert play(driver).flight.hand is Hand.NETWORK
+
+
+def test_nonsense_in_the_settings_flies_as_usual(open_game: Open, context: Context):
+    driver = fly(open_game, context, hands="three", copilot="captain", assist=0.5)
+    driver.key(pygame.K_UP)
+    driver.frames(10)
+    assert play(driver)._hands == "own"
+    assert driver.app.context.settings.copilot == "tolerance"
+
+
+def test_draw_changes_nothing_of_a_shared_flight(open_game: Open, context: Context):
+    driver = fly(open_game, context, assist=0.5, three_pads=True)
+    down(driver, pygame.K_RIGHT)
+    driver.frames(40)
+    pictures = []
+    for _ in range(2):
+        driver.top.draw(driver.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
+    assert np.array_equal(*pictures)
+
+
+@pytest.mark.parametrize(
+    ("asked", "flown", "words"),
+    [
+        (3, 0, "− main"),
+        (0, 4, "+ main  + left"),
+        (1, 2, "right, not left"),
+        (5, 3, "− right"),
+        (2, 4, "+ main  left, not right"),
+    ],
+)
+def test_an_override_is_told_in_engines(asked: int, flown: int, words: str):
+    assert difference(asked, flown) == words
