@@ -24,7 +24,7 @@ from ai.config import PRESETS, Config
 from ai.demonstrations import Demonstration, demonstrate, taught, teach
 from ai.pilots import ScriptedPilot
 from ai.training import TEST_SEED, Training, evaluate
-from benchmarks.learning import TEST_FLIGHTS, Checkpoint, followed
+from benchmarks.learning import TEST_FLIGHTS, Checkpoint, followed, validated
 
 SHARE = 0.95
 PAUSE = {"modern": 1.0, "classic": 15.0}  # seconds between two looks at the network
@@ -46,9 +46,10 @@ def student(config: Config, seed: int, lessons: list[Demonstration], pause: floa
 
 def race(training: Iterator[Checkpoint], limit: float) -> tuple[float, float, float]:
     """Seconds and decisions until the network kept lands the share, infinite if not within the limit; and its share."""
-    landed = 0.0
-    for seconds, decisions, pilot, new in followed(training):
-        if new:
+    landed, seen = 0.0, None
+    for seconds, decisions, pilot, _ in followed(training, validated):
+        if pilot is not seen:
+            seen = pilot
             landed = evaluate(pilot, TEST_FLIGHTS, TEST_SEED).success
         if landed >= SHARE:
             return seconds, float(decisions), landed
