@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -133,6 +133,20 @@ class Flight:
     def shared(self) -> bool:
         """Whether the person has the stick, and the co-pilot a say in it."""
         return self.hand is Hand.HUMAN and self.copilot is not None and self.copilot.assist > 0
+
+    def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
+        """Go on from a moment of a flight from the same start: as its environment was after so many steps."""
+        self.env.restore(moment)
+        self.observation = self.env.observe()
+        self.recording.actions[:] = source.actions[:step]
+        self.recording.hands[:] = source.hands[:step]
+        self._yours = self.recording.hands.count(Hand.HUMAN)
+        self.rest()
+
+    def rest(self) -> None:
+        """Be drawn where it is, and not on the way there."""
+        self.poses.take()
+        self.poses.take()
 
     def change_network(self, network: Flyer | None) -> None:
         """Let another network take the stick from here on, or share it; without one, the person has it."""

@@ -80,13 +80,13 @@ class Trails:
             landed = trail.outcome == Outcome.LANDED
             colour = canvas.palette.good if landed else canvas.palette.warn
             if strength > 0.06:
-                _draw_faint(canvas.surface, view.pixels(trail.points), colour, strength)
+                draw_faint(canvas.surface, view.pixels(trail.points), colour, strength)
                 if not landed:
                     end = view.points(trail.points[-1]).tolist()
                     canvas.marker("cross", end, 7, colour, min(1.0, strength * 1.8))
         way = self._open[shown]
         if len(way) > 1:
-            _draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6)
+            draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6)
 
 
 def _thinned(points: Doubles) -> Doubles:
@@ -95,7 +95,7 @@ def _thinned(points: Doubles) -> Doubles:
     return points if count <= _FINEST else points[np.linspace(0, count - 1, _FINEST).astype(int)]
 
 
-def _draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float) -> None:
+def draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float) -> None:
     """Draw a line as if translucent: each stretch is mixed with what lies under its middle."""
     places = points.tolist()
     area = surface.get_rect()

@@ -1,0 +1,230 @@
+"""The logbook: every flight in a list, what they add up to, and how the player's own skill has grown."""
+
+from __future__ import annotations
+
+import time
+from typing import Final
+
+import numpy as np
+import pygame
+
+from game import texts
+from game.context import Context
+from game.controls import Command
+from game.flight_file import Entry, Record
+from game.records import Records, Totals, best, skill, totals
+from game.scene import Pop, Push, Transition
+from game.ui.canvas import Canvas
+from game.ui.chart import Chart, Series
+from game.ui.charts import Charts
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.listing import Listing, shortened
+from game.ui.sky import NightSky
+from game.ui.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.ui.widgets import Choice, Widget, Word
+
+_LIST: Final = pygame.Rect(MARGIN, 252, 672, 336)
+_PITCH: Final = 28
+_COLUMNS: Final = (388.0, 236.0, 152.0, 76.0, 0.0)  # how far from the list's right end each cell ends
+_LEFT: Final = 824
+_WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
+_CHARTS: Final = (136, 304)
+_CHART_HEIGHT: Final = 150
+_FIRST_VERB: Final = 486
+_LINE: Final = 36
+_FOOT: Final = 612
+_TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
+
+
+class Logbook:
+    """The flights on the left, newest first; skill, and what can be done with the chosen flight, on the right."""
+
+    def __init__(self) -> None:
+        self._context: Context | None = None
+        self._shown: list[Entry] = []
+
+    def enter(self, context: Context) -> None:
+        """Build the screen, or look again at what there is."""
+        if self._context is None:
+            self._build(context)
+        self._reload()
+
+    def exit(self) -> None:
+        """Nothing is held."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Leave it to the widgets; Delete throws a flight away, as elsewhere."""
+        if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
+            self._forget()
+            return None
+        if event.type == pygame.MOUSEMOTION:
+            self._charts.hover(event.pos)
+        return self._form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Let widgets and charts ease."""
+        assert self._context is not None
+        self._charts.update(self._context.settings.reduced_motion)
+        return self._form.update()
+
+    # What there is
+
+    @property
+    def chosen(self) -> Entry | None:
+        """The flight that the list is at; None if there is none."""
+        return self._shown[self._list.index] if self._shown else None
+
+    @property
+    def _replayable(self) -> bool:
+        return self.chosen is not None and self.chosen.file in self._kept
+
+    def _build(self, context: Context) -> None:
+        self._context = context
+        self._records = Records(context.user_dir)
+        self._sky = NightSky(context.rng, ember=0.5, stars=70)
+        self._form = Form(context, on_back=Pop)
+        manager = self._form.manager
+        box = (MARGIN, _LIST.top - 54, 330, 20)
+        self._filter = Choice(manager, box, "", texts.LOGBOOK_FILTERS, 0, lambda _: self._fill(), size=SMALL)
+        self._list = self._form.add(Listing(
+            manager, _LIST, [], on_choose=lambda _: self._set_verbs(), on_press=lambda _: self._watch(),
+            empty=texts.LOGBOOK_EMPTY, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
+        ))  # fmt: skip
+        self._form.add(self._filter)
+        self._verbs: list[Widget] = []
+        self._charts = Charts([
+            Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_SKILL, limits=(0.0, 100.0),
+                  read="{:.0f} %".format, read_x=texts.LOGBOOK_FLIGHT.format),
+            Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
+                  read_x=texts.LOGBOOK_FLIGHT.format),
+        ])  # fmt: skip
+
+    def _reload(self) -> None:
+        """Look at the disk again."""
+        self._entries = self._records.entries()
+        self._kept = self._records.kept()
+        self._line = self._records.problem or texts.LOGBOOK_PLACE.format(folder=self._records.folder)
+        self._totals = totals(self._entries)
+        self._plot()
+        self._fill()
+
+    def _fill(self) -> None:
+        """Show the flights that the filter lets through, newest first; the best ones by what they came to."""
+        before = self.chosen
+        chosen = [
+            lambda: self._entries[::-1],
+            lambda: [entry for entry in reversed(self._entries) if entry.landed],
+            lambda: best(self._entries),
+        ][self._filter.index]()
+        self._shown = chosen
+        index = chosen.index(before) if before in chosen else 0
+        self._list.set_rows([_row(entry) for entry in chosen], index)
+        self._set_verbs()
+
+    def _plot(self) -> None:
+        own = skill(self._entries)
+        fuel = [entry.fuel if entry.landed else np.nan for entry in self._entries if entry.alone]
+        number, span = np.arange(1, len(own) + 1), (1.0, float(max(2, len(own))))
+        share = Series(number, 100 * np.array(own), texts.LOGBOOK_YOU, HUMAN, smooth=False)
+        landings = Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)
+        for chart, series in zip(self._charts.charts, (share, landings), strict=True):
+            chart.set([series], span)
+
+    def _set_verbs(self) -> None:
+        rows = []
+        if self._replayable:
+            rows = [(texts.LOGBOOK_WATCH, self._watch), (texts.LOGBOOK_RACE, self._race),
+                    (texts.LOGBOOK_FORGET, self._forget)]  # fmt: skip
+        manager = self._form.manager
+        new: list[Widget] = [
+            Word(manager, (_LEFT, _FIRST_VERB + number * _LINE, 220, _LINE), label, press, size=18)
+            for number, (label, press) in enumerate(rows)
+        ]
+        new.append(Word(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, Pop, size=18))
+        self._form.replace(self._verbs, new)
+        self._verbs = new
+
+    # What can be done
+
+    def _read(self) -> Record | None:
+        """Read the chosen flight; a damaged one is named."""
+        assert self._context is not None
+        if not self._replayable or self.chosen is None:
+            return None
+        try:
+            return self._records.read(self.chosen.file)
+        except ValueError as error:
+            self._context.note(str(error))
+            return None
+
+    def _watch(self) -> Transition | None:
+        from game.scenes.replay import Replay
+
+        record = self._read()
+        return Push(Replay(record)) if record else None
+
+    def _race(self) -> Transition | None:
+        from game.scenes.race import race
+
+        record = self._read()
+        return Push(race(record)) if record else None
+
+    def _forget(self) -> None:
+        assert self._context is not None
+        if self.chosen is None or not self._replayable:
+            return
+        done = self._records.forget(self.chosen.file)
+        self._context.note(texts.LOGBOOK_FORGOTTEN if done else self._records.problem)
+        self._reload()
+        self._form.focus(self._list)
+
+    # The picture
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the list, the totals and the charts."""
+        self._sky.draw(canvas)
+        canvas.text(texts.LOGBOOK_TITLE, (MARGIN, 84), size=34, weight="light")
+        canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE)
+        _draw_totals(canvas, self._totals)
+        y = _LIST.top - 9
+        for label, column in zip(texts.LOGBOOK_COLUMNS, (None, *_COLUMNS), strict=True):
+            x = _LIST.left if column is None else self._list.right - column
+            align = "left" if column is None else "right"
+            canvas.text(label, (x, y), size=LABEL, weight="medium", colour=MUTE, align=align)  # type: ignore[arg-type]
+        canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
+        self._charts.draw(canvas)
+        self._form.draw(canvas)
+        if self.chosen and not self._replayable:
+            canvas.text(texts.LOGBOOK_NO_FILE, (_LEFT, _FIRST_VERB + 22), size=SMALL, colour=MUTE)
+        self._draw_hints(canvas)
+
+    def _draw_hints(self, canvas: Canvas) -> None:
+        assert self._context is not None
+        controls = self._context.controls
+        arrows = texts.DPAD if controls.pad_in_use else texts.ARROWS
+        hints = [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
+                 (controls.word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
+        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+
+
+def _draw_totals(canvas: Canvas, sums: Totals) -> None:
+    percent = f"{100 * sums.landings / sums.flights:.0f}" if sums.flights else "–"
+    figures = (
+        (f"{sums.flights}", ""), (f"{sums.landings}", f"{percent} %"), (f"{sums.seconds / 60:.0f}", "min"),
+        (f"{sums.fuel:.0f}", "s"), (f"{sums.streak}", ""),
+    )  # fmt: skip
+    y, pitch = _TOTALS
+    for number, (label, (figure, unit)) in enumerate(zip(texts.LOGBOOK_TOTALS, figures, strict=True)):
+        x = MARGIN + number * pitch
+        canvas.text(label, (x, y), size=LABEL, weight="medium", colour=MUTE)
+        box = canvas.text(figure, (x - 1, y + 30), size=TITLE + 4, weight="light", tabular=True)
+        canvas.text(unit, (box.right + 5, y + 30), size=SMALL, colour=MUTE)
+
+
+def _row(entry: Entry) -> tuple[str, ...]:
+    when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
+    course = entry.course or texts.COURSE_FREE.get(entry.pads, "")
+    points = f"{entry.score}" if entry.landed else "–"
+    by = texts.LOGBOOK_YOU if entry.alone else texts.LOGBOOK_SHARED if entry.human > 0 else texts.LOGBOOK_NETWORK
+    return when, course, texts.OUTCOMES[entry.outcome][0], f"{entry.seconds:.1f} s", points, by

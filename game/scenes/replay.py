@@ -1,0 +1,258 @@
+"""Replay: a flight is seen again, at any pace and from any moment; from there it can be flown on."""
+
+from __future__ import annotations
+
+import time
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.lander import Outcome
+from game import hud, texts
+from game.clock import STEP
+from game.context import Context
+from game.controls import Command, translate
+from game.flight import Hand
+from game.flight_file import Record
+from game.render import Camera, View
+from game.scene import Pop, Push, Transition
+from game.sounds.flight import FlightSound
+from game.tape import Tape
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.timeline import Timeline, runs
+from game.ui.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.ui.widgets import Choice, OnPress, Word
+from game.ui.words import GAP
+from game.world.backdrop import landscape
+from game.world.ground import draw_ground
+from game.world.paths import draw_faint
+from game.world.stage import Stage
+
+SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
+_SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2")
+_EARTH: Final = (208.0, 268.0)  # points; clear of the words
+_SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
+_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 54.0)
+_VERBS: Final = 144.0
+_VERB: Final = 20.0
+
+
+class Replay:
+    """Flies a record again. `stopped` is whether time stands still."""
+
+    def __init__(self, record: Record) -> None:
+        self.record = record
+        self._context: Context | None = None
+        self.stopped = False
+        self._speed = SPEEDS.index(1.0)
+        self._time = self._due = 0.0
+        self._warned = False
+
+    def enter(self, context: Context) -> None:
+        """Begin with the first moment, or go on where it was left."""
+        if self._context is not None:
+            self.stopped = True
+            return
+        self._context, self._settings = context, context.settings
+        self.tape = Tape(self.record)
+        self.tape.scout(1)
+        env = self.tape.flight.env
+        self._stage = Stage(env, np.random.default_rng(self.record.recording.seed), self._settings.reduced_motion)
+        self._heard = FlightSound(context.sound, env, warns=False)
+        self._camera = Camera()
+        self._build(context)
+        self._look()
+
+    def exit(self) -> None:
+        """Nothing is held."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Stop, wind, choose; take over."""
+        pad = event.type == pygame.CONTROLLERBUTTONDOWN
+        match translate(event):
+            case Command.STEP:
+                self.stopped = True
+                self._fly()
+            case Command.RETRY:
+                self.seek(0)
+                self.stopped = False
+            case Command.SLOWER:
+                self._speeds.shift(-1)
+            case Command.FASTER:
+                self._speeds.shift(1)
+            case Command.HANDOVER:
+                return self._take_over()
+            case Command.NEXT | Command.PREVIOUS as command if pad or self._form.focused is self._strip:
+                self.seek(self.tape.at + (60 if command is Command.NEXT else -60))
+            case _ if event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE:
+                self._stop_or_go()
+            case _ if event.type == pygame.KEYDOWN and event.key in (pygame.K_HOME, pygame.K_END):
+                self.seek(0 if event.key == pygame.K_HOME else self.tape.length)
+            case _:
+                return self._form.handle_event(event)
+        return None
+
+    def update(self) -> Transition | None:
+        """Let as many steps pass as the chosen speed makes due, and look a little further ahead."""
+        assert self._context is not None
+        self.tape.scout(_SCOUT)
+        self._strip.reached = self.tape.reached
+        if self.tape.complete and not self.tape.faithful and not self._warned:
+            self._warned = True
+            self._context.note(texts.REPLAY_OTHER_RULES)
+        if not self.stopped:
+            self._due += SPEEDS[self._speed]
+            while self._due >= 1:
+                self._due -= 1
+                self._fly()
+            self._heard.follow(self._stage.thrust[0])
+        if not self._settings.reduced_motion:
+            self._time += STEP
+        return self._form.update()
+
+    # Time
+
+    def seek(self, step: int) -> None:
+        """Show another moment."""
+        self.tape.seek(step)
+        self._stage.flash[:] = 0
+        self._stage.particles.clear()
+        action = 0 if self.tape.flight.over else int(self.tape.flight.env.actions[0])
+        self._stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
+        self._stage.blue[:] = self.tape.flight.flown_by is Hand.NETWORK
+        self._due = 0.0
+        self._look()
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last moment is shown."""
+        return self.tape.complete and self.tape.at >= self.tape.reached
+
+    def _fly(self) -> None:
+        """Show the next moment, with fire and dust."""
+        if self.ended:
+            self.tape.flight.rest()
+        flight = self.tape.flight
+        was_over = flight.over
+        self.tape.step()
+        ended = np.array([flight.over and not was_over])
+        self._stage.follow(np.array([flight.flown_by is Hand.NETWORK]), ended)
+        if not self._settings.reduced_motion:
+            self._camera.follow(flight.env.position[0])
+        self._look()
+
+    def _look(self) -> None:
+        """Read the figures; at the end they stay those of the last moment before."""
+        self._strip.at = self.tape.at
+        if not self.tape.flight.over:
+            self._readouts = hud.flight_readouts(self.tape.flight.env)
+
+    def _stop_or_go(self) -> None:
+        if self.ended:
+            self.seek(0)
+            self.stopped = False
+        else:
+            self.stopped = not self.stopped
+
+    # Words
+
+    def _build(self, context: Context) -> None:
+        self._form = Form(context, on_back=Pop)
+        manager, recording = self._form.manager, self.record.recording
+        self._strip = self._form.add(Timeline(
+            manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
+        ))  # fmt: skip
+        width = 84 + sum(typeface.width(word, SMALL, "regular") + GAP for word in _SPEED_WORDS)
+        box = (MARGIN, _VERBS, round(width), _VERB)
+        self._speeds = self._form.add(Choice(manager, box, texts.WATCH_SPEED, _SPEED_WORDS, self._speed,
+                                             self._choose_speed, label_width=84, size=SMALL))  # fmt: skip
+        rows: list[tuple[str, OnPress]] = [
+            (texts.REPLAY_TAKE_OVER, self._take_over), (texts.LOGBOOK_RACE, self._race),
+            (texts.REPLAY_EXPORT, self._export), (texts.BACK, Pop),
+        ]  # fmt: skip
+        x = VIEW_SIZE[0] - MARGIN - sum(typeface.width(word, SMALL, "regular") + 28 for word, _ in rows) + 28
+        for word, press in rows:
+            wide = typeface.width(word, SMALL, "regular")
+            self._form.add(Word(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
+            x += wide + 28
+
+    def _choose_speed(self, index: int) -> None:
+        self._speed = index
+
+    def _take_over(self) -> Transition | None:
+        """Fly on from the moment that is shown."""
+        assert self._context is not None
+        if self.tape.flight.over:
+            self._context.note(texts.REPLAY_OVER)
+            return None
+        from game.scenes.race import fly_on
+
+        return Push(fly_on(self.record, self.tape))
+
+    def _race(self) -> Transition:
+        from game.scenes.race import race
+
+        return Push(race(self.record))
+
+    def _export(self) -> Transition | None:
+        return None
+
+    # The picture
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the world at the moment that is shown, the way there and on, and the strip of time."""
+        between = 1.0 if self.stopped else min(1.0, self._due + alpha * SPEEDS[self._speed])
+        view = self._camera.view(canvas.scale, between)
+        flight, env = self.tape.flight, self.tape.flight.env
+        landscape(canvas.surface.get_size(), self._settings.reduced_motion).draw(
+            canvas, self._camera, self._time, between, _EARTH
+        )
+        draw_ground(canvas, view, env.ground, self._time)
+        self._draw_way(canvas, view)
+        self._stage.draw_lander(canvas, view, flight.poses.at(between)[0])
+        self._stage.draw_dust(canvas, view, between)
+        hud.draw_readouts(canvas, self._readouts)
+        self._draw_words(canvas)
+
+    def _draw_way(self, canvas: Canvas, view: View) -> None:
+        """Draw where it came from in the colour of who flew, and faintly where it goes."""
+        path, hands = self.tape.path, self.record.recording.hands
+        at = min(self.tape.at, len(path) - 1)
+        if at + 4 < len(path):
+            draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35)
+        for start, stop, hand in runs(hands[:at]):
+            if stop - start > 1:
+                stretch = path[start : stop + 1 : 4] if stop - start > 8 else path[start : stop + 1]
+                draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is Hand.HUMAN else NET, 0.6)
+
+    def _draw_words(self, canvas: Canvas) -> None:
+        assert self._context is not None
+        entry = self.record.entry
+        when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
+        hud.draw_corner(canvas, texts.REPLAY_TITLE, texts.REPLAY_LINE.format(
+            end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when))  # fmt: skip
+        flight = self.tape.flight
+        seconds = f"{self.tape.at * STEP:.2f}"
+        middle = VIEW_SIZE[0] / 2
+        figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
+        by = texts.YOU_FLEW if flight.flown_by is Hand.HUMAN else texts.NETWORK_FLEW
+        if self.ended:
+            by = texts.OUTCOMES[flight.outcome.name][0] if flight.over else by
+        canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre")
+        if flight.over:
+            good = flight.outcome is Outcome.LANDED
+            colour = canvas.palette.good if good else canvas.palette.warn
+            canvas.marker("check" if good else "cross", (figure.left - 16, 51), 11, colour)
+        elif self.stopped:
+            for x in (figure.left - 20, figure.left - 15):
+                canvas.line((x, 45), (x, 57), INK, 2)
+        self._form.draw(canvas)
+        word, pad = self._context.controls.word, self._context.controls.pad_in_use
+        hints = [("A" if pad else "Space", texts.HINT_GO if self.stopped or self.ended else texts.HINT_STOP),
+                 (word(Command.STEP), texts.HINT_STEP), (word(Command.RETRY), texts.REPLAY_FROM_START),
+                 (word(Command.HANDOVER), texts.REPLAY_HINT_TAKE), (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
+        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)

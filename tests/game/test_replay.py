@@ -1,0 +1,252 @@
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander import Outcome
+from ai.pilots import ScriptedPilot
+from game.context import Context
+from game.flight import Flight, Hand
+from game.flight_file import Record
+from game.records import Records
+from game.scenes.logbook import Logbook
+from game.scenes.replay import Replay
+from game.tape import Tape
+from tests.game.driver import Driver
+
+Open = Callable[..., Driver]
+NOON = 1_700_000_000.0
+
+
+def fly(seed: int = 3, pads: int = 1, by_hand: int = 40) -> Flight:
+    """The scripted pilot's flight, after the person has coasted for so many steps."""
+    flight = Flight(seed, ScriptedPilot(), pads=pads)
+    for _ in range(by_hand):
+        flight.step(0)
+    flight.hand_over()
+    while not flight.over:
+        flight.step(0)
+    return flight
+
+
+@pytest.fixture
+def record(context: Context) -> Record:
+    records = Records(context.user_dir)
+    return records.read(records.keep(fly(), NOON).file)
+
+
+def state(tape: Tape) -> tuple:
+    env = tape.flight.env
+    return (*env.position[0].tolist(), *env.velocity[0].tolist(), float(env.angle[0]), int(env.outcome[0]),
+            int(env.main_steps[0]), tape.flight.share)  # fmt: skip
+
+
+def test_a_tape_can_be_wound_to_any_moment_and_shows_it_as_it_was(record: Record):
+    tape = Tape(record)
+    seen = [state(tape)]
+    for _ in range(tape.length):
+        tape.step()
+        seen.append(state(tape))
+    assert tape.flight.outcome is Outcome.LANDED
+    for step in (0, 1, 19, 20, 21, 77, tape.length - 1, tape.length, 40, 39, 3, tape.length):
+        tape.seek(step)
+        assert tape.at == step
+        assert state(tape) == seen[step]
+    tape.seek(60)
+    for step in range(61, 90):
+        tape.step()
+        assert state(tape) == seen[step]
+
+
+def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flight(record: Record):
+    tape = Tape(record)
+    tape.scout(30)
+    tape.seek(500)
+    assert tape.at == 30
+    tape.seek(-5)
+    assert tape.at == 0
+    tape.scout(10_000)
+    tape.seek(10_000)
+    assert (tape.at, tape.complete, tape.faithful) == (tape.length, True, True)
+    assert len(tape.path) == tape.length + 1
+    tape.step()
+    assert tape.at == tape.length
+
+
+@pytest.mark.parametrize("pads", [1, 3])
+def test_hands_are_those_that_flew(context: Context, pads: int):
+    records = Records(context.user_dir)
+    flight = fly(pads=pads)
+    tape = Tape(records.read(records.keep(flight, NOON).file))
+    tape.scout(10_000)
+    tape.seek(40)
+    assert tape.flight.flown_by is Hand.HUMAN
+    tape.seek(41)
+    assert tape.flight.flown_by is Hand.NETWORK
+    tape.seek(tape.length)
+    assert tape.flight.share == flight.share
+
+
+def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: Record):
+    x, y, angle = record.end
+    tape = Tape(replace(record, end=(x + 0.01, y, angle)))
+    tape.scout(10_000)
+    assert not tape.faithful
+    driver = open_game(Replay(replace(record, end=(x, y + 1, angle))))
+    driver.frames(120)
+    assert "other rules" in said(driver)
+
+
+def said(driver: Driver) -> str:
+    return driver.app._notes._text
+
+
+def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):
+    record.recording.actions[50:], record.recording.hands[50:] = [], []
+    tape = Tape(record)
+    for _ in range(70):
+        tape.step()
+    assert (tape.at, tape.complete, tape.faithful) == (50, True, False)
+
+
+# The scene
+
+
+@pytest.fixture
+def replay(open_game: Open, record: Record) -> Driver:
+    driver = open_game(Replay(record))
+    driver.frames(2)
+    return driver
+
+
+def scene(driver: Driver) -> Replay:
+    assert isinstance(driver.top, Replay)
+    return driver.top
+
+
+def test_it_plays_at_its_own_pace_and_at_others(replay: Driver):
+    before = scene(replay).tape.at
+    replay.frames(20)
+    assert scene(replay).tape.at == before + 20
+    replay.keys(pygame.K_MINUS, pygame.K_MINUS)
+    before = scene(replay).tape.at
+    replay.frames(40)
+    assert scene(replay).tape.at == pytest.approx(before + 10, abs=1)
+
+
+def test_space_stops_a_period_steps_and_arrows_wind(replay: Driver):
+    replay.frames(60)
+    replay.key(pygame.K_SPACE)
+    at = scene(replay).tape.at
+    replay.frames(10)
+    assert scene(replay).tape.at == at
+    replay.key(pygame.K_PERIOD)
+    assert scene(replay).tape.at == at + 1
+    replay.key(pygame.K_LEFT)
+    assert scene(replay).tape.at == at - 5
+    replay.key(pygame.K_HOME)
+    assert scene(replay).tape.at == 0
+    replay.frames(120)
+    replay.key(pygame.K_END)
+    assert scene(replay).tape.at == scene(replay).tape.length
+    assert scene(replay).ended
+
+
+def test_at_the_end_it_stays_and_space_begins_anew(replay: Driver):
+    replay.frames(scene(replay).tape.length + 30)
+    assert scene(replay).ended
+    replay.key(pygame.K_SPACE)
+    replay.frames(3)
+    assert 0 < scene(replay).tape.at < 10
+
+
+def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
+    replay.frames(150)
+    box = scene(replay)._strip.box
+    replay.click((box.left + 84 + 0.5 * (box.width - 84), box.centery))
+    assert scene(replay).tape.at == pytest.approx(scene(replay).tape.length / 2, abs=5)
+    assert not scene(replay).stopped
+
+
+def test_a_gamepad_stops_winds_and_leaves(open_game: Open, record: Record, context: Context):
+    Records(context.user_dir)
+    driver = open_game(Logbook())
+    driver.frames(2)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert driver.top_name == "Replay"
+    driver.frames(100)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert scene(driver).stopped
+    at = scene(driver).tape.at
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
+    assert scene(driver).tape.at < at
+    driver.button(pygame.CONTROLLER_BUTTON_B)
+    assert driver.top_name == "Logbook"
+
+
+def test_drawing_changes_nothing(replay: Driver):
+    replay.frames(70)
+    pictures = []
+    for _ in range(2):
+        replay.top.draw(replay.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(replay.app.canvas.surface))
+    assert np.array_equal(*pictures)
+
+
+# The logbook
+
+
+@pytest.fixture
+def book(open_game: Open, context: Context) -> Driver:
+    records = Records(context.user_dir)
+    fall, landing = Flight(5), fly(by_hand=0)
+    while not fall.over:
+        fall.step(0)
+    records.keep(landing, NOON, alone=True)
+    records.keep(fall, NOON + 60, alone=True)
+    driver = open_game(Logbook())
+    driver.frames(3)
+    return driver
+
+
+def page(driver: Driver) -> Logbook:
+    assert isinstance(driver.top, Logbook)
+    return driver.top
+
+
+def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
+    driver = open_game(Logbook())
+    driver.keys(pygame.K_RETURN, pygame.K_DELETE, pygame.K_DOWN, pygame.K_UP)
+    assert page(driver).chosen is None
+    assert not driver.key(pygame.K_ESCAPE)
+
+
+def test_flights_are_listed_newest_first_and_filtered(book: Driver):
+    assert [entry.outcome for entry in page(book)._shown] == ["CRASHED", "LANDED"]
+    page(book)._form.focus(page(book)._filter)
+    book.key(pygame.K_RIGHT)
+    assert [entry.outcome for entry in page(book)._shown] == ["LANDED"]
+    book.key(pygame.K_RIGHT)
+    assert [entry.alone for entry in page(book)._shown] == [True]
+    assert page(book)._totals.flights == 2
+
+
+def test_a_flight_that_is_thrown_away_keeps_its_line(book: Driver):
+    book.key(pygame.K_DELETE)
+    assert len(page(book)._shown) == 2
+    assert page(book)._verbs[0].label == "Back"
+    book.key(pygame.K_RETURN)  # there is nothing to watch any more
+    assert book.top_name == "Logbook"
+
+
+def test_a_damaged_flight_is_named_and_left_alone(book: Driver):
+    entry = page(book).chosen
+    assert entry
+    path = page(book)._records.folder / entry.file
+    path.write_text("{")
+    book.key(pygame.K_RETURN)
+    assert book.top_name == "Logbook"
+    assert "damaged" in said(book)
+    assert path.read_text() == "{"
