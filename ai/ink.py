@@ -23,6 +23,7 @@ STROKE_WIDTH: Final = 2.4  # pixels: the mean of MNIST's training images, as `st
 CELLS: Final = 5  # along a pixel: the grid on which strokes are measured and changed
 MARGIN: Final = 2  # pixels of it around the box, room for strokes that grow
 SPACING: Final = 1.5  # cells from one point of a stroke to the next: more of them change nothing that can be seen
+MOST_POINTS: Final = 400  # of all strokes together: digits have half as many, and a scribble must not take long
 LARGEST_GROWTH: Final = 2.0  # how far ink is enlarged once its strokes are thinner: a dot stays a dot
 
 Image = npt.NDArray[np.float32]
@@ -76,7 +77,9 @@ def _redrawn(strokes: Sequence[Stroke]) -> Image:
     low, high = everything.min(axis=0), everything.max(axis=0)
     room = BOX - STROKE_WIDTH
     scale = CELLS * room / max(float((high - low).max()), room / LARGEST_GROWTH)
-    placed = [spaced((stroke - (low + high) / 2) * scale + size / 2, SPACING) for stroke in points]
+    way = scale * sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in points)
+    spacing = max(SPACING, way / MOST_POINTS)
+    placed = [spaced((stroke - (low + high) / 2) * scale + size / 2, spacing) for stroke in points]
     return draw_strokes(placed, (size, size), STROKE_WIDTH * CELLS)
 
 

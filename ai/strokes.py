@@ -12,7 +12,7 @@ Stroke = npt.ArrayLike  # (n, 2): x to the right, y down, in pixels from the can
 Canvas = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
 _SMALL: Final = 8.0  # pixels beyond the pen's width that a piece may take and count as short
-_CELLS: Final = 2**18  # pixels that are worked upon at a time
+_CELLS: Final = 2**16  # pixels that are worked upon at a time: they stay in a core's cache
 
 
 def as_points(strokes: Sequence[Stroke]) -> list[Points]:
