@@ -83,8 +83,13 @@ class Kept:
     test: float | None = None
 
 
+@dataclass(frozen=True)
+class Finish:
+    """Take no more steps: keep the run, measure it, and end."""
+
+
 Message = DigitsBegun | DigitPoint | Score | Confusion | Kept | Refused
-Command = Change | Save
+Command = Change | Save | Finish
 
 
 def live_digits(
@@ -93,18 +98,19 @@ def live_digits(
     """Train to the last epoch; every turn is a learning step, and yields what there is to tell.
 
     The steps are those of `ai.digit_training.run_digits`. A turn that is sent a `Change` turns a live knob, a `Save`
-    writes the run to one more folder, without a step. The run keeps itself in `keep` now and then, when it is over
-    and when it is closed. With `resume`, it goes on from what was kept there, with the settings of that. Raises what
-    `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when the numbers run away.
+    writes the run to one more folder, without a step, and a `Finish` ends it early. The run keeps itself in `keep`
+    now and then, when it is over and when it is closed. With `resume`, it goes on from what was kept there, with the
+    settings of that. Raises what `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when the
+    numbers run away.
     """
-    yield []  # unpacking the images takes a while: let it be known that there is somebody
+    early = yield []  # unpacking the images takes a while: let it be known that there is somebody
     training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
     run = _LiveDigits(training, keep)
-    command = yield [DigitsBegun(training.config, training.seed, training.step, training.steps)]
+    command = (yield [DigitsBegun(training.config, training.seed, training.step, training.steps)]) or early
     try:
-        while not training.done:
+        while not training.done and not isinstance(command, Finish):
             command = yield (run.advance() if command is None else run.carry_out(command))
-        yield from run.finish()
+        yield from run.finish(command)
     finally:
         run.end()
 
@@ -179,6 +185,8 @@ class _LiveDigits:
         """Turn a live knob, for which the answer is a refusal or nothing, or save."""
         if isinstance(command, Save):
             return [Kept(command.folder, self._written(command.folder)[0])]
+        if isinstance(command, Finish):
+            return []
         try:
             if command.name not in LIVE:
                 raise ValueError(f"{command.name} cannot change while a run goes on")
@@ -187,8 +195,20 @@ class _LiveDigits:
             return [Refused(command, str(error))]
         return []
 
-    def finish(self) -> Iterator[list[Message]]:
-        """Read all that is held out once more, measure the test images, and keep what came of it."""
+    def finish(self, command: Command | None) -> Generator[list[Message], Command | None, None]:
+        """Read all that is held out once more, measure the test images, and keep what came of it.
+
+        What is asked for meanwhile is done as well.
+        """
+        for told in self._last_words():
+            while command is not None:
+                command = yield self.carry_out(command)
+            command = yield told
+        while command is not None:
+            command = yield self.carry_out(command)
+
+    def _last_words(self) -> Iterator[list[Message]]:
+        yield self._keep()  # measuring takes a while, and who is impatient is to lose nothing
         if len(self.training.held_images):
             reading = _HeldOut(self.training)
             while not reading.go_on():

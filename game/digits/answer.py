@@ -10,6 +10,7 @@ import numpy as np
 from game import texts
 from game.digits.fixing import Fixing
 from game.digits.reader import LEAST_INK, Numbers, Reading, Verdict
+from game.digits.shelf import called
 from game.ui.canvas import Canvas
 from game.ui.prose import wrapped
 from game.ui.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
@@ -119,7 +120,7 @@ def _draw_verdict(canvas: Canvas, sign: str, words: str, colour: tuple[int, int,
 def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
     first, _ = best_two(reading.probabilities[name])
     sure = reading.verdict(name) is not Verdict.UNSURE
-    label = canvas.text(texts.DIGITS_NETWORKS[name], (RIGHT, 122), size=LABEL, colour=MUTE, align="right")
+    label = canvas.text(called(name), (RIGHT, 122), size=LABEL, colour=MUTE, align="right")
     canvas.pill((label.left - 22, 117, 16, 2), MUTE)  # its bars below are as thin
     figure = str(first) if sure else "?"
     canvas.text(figure, (RIGHT, _BASELINE), size=_SIZES[1], weight="light", colour=MUTE, align="right")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -11,24 +12,29 @@ from typing import Final
 from ai.digit_fix import Fixed, FixStep, fix
 from ai.ink import Image
 from game import texts
+from game.digits import PATIENCE
+from game.digits.shelf import shelf
 from game.worker import State, Worker
 
-FIXES: Final = "digits"  # in the player's folder: a folder for each network, and in that one for each fix
-_MOST: Final = 30  # fixes that can be undone
+_UNDONE: Final = ".undone"  # beside the fixes, until it is removed
 
 
 class Fixing:
-    """One fix at a time; `poll` once a frame. Networks are found by name, in the player's folder or the shipped one.
+    """One fix at a time; `poll` once a frame. Networks are found by the names that `game.digits.shelf` gives them.
+
+    Every fix is a folder of its own and none is ever thrown away but by `undo`.
 
     Attributes:
         step: how the fix that goes on stands; None before its first word, and between fixes.
+        networks: all there are, by name.
         fixed: what the last fix has done, until the next begins or it is undone.
         problem: why the last one failed, in words.
 
     """
 
     def __init__(self, user_dir: Path, models_dir: Path) -> None:
-        self._fixes, self._shipped = user_dir / FIXES, models_dir / "digits"
+        self._folders = models_dir, user_dir
+        self.refresh()
         self._worker: Worker | None = None
         self.name = ""
         self.step: FixStep | None = None
@@ -40,24 +46,31 @@ class Fixing:
         """Whether a fix goes on."""
         return self._worker is not None
 
+    def refresh(self) -> None:
+        """Look again at which networks there are."""
+        self.networks = shelf(*self._folders)
+
     def folder(self, name: str) -> Path:
         """Return where the network of that name is, with all fixes until now."""
-        return [self._shipped / name, *self._kept(name)][-1]
+        return self.networks[name].versions()[0]
 
     def count(self, name: str) -> int:
         """Return how many fixes can be undone."""
-        return len(self._kept(name))
+        return len(self.networks[name].fixed())
 
-    def begin(self, name: str, image: Image, digit: int) -> bool:
-        """Begin to teach a network that an image (28, 28) is that digit; false while another fix goes on."""
+    def begin(self, name: str, image: Image, digit: int, source: Path | None = None) -> bool:
+        """Begin to teach a network that an image (28, 28) is that digit; false while another fix goes on.
+
+        `source` is the folder it was read from, where the last fix is damaged.
+        """
         if self.busy:
             return False
         self.step = self.fixed = None
         self.name, self.problem = name, ""
-        folder = self.folder(name)
-        number = int(folder.name) + 1 if folder.parent.parent == self._fixes else 1
-        keep = self._fixes / name / f"{number:04}"
-        self._worker = Worker(fix, folder, image, digit, keep, before=_accuracy(folder))
+        network, folder = self.networks[name], source or self.folder(name)
+        number = int(network.fixed()[-1].name) + 1 if network.fixed() else 1
+        self._worker = Worker(fix, folder, image, digit, network.fixes / f"{number:04}", before=_accuracy(folder))
+        self._worker.patience = PATIENCE
         return True
 
     def poll(self) -> Fixed | None:
@@ -74,18 +87,18 @@ class Fixing:
             self.problem = self._worker.problem or (texts.FIX_NOT_KEPT.format(problem=done.problem)
                                                     if done and done.problem else "")  # fmt: skip
             self.close()
-            for old in self._kept(self.name)[:-_MOST]:
-                shutil.rmtree(old, ignore_errors=True)
         return done
 
     def undo(self, name: str) -> bool:
         """Take the last fix of a network back; false if there is none, or it can't be removed."""
-        kept = self._kept(name)
+        kept = self.networks[name].fixed()
         if not kept or self.busy:
             return False
         self.fixed, self.problem = None, ""
+        aside = kept[-1].with_name(f"{_UNDONE}{time.time_ns()}")
         try:
-            shutil.rmtree(kept[-1])
+            kept[-1].rename(aside)  # at once, so that no half of it is ever read
+            shutil.rmtree(aside, ignore_errors=True)
         except OSError as error:
             self.problem = texts.FIX_NOT_UNDONE.format(problem=error.strerror or error)
             return False
@@ -96,12 +109,6 @@ class Fixing:
         if self._worker:
             self._worker.close()
         self._worker, self.step = None, None
-
-    def _kept(self, name: str) -> list[Path]:
-        """Return the folders of a network's fixes, the last one last."""
-        with suppress(OSError):
-            return sorted(path for path in (self._fixes / name).iterdir() if path.name.isdecimal())
-        return []
 
 
 def _accuracy(folder: Path) -> float | None:

@@ -8,8 +8,10 @@ from pathlib import Path
 
 from ai.digit_stages import StageAccuracy, stage_accuracy
 from game import texts
+from game.digits import PATIENCE
 from game.digits.answer import percent
 from game.digits.reader import Switches
+from game.digits.shelf import called
 from game.worker import State, Worker
 
 
@@ -26,6 +28,7 @@ class Measuring:
         """Have it measured how much is read with such switches, if it is not known."""
         if self._worker is None:
             self._worker = Worker(stage_accuracy, self._folders())
+            self._worker.patience = PATIENCE
             self._worker.pause()  # it works when it is asked
         if switches not in self._asked:
             self._asked.add(switches)
@@ -55,8 +58,7 @@ class Measuring:
             failed = self._worker.state is State.FAILED
             return texts.DIGITS_NOT_MEASURED.format(problem=self._worker.problem) if failed else texts.DIGITS_MEASURING
         reads = ", ".join(
-            texts.DIGITS_READS_AS.format(name=texts.DIGITS_NETWORKS[name], percent=percent(part))
-            for name, part in told.read.items()
+            texts.DIGITS_READS_AS.format(name=called(name), percent=percent(part)) for name, part in told.read.items()
         )
         return texts.DIGITS_READS.format(count=told.count) + reads + "."
 

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import unicodedata
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
 from ai.digit_config import DigitConfig
-from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Kept, Score, live_digits
-from ai.digit_runs import LAST_FILE
+from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, Kept, Score, live_digits
+from ai.digit_runs import LAST_FILE, TRAINING_FILE
 from ai.messages import Change, Refused, Save
 from ai.nn.folder import CONFIG, recover_folder
 from game import texts
+from game.digits import PATIENCE
 from game.library import name_problem
 from game.worker import State, Worker
 
 UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
-_BEFORE: Final = ".before"  # and the one before it, in case somebody wants it back
+_BEFORE: Final = ".before"  # and the one that was discarded last, in case somebody wants it back
 _EARLIER: Final = 3  # runs of this visit that stay to be compared with
 _MOST_POINTS: Final = 4000
-_PATIENCE: Final = 120.0  # seconds: reading all test images in one go takes a slow machine long
 
 
 @dataclass
@@ -54,7 +56,8 @@ class Pupil:
     Attributes:
         config, seed, steps: of the run that goes on, or of the last one; `begun` says that it has told of them.
         curves, confusion: what has been told of it.
-        test: its accuracy on the test images, once it is finished.
+        test: its accuracy on the test images, once it is finished or was stopped.
+        stopping: whether it was asked to end, and is being measured.
         kept: where it is, once it has been written.
         earlier: the runs before it, by name, the latest first.
 
@@ -69,6 +72,8 @@ class Pupil:
         self.test: float | None = None
         self.earlier: list[tuple[str, Curves]] = []
         self.runs = 0
+        self.stopping = False
+        self._saving: list[Path] = []  # where it was asked to save itself, and has not answered
         self._worker: Worker | None = None
 
     @property
@@ -86,6 +91,32 @@ class Pupil:
     def kept(self) -> bool:
         """Whether a network lies there that can be used."""
         return (self.unsaved / CONFIG).exists()
+
+    @property
+    def nameless(self) -> bool:
+        """Whether there is a run that a new one would take the place of."""
+        return self.kept or (self.alive and self.steps > 0)
+
+    def described(self) -> tuple[str, float, float | None]:
+        """Return the nameless run's preset, the seconds it has learnt, and the part it reads, as far as is known."""
+        scores = self.curves.scores
+        preset, seconds, part = "", self.curves.seconds, scores[-1].accuracy if scores else None
+        if self.alive:
+            return preset, seconds, part
+        with suppress(OSError, ValueError, KeyError, TypeError):
+            said = json.loads((self.unsaved / TRAINING_FILE).read_text(encoding="utf-8"))
+            preset, seconds = str(said["preset"]), float(said["seconds"])
+            known = said.get("test", said["held_out"])
+            part = part if known is None else float(known)
+        return preset, seconds, part
+
+    def free_name(self, name: str) -> str:
+        """Return that name, or one with a number if it is taken."""
+        number, free = 1, name
+        while (self._folder / free).exists():
+            number += 1
+            free = texts.PUPIL_NUMBERED.format(name=name, number=number)
+        return free
 
     @property
     def state(self) -> State | None:
@@ -111,9 +142,10 @@ class Pupil:
             del self.earlier[_EARLIER:]
         self.curves, self.confusion, self.test = Curves(), None, None
         self.config, self.seed, self.steps = config, seed, 0
+        self.stopping = False
         self.runs += 1
         self._worker = Worker(live_digits, config, seed, keep=self.unsaved, resume=self.unsaved if resume else None)
-        self._worker.patience = _PATIENCE
+        self._worker.patience = PATIENCE
         return note
 
     def pause(self) -> None:
@@ -133,8 +165,12 @@ class Pupil:
             self._worker.step()
 
     def stop(self) -> None:
-        """End the run; what it has learnt is kept."""
-        if self._worker:
+        """End the run; what it has learnt is kept, and measured. Asked again, it ends without being measured."""
+        if self._worker and self.alive and self.steps and not self.stopping:
+            self.stopping = True
+            self._worker.send(Finish())
+            self._worker.resume()
+        elif self._worker:
             self._worker.stop()
 
     def change(self, name: str, value: Any) -> None:
@@ -150,8 +186,13 @@ class Pupil:
         if folder.exists():
             return texts.NAME_TAKEN.format(name=name)
         if self._worker and self.alive:
+            self._saving.append(folder)
             self._worker.send(Save(folder))
             return ""
+        return self._name(folder)
+
+    def _name(self, folder: Path) -> str:
+        """Give the run that has ended its folder; returns why that can't be."""
         try:
             self.unsaved.rename(folder)
         except OSError as error:
@@ -170,13 +211,20 @@ class Pupil:
                 case DigitsBegun(config, seed, _, steps):
                     self.config, self.seed, self.steps, self.begun = config, seed, steps, True
                 case Kept(folder, problem, test):
-                    self.test = test if folder == self.unsaved else self.test
+                    self.test = test if folder == self.unsaved and test is not None else self.test
+                    if folder in self._saving:
+                        self._saving.remove(folder)
                     if problem:
                         notes.append(texts.TRAIN_NOT_SAVED.format(problem=problem))
                     elif folder != self.unsaved:
                         notes.append(texts.PUPIL_SAVED.format(name=folder.name))
                 case Refused(_, problem):
                     notes.append(problem)
+        if not self.alive:
+            self.stopping = False
+            while self._saving:  # it ended before it heard of that
+                folder = self._saving.pop()
+                notes.append(self._name(folder) or texts.PUPIL_SAVED.format(name=folder.name))
         return notes
 
     def close(self) -> None:
@@ -185,7 +233,7 @@ class Pupil:
             self._worker.close(grace=1.0)
 
     def _put_aside(self) -> str:
-        """Move an unnamed run out of the way of a new one; it can be had back by hand until the next."""
+        """Move a nameless run out of the way of a new one; it can be had back by hand until the next."""
         if not self.kept:
             return ""
         before = self._folder / _BEFORE

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from pathlib import Path
@@ -18,10 +18,10 @@ from ai.strokes import Stroke
 if TYPE_CHECKING:
     from ai.digits import DigitClassifier
 
-NAMES: Final = ("modern", "classic")
 SURE: Final = 0.9  # nine in ten test images that are read rightly are read with more than that
 LIKELY: Final = 0.65  # and 99 in a hundred
 LEAST_INK, MOST_INK = 18.0, 200.0  # pixels: test images have 25 to 257, 99 in a hundred up to 186, a dot has 5
+MOST_FILTERS: Final = 32  # that there is room to show
 Numbers = npt.NDArray[np.float32]
 _log = logging.getLogger("tranquility")
 
@@ -91,6 +91,7 @@ class Reader:
     """The two networks. One that can't be read is left out; `problems` says why, by name."""
 
     classifiers: dict[str, DigitClassifier] = field(default_factory=dict)
+    sources: dict[str, Path] = field(default_factory=dict)
     problems: dict[str, str] = field(default_factory=dict)
 
     def load(self, name: str, *folders: Path) -> bool:
@@ -102,6 +103,7 @@ class Reader:
         for folder in folders:
             problem = self._load(name, folder)
             if not problem:
+                self.sources[name] = folder
                 return True
             self.problems.setdefault(name, problem)
         return False
@@ -120,10 +122,13 @@ class Reader:
             return str(error) or type(error).__name__
         return ""
 
-    def read(self, strokes: Sequence[Stroke], ink: npt.ArrayLike, switches: Switches) -> Reading:
-        """Let all networks read a drawing."""
+    def read(
+        self, strokes: Sequence[Stroke], ink: npt.ArrayLike, switches: Switches, names: Iterable[str] | None = None
+    ) -> Reading:
+        """Let networks read a drawing, all of them if none are named."""
         seen = switches.prepare(strokes, ink)
-        return Reading(seen, {name: one.predict(seen.centred)[0] for name, one in self.classifiers.items()})
+        wanted = self.classifiers if names is None else names
+        return Reading(seen, {name: self.classifiers[name].predict(seen.centred)[0] for name in wanted})
 
     def explain(self, name: str, image: Image) -> Explanation:
         """Return why a network answers as it does for an image (28, 28)."""
@@ -150,12 +155,12 @@ def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
     """Return the first weights as images, each between -1 and 1."""
     from ai.nn import ConvolutionLayer
 
-    first = classifier.network.layers[0]
+    number, first = next(pair for pair in enumerate(classifier.network.layers) if pair[1].parameters)
     if isinstance(first, ConvolutionLayer):
-        images = first.kernels[:, :, 0].transpose(2, 1, 0)
+        images = first.kernels[:, :, 0].transpose(2, 1, 0)[:MOST_FILTERS]
     else:
-        active = np.argsort(-np.abs(outputs[1][0]), kind="stable")
-        images = first.parameters[0].value.T.reshape(-1, SIDE, SIDE)[active[:32]]
+        active = np.argsort(-np.abs(outputs[min(number + 1, len(outputs) - 1)][0]), kind="stable")
+        images = first.parameters[0].value.T.reshape(-1, SIDE, SIDE)[active[:MOST_FILTERS]]
     return np.asarray(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9), np.float32)
 
 

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.ink import Image
+from ai.ink import SIDE, Image
 from game import texts
 from game.digits.answer import best_two
 from game.digits.pictures import AMBER, height_of, mosaic, picture
@@ -27,6 +27,7 @@ _SWITCH: Final = 26.0, 13.0
 _WHY: Final = (LEFT, 240.0, 132.0)
 _FILTERS: Final = (LEFT + 160, 240.0)
 _MAPS_TOP: Final = 426.0
+_MAPS_BOTTOM: Final = 704.0  # layers of a large network that would go on beyond are left out
 _GAP: Final = 3.0
 
 
@@ -64,7 +65,7 @@ class Sight:
         if why is None:
             return
         self._draw_why(canvas, reading, name)
-        self._draw_filters(canvas, name)
+        self._draw_filters(canvas, why)
         self._draw_layers(canvas, why)
 
     def _build(self, canvas: Canvas, reading: Reading, why: Explanation | None) -> None:
@@ -100,9 +101,9 @@ class Sight:
         _label(canvas, texts.DIGITS_WHY.format(digit=first, other=second), (left, top - 12))
         _legend(canvas, texts.DIGITS_WHY_LEGEND, (HUMAN, MUTE), (left, top + size + 17))
 
-    def _draw_filters(self, canvas: Canvas, name: str) -> None:
+    def _draw_filters(self, canvas: Canvas, why: Explanation) -> None:
         left, top = _FILTERS
-        _label(canvas, texts.DIGITS_FILTERS[name], (left, top - 12))
+        _label(canvas, texts.DIGITS_FILTERS[why.filters.shape[1] == SIDE], (left, top - 12))
         canvas.surface.blit(self._filters, (canvas.px(left), canvas.px(top)))
         below = top + self._filters.get_height() / canvas.scale
         _legend(canvas, texts.DIGITS_FILTERS_LEGEND, (NET, canvas.palette.warn), (left, below + 17))
@@ -115,6 +116,8 @@ class Sight:
                 words = texts.DIGITS_MAPS.format(number=number, count=count, height=height, width=width)
             else:
                 words = texts.DIGITS_UNITS.format(number=number, count=len(layer))
+            if top + 10 + surface.get_height() / canvas.scale > _MAPS_BOTTOM:
+                return
             _label(canvas, words, (LEFT, top))
             canvas.surface.blit(surface, (canvas.px(LEFT), canvas.px(top + 10)))
             top += 10 + surface.get_height() / canvas.scale + 28

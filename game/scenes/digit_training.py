@@ -12,10 +12,11 @@ from game import texts
 from game.context import Context
 from game.controls import Command, translate
 from game.dials import dials
-from game.digits.fixing import FIXES
 from game.digits.matrix import Matrix
 from game.digits.pupil import Curves, Pupil
+from game.digits.shelf import runs_dir
 from game.scene import Pop, Push, Transition
+from game.scenes.dialog import Asking
 from game.tuning import Family
 from game.ui import typeface
 from game.ui.canvas import Canvas
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from ai.digits import DigitClassifier
 
 FAMILY: Final = Family(tuple(dials(DigitConfig)), DIGIT_PRESETS, texts.PUPIL_PRESETS, "images")
-RUNS: Final = "runs"  # in the player's folder of digits
 _WIDTH: Final = 836.0  # the panel has the rest
 _LEFT: Final = 40.0
 _PANEL: Final = 868.0
@@ -57,6 +57,8 @@ class DigitTrainingScene:
         self._was_running = self._alive = False
         self._frame = 0
         self._told: tuple[object, ...] = ()
+        self._question: Transition | None = None
+        self._asked = False
         self.stop_word: Word | None = None
 
     def enter(self, context: Context) -> None:
@@ -64,9 +66,12 @@ class DigitTrainingScene:
         if self._context is not None:
             if self._was_running:
                 self.pupil.resume()
+            if self._asked and self.pupil.alive:  # and the answer was to let it be
+                self.knobs.set_config(self.pupil.config, self.pupil.seed)
+            self._asked = False
             return
         self._context, self._settings = context, context.settings
-        self.pupil = Pupil(context.user_dir / FIXES / RUNS)
+        self.pupil = Pupil(runs_dir(context.user_dir))
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = Charts([
             Chart(_CHARTS["loss"], texts.PUPIL_CHARTS["loss"], read="{:.3g}".format),
@@ -121,7 +126,8 @@ class DigitTrainingScene:
             self._set_charts()
             self._name_words()
         self.charts.update(at_once=self._settings.reduced_motion)
-        return self._form.update()
+        question, self._question = self._question, None
+        return self._form.update() or question
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the figures, the charts, the matrix and the panel."""
@@ -142,6 +148,8 @@ class DigitTrainingScene:
     # The run
 
     def _toggle(self) -> None:
+        if self.pupil.stopping:
+            return
         if self.pupil.state is State.PAUSED:
             self.pupil.resume()
         elif self.pupil.alive:
@@ -150,8 +158,32 @@ class DigitTrainingScene:
             self._begin(self.knobs.config, self.knobs.seed)
         self._name_words()
 
-    def _begin(self, config: DigitConfig, seed: int, resume: bool = False) -> None:
+    def _begin(self, config: DigitConfig, seed: int) -> None:
+        """Start a run; first ask what becomes of one that was never given a name."""
+        if not self.pupil.nameless:
+            self._run(config, seed)
+            return
+        preset, seconds, part = self.pupil.described()
+        named = (preset, "") if preset in DIGIT_PRESETS else FAMILY.nearest(self.pupil.config)
+        name = self.pupil.free_name(texts.PUPIL_NAME.format(preset=FAMILY.word(named)))
+
+        def keep() -> None:
+            self.pupil.close()
+            if problem := self.pupil.save(name):
+                self._say(problem)
+            else:
+                self._run(config, seed)
+
+        self._asked = True
+        words = texts.PUPIL_LEFT_YOUNG if part is None else texts.PUPIL_LEFT_FIGURES
+        self._question = Push(Asking(self, texts.TRAIN_LEFT, words.format(part=part, seconds=seconds), [
+            (texts.PUPIL_LEFT_KEEP.format(name=name), keep),
+            (texts.TRAIN_LEFT_DISCARD, lambda: self._run(config, seed)),
+        ]))  # fmt: skip
+
+    def _run(self, config: DigitConfig, seed: int, resume: bool = False) -> None:
         assert self._context is not None
+        self._was_running = False
         if note := self.pupil.begin(config, seed, resume=resume):
             self._context.note(note)
         self.matrix.set(None)
@@ -163,7 +195,7 @@ class DigitTrainingScene:
         if self.pupil.alive:
             self.pupil.stop()
         elif self.pupil.unfinished:
-            self._begin(self.knobs.config, self.knobs.seed, resume=True)
+            self._run(self.knobs.config, self.knobs.seed, resume=True)
         self._name_words()
 
     def _turned(self, name: str, value: object) -> None:
@@ -179,7 +211,7 @@ class DigitTrainingScene:
         if not (self.pupil.kept or self.pupil.alive):
             self._say(texts.PUPIL_NOTHING)
             return None
-        suggestion = texts.PUPIL_NAME.format(preset=self.knobs.name)
+        suggestion = self.pupil.free_name(texts.PUPIL_NAME.format(preset=self.knobs.name))
         return Push(Naming(self, texts.PUPIL_NAMING, suggestion, self._save_as))
 
     def _save_as(self, name: str) -> str:
@@ -236,7 +268,9 @@ class DigitTrainingScene:
         self.start_word.label = (
             texts.TRAIN_PAUSE if running else texts.TRAIN_RESUME if pupil.state is State.PAUSED else texts.TRAIN_START
         )
-        stop = texts.PUPIL_STOP if pupil.alive else texts.PUPIL_GO_ON if pupil.unfinished else ""
+        stop = texts.PUPIL_GO_ON if pupil.unfinished else ""
+        if pupil.alive:
+            stop = texts.PUPIL_STOPPING if pupil.stopping else texts.PUPIL_STOP
         old = self.stop_word
         if stop != (old.label if old else ""):
             box = (_PANEL + 80, 664, typeface.width(stop, TEXT, "regular"), 28)

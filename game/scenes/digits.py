@@ -17,7 +17,8 @@ from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.fixing import Fixing
 from game.digits.measuring import Measuring
 from game.digits.pad import DrawingPad
-from game.digits.reader import NAMES, Explanation, Numbers, Reader, Switches, Verdict
+from game.digits.reader import Explanation, Numbers, Reader, Switches, Verdict
+from game.digits.shelf import NAMES, called
 from game.digits.sight import LEFT as SIGHT_LEFT
 from game.digits.sight import STEPS, Sight, StageSwitch
 from game.scene import Pop, Push, Scene, Transition
@@ -25,6 +26,7 @@ from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
+from game.ui.pick import Pick
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.tokens import LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
@@ -34,8 +36,9 @@ if TYPE_CHECKING:
     from ai.digits import DigitClassifier
 
 PAD: Final = pygame.Rect(40, 70, 520, 520)
-_TABS: Final = (232, 26, 24)  # left, top and height of the row beside the title
-_ELSEWHERE: Final = 398  # where the words that lead to other screens begin
+_TABS: Final = (LEFT, 26, 252, 24)  # the networks, above what the chosen one says
+_LONGEST_TAB: Final = 16  # letters
+_GAP: Final = 26.0  # between the words that lead to other screens
 _BELOW: Final = 602  # top of the words under the pad
 _RIGHT: Final = 1244.0
 _DIGITS: Final = {
@@ -66,19 +69,21 @@ class Digits:
         self._fix_of = -1  # the drawing, by its revision, that was put right last
 
     def enter(self, context: Context) -> None:
-        """Read the networks and build the widgets, the first time."""
+        """Read the networks and build the widgets, the first time; later see what has been trained meanwhile."""
         if self._context is not None:
+            self._see_networks()
             return
         self._context = context
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
         self._fixing = Fixing(context.user_dir, context.models_dir)
         self._reader = Reader()
-        self._measuring = Measuring(lambda: {name: self._fixing.folder(name) for name in self._reader.classifiers})
-        for name in NAMES:
+        self._measuring = Measuring(lambda: {name: self._reader.sources[name] for name in self._pair})
+        for name in dict.fromkeys((*NAMES, self.chosen)):
             self._load(name)
         if self.chosen not in self._reader.classifiers:
             self.chosen = next(iter(self._reader.classifiers), self.chosen)
         self._form = Form(context, on_back=Pop)
+        self._tabs = self._form.add(self._make_tabs())
         self._add_words()
         self._look()
         self._offer_undo()
@@ -125,8 +130,8 @@ class Digits:
                 self.pad.undo()
             case Command.RETRY:
                 self.pad.clear()
-            case Command.NEXT | Command.PREVIOUS:
-                self._tabs.choose((self._tabs.index + 1) % len(self._tabs.options))
+            case Command.NEXT | Command.PREVIOUS as command:
+                self._turn(1 if command is Command.NEXT else -1)
             case _:
                 return self._form.handle_event(event)
         return None
@@ -154,14 +159,14 @@ class Digits:
     # Reading
 
     def _load(self, name: str) -> None:
-        """Read a network with what the player has taught it, or without if that is damaged."""
-        assert self._context is not None
-        self._reader.load(name, self._fixing.folder(name), self._context.models_dir / "digits" / name)
+        """Read a network with what the player has taught it, or with less of that if some is damaged."""
+        if network := self._fixing.networks.get(name):
+            self._reader.load(name, *network.versions())
 
     def _look(self) -> None:
         """Let the networks read what is on the pad."""
         self._seen = self.pad.revision
-        self.reading = self._reader.read(self.pad.strokes, self.pad.ink, self._switches)
+        self.reading = self._reader.read(self.pad.strokes, self.pad.ink, self._switches, self._pair)
         self._why = None
         chosen = self.reading.probabilities.get(self.chosen)
         if chosen is not None:
@@ -178,7 +183,12 @@ class Digits:
 
     @property
     def _other(self) -> str:
-        return next(name for name in NAMES if name != self.chosen)
+        """The network beside the chosen one: Modern, or Classic beside that; empty if neither can be read."""
+        return next((name for name in NAMES if name != self.chosen and name in self._reader.classifiers), "")
+
+    @property
+    def _pair(self) -> list[str]:
+        return [name for name in (self.chosen, self._other) if name in self._reader.classifiers]
 
     # Steps of preprocessing, and what they are worth
 
@@ -193,7 +203,7 @@ class Digits:
         """Teach the chosen network that what is drawn is this digit."""
         image = self.reading.stages.centred
         if image.any() and self.chosen in self._reader.classifiers:
-            self._fixing.begin(self.chosen, image, digit)
+            self._fixing.begin(self.chosen, image, digit, self._reader.sources[self.chosen])
             self._fix_of = self.pad.revision
 
     def _undo_fix(self) -> None:
@@ -226,30 +236,73 @@ class Digits:
 
     def _add_words(self) -> None:
         manager, add = self._form.manager, self._form.add
-        left, top, height = _TABS
-        words = [texts.DIGITS_NETWORKS[name] for name in NAMES]
-        width = sum(round(typeface.width(word, TEXT, "regular")) + 24 for word in words)
-        self._tabs = add(Choice(manager, (left, top, width, height), "", words, NAMES.index(self.chosen), self._choose))
         self._under = [
             add(Word(manager, (PAD.left + 80 * number, _BELOW, 56, 24), word, press, size=SMALL + 1))
             for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)))
         ]
-        for number, (word, press) in enumerate(
-            ((texts.DIGITS_QUIZ, self._quiz), (texts.DIGITS_TRAIN, self._train), (texts.DIGITS_DREAM, self._dream))
-        ):
-            add(Word(manager, (_ELSEWHERE + 58 * number, top, 46, height), word, press, size=TEXT))
+        elsewhere = (
+            (texts.DIGITS_QUIZ, self._quiz), (texts.DIGITS_TRAIN, self._train), (texts.DIGITS_DREAM, self._dream),
+        )  # fmt: skip
+        widths = [typeface.width(word, TEXT, "medium") for word, _ in elsewhere]
+        left = PAD.right - sum(widths) - _GAP * (len(widths) - 1)
+        for (word, press), width in zip(elsewhere, widths, strict=True):
+            add(Word(manager, (left, 24, width, 28), word, press, size=TEXT, weight="medium"))
+            left += width + _GAP
         self._rows = [add(DigitRow(manager, digit, self._correct)) for digit in range(10)]
         for number, step in enumerate(STEPS):
             add(StageSwitch(manager, number, partial(self._switch, step)))
 
+    def _make_tabs(self) -> Choice:
+        """Return a row of all networks; where the player has some, also with a list of them."""
+        names = list(self._fixing.networks)
+        words = [word if len(word) <= _LONGEST_TAB else word[:_LONGEST_TAB] + "…" for word in map(called, names)]
+        index = names.index(self.chosen) if self.chosen in names else 0
+        if len(names) == len(NAMES):
+            return Choice(self._form.manager, _TABS, "", words, index, self._choose)
+        everything = texts.DIGITS_ALL.format(count=len(names))
+        return Pick(self._form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT)
+
+    def _see_networks(self) -> None:
+        """Look again at which networks there are."""
+        before = set(self._fixing.networks)
+        self._fixing.refresh()
+        if set(self._fixing.networks) == before:
+            return
+        if self.chosen not in self._fixing.networks:
+            self.chosen = NAMES[0]
+            self._look()
+        tabs = self._make_tabs()
+        self._form.replace([self._tabs], [tabs])
+        self._tabs = tabs
+
     def _choose(self, index: int) -> None:
         """Look into another network; one that can't be read is named, and the last stays."""
-        if NAMES[index] in self._reader.classifiers:
-            self.chosen = NAMES[index]
-            self._look()
-            self._offer_undo()
-        else:
-            self._tabs.index = NAMES.index(self.chosen)
+        names, before = list(self._fixing.networks), self._pair
+        if names[index] not in self._reader.classifiers:
+            self._load(names[index])
+        if names[index] not in self._reader.classifiers:
+            self._tabs.index = names.index(self.chosen)
+            return
+        self.chosen = names[index]
+        self._look()
+        self._offer_undo()
+        if set(self._pair) != set(before):
+            self._measuring.anew(self._switches)
+
+    def _turn(self, direction: int) -> None:
+        """Look into the next network that can be read."""
+        index, count = self._tabs.index, len(self._tabs.options)
+        for distance in range(1, count):
+            self._tabs.choose((index + direction * distance) % count)
+            if self._tabs.index != index:
+                return
+
+    def _pick(self) -> Transition:
+        """Show all networks in a list, with how well they read."""
+        from game.scenes.dialog import Picking
+
+        rows = [(called(name), network.said) for name, network in self._fixing.networks.items()]
+        return Push(Picking(self, texts.DIGITS_PICK, rows, self._tabs.choose))
 
     def _quiz(self) -> Transition | None:
         from game.scenes.quiz import Quiz
@@ -290,7 +343,7 @@ class Digits:
             canvas.text(line, (SIGHT_LEFT, 184 + 15 * number), size=LABEL, colour=MUTE)
         problems = self._reader.problems.items()
         for number, (name, problem) in enumerate(problems):
-            words = texts.DIGITS_PROBLEM.format(name=texts.DIGITS_NETWORKS[name], problem=problem)
+            words = texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
             for line in wrapped(canvas, words, SMALL, _RIGHT - LEFT)[:2]:
                 canvas.text(line, (LEFT, 640 + 34 * number), size=SMALL, colour=canvas.palette.warn)
         controls = self._context.controls

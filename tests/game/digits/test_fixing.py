@@ -9,6 +9,7 @@ import pytest
 from ai.digits import DigitClassifier, load_part
 from game.assets import MODELS_DIR
 from game.digits.fixing import Fixing
+from game.digits.reader import Reader
 
 
 @pytest.fixture(scope="module")
@@ -83,3 +84,22 @@ def test_a_folder_that_cannot_be_written_is_told_of(misread, tmp_path: Path):
     assert done(fixing).folder is None
     assert fixing.problem
     assert fixing.folder("classic") == MODELS_DIR / "digits" / "classic"
+
+
+def test_a_damaged_fix_is_passed_over_and_the_next_one_has_a_number_of_its_own(fixing: Fixing, misread, tmp_path: Path):
+    fixing.begin("classic", *misread)
+    done(fixing)
+    first = fixing.folder("classic")
+    broken = first.with_name("0002")
+    broken.mkdir()
+    reader = Reader()
+    assert reader.load("classic", *fixing.networks["classic"].versions())
+    assert reader.sources["classic"] == first
+    assert "config.json" in reader.problems["classic"]
+    fixing.begin("classic", misread[0], (misread[1] + 1) % 10, reader.sources["classic"])
+    done(fixing)
+    assert not fixing.problem
+    assert fixing.folder("classic").name == "0003"
+    assert fixing.undo("classic")
+    assert fixing.undo("classic")
+    assert fixing.folder("classic") == first
