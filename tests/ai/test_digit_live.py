@@ -3,7 +3,7 @@ import pytest
 
 from ai import digit_live
 from ai.digit_config import DIGIT_PRESETS
-from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Kept, Score, live_digits
+from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, Kept, Score, live_digits
 from ai.digit_runs import resume_digit_run
 from ai.digit_training import DigitTraining
 from ai.digits import DigitClassifier
@@ -71,6 +71,22 @@ def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
     assert resume_digit_run(tmp_path / "run", data=data).step == 7
     again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
     assert [next(again), next(again)] == [[], [DigitsBegun(SMALL, 4, 7, 30)]]
+
+
+def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(data, tmp_path):
+    run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
+    for _ in range(9):
+        next(run)
+    told = run.send(Finish()) + next(run)
+    told += run.send(Save(tmp_path / "asked meanwhile"))
+    for turn in run:
+        told += turn
+    saved, kept = kinds(told, Kept)
+    assert (saved.folder, saved.problem) == (tmp_path / "asked meanwhile", "")
+    assert kept.folder == tmp_path / "run"
+    assert kept.test > 0.1
+    assert not kinds(told, DigitPoint)
+    assert resume_digit_run(tmp_path / "run", data=data).step == 7
 
 
 def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
