@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
@@ -277,25 +278,35 @@ class Swarm:
         return ended
 
 
-def coast_path(env: LanderEnv, slot: int = 0, seconds: float = 9.0) -> Doubles:
+def coast_path(env: LanderEnv) -> Doubles:
     """Where a lander goes if nobody touches anything: positions (k, 2), every 1/15 s, down to the ground."""
+    return down_to_ground(env.ground, list(drift(env)))
+
+
+def drift(env: LanderEnv, seconds: float = 9.0) -> Iterator[Doubles]:
+    """Yield where a lander will be from now on if nobody touches anything, (2,) every 1/15 s, as far as the plain."""
     world, body = env.world, env.lander.index
     state = world.state
     state = replace(
         state,
-        **{name: getattr(state, name)[slot : slot + 1].copy() for name in ("pose", "velocity", "active", "cos", "sin")},
+        **{name: getattr(state, name)[:1].copy() for name in ("pose", "velocity", "active", "cos", "sin")},
         force=np.zeros_like(state.force[:1]),
     )
-    path = [state.pose[0, body, :2].copy()]
+    yield state.pose[0, body, :2].copy()
     lowest = env.ground.base + PARAMS.stand
     for _ in range(round(seconds / (_PATH_STRIDE * DT))):
         integrate_velocity(state, world.params, world.moving, world.gravity, _PATH_STRIDE * DT)
         integrate_position(state, world.moving, _PATH_STRIDE * DT)
-        path.append(state.pose[0, body, :2].copy())
-        if path[-1][1] < lowest or abs(path[-1][0]) > env.limits.half_width:
-            break
-    way = np.array(path)
-    low = np.flatnonzero(way[1:, 1] < env.ground.height(way[1:, 0]) + PARAMS.stand)
+        yield state.pose[0, body, :2].copy()
+        x, y = state.pose[0, body, :2].tolist()
+        if y < lowest or abs(x) > env.limits.half_width:
+            return
+
+
+def down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
+    """Return a path (k, 2) as far as the first place at which feet would be in the ground."""
+    way = np.array(places)
+    low = np.flatnonzero(way[1:, 1] < ground.height(way[1:, 0]) + PARAMS.stand)
     return way[: low[0] + 2] if len(low) else way
 
 

@@ -20,13 +20,14 @@ from game.world.paint import mix
 
 PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 64 - 244, 84, 264, 336)
 _PADS_HIGH: Final = 102  # what the rows of three pads add
-_LEFT: Final = PANEL.left + 20
+_LEFT: Final = 20  # of what stands on the panel, from its corner
 _WIDTH: Final = PANEL.width - 40
 _TRACK: Final = (_LEFT + 96, _WIDTH - 96)
-_FIRST: Final = PANEL.top + 64
+_FIRST: Final = 64
 _ROW: Final = 24
 _WHY: Final = _FIRST + 6 * _ROW
 _EASE: Final = 0.35
+_REDRAWN_EVERY: Final = 3  # steps: words and bars cost more than all the rest of the cockpit
 _STAYS: Final = 50  # steps that the word on an override is kept, to be read
 
 
@@ -45,6 +46,9 @@ class Insight:
         self._why: tuple[str, str, str] = ("", "", "")
         self._kept = 0
         self._seen: object = None
+        self._steps = 0
+        self._sheet: Canvas | None = None
+        self._drawn_for: tuple[object, ...] = ()
 
     def follow(self, flight: Flight) -> None:
         """Note the step just flown."""
@@ -52,6 +56,7 @@ class Insight:
             return
         self.shown = flight.shared or (flight.hand is Hand.NETWORK and isinstance(flight.network, Thinker))
         self._kept = max(0, self._kept - 1)
+        self._steps += 1
         if flight.hand is Hand.NETWORK:
             self._watch(flight)
         elif flight.decision is not None and flight.decision is not self._seen:
@@ -97,15 +102,24 @@ class Insight:
 
     def draw(self, canvas: Canvas, share: float) -> None:
         """Draw the panel; `share` is the person's share of the flight so far."""
+        lower = _PADS_HIGH if len(self._likely) > 1 else 0
+        canvas.panel((PANEL.left, PANEL.top, PANEL.width, PANEL.height + lower))
+        drawn_for = (canvas.size, self._steps // _REDRAWN_EVERY, round(100 * share))
+        if self._sheet is None or self._drawn_for != drawn_for:
+            self._drawn_for, self._sheet = drawn_for, canvas.sheet(PANEL.width, PANEL.height + _PADS_HIGH)
+            self._paint(self._sheet, share)
+        canvas.surface.blit(self._sheet.surface, canvas.rect(*PANEL).topleft)
+
+    def _paint(self, canvas: Canvas, share: float) -> None:
+        """Draw what stands on the panel, whose corner is the sheet's."""
         pads = self._likely if len(self._likely) > 1 else []
         lower = _PADS_HIGH if pads else 0
-        canvas.panel((PANEL.left, PANEL.top, PANEL.width, PANEL.height + lower))
-        canvas.text(texts.INSIGHT_TITLE, (_LEFT, PANEL.top + 34))
+        canvas.text(texts.INSIGHT_TITLE, (_LEFT, 34))
         for action in range(NUM_ACTIONS):
             self._draw_row(canvas, action)
         if 0.0 < self._threshold < 1.0:
             x = _TRACK[0] + self._threshold * _TRACK[1]
-            canvas.line((x, _FIRST - 9), (x, _FIRST + 5 * _ROW + 9), INK, alpha=0.7)
+            canvas.line((x, _FIRST - 9), (x, _FIRST + 5 * _ROW + 9), MUTE)
             canvas.marker("triangle_down", (x, _FIRST - 13), 6, INK, 0.8)
         title, *lines = self._why
         canvas.line((_LEFT, _WHY), (_LEFT + _WIDTH, _WHY), LINE)

@@ -7,7 +7,6 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Doubles
 from game import hud, networks, texts
 from game.clock import STEP
 from game.cockpit.cockpit import Cockpit
@@ -15,8 +14,8 @@ from game.cockpit.hands import HANDS, OWN
 from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command, translate
-from game.flight import Flight, Hand, coast_path
-from game.forecast import Forecast
+from game.flight import Flight, Hand
+from game.forecast import Drift, Forecast
 from game.ghost import Ghost
 from game.render import Camera
 from game.scene import Pop, Push, Transition
@@ -30,7 +29,6 @@ from game.world.ground import draw_ground
 from game.world.paths import draw_dotted
 from game.world.stage import Stage
 
-_PATH_EVERY: Final = 6  # steps between predictions
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
@@ -58,7 +56,6 @@ class Play:
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._steps = self._since_end = 0
         self._card: hud.Card | None = None
-        self._path: Doubles = np.empty((0, 2))
 
     def enter(self, context: Context) -> None:
         """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
@@ -151,7 +148,8 @@ class Play:
         self._cockpit.draw_behind(canvas)
         if flight.over:
             self._cockpit.track.draw(canvas, view)
-        draw_dotted(canvas, view, self._path, HUMAN)
+        if not flight.over:
+            draw_dotted(canvas, view, self._drift.path, HUMAN)
         if self._forecast and not flight.over:
             draw_dotted(canvas, view, self._forecast.path, NET)
         if self._ghost:
@@ -175,10 +173,9 @@ class Play:
     def _look_ahead(self) -> None:
         """Predict where the craft goes if nobody touches anything, and where the network would take it."""
         if self.flight.over:
-            self._path = np.empty((0, 2))
             return
-        if self._steps % _PATH_EVERY == 0 and not self.waiting:
-            self._path = coast_path(self.flight.env)
+        if not self.waiting:
+            self._drift.follow()
         if self._forecast:
             self._forecast.follow(self.flight.env)
 
@@ -206,7 +203,7 @@ class Play:
         self._camera = Camera()
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
-        self._path = coast_path(self.flight.env)
+        self._drift = Drift(self.flight.env)
         self._forecast = None if check else self._new_forecast()
         self._steps = self._since_end = 0
 
