@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ai.conditions import CALM, Conditions
 from ai.env import Bools, Doubles, Floats, Ints, StepResult
 from ai.ground import Ground
 from ai.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, Change, RewardWeights, Situation
@@ -58,7 +59,8 @@ class LanderEnv:
     not depend on how many fly beside it. A `step` is `frame_skip` physics steps of 1/60 s with one action.
 
     All fly over the same `ground`, by default a plain with one pad. Where that has several pads, a landing on any
-    of them counts; `target` (n,) says by number which one observations and rewards are about.
+    of them counts; `target` (n,) says by number which one observations and rewards are about. `conditions` can make
+    flights harder; on a pad that moves, observations and the limits of a landing are relative to it.
     """
 
     num_actions = NUM_ACTIONS
@@ -74,6 +76,7 @@ class LanderEnv:
         params: LanderParams = PARAMS,
         ground: Ground | None = None,
         limits: Limits = LIMITS,
+        conditions: Conditions = CALM,
         weights: RewardWeights | None = None,
     ) -> None:
         if num_envs < 1 or frame_skip < 1:
@@ -81,6 +84,7 @@ class LanderEnv:
         self.num_envs, self.frame_skip = num_envs, frame_skip
         self.params, self.limits, self.weights = params, limits, weights or RewardWeights()
         self.ground = ground or Ground.flat(params)
+        self.conditions = conditions
         self.spawn = spawn
         self.landings = 0
         self._rngs = np.random.default_rng(seed).spawn(num_envs)
@@ -112,6 +116,7 @@ class LanderEnv:
             angular_drag=params.angular_drag, angular_quadratic_drag=params.angular_quadratic_drag, **surface,
         )  # fmt: skip
         pads = self.ground.build(self.world, **surface)
+        self._pad_bodies = slice(pads[0].index, pads[-1].index + 1)
         # Rows of the detector's pairs: which part of the craft touches, and whether it is the pad it touches.
         pairs = self.world.detector.pairs
         self._pair_part = pairs.min(axis=1)  # 0 hull, 1 left foot, 2 right foot
@@ -141,7 +146,25 @@ class LanderEnv:
     @property
     def pad(self) -> Doubles:
         """Middle of the target pad's top, (n, 2)."""
-        return self.ground.middles[self.target]
+        return self._top(self.target)
+
+    @property
+    def pad_shift(self) -> Doubles:
+        """How far the pads have moved to the right of their places, metres, (n,)."""
+        return self.conditions.shift(self.time)[0]
+
+    @property
+    def pad_velocity(self) -> Doubles:
+        """Metres a second to the right, (n,)."""
+        return self.conditions.shift(self.time)[1]
+
+    @property
+    def fired(self) -> Ints:
+        """The actions (n,) as far as there is fuel and the engines work."""
+        if not self.conditions.fails:
+            return self.actions
+        main = (self.actions >= 3) & self.conditions.main_works(self.time)
+        return np.where(self.fuel < self.conditions.tank, 3 * main + self.actions % 3, 0)
 
     @property
     def pad_width(self) -> Doubles:
@@ -248,8 +271,8 @@ class LanderEnv:
         pad = self.target if pad is None else np.asarray(pad)
         state, body = self.world.state, self.lander.index
         sensed = np.empty((self.num_envs, NUM_FEATURES))
-        sensed[:, 0:2] = self.position - (self.ground.middles[pad] + np.array([0.0, self.params.stand]))
-        sensed[:, 2:4] = self.velocity
+        sensed[:, 0:2] = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
+        sensed[:, 2:4] = self._relative_velocity()
         sensed[:, 4] = state.sin[:, body]
         sensed[:, 5] = state.cos[:, body]
         sensed[:, 6] = self.angular_velocity
@@ -280,10 +303,31 @@ class LanderEnv:
         self.world.detector.recall_memory(snapshot["contacts"])
         self._started = True
 
+    def _top(self, pad: Any) -> Doubles:
+        """Middle of the top of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""
+        middle = self.ground.middles[pad]
+        if not self.conditions.moves:
+            return middle
+        return np.broadcast_to(middle, (self.num_envs, 2)) + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1)
+
+    def _relative_velocity(self) -> Doubles:
+        """Velocity as seen from the pad, (n, 2)."""
+        if not self.conditions.moves:
+            return self.velocity
+        return self.velocity - np.stack([self.pad_velocity, np.zeros(self.num_envs)], axis=1)
+
+    def _move_pads(self) -> None:
+        """Put the pads where they are by now, moving as they do, so that what stands on them is carried along."""
+        state, bodies = self.world.state, self._pad_bodies
+        shift, velocity = self.conditions.shift(self.time)
+        state.pose[:, bodies, 0] = self.ground.middles[:, 0] + shift[:, None]
+        state.velocity[:, bodies, 0] = velocity[:, None]
+        self.world.detector.broad.forget_boxes()
+
     def _situation(self) -> Situation:
         offset = self.position - self.pad
         across, above = offset[:, 0], offset[:, 1] - self.params.stand
-        velocity = self.velocity
+        velocity = self._relative_velocity()
         return Situation(
             distance=np.sqrt(across**2 + above**2),
             offset=np.abs(across),
@@ -294,13 +338,18 @@ class LanderEnv:
     def _fly(self, flying: Bools) -> None:
         """One physics step of the slots that fly: push, move, judge."""
         params, state, body = self.params, self.world.state, self.lander.index
-        main, steer = self.actions >= 3, self.actions % 3
+        actions = self.fired
+        main, steer = actions >= 3, actions % 3
         up = params.main_thrust * main
         aside = params.side_thrust * ((steer == 2) * 1.0 - (steer == 1))  # along the craft's right
         cos, sin = state.cos[:, body], state.sin[:, body]
         state.force[:, body, 0] = aside * cos - up * sin
         state.force[:, body, 1] = aside * sin + up * cos
         state.force[:, body, 2] = -aside * params.side_arm
+        if self.conditions.pushes:
+            state.force[:, body, 0] += self.conditions.push(self.time)
+        if self.conditions.moves:
+            self._move_pads()
         self.world.step()
         self.steps += flying
         self.main_steps += flying & main
@@ -309,7 +358,7 @@ class LanderEnv:
 
     def _judge(self, flying: Bools) -> None:
         """Decide which flights have ended, and how."""
-        limits, position, velocity = self.limits, self.position, self.velocity
+        limits, position, velocity = self.limits, self.position, self._relative_velocity()
         crashed = self._touch(flying)
         calm = self.contacts.all(axis=1)
         if calm.any():
