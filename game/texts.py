@@ -656,6 +656,7 @@ DIGITS_PROBLEM: Final = "{name} can't be read: {problem}"
 DIGITS_ALL: Final = "all {count}"
 DIGITS_PICK: Final = "Which network shall read?"
 SHELF_TESTED: Final = "reads {part:.2%} of the test images"
+SHELF_DAMAGED: Final = "damaged"
 SHELF_HELD_OUT: Final = "{part:.2%} of those held out"
 
 # Fix it
@@ -717,7 +718,9 @@ DREAM_LINE: Final = "From nothing, ink flows to where it makes the network surer
 DREAM_READS: Final = "read as {numeral}, {percent}"
 DREAM_ALL: Final = "ALL TEN"
 DREAM_CALM: Final = "Calm"
-DREAM_CALM_HELP: Final = "Calm: soft, steady, and no more ink than a digit has. Wild, at 0: all that the network would fall for."
+DREAM_CALM_HELP: Final = (
+    "Calm: soft, steady, and no more ink than a digit has. Wild, at 0: all that the network would fall for."
+)
 DREAM_START: Final = "Begin with"
 DREAM_STARTS: Final = ("noise", "your drawing")
 DREAM_AGAIN: Final = "Dream again"
@@ -775,6 +778,7 @@ INSIGHT_GUARDIAN: Final = {
     True: "{points} points worse than its {best}.",
     False: "{points} points from its {best}: too little.",
 }
+INSIGHT_SAME: Final = "It would do the same."
 INSIGHT_MEANT: Final = "WHICH PAD YOU SEEM TO MEAN"
 PAD_NAMES: Final = {1: "wide  ×1", 3: "narrow  ×3", 5: "tiny  ×5"}
 SHARE_COPILOT: Final = "co-pilot {percent} %"
@@ -870,3 +874,31 @@ REPLAY_OVER: Final = "This is the end: go back a little, and fly on from there."
 REPLAY_OTHER_RULES: Final = "This flight was flown under other rules, and goes another way now."
 YOU_FLEW: Final = "You flew"
 NETWORK_FLEW: Final = "The network flew"
+
+# Courses: races, flying on, missions
+RACE: Final = "Race"
+RACE_RIVAL: Final = "the flight of {when}"
+FLY_ON: Final = "Flying on"
+FLY_ON_LINE: Final = "from {seconds:.1f} s on"
+FLY_ON_BEGIN: Final = "It goes on with your first touch, and the ghost as it did."
+CARD_FIRST_FIXED: Final = {True: "back", False: "try again"}
+FLIGHT_MISSION: Final = "there is no mission called {name}"
+MISSION: Final = "Mission"
+MISSION_RIVAL: Final = "the network"
+MEDALS: Final = ("no medal", "bronze", "silver", "gold")
+DAILY: Final = "Start of the day"
+DAILY_BEGIN: Final = "Everybody has this start today: three pads, and nobody to help."
+# By name: what it is called, and what is asked
+MISSIONS: Final = {
+    "fall": ("Free fall", "Fall, and brake late: set it down on the pad below."),
+    "brake": ("Braking", "High up and sinking fast: spend your height, not your fuel."),
+    "aside": ("Sideways", "The pad is twelve metres away. Lean, drift, and lean back in time."),
+    "wind": ("Wind", "It comes in gusts, mostly from the left: lean into it."),
+    "tank": ("Low fuel", "Five seconds of main engine, and not a drop more."),
+    "narrow": ("Narrow pad", "Half as wide, and higher than you think."),
+    "mars": ("Mars", "Twice the gravity, twice the engine, and dust in the wind."),
+    "earth": ("Earth", "Six times the gravity: what you know is too slow."),
+    "night": ("Night", "Nothing shines but the pad, and your own fire."),
+    "ferry": ("A moving pad", "The pad goes to and fro: touch down when you move as it does."),
+    "outage": ("Engine failure", "The main engine will be gone for two seconds. You have been told."),
+}

@@ -41,6 +41,8 @@ _LONGEST_TAB: Final = 16  # letters
 _GAP: Final = 26.0  # between the words that lead to other screens
 _BELOW: Final = 602  # top of the words under the pad
 _RIGHT: Final = 1244.0
+_PROBLEMS: Final = 650.0  # the baseline of what is said of networks that can't be read, the last one first
+_PROBLEM_LINES: Final = 4
 _DIGITS: Final = {
     **{pygame.K_0 + digit: digit for digit in range(10)},
     **{pygame.K_KP1 + digit - 1: digit for digit in range(1, 10)},
@@ -301,7 +303,9 @@ class Digits:
         """Show all networks in a list, with how well they read."""
         from game.scenes.dialog import Picking
 
-        rows = [(called(name), network.said) for name, network in self._fixing.networks.items()]
+        damaged = self._reader.problems
+        rows = [(called(name), texts.SHELF_DAMAGED if name in damaged else network.said)
+                for name, network in self._fixing.networks.items()]  # fmt: skip
         return Push(Picking(self, texts.DIGITS_PICK, rows, self._tabs.choose))
 
     def _quiz(self) -> Transition | None:
@@ -341,11 +345,11 @@ class Digits:
             wrapped(canvas, self._measuring.words(self._switches), LABEL, _RIGHT - SIGHT_LEFT)
         ):
             canvas.text(line, (SIGHT_LEFT, 184 + 15 * number), size=LABEL, colour=MUTE)
-        problems = self._reader.problems.items()
-        for number, (name, problem) in enumerate(problems):
-            words = texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
-            for line in wrapped(canvas, words, SMALL, _RIGHT - LEFT)[:2]:
-                canvas.text(line, (LEFT, 640 + 34 * number), size=SMALL, colour=canvas.palette.warn)
+        problems = [texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
+                    for name, problem in self._reader.problems.items()]  # fmt: skip
+        lines = [line for words in reversed(problems) for line in wrapped(canvas, words, SMALL, _TABS[2])]
+        for number, line in enumerate(lines[:_PROBLEM_LINES]):
+            canvas.text(line, (LEFT, _PROBLEMS + 17 * number), size=SMALL, colour=canvas.palette.warn)
         controls = self._context.controls
         word = controls.word
         keys = (word(Command.HANDOVER), word(Command.RETRY)) if controls.pad_in_use else ("Z", "C")
