@@ -124,7 +124,9 @@ def _attempt(problems: list[str], where: str, read: Callable[..., T], *arguments
     try:
         return read(*arguments)
     except OSError as error:
-        problems.append(f"{Path(error.filename or where).name}: {error.strerror or error}")
+        name = Path(error.filename or where).name
+        asked = "" if name == where else f", and {where} asks for it"
+        problems.append(f"{name}: {error.strerror or error}{asked}")
     except Exception as error:
         problems.append(f"{where}: {error or type(error).__name__}")
     return None

@@ -12,7 +12,7 @@ from game.ui.tokens import HUMAN, NET, PALETTE, Colour
 from tests.game.window import Window, screen, skip_without_a_screen, start
 
 needs_a_network = pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exists(), reason="no trained network here")
-LINE_AT_THE_TOP = pygame.Rect(560, 53, 160, 4)
+LAMP_AT_THE_TOP = pygame.Rect(540, 28, 90, 16)
 TITLE_OF_THE_CARD = pygame.Rect(CARD.left + 20, CARD.top + 20, 160, 50)
 
 
@@ -34,11 +34,11 @@ def shows(window: Window, colour: Colour, area: pygame.Rect) -> bool:
 def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         window.key("Return")
-        window.wait_for(lambda: shows(window, HUMAN, LINE_AT_THE_TOP), "the word that you fly")
+        window.wait_for(lambda: shows(window, HUMAN, LAMP_AT_THE_TOP), "the lamp that says you fly")
         window.key("Tab")
-        window.wait_for(lambda: shows(window, NET, LINE_AT_THE_TOP), "the word that the network flies")
+        window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the lamp that says the network flies")
         window.key("Tab")
-        window.wait_for(lambda: shows(window, HUMAN, LINE_AT_THE_TOP), "the stick to come back")
+        window.wait_for(lambda: shows(window, HUMAN, LAMP_AT_THE_TOP), "the stick to come back")
         window.key("Tab")
         for _ in range(4):  # even a good network may lose one that was steered badly before
             window.wait_for(
@@ -59,7 +59,7 @@ def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path:
 def test_watch_flies_a_swarm_and_counts_its_landings(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         window.key("Down", "Return")
-        window.wait_for(lambda: shows(window, NET, LINE_AT_THE_TOP), "the network to fly")
+        window.wait_for(lambda: shows(window, NET, LAMP_AT_THE_TOP), "the network to fly")
         window.key("Down", "Right", "Right", "plus", "plus")
         window.wait_for(lambda: shows(window, PALETTE.good, pygame.Rect(60, 88, 80, 36)), "landings", 40)
         assert window.close() == 0
