@@ -163,9 +163,9 @@ class Student:
         return ""
 
     def close(self) -> None:
-        """End the run, and its process for certain."""
+        """End the run, and its process for certain; it has the time to keep itself even on a busy machine."""
         if self._worker:
-            self._worker.close()
+            self._worker.close(grace=3.0)
 
 
 def _turned(config: Config, name: str, value: Any) -> Config:
