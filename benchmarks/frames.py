@@ -43,15 +43,19 @@ from game.settings import Settings
 from game.world.backdrop import Backdrop, landscape
 
 FRAMES = 1500
+CHOSEN = {
+    "play, shared": Settings(assist=0.6),
+    "play, three pads": Settings(assist=0.6, copilot="guardian", three_pads=True),
+}
 LIMIT = 8.0
 
 
-def cost(scene: Scene, keys: tuple[int, ...] = ()) -> np.ndarray:
+def cost(scene: Scene, keys: tuple[int, ...] = (), settings: Settings | None = None) -> np.ndarray:
     """Milliseconds of every frame; every 500 frames the keys are held in turn, 30 frames each."""
     spent = []
     with TemporaryDirectory() as folder:
         frames = count()
-        context = Context(Path(folder), Settings(), rng=np.random.default_rng(1))
+        context = Context(Path(folder), settings or Settings(), rng=np.random.default_rng(1))
         app = App(context, scene, now=lambda: next(frames) / 60, capped=False)
         landscape((1280, 720), False)  # painted once, and timed above
         for frame in range(FRAMES):
@@ -88,6 +92,7 @@ def main() -> int:
         ("play, by hand", lambda: Play(seed=4), (pygame.K_r, pygame.K_UP, pygame.K_LEFT)),
         ("play, network", lambda: Play(seed=4), (pygame.K_r, pygame.K_TAB)),
     ]
+    rows += [(name, lambda: Play(seed=4), (pygame.K_r, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT)) for name in CHOSEN]
     rows += [(f"watch, {n}", lambda n=n: Watch(n, seed=4), ()) for n in COUNTS]
     rows += [
         ("physics, stack", Physics, (pygame.K_c,)),
@@ -97,7 +102,7 @@ def main() -> int:
     ]
     slow = False
     for name, make, keys in rows:
-        spent = cost(make(), keys)
+        spent = cost(make(), keys, CHOSEN.get(name))
         slow |= bool(np.percentile(spent, 99) >= LIMIT)
         figures = (spent.mean(), *np.percentile(spent, (50, 99)), spent.max())
         print(f"{name:20s}" + "".join(f"{figure:8.2f}" for figure in figures))

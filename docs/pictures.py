@@ -34,6 +34,7 @@ from game.settings import Settings
 PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("menu", Menu(), {}, 200),
     ("play", Play(seed=12), {5: pygame.K_TAB}, 170),
+    ("cockpit", Play(seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
     ("watch", Watch(64, seed=3), {}, 260),
     ("train", Train(), {5: pygame.K_RETURN}, 30),
     ("digits", Digits(), {}, 150),
@@ -41,18 +42,21 @@ PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
 )
 
 
+HELD = 12  # frames that a key is held
+# What has been chosen where a picture needs it.
+CHOSEN = {"cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True)}
+
+
 def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
     """Play `scene` for so many frames and save what is then on the screen."""
     with TemporaryDirectory() as folder:
         ticks = count()
-        context = Context(Path(folder), Settings(), rng=np.random.default_rng(1))
+        context = Context(Path(folder), CHOSEN.get(name, Settings()), rng=np.random.default_rng(1))
         app = App(context, scene, now=lambda: next(ticks) / 60, capped=False)
         for frame in range(frames):
-            if frame in keys:
-                for kind in (pygame.KEYDOWN, pygame.KEYUP):
-                    pygame.event.post(pygame.event.Event(kind, key=keys[frame], mod=0))
-            if isinstance(scene, Digits):
-                _move_pen(scene, frame)
+            for kind, at in ((pygame.KEYDOWN, frame), (pygame.KEYUP, frame - HELD)):
+                if at in keys:
+                    pygame.event.post(pygame.event.Event(kind, key=keys[at], mod=0))
             app.tick()
         while isinstance(scene, Train) and not _has_learnt(scene):  # it learns by a clock of its own
             app.tick()

@@ -86,6 +86,8 @@ class Insight:
         asked, best, self._flown = int(decision.pilot[0]), int(decision.best[0]), int(decision.action[0])
         self._asked = None if asked == COAST else asked
         guards = copilot.mode is Mode.GUARDIAN
+        if guards and asked != COAST:  # which compares what is asked for with its own, and nothing else
+            self._feasible = (np.arange(NUM_ACTIONS) != asked) | decision.feasible[0]
         self._threshold = 0.0 if guards else 1.0 if asked == COAST else copilot.assist
         rule = Rule.HANDS_OFF if asked == COAST else Rule(int(decision.rule[0]))
         if rule is Rule.PILOT and self._kept:
@@ -93,7 +95,8 @@ class Insight:
         title, first, second = texts.INSIGHT_WHY[rule.name]
         if guards and asked != COAST:
             points = float(values[best] - values[asked]) / copilot.reward_scale
-            second = texts.INSIGHT_GUARDIAN[rule is not Rule.PILOT].format(
+            changed = rule is not Rule.PILOT
+            second = texts.INSIGHT_SAME if asked == best else texts.INSIGHT_GUARDIAN[changed].format(
                 points=f"{points:.1f}", best=ACTION_NAMES[best])  # fmt: skip
         words = {"asked": ACTION_NAMES[asked].capitalize(), "worth": round(100 * float(self._wanted[asked])),
                  "assist": round(100 * copilot.assist)}  # fmt: skip
