@@ -11,11 +11,13 @@ import pytest
 
 from ai.digit_config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digit_live import Confusion
+from ai.digit_runs import save_digit_run
+from ai.digit_training import DigitTraining
 from ai.digits import DigitClassifier
 from game import texts
 from game.dials import dials
 from game.digits.pupil import Pupil
-from game.scenes.dialog import Naming
+from game.scenes.dialog import Asking, Naming
 from game.scenes.digit_training import FAMILY, DigitTrainingScene
 from game.scenes.dream import Dream
 from game.scenes.quiz import Quiz
@@ -90,6 +92,7 @@ def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
     wait(train, lambda: not scene.pupil.alive)
     assert scene.pupil.state is State.ENDED
     assert not scene.pupil.problem
+    assert 0 < scene.pupil.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
     wait(train, lambda: scene.stop_word and scene.stop_word.label == texts.PUPIL_GO_ON)
     stood = scene.pupil.curves.points[-1].step
@@ -127,6 +130,24 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     train.key(pygame.K_ESCAPE)
     train.click(scene.quiz_word.box.center)
     assert isinstance(train.top, Quiz)
+
+
+@pytest.mark.parametrize("answer", [texts.PUPIL_LEFT_KEEP.format(name="Classic reader"), texts.TRAIN_LEFT_DISCARD, ""])
+def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path: Path, answer: str):
+    scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
+    save_digit_run(DigitTraining(SMALL, 3), runs / ".training")
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, Asking)
+    if answer:
+        train.click(next(word for word in train.top._form.widgets if word.label == answer).box.center)
+    else:
+        train.key(pygame.K_ESCAPE)
+    assert train.top is scene
+    scene.pupil.close()
+    assert (scene.pupil.runs == 1) == bool(answer)
+    assert (runs / "Classic reader" / "config.json").exists() == answer.startswith("Keep")
+    assert (runs / ".before" / "config.json").exists() == (answer == texts.TRAIN_LEFT_DISCARD)
+    assert answer or (runs / ".training" / "config.json").exists()
 
 
 def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
