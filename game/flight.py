@@ -13,6 +13,7 @@ import numpy as np
 from ai.env import Bools, Doubles, Floats, Ints
 from ai.ground import Ground, hilly
 from ai.lander import PARAMS, LanderEnv, Outcome
+from ai.missions import MISSIONS
 from ai.pilots import COAST
 from engine.integrate import integrate_position, integrate_velocity
 from engine.world import DT
@@ -73,6 +74,7 @@ class Recording:
     pads: int = 1
     actions: list[int] = field(default_factory=list)
     hands: list[Hand] = field(default_factory=list)
+    mission: str = ""
 
 
 class Flight:
@@ -84,6 +86,7 @@ class Flight:
         spawn: where it begins.
         pads: 1 on a plain, or 3 among hills.
         hands: what the keys pass through, a name of `game.cockpit.hands.HANDS`.
+        mission: name of one of `ai.missions`, which then says where and under what it is flown; empty for none.
 
     Attributes:
         copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
@@ -94,12 +97,23 @@ class Flight:
     """
 
     def __init__(
-        self, seed: int, network: Flyer | None = None, spawn: str = "random", *, pads: int = 1, hands: str = OWN
+        self,
+        seed: int,
+        network: Flyer | None = None,
+        spawn: str = "random",
+        *,
+        pads: int = 1,
+        hands: str = OWN,
+        mission: str = "",
     ) -> None:
-        self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
-        self.observation: Floats = self.env.reset()
+        if mission:
+            self.env = MISSIONS[mission].begin()
+        else:
+            self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
+            self.env.reset()
+        self.observation: Floats = self.env.observe()
         self.hand = Hand.HUMAN
-        self.recording = Recording(seed, spawn, pads)
+        self.recording = Recording(seed, spawn, pads, mission=mission)
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
         self.decision: Decision | None = None

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.lander import NUM_ACTIONS, Outcome
+from ai.missions import MISSIONS
 from ai.spawns import SPAWNS
 from game import texts
 from game.flight import Hand, Recording
@@ -119,7 +120,7 @@ def to_text(record: Record) -> str:
     recording = record.recording
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
-        "pads": recording.pads, "actions": _packed(recording.actions),
+        "pads": recording.pads, "mission": recording.mission, "actions": _packed(recording.actions),
         "hands": _packed(hand.value for hand in recording.hands), "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
 
@@ -129,9 +130,11 @@ def from_text(text: str) -> Record:
     values = json.loads(text)
     if values["format"] != FORMAT or values["version"] != VERSION:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION))
-    seed, spawn, pads = values["seed"], values["spawn"], values["pads"]
+    seed, spawn, pads, mission = values["seed"], values["spawn"], values["pads"], values["mission"]
     if not (isinstance(seed, int) and isinstance(pads, int) and seed >= 0 and pads in (1, 3) and spawn in SPAWNS):
         raise ValueError(texts.FLIGHT_START.format(seed=seed, spawn=spawn, pads=pads))
+    if mission and mission not in MISSIONS:
+        raise ValueError(texts.FLIGHT_MISSION.format(name=mission))
     actions = [int(word) for word in _unpacked(values["actions"])]
     hands = [Hand(word) for word in _unpacked(values["hands"])]
     if len(actions) != len(hands) or not all(0 <= action < NUM_ACTIONS for action in actions):
@@ -139,7 +142,7 @@ def from_text(text: str) -> Record:
     x, y, angle = (float(number) for number in values["end"])
     if not all(map(math.isfinite, (x, y, angle))):
         raise ValueError(texts.FLIGHT_ACTIONS)
-    return Record(Recording(seed, spawn, pads, actions, hands), Entry(**values["entry"]), (x, y, angle))
+    return Record(Recording(seed, spawn, pads, actions, hands, mission), Entry(**values["entry"]), (x, y, angle))
 
 
 def _packed(words: Iterable[Any]) -> str:

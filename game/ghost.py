@@ -14,7 +14,6 @@ from ai.lander import LanderEnv, Outcome
 from game import texts
 from game.flight import Flight
 from game.hud import Rival
-from game.networks import Flyer
 from game.outcomes import flight_figures
 from game.render import View
 from game.ui.canvas import Canvas
@@ -31,12 +30,11 @@ _NO_SLOT: Final = np.zeros(1, bool)
 
 
 class Ghost:
-    """A rival's flight from the spawn of `seed`, in an environment of its own; `step` once for every step of yours."""
+    """A flight that flies by itself, or by its network from the start; `step` once for every step of yours."""
 
-    def __init__(self, rival: Flyer, name: str, seed: int) -> None:
-        self.name = name
-        self.flight = Flight(seed, rival)
-        self.flight.hand_over()
+    def __init__(self, flight: Flight, name: str) -> None:
+        self.flight, self.name = flight, name
+        flight.hand_over()
         self._trail = Trails(1, keep=1)
 
     def step(self) -> None:

@@ -19,7 +19,7 @@ class Rerun(Flight):
     """Flies what was recorded, whatever keys are held; after its end, or the recording's, it stays as it is."""
 
     def __init__(self, source: Recording) -> None:
-        super().__init__(source.seed, spawn=source.spawn, pads=source.pads)
+        super().__init__(source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission)
         self._source = source
 
     @property

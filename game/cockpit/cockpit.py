@@ -68,12 +68,15 @@ class Cockpit:
         self._insight.follow(self._flight)
         self.helped |= self._flight.shared
 
+    def alone(self, hands: str) -> bool:
+        """Whether the flight was flown by the person's own hands from start to end, and without help."""
+        return hands == OWN and not self.helped and self._flight.share == 1.0
+
     def write_down(self, skill: Skill, folder: Path, hands: str) -> str:
         """Note a flight that is over, and keep it as an example if wished; return what to tell the player of that."""
         flight = self._flight
-        alone = hands == OWN and not self.helped and flight.share == 1.0
         landed = flight.outcome is Outcome.LANDED
-        skill.add(Entry(landed, alone, len(flight.env.ground.pads), landing_score(flight.env)))
+        skill.add(Entry(landed, self.alone(hands), len(flight.env.ground.pads), landing_score(flight.env)))
         if not (landed and self._settings.teach and hands == OWN):
             return skill.problem
         try:

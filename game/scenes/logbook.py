@@ -224,7 +224,14 @@ def _draw_totals(canvas: Canvas, sums: Totals) -> None:
 
 def _row(entry: Entry) -> tuple[str, ...]:
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
-    course = entry.course or texts.COURSE_FREE.get(entry.pads, "")
+    course = _course(entry)
     points = f"{entry.score}" if entry.landed else "–"
     by = texts.LOGBOOK_YOU if entry.alone else texts.LOGBOOK_SHARED if entry.human > 0 else texts.LOGBOOK_NETWORK
     return when, course, texts.OUTCOMES[entry.outcome][0], f"{entry.seconds:.1f} s", points, by
+
+
+def _course(entry: Entry) -> str:
+    """Name where a flight was flown."""
+    if entry.course == "daily":
+        return texts.DAILY
+    return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Final
 
 import numpy as np
@@ -14,9 +15,10 @@ from game.cockpit.hands import HANDS, OWN
 from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command, translate
+from game.course import Course, Duel
 from game.flight import Flight, Hand
 from game.forecast import Drift, Forecast
-from game.ghost import Ghost
+from game.records import Records
 from game.render import Camera
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
@@ -38,7 +40,8 @@ _AWAY_STEPS: Final = 10
 class Play:
     """One flight after another. `seed` fixes the first; the others are drawn from the context's chance.
 
-    A `rival` flies the same starts beside the player, as a ghost that goes by `rival_name`.
+    A `rival` flies the same starts beside the player, as a ghost that goes by `rival_name`. Any other `course` is
+    flown as it is, too.
 
     Attributes:
         flight: the flight on the screen.
@@ -46,8 +49,15 @@ class Play:
 
     """
 
-    def __init__(self, seed: int | None = None, rival: networks.Flyer | None = None, rival_name: str = "") -> None:
-        self._seed, self._rival, self._rival_name = seed, rival, rival_name
+    def __init__(
+        self,
+        seed: int | None = None,
+        rival: networks.Flyer | None = None,
+        rival_name: str = "",
+        course: Course | None = None,
+    ) -> None:
+        self._seed = seed
+        self._course = Duel(rival, rival_name) if rival else course
         self._context: Context | None = None
         self.flight: Flight
         self.waiting, self._let_go = True, False
@@ -60,13 +70,13 @@ class Play:
     def enter(self, context: Context) -> None:
         """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
         if self._context is not None:
-            if self.waiting and not self._rival and self._chosen() != (self.flight.recording.pads, self._hands):
+            if self.waiting and not self._course and self._chosen() != (self.flight.recording.pads, self._hands):
                 self.retry()
             return
         self._context = context
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
-        self._skill = Skill(context.user_dir)
+        self._skill, self._records = Skill(context.user_dir), Records(context.user_dir)
         if self._skill.problem:
             context.note(self._skill.problem)
         self._begin(self._new_seed() if self._seed is None else self._seed)
@@ -97,11 +107,11 @@ class Play:
             case Command.RETRY:
                 self.retry()
             case Command.NEXT:
-                self._begin(self._new_seed())
+                self._begin_elsewhere()
             case Command.CONFIRM if self._card_shown > 0:
-                self._go_on()
+                return self._go_on()
             case _ if self._card_shown >= 1 and _is_space(event):
-                self._go_on()
+                return self._go_on()
         return None
 
     def update(self) -> Transition | None:
@@ -189,13 +199,15 @@ class Play:
 
     def _begin(self, seed: int) -> None:
         self.waiting, self._let_go = True, False
-        pads, self._hands = (1, OWN) if self._rival else self._chosen()
-        check = self._settings.check_flights and self._skill.check_due and not self._rival
+        course = self._course
+        pads, self._hands = (1, OWN) if course else self._chosen()
+        check = self._settings.check_flights and self._skill.check_due and not course
         if check:
             self._hands = OWN
-        self.flight = Flight(seed, None if check else self._network.flyer, pads=pads, hands=self._hands)
+        network = None if check else self._network.flyer
+        self.flight = course.flight(seed, network) if course else Flight(seed, network, pads=pads, hands=self._hands)
         self._cockpit = Cockpit(self.flight, self._settings, alone=check)
-        self._ghost = Ghost(self._rival, self._rival_name, seed) if self._rival else None
+        self._ghost = course.ghost(seed, network) if course else None
         reduced = self._settings.reduced_motion
         # Decoration has a chance of its own: what flies must not depend on what is drawn.
         self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
@@ -211,12 +223,23 @@ class Play:
         """Write a flight down that has just ended, and make its card."""
         assert self._context is not None
         self._card = self._cockpit.card(self._skill.best, self._camera.view(1.0))
-        told = "" if self._rival else self._cockpit.write_down(self._skill, self._context.user_dir, self._hands)
-        if told:
-            self._context.note(told)
+        course, alone = self._course, self._cockpit.alone(self._hands)
+        told = "" if course else self._cockpit.write_down(self._skill, self._context.user_dir, self._hands)
+        self._records.keep(
+            self.flight,
+            time.time(),
+            alone=alone and (course is None or course.counts),
+            network=self._network.name if self._network.flyer else "",
+            course=course.name if course else "",
+            medal=course.medal(self.flight) if course else 0,
+        )
+        if course:
+            self._card = course.card(self._card, self.flight)
+        if told or self._records.problem:
+            self._context.note(told or self._records.problem)
 
     def _new_forecast(self) -> Forecast | None:
-        ahead = None if self._ghost else self._network.flyer  # beside a ghost, one blue path is enough
+        ahead = None if self._course else self._network.flyer  # beside a ghost, one blue path is enough
         return Forecast(ahead, self.flight.env.ground) if ahead else None
 
     def _chosen(self) -> tuple[int, str]:
@@ -249,17 +272,23 @@ class Play:
             text = texts.DIAL_NEEDS if network.flyer else texts.NO_NETWORK
             self._context.note(text.format(name=network.name, problem=network.problem))
 
-    def _go_on(self) -> None:
-        """After a landing to a new start, after a crash to the same one."""
-        if self._card is not None and self._card.good:
-            self._begin(self._new_seed())
-        else:
+    def _go_on(self) -> Transition | None:
+        """After a landing to a new start, or back from a course that has no other; after a crash to the same one."""
+        if self._card is None or not self._card.good:
             self.retry()
+        elif self._course and self._course.fixed:
+            return Pop()
+        else:
+            self._begin_elsewhere()
+        return None
+
+    def _begin_elsewhere(self) -> None:
+        self._begin(self.flight.recording.seed if self._course and self._course.fixed else self._new_seed())
 
     @property
     def _leaves(self) -> bool:
-        """Whether Escape goes straight back: from a duel that has not begun or is over, nothing is lost."""
-        return self._ghost is not None and (self.waiting or self.flight.over)
+        """Whether Escape goes straight back: from a course that has not begun or is over, nothing is lost."""
+        return self._course is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
         from game.scenes.pause import Pause
@@ -269,13 +298,13 @@ class Play:
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
-        return words if self._rival else [*words, (texts.PAUSE_CHOICES, self._choose)]
+        return words if self._course else [*words, (texts.PAUSE_CHOICES, self._choose)]
 
     def _choose(self) -> Transition | None:
         """Let the player choose how the next flights are flown; a duel is flown as it is."""
         from game.scenes.choices import ChoicesScene
 
-        return None if self._rival else Push(ChoicesScene(self, self._skill, begun=not self.waiting))
+        return None if self._course else Push(ChoicesScene(self, self._skill, begun=not self.waiting))
 
     def _open_networks(self) -> Transition:
         from game.scenes.runs import Runs
@@ -303,8 +332,8 @@ class Play:
 
     def _draw_hud(self, canvas: Canvas) -> None:
         self._cockpit.draw_top(canvas)
-        if self._ghost:
-            hud.draw_corner(canvas, texts.DUEL, texts.DUEL_RIVAL.format(name=self._ghost.name))
+        if self._course:
+            hud.draw_corner(canvas, self._course.title, self._course.line)
         else:
             network = self._network
             flown = texts.WITH_NETWORK.format(name=network.name) if self.flight.network else texts.ALONE
@@ -320,8 +349,8 @@ class Play:
     def _draw_opening(self, canvas: Canvas) -> None:
         keys = texts.FLIGHT_KEYS_PAD if self._controls.pad_in_use else texts.FLIGHT_KEYS
         line, paths = texts.BEGIN, [(texts.PATH_YOURS, HUMAN)]
-        if self._ghost:
-            line = texts.DUEL_BEGIN.format(name=self._ghost.name)
+        if self._course:
+            line = self._course.opening
         if self._forecast:
             paths.append((texts.PATH_NETWORK, NET))
         hud.draw_opening(canvas, keys, line, paths)
@@ -329,7 +358,7 @@ class Play:
     def _draw_hints(self, canvas: Canvas) -> None:
         word = self._controls.word
         hints = [(word(Command.PAUSE), texts.HINT_LEAVE if self._leaves else texts.HINT_PAUSE)]
-        if not self._rival:
+        if not self._course:
             hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
         if self.flight.network:
             taken = self.flight.hand is Hand.NETWORK
@@ -339,8 +368,13 @@ class Play:
     def _card_keys(self) -> list[tuple[str, str]]:
         assert self._card is not None
         good, word = self._card.good, self._controls.word
-        other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
-        return [(word(Command.CONFIRM), texts.CARD_FIRST[good]), (word(other[0]), other[1])]
+        if self._course and self._course.fixed:
+            first = texts.CARD_FIRST_FIXED[good]
+            other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.PAUSE, texts.HINT_LEAVE)
+        else:
+            first = texts.CARD_FIRST[good]
+            other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
+        return [(word(Command.CONFIRM), first), (word(other[0]), other[1])]
 
 
 def _is_space(event: pygame.event.Event) -> bool:

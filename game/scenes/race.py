@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import time
+
+from game import texts
+from game.course import FlyOn, Race
 from game.flight_file import Record
 from game.scenes.play import Play
 from game.tape import Tape
 
 
 def race(record: Record) -> Play:
-    """Fly a recorded flight's start."""
-    return Play(record.recording.seed)
+    """Fly a recorded flight's start against its ghost."""
+    return Play(record.recording.seed, course=Race(record, _name(record)))
 
 
-def fly_on(record: Record, tape: Tape) -> Play:  # noqa: ARG001
-    """Fly on from the moment that a tape shows."""
-    return Play(record.recording.seed)
+def fly_on(record: Record, tape: Tape) -> Play:
+    """Fly on from the moment that a tape shows; the recorded flight goes on as a ghost."""
+    return Play(record.recording.seed, course=FlyOn(tape, _name(record)))
+
+
+def _name(record: Record) -> str:
+    return texts.RACE_RIVAL.format(when=time.strftime("%Y-%m-%d %H:%M", time.localtime(record.entry.when)))

@@ -66,7 +66,7 @@ def end(driver: Driver, *start: float) -> None:
 
 
 def test_a_ghost_flies_as_the_rival_would_alone():
-    pilot, ghost = ScriptedPilot(), Ghost(ScriptedPilot(), "pilot", seed=7)
+    pilot, ghost = ScriptedPilot(), Ghost(Flight(7, ScriptedPilot()), "pilot")
     env = LanderEnv(1, 7, frame_skip=DECISION_STEPS)
     observation = env.reset()
     assert np.array_equal(env.position, ghost.flight.env.position)
@@ -197,7 +197,7 @@ def test_a_ghost_that_still_flies_has_no_figures_and_flies_on(duel):
     ("later", "said"), [(2.0, "2.0 s after you"), (-1.5, "1.5 s before you"), (0.0, "together with you")]
 )
 def test_of_two_who_land_the_card_says_who_was_first(later: float, said: str):
-    ghost, yours = Ghost(Idle(), "rival", 1), LanderEnv(1, 1, frame_skip=1)
+    ghost, yours = Ghost(Flight(1, Idle()), "rival"), LanderEnv(1, 1, frame_skip=1)
     yours.reset()
     for env in (ghost.flight.env, yours):
         env.place(np.ones(1, bool), np.array([[0, PAD, 0, 0, 0, 0]]))

@@ -1,0 +1,155 @@
+"""What can be flown other than free flights: against a rival, against a ghost of one's own, from another's midst."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import date
+
+from ai.lander import Outcome
+from ai.missions import Mission
+from game import texts
+from game.flight import Flight
+from game.flight_file import Record
+from game.ghost import Ghost
+from game.hud import Card
+from game.networks import Flyer
+from game.tape import Rerun, Tape
+
+
+class Course:
+    """A start and what is asked there; it is flown as it is, whatever the player has chosen for free flights.
+
+    Attributes:
+        name: of a mission, as the logbook has it; empty for all else.
+        fixed: whether there is but the one start.
+        counts: whether a flight says something of the pilot's skill, from its first step to its last.
+        title, line: what is being flown, for the corner.
+        opening: what to say while the craft hangs and waits.
+
+    """
+
+    name = ""
+    fixed = True
+    counts = True
+    title = line = opening = ""
+
+    def flight(self, seed: int, network: Flyer | None) -> Flight:
+        """Begin it; `network` is whom to hand over to."""
+        return Flight(seed, network)
+
+    def ghost(self, seed: int, network: Flyer | None) -> Ghost | None:  # noqa: ARG002
+        """Begin what flies beside it."""
+        return None
+
+    def card(self, card: Card, flight: Flight) -> Card:  # noqa: ARG002
+        """Add to the card of a flight that is over."""
+        return card
+
+    def medal(self, flight: Flight) -> int:  # noqa: ARG002
+        """What a flight that is over has earned: 3 for gold, 2, 1, 0 for none."""
+        return 0
+
+
+class Duel(Course):
+    """Start after start against a rival."""
+
+    fixed = False
+    title = texts.DUEL
+
+    def __init__(self, rival: Flyer, name: str) -> None:
+        self._rival, self._name = rival, name
+        self.line = texts.DUEL_RIVAL.format(name=name)
+        self.opening = texts.DUEL_BEGIN.format(name=name)
+
+    def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
+        """Let the rival begin there too."""
+        return Ghost(Flight(seed, self._rival), self._name)
+
+
+class Race(Course):
+    """A recorded flight's own start, against its ghost."""
+
+    title = texts.RACE
+
+    def __init__(self, record: Record, name: str) -> None:
+        self._record, self._name = record, name
+        self.line = texts.DUEL_RIVAL.format(name=name)
+        self.opening = texts.DUEL_BEGIN.format(name=name)
+
+    def flight(self, seed: int, network: Flyer | None) -> Flight:
+        """Begin where that flight began."""
+        recording = self._record.recording
+        return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+
+    def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
+        """Let the recorded flight begin again."""
+        return Ghost(Rerun(self._record.recording), self._name)
+
+
+class FlyOn(Course):
+    """From a moment of a recorded flight, its first part kept as it was flown; that flight goes on as a ghost."""
+
+    counts = False
+    title = texts.FLY_ON
+    opening = texts.FLY_ON_BEGIN
+
+    def __init__(self, tape: Tape, name: str) -> None:
+        self._recording, self._step, self._name = tape.record.recording, tape.at, name
+        self._moment = tape.flight.env.snapshot()
+        self.line = texts.FLY_ON_LINE.format(seconds=tape.at / 60)
+
+    def flight(self, seed: int, network: Flyer | None) -> Flight:
+        """Begin in its midst."""
+        recording = self._recording
+        flight = Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+        flight.put(self._moment, self._recording, self._step)
+        return flight
+
+    def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
+        """Let that flight go on as it did."""
+        rerun = Rerun(self._recording)
+        rerun.put(self._moment, self._recording, self._step)
+        return Ghost(rerun, self._name)
+
+
+class Flown(Course):
+    """A mission of the campaign: the network's own flight is the ghost to beat."""
+
+    title = texts.MISSION
+
+    def __init__(self, mission: Mission) -> None:
+        self.mission, self.name = mission, mission.name
+        self.line, self.opening = texts.MISSIONS[mission.name]
+
+    def flight(self, seed: int, network: Flyer | None) -> Flight:
+        """Begin it."""
+        return Flight(seed, network, mission=self.name)
+
+    def ghost(self, seed: int, network: Flyer | None) -> Ghost | None:
+        """Let the network fly it too."""
+        return Ghost(Flight(seed, network, mission=self.name), texts.MISSION_RIVAL) if network else None
+
+    def medal(self, flight: Flight) -> int:
+        """Return what the flight has earned."""
+        if flight.outcome is not Outcome.LANDED or flight.share < 1.0:
+            return 0
+        return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
+
+    def card(self, card: Card, flight: Flight) -> Card:
+        """Name the medal in place of points."""
+        return replace(card, score=texts.MEDALS[self.medal(flight)])
+
+
+class Daily(Course):
+    """The start that everybody has on this day."""
+
+    name = "daily"
+    title = texts.DAILY
+
+    def __init__(self, day: date) -> None:
+        self.seed = day.toordinal()
+        self.line, self.opening = f"{day:%Y-%m-%d}", texts.DAILY_BEGIN
+
+    def flight(self, seed: int, network: Flyer | None) -> Flight:  # noqa: ARG002
+        """Begin it, on three pads among hills."""
+        return Flight(self.seed, network, pads=3)
