@@ -44,10 +44,12 @@ KEY_NAMES: Final = {
 MENU_LINE: Final = "A moon lander, and a neural network that learns to fly it."
 MENU: Final = {
     "play": ("Play", "Fly it yourself, and hand over whenever you like."),
+    "missions": ("Missions", "A short campaign: wind, night, Mars, a moving pad. And the start of the day."),
     "watch": ("Watch", "See the network land, and what it thinks on the way down."),
     "train": ("Train", "Teach a network from nothing, and see it learn."),
     "digits": ("Draw a digit", "A network reads your handwriting, and shows how it knows."),
     "physics": ("Physics", "Stacks, slopes, impacts: the engine, to look into and take hold of."),
+    "logbook": ("Logbook", "Your flights, to be watched again, raced, and flown on; and your skill."),
     "settings": ("Settings", "Screen, motion, colours, sound, keys."),
     "quit": ("Quit", "Back to Earth."),
 }
@@ -902,3 +904,10 @@ MISSIONS: Final = {
     "ferry": ("A moving pad", "The pad goes to and fro: touch down when you move as it does."),
     "outage": ("Engine failure", "The main engine will be gone for two seconds. You have been told."),
 }
+MISSIONS_TITLE: Final = "Missions"
+MISSIONS_LINE: Final = "Each teaches one thing, and the network flies beside you. Gold: {gold} of {count}."
+MISSIONS_COLUMNS: Final = ("MISSION", "MEDAL", "BEST FUEL")
+MISSION_FLY: Final = "Fly it"
+MISSION_LIMIT: Final = "{fuel:.1f} s of fuel and {seconds:.0f} s at most"
+MISSION_ANY: Final = "any landing"
+MISSION_BEST: Final = "Your best: {fuel:.1f} s of fuel, {seconds:.1f} s, {points} points"

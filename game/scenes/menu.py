@@ -19,15 +19,21 @@ from game.ui.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
 from game.ui.widgets import Word
 
 _TITLE_SIZE: Final = 88.0
-_WORD_SIZE: Final = 24.0
-_FIRST_WORD: Final = 336
-_LINE: Final = 44
+_WORD_SIZE: Final = 22.0
+_FIRST_WORD: Final = 300
+_LINE: Final = 38
 
 
 def _play() -> Scene:
     from game.scenes.play import Play
 
     return Play()
+
+
+def _missions() -> Scene:
+    from game.scenes.missions import Missions
+
+    return Missions()
 
 
 def _watch() -> Scene:
@@ -54,6 +60,12 @@ def _physics() -> Scene:
     return Physics()
 
 
+def _logbook() -> Scene:
+    from game.scenes.logbook import Logbook
+
+    return Logbook()
+
+
 def _settings() -> Scene:
     from game.scenes.settings import SettingsScene
 
@@ -63,10 +75,12 @@ def _settings() -> Scene:
 # One row a screen: its name in `texts.MENU`, and what opens it. None closes the game.
 ROWS: Final[tuple[tuple[str, Callable[[], Scene] | None], ...]] = (
     ("play", _play),
+    ("missions", _missions),
     ("watch", _watch),
     ("train", _train),
     ("digits", _digits),
     ("physics", _physics),
+    ("logbook", _logbook),
     ("settings", _settings),
     ("quit", None),
 )

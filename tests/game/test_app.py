@@ -55,18 +55,18 @@ class Probe:
 
 
 def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
-    game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    game.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
     game.key(pygame.K_ESCAPE)
     assert game.top_name == "Menu"
 
 
 def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
-    game.click((90, 578))
+    game.click((90, 585))
     assert game.top_name == "SettingsScene"
     game.button(pygame.CONTROLLER_BUTTON_B)
     assert game.top_name == "Menu"
-    game.axis(pygame.CONTROLLER_AXIS_LEFTY, -30000)  # from Settings up to Physics
+    game.axis(pygame.CONTROLLER_AXIS_LEFTY, -30000)  # from Settings up to the logbook
     game.axis(pygame.CONTROLLER_AXIS_LEFTY, 0)
     game.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     game.button(pygame.CONTROLLER_BUTTON_A)
@@ -118,7 +118,7 @@ def test_the_view_is_16_to_9_in_any_window_and_the_mouse_is_in_points(open_game,
 @pytest.mark.parametrize("size", SIZES)
 def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
     game.resize(size)
-    game.click((90, 578))
+    game.click((90, 585))
     assert game.top_name == "SettingsScene"
     game.frames(3)
     game.click((80, 640))

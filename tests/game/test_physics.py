@@ -191,7 +191,7 @@ def test_between_two_steps_bodies_are_drawn_in_between(open_game: Open):
 
 def test_menu_leads_to_physics_and_back(open_game: Open):
     driver = open_game()
-    driver.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    driver.keys(*[pygame.K_DOWN] * 5, pygame.K_RETURN)
     assert driver.top_name == "Physics"
     driver.key(pygame.K_BACKSPACE)
     assert driver.top_name == "Menu"

@@ -199,7 +199,7 @@ def test_draw_changes_nothing(watching: Driver):
 
 def test_menu_leads_to_watch_and_back(open_game: Open):
     driver = open_game()
-    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    driver.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top_name == "Watch"
     driver.frames(5)
     driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)

@@ -23,13 +23,13 @@ def setting(window: Window, name: str) -> object:
 
 def test_a_setting_chosen_with_real_keys_survives_a_restart(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
-        window.key("Down", "Down", "Down", "Down", "Down", "Return")  # Settings
+        window.key(*["Down"] * 7, "Return")  # Settings
         window.key("Down", "Return")  # Reduced motion
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         window.key("Escape")
         assert window.close() == 0
     with start(display, tmp_path / "user") as window:
-        window.key("Down", "Down", "Down", "Down", "Down", "Return", "Down", "Return")
+        window.key(*["Down"] * 7, "Return", "Down", "Return")
         window.wait_for(lambda: setting(window, "reduced_motion") is False, "the setting to change back")
         assert window.close() == 0
 

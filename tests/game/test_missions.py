@@ -1,0 +1,186 @@
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander import PARAMS, Outcome
+from ai.missions import MISSIONS
+from ai.pilots import ScriptedPilot
+from game import networks, texts
+from game.context import Context
+from game.flight import Flight
+from game.records import Records
+from game.scenes.logbook import Logbook
+from game.scenes.missions import Missions
+from game.scenes.play import Play
+from game.scenes.replay import Replay
+from game.tape import Tape
+from tests.game.driver import Driver
+
+Open = Callable[..., Driver]
+NOON = 1_700_000_000.0
+REST = float(PARAMS.pad_top + PARAMS.stand + 0.002)
+
+
+@pytest.fixture(autouse=True)
+def _stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", ScriptedPilot()))
+
+
+def play(driver: Driver) -> Play:
+    assert isinstance(driver.top, Play)
+    return driver.top
+
+
+def land(driver: Driver) -> None:
+    """Bring the flight to a landing by hand."""
+    scene = play(driver)
+    scene.waiting = False
+    env = scene.flight.env
+    x, y = env.pad[0].tolist()
+    env.place(np.ones(1, bool), np.array([[x, y + PARAMS.stand + 0.002, 0, 0, 0, 0]]))
+    while scene._card_shown < 1:
+        driver.frames(1)
+
+
+def test_every_mission_has_words_and_can_be_begun():
+    assert MISSIONS.keys() == texts.MISSIONS.keys()
+    for mission in MISSIONS.values():
+        env = mission.begin(2)
+        env.step(np.zeros(2, int))
+        assert (env.outcome == Outcome.FLYING).all(), mission.name
+        assert mission.gold[0] <= mission.silver[0] <= mission.conditions.tank
+        assert mission.gold[1] <= mission.silver[1] <= mission.limits.time
+
+
+def test_a_medal_is_for_little_fuel_and_little_time_together():
+    mission = MISSIONS["brake"]
+    assert mission.medal(*mission.gold) == 3
+    assert mission.medal(mission.gold[0], mission.gold[1] + 0.1) == 2
+    assert mission.medal(mission.silver[0], mission.silver[1]) == 2
+    assert mission.medal(mission.silver[0] + 0.1, 1.0) == 1
+
+
+@pytest.mark.parametrize("name", ["wind", "outage", "ferry"])
+def test_a_mission_is_flown_again_from_its_file_as_it_was(context: Context, name: str):
+    flight = Flight(0, ScriptedPilot(), mission=name)
+    flight.hand_over()
+    while not flight.over:
+        flight.step(0)
+    records = Records(context.user_dir)
+    tape = Tape(records.read(records.keep(flight, NOON, course=name).file))
+    tape.scout(10_000)
+    assert tape.faithful
+    assert tape.complete
+
+
+def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open_game: Open):
+    driver = open_game()
+    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    assert driver.top_name == "Missions"
+    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    assert play(driver)._course.name == "brake"
+    assert play(driver)._ghost is not None
+    land(driver)
+    assert play(driver)._card.score == "gold"
+    driver.key(pygame.K_RETURN)
+    assert driver.top_name == "Missions"
+    assert driver.top._best["brake"].medal == 3
+    assert driver.top.chosen == "brake"
+
+
+def test_a_gamepad_flies_a_mission_and_comes_back(open_game: Open):
+    driver = open_game(Missions())
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 32000)
+    driver.frames(5)
+    assert play(driver).flight.env.steps[0] > 0
+    driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 0)
+    land(driver)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert driver.top_name == "Missions"
+
+
+def test_no_medal_for_what_the_network_flew_or_for_a_crash(open_game: Open):
+    driver = open_game(Missions())
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_TAB)
+    driver.frames(3)
+    land(driver)
+    assert play(driver)._card.score == "no medal"
+
+
+def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
+    driver = open_game(Missions())
+    driver.keys(pygame.K_END, pygame.K_RETURN)
+    first = play(driver).flight
+    driver.key(pygame.K_n)
+    assert np.array_equal(play(driver).flight.env.position, first.env.position)
+    assert len(first.env.ground.pads) == 3
+
+
+# Flights of one's own
+
+
+@pytest.fixture
+def book(open_game: Open, context: Context) -> Driver:
+    flight = Flight(3, ScriptedPilot())
+    for _ in range(30):
+        flight.step(0)
+    flight.hand_over()
+    while not flight.over:
+        flight.step(0)
+    Records(context.user_dir).keep(flight, NOON)
+    driver = open_game(Logbook())
+    driver.frames(2)
+    return driver
+
+
+def test_a_flight_that_ends_is_written_down(open_game: Open, context: Context):
+    driver = open_game(Play(5))
+    driver.frames(1)
+    land(driver)
+    (entry,) = Records(context.user_dir).entries()
+    assert (entry.outcome, entry.alone, entry.network) == ("LANDED", True, "stand-in")
+
+
+def test_the_ghost_of_a_race_flies_as_the_flight_did(book: Driver):
+    book.keys(pygame.K_DOWN)
+    word = next(widget for widget in book.top._form.widgets if widget.label == texts.LOGBOOK_RACE)
+    book.click(word.box.center)
+    ghost = play(book)._ghost
+    play(book).waiting = False
+    book.frames(1200)
+    assert ghost.flight.outcome is Outcome.LANDED
+    book.key(pygame.K_r)
+    assert play(book).waiting
+    assert play(book)._ghost is not ghost
+
+
+def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
+    book.key(pygame.K_RETURN)
+    book.frames(60)
+    book.key(pygame.K_SPACE)
+    assert isinstance(book.top, Replay)
+    tape = book.top.tape
+    at, place = tape.at, tape.flight.env.position.copy()
+    book.key(pygame.K_TAB)
+    flight = play(book).flight
+    assert np.array_equal(flight.env.position, place)
+    assert flight.recording.actions == tape.record.recording.actions[:at]
+    book.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    book.frames(10)
+    assert len(flight.recording.actions) > at
+    assert play(book)._ghost.flight.env.steps[0] == flight.env.steps[0]
+    land(book)
+    entry = Records(book.app.context.user_dir).entries()[-1]
+    assert not entry.alone
+
+
+def test_at_the_end_there_is_nothing_to_fly_on(book: Driver):
+    book.key(pygame.K_RETURN)
+    book.frames(200)
+    book.key(pygame.K_END)
+    book.key(pygame.K_TAB)
+    assert book.top_name == "Replay"
