@@ -22,6 +22,7 @@ class Course:
     Attributes:
         name: of a mission, as the logbook has it; empty for all else.
         fixed: whether there is but the one start.
+        night: whether nothing is seen but what shines.
         counts: whether a flight says something of the pilot's skill, from its first step to its last.
         title, line: what is being flown, for the corner.
         opening: what to say while the craft hangs and waits.
@@ -31,6 +32,7 @@ class Course:
     name = ""
     fixed = True
     counts = True
+    night = False
     title = line = opening = ""
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
@@ -118,7 +120,7 @@ class Flown(Course):
     title = texts.MISSION
 
     def __init__(self, mission: Mission) -> None:
-        self.mission, self.name = mission, mission.name
+        self.mission, self.name, self.night = mission, mission.name, mission.night
         self.line, self.opening = texts.MISSIONS[mission.name]
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:

@@ -327,6 +327,8 @@ def down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
 def surface_height(env: LanderEnv, x: float) -> float:
     """Height of what lies under x: a pad's top, a hill, or the plain; to draw by."""
     heights = _profile(env.ground)
+    if env.conditions.moves:  # and nothing else is there: one pad on a plain
+        x -= float(env.pad_shift[0])
     return heights[min(max(round((x + _PROFILE_REACH) / _PROFILE_STEP), 0), len(heights) - 1)]
 
 

@@ -56,7 +56,7 @@ class Ghost:
         self._trail.draw(canvas, view, 0)
         flight = self.flight
         pose = flight.poses.at(alpha)[0]
-        if not flight.over and flight.env.actions[0] >= 3:
+        if not flight.over and flight.env.fired[0] >= 3:
             _draw_fire(canvas, view, pose, int(flight.env.steps[0]))
         x, y = view.pixels(pose[:2]).tolist()
         degrees, halves = round(math.degrees(pose[2])) % 360, (int(x % 1 * 2), int(y % 1 * 2))

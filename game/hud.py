@@ -75,9 +75,18 @@ def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
         against(texts.DESCENT, _signed(descent), "m/s", max(0.0, descent), limits.touch_speed),
         against(texts.DRIFT, f"{abs(across):.1f}", "m/s", across, limits.slide_speed),
         against(texts.TILT, f"{math.degrees(tilt):.0f}", "°", tilt, limits.touch_tilt),
-        Readout(texts.FUEL_USED, f"{float(env.fuel[slot]):.1f}", "s"),
+        _fuel(env, slot),
         Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limits.time, within=None if left > _LITTLE_TIME else False),
     ]
+
+
+def _fuel(env: LanderEnv, slot: int) -> Readout:
+    """Say what was burnt, or, where the tank is small, what is left."""
+    burnt, tank = float(env.fuel[slot]), env.conditions.tank
+    if tank == math.inf:
+        return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
+    left = max(0.0, tank - burnt)
+    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=None if left > 0.2 * tank else False)
 
 
 def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:

@@ -105,6 +105,7 @@ DESCENT: Final = "DESCENT"
 DRIFT: Final = "DRIFT"
 TILT: Final = "TILT"
 FUEL_USED: Final = "FUEL USED"
+FUEL_LEFT: Final = "FUEL LEFT"
 TIME_LEFT: Final = "TIME LEFT"
 
 # How a flight ended
@@ -896,13 +897,13 @@ MISSIONS: Final = {
     "brake": ("Braking", "High up and sinking fast: spend your height, not your fuel."),
     "aside": ("Sideways", "The pad is twelve metres away. Lean, drift, and lean back in time."),
     "wind": ("Wind", "It comes in gusts, mostly from the left: lean into it."),
-    "tank": ("Low fuel", "Five seconds of main engine, and not a drop more."),
+    "tank": ("Low fuel", "Three seconds of main engine, and not a drop more."),
     "narrow": ("Narrow pad", "Half as wide, and higher than you think."),
     "mars": ("Mars", "Twice the gravity, twice the engine, and dust in the wind."),
     "earth": ("Earth", "Six times the gravity: what you know is too slow."),
     "night": ("Night", "Nothing shines but the pad, and your own fire."),
     "ferry": ("A moving pad", "The pad goes to and fro: touch down when you move as it does."),
-    "outage": ("Engine failure", "The main engine will be gone for two seconds. You have been told."),
+    "outage": ("Engine failure", "No main engine from second 2 to 4. You have been told."),
 }
 MISSIONS_TITLE: Final = "Missions"
 MISSIONS_LINE: Final = "Each teaches one thing, and the network flies beside you. Gold: {gold} of {count}."

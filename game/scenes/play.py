@@ -24,7 +24,7 @@ from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints
-from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
+from game.ui.tokens import HUMAN, MARGIN, NET, NIGHT0, VIEW_SIZE
 from game.ui.widgets import OnPress
 from game.world.backdrop import landscape
 from game.world.ground import draw_ground
@@ -33,6 +33,7 @@ from game.world.stage import Stage
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
+_DARK: Final = 0.9  # how much of the landscape a night hides
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
 _AWAY_STEPS: Final = 10
 
@@ -154,7 +155,9 @@ class Play:
         landscape(canvas.surface.get_size(), self._settings.reduced_motion).draw(
             canvas, self._camera, self._time, alpha
         )
-        draw_ground(canvas, view, env.ground, self._time)
+        if self._course and self._course.night:
+            canvas.fill(canvas.surface.get_rect(), NIGHT0, _DARK)
+        draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
         self._cockpit.draw_behind(canvas)
         if flight.over:
             self._cockpit.track.draw(canvas, view)

@@ -121,7 +121,7 @@ class Replay:
         self.tape.seek(step)
         self._stage.flash[:] = 0
         self._stage.particles.clear()
-        action = 0 if self.tape.flight.over else int(self.tape.flight.env.actions[0])
+        action = 0 if self.tape.flight.over else int(self.tape.flight.env.fired[0])
         self._stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
         self._stage.blue[:] = self.tape.flight.flown_by is Hand.NETWORK
         self._due = 0.0
@@ -211,7 +211,7 @@ class Replay:
         landscape(canvas.surface.get_size(), self._settings.reduced_motion).draw(
             canvas, self._camera, self._time, between, _EARTH
         )
-        draw_ground(canvas, view, env.ground, self._time)
+        draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
         self._draw_way(canvas, view)
         self._stage.draw_lander(canvas, view, flight.poses.at(between)[0])
         self._stage.draw_dust(canvas, view, between)

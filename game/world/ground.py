@@ -25,8 +25,8 @@ _WARM: Final = np.array((255, 150, 96), np.float32)
 _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 
 
-def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float) -> None:
-    """Draw hills, if there are any, and pads; of several, each has its factor written beside it."""
+def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
+    """Draw hills, if there are any, and pads, `shift` metres to the right; of several, each with its factor."""
     if ground.hills:
         sheet, left, top = paint_hills(ground, round(view.pixels_per_metre, 3))
         corner = view.pixels((left, top)).tolist()
@@ -34,9 +34,9 @@ def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float) -> None
     several = len(ground.pads) > 1
     for pad in ground.pads:
         floor = pad.top - _LIP if several else ground.base
-        draw_pad(canvas, view, (pad.x, pad.top), pad.width, time, floor)
+        draw_pad(canvas, view, (pad.x + shift, pad.top), pad.width, time, floor)
         if several:
-            spot = view.points((pad.right + 0.3, floor - 0.05)).tolist()
+            spot = view.points((pad.right + shift + 0.3, floor - 0.05)).tolist()
             canvas.text(f"×{pad.factor}", spot, size=SMALL, colour=INK, weight="medium", alpha=0.8)
 
 

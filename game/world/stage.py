@@ -47,7 +47,8 @@ class Stage:
         """Ease everything towards what the environment now says; `networks` (n,) fly, `ended` ended just now."""
         env = self._env
         flying = env.outcome == Outcome.FLYING
-        main, steer = env.actions >= 3, env.actions % 3
+        fired = env.fired
+        main, steer = fired >= 3, fired % 3
         wanted = np.stack([main, steer == 2, steer == 1], axis=1) & flying[:, None]
         self.thrust += np.where(wanted, _IGNITE, _DIE) * (wanted - self.thrust)
         self.blue += (1.0 if self._calm else 0.14) * (networks - self.blue)

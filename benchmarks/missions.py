@@ -1,0 +1,57 @@
+"""How the network that comes with the game flies the missions, and where it fails.
+
+    python -m benchmarks.missions [--flights 20]
+
+Each mission is flown from its own start, and from starts that differ from it a little: up to half a metre and 0.2 m/s,
+3 degrees. The network has never met wind, other gravity, a small tank, a dead engine or a moving pad in training.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, or it has no effect
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from ai.agent import DeepQAgent
+from ai.lander import Cause, Outcome
+from ai.missions import MISSIONS, Mission
+
+MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
+REACH = np.array([0.5, 0.5, 0.2, 0.2, 0.05, 0.05])
+
+
+def fly(agent: DeepQAgent, mission: Mission, count: int) -> tuple[np.ndarray, ...]:
+    """Outcome, cause, fuel and seconds of `count` flights, (count,) each; the first is from the mission's own start."""
+    env = mission.begin(count, frame_skip=4)
+    away = REACH * np.random.default_rng(0).uniform(-1, 1, (count, 6))
+    away[0] = 0.0
+    env.place(np.ones(count, dtype=bool), np.array(mission.start) + away)
+    observation = env.observe()
+    while (env.outcome == Outcome.FLYING).any():
+        observation = env.step(agent.act(observation, held=env.actions)).observation
+    return env.outcome, env.cause, env.fuel, env.time
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--flights", type=int, default=20)
+    count = parser.parse_args().flights
+    agent = DeepQAgent.load(MODEL)
+    print("| mission | its own flight | fuel | time | medal | landed, of nearby starts | mostly fails by |")
+    print("|---|---|---|---|---|---|---|")
+    for mission in MISSIONS.values():
+        outcome, cause, fuel, seconds = fly(agent, mission, count)
+        landed = outcome == Outcome.LANDED
+        how = [Cause(c).name if o == Outcome.CRASHED else Outcome(o).name
+               for o, c in zip(outcome[~landed], cause[~landed], strict=True)]  # fmt: skip
+        worst = max(sorted(set(how)), key=how.count).lower() if how else "–"
+        medal = mission.medal(float(fuel[0]), float(seconds[0])) if landed[0] else 0
+        print(f"| {mission.name} | {Outcome(outcome[0]).name.lower()} | {fuel[0]:.1f} s | {seconds[0]:.1f} s | {medal} "
+              f"| {landed.sum()} of {count} | {worst} |")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
