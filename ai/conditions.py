@@ -45,7 +45,8 @@ class Conditions:
 
     def push(self, time: Doubles) -> Doubles:
         """Force of the wind to the right in N, at times (n,) in seconds."""
-        return self.wind + self.gust * np.sin(2 * np.pi / self.gust_period * time)
+        push: Doubles = self.wind + self.gust * np.sin(2 * np.pi / self.gust_period * time)
+        return push
 
     def main_works(self, time: Doubles) -> Bools:
         """Whether the main engine fires when it is asked to, (n,)."""

@@ -305,7 +305,7 @@ class LanderEnv:
 
     def _top(self, pad: Any) -> Doubles:
         """Middle of the top of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""
-        middle = self.ground.middles[pad]
+        middle: Doubles = self.ground.middles[pad]
         if not self.conditions.moves:
             return middle
         return np.broadcast_to(middle, (self.num_envs, 2)) + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1)

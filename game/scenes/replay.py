@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pygame
 
 from ai.lander import Outcome
-from game import hud, texts
+from game import export, hud, texts
 from game.clock import STEP
 from game.context import Context
 from game.controls import Command, translate
+from game.export import Film
 from game.flight import Hand
 from game.flight_file import Record
+from game.library import exports_dir
 from game.render import Camera, View
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
@@ -51,6 +54,7 @@ class Replay:
         self._speed = SPEEDS.index(1.0)
         self._time = self._due = 0.0
         self._warned = False
+        self._film: Film | None = None
 
     def enter(self, context: Context) -> None:
         """Begin with the first moment, or go on where it was left."""
@@ -101,6 +105,8 @@ class Replay:
         assert self._context is not None
         self.tape.scout(_SCOUT)
         self._strip.reached = self.tape.reached
+        if self._film:
+            self._go_on_exporting(self._film)
         if self.tape.complete and not self.tape.faithful and not self._warned:
             self._warned = True
             self._context.note(texts.REPLAY_OTHER_RULES)
@@ -198,8 +204,34 @@ class Replay:
 
         return Push(race(self.record))
 
-    def _export(self) -> Transition | None:
-        return None
+    def _export(self) -> None:
+        """Begin to draw the flight as a moving picture; `update` goes on with it."""
+        assert self._context is not None
+        if export.missing():
+            self._context.note(texts.EXPORT_MISSING)
+        elif not self.tape.complete:
+            self._context.note(texts.EXPORT_EARLY)
+        elif self._film is None:
+            own = Tape(self.record)
+            own.scout(own.length)
+            stage = Stage(own.flight.env, np.random.default_rng(self.record.recording.seed), reduced_motion=True)
+            self._film = Film(own.reached, lambda canvas, step: _draw_frame(canvas, own, stage, step))
+
+    def _go_on_exporting(self, film: Film) -> None:
+        """Draw one more frame, or save them all."""
+        assert self._context is not None
+        if not film.done:
+            film.step()
+            self._context.note(texts.EXPORT_GOES_ON.format(percent=round(100 * film.share)))
+            return
+        self._film = None
+        path = exports_dir() / f"{Path(self.record.entry.file).stem or texts.REPLAY_TITLE}.gif"
+        try:
+            film.save(path)
+        except OSError as error:
+            self._context.note(texts.EXPORT_FAILED.format(reason=error.strerror or error))
+        else:
+            self._context.note(texts.EXPORT_DONE.format(path=path))
 
     # The picture
 
@@ -212,22 +244,11 @@ class Replay:
             canvas, self._camera, self._time, between, _EARTH
         )
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
-        self._draw_way(canvas, view)
+        _draw_way(canvas, view, self.tape)
         self._stage.draw_lander(canvas, view, flight.poses.at(between)[0])
         self._stage.draw_dust(canvas, view, between)
         hud.draw_readouts(canvas, self._readouts)
         self._draw_words(canvas)
-
-    def _draw_way(self, canvas: Canvas, view: View) -> None:
-        """Draw where it came from in the colour of who flew, and faintly where it goes."""
-        path, hands = self.tape.path, self.record.recording.hands
-        at = min(self.tape.at, len(path) - 1)
-        if at + 4 < len(path):
-            draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35)
-        for start, stop, hand in runs(hands[:at]):
-            if stop - start > 1:
-                stretch = path[start : stop + 1 : 4] if stop - start > 8 else path[start : stop + 1]
-                draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is Hand.HUMAN else NET, 0.6)
 
     def _draw_words(self, canvas: Canvas) -> None:
         assert self._context is not None
@@ -256,3 +277,32 @@ class Replay:
                  (word(Command.STEP), texts.HINT_STEP), (word(Command.RETRY), texts.REPLAY_FROM_START),
                  (word(Command.HANDOVER), texts.REPLAY_HINT_TAKE), (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
         draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+
+
+def _draw_way(canvas: Canvas, view: View, tape: Tape) -> None:
+    """Draw where it came from in the colour of who flew, and faintly where it goes."""
+    path, hands = tape.path, tape.record.recording.hands
+    at = min(tape.at, len(path) - 1)
+    if at + 4 < len(path):
+        draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35)
+    for start, stop, hand in runs(hands[:at]):
+        if stop - start > 1:
+            stretch = path[start : stop + 1 : 4] if stop - start > 8 else path[start : stop + 1]
+            draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is Hand.HUMAN else NET, 0.6)
+
+
+def _draw_frame(canvas: Canvas, tape: Tape, stage: Stage, step: int) -> None:
+    """Draw a moment for a moving picture: the world, and the figures of the ground line."""
+    flight, env = tape.flight, tape.flight.env
+    while tape.at < step:
+        was_over = flight.over
+        tape.step()
+        stage.follow(np.array([flight.flown_by is Hand.NETWORK]), np.array([flight.over and not was_over]))
+    camera = Camera()
+    view = camera.view(canvas.scale)
+    landscape(canvas.surface.get_size(), True).draw(canvas, camera, 0.0, 1.0)
+    draw_ground(canvas, view, env.ground, 0.0, float(env.pad_shift[0]))
+    _draw_way(canvas, view, tape)
+    stage.draw_lander(canvas, view, flight.poses.at(1.0)[0])
+    stage.draw_dust(canvas, view, 1.0)
+    hud.draw_readouts(canvas, hud.flight_readouts(env))
