@@ -52,6 +52,8 @@ class DigitTrainingScene:
 
     pupil: Pupil
 
+    knobs: Knobs
+
     def __init__(self) -> None:
         self._context: Context | None = None
         self._was_running = self._alive = False

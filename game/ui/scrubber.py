@@ -12,7 +12,7 @@ from game.ui.widgets import OnPress, PointsManager, Widget
 
 
 class Scrubber(Widget):
-    """Lies over the first row of charts. `on_move` gets a place on the axis as a float, or -1 or 1 as an int for a step."""
+    """Lies over the first row of charts. `on_move` gets a place on the axis, a float, or a step, the int -1 or 1."""
 
     def __init__(
         self, manager: PointsManager, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress

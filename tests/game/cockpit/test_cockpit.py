@@ -96,9 +96,7 @@ def play_below(driver: Driver) -> Play:
     return play(driver)
 
 
-def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(
-    open_game: Open, context: Context, monkeypatch
-):
+def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Open, context: Context, monkeypatch):
     driver = fly(open_game, context, assist=0.5)
     start_at(driver, 0, 16, 0, 0, 0, 0)
     driver.frames(6)
