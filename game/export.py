@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SIZE: Final = (640, 360)
 EVERY: Final = 3  # physics steps from frame to frame
 _LINGER: Final = 1500  # milliseconds that the last frame stays
-_COLOURS: Final = 128
+_COLOURS: Final = 255
 
 
 def missing() -> bool:
@@ -53,7 +53,7 @@ class Film:
 
         self._draw(self._canvas, self._steps[len(self._frames)])
         picture = Image.frombytes("RGB", SIZE, pygame.image.tobytes(self._canvas.surface, "RGB"))
-        self._frames.append(picture.quantize(_COLOURS))
+        self._frames.append(picture.quantize(_COLOURS, Image.Quantize.MAXCOVERAGE))
 
     def save(self, path: Path) -> None:
         """Write the GIF whole or not at all. Raises OSError."""
