@@ -57,6 +57,8 @@ def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
             for kind, at in ((pygame.KEYDOWN, frame), (pygame.KEYUP, frame - HELD)):
                 if at in keys:
                     pygame.event.post(pygame.event.Event(kind, key=keys[at], mod=0))
+            if isinstance(scene, Digits):
+                _move_pen(scene, frame)
             app.tick()
         while isinstance(scene, Train) and not _has_learnt(scene):  # it learns by a clock of its own
             app.tick()
