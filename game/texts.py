@@ -752,7 +752,6 @@ QUIZ_OF: Final = "of {count} read"
 QUIZ_OVER: Final = {1: "You read better", 0: "Even", -1: "The network reads better"}
 QUIZ_OVER_LINE: Final = "You read {you} of {asked} strangers' digits; it read {net} of your {drawn}."
 QUIZ_NO_STRANGERS: Final = "No strangers' digits today: {problem}"
-HINT_DONE: Final = "done"
 
 # The cockpit: how the stick is shared
 DIAL_ENDS: Final = ("you", "network")
@@ -767,7 +766,6 @@ OVERRIDE_TURNS: Final = "{engine}, not {other}"
 ENGINE_MAIN: Final = "main"
 ENGINES_STEER: Final = ("", "left", "right")
 INSIGHT_TITLE: Final = "What the network thinks"
-INSIGHT_ASKED: Final = "asked for"
 # What became of the person's action, by ai.copilot.Rule: a title, and why, in two lines
 INSIGHT_WHY: Final = {
     "PILOT": ("Yours is flown", "{asked}: worth {worth} % of the best,", "and {assist} % is good enough."),

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from game.render import VIEW_BOTTOM, WORLD_WIDTH
+from game.render import WORLD_WIDTH
 from game.ui.tokens import DUSK, NIGHT0, NIGHT1, Colour
 from game.world.paint import Picture, bell, clouds, layer, mix, profile
 from game.world.sky import SUN
@@ -174,8 +174,3 @@ def _scatter_stones(picture: Picture, near: Picture, sunward: Picture, glow: Pic
         facing = np.clip(0.42 + 0.55 * x * side - 0.35 * y, 0.05, 1)
         stone = facing[..., None] * (np.array((46, 46, 66), np.float32) + glow[column] * 0.42 * _WARM * 0.5)
         patch += inside[..., None] * (stone - patch)
-
-
-def ground_row(height: int) -> float:
-    """Row of the surface the lander meets, in a view at rest of that height."""
-    return height * (1 - (SURFACE - VIEW_BOTTOM) / _METRES_HIGH)
