@@ -7,18 +7,18 @@ from typing import Any, Final
 
 from ai.config import Config
 from ai.history import Alteration, Checkpoint, History, Point, Validation
-from ai.live import Begun, Change, Insight, Refused, Revert, Save, Saved, Sight, live, turned
+from ai.live import Begun, Insight, Refused, Revert, Save, Saved, Sight, live, turned
 from ai.nn import ModelFormatError
 from game import texts
+from game.learner import EARLIER, Learner
 from game.library import Library, LibraryError
-from game.worker import State, Worker
+from game.worker import Worker
 
 # Decisions of all landers a second: one lasts 1/15 s of their own time. None is as fast as it can.
 PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
-_EARLIER: Final = 3  # runs of this visit that stay to be compared with
 
 
-class Student:
+class Student(Learner):
     """One run after another, each in a child process of its own; `poll` once a frame.
 
     A run keeps itself in the library under no name, until `save` gives it one.
@@ -30,7 +30,10 @@ class Student:
 
     """
 
+    grace = 3.0  # for it keeps itself at the end, which takes longer on a busy machine
+
     def __init__(self, library: Library) -> None:
+        super().__init__()
         self.library = library
         self.config, self.seed = Config(), 0
         self.history = History()
@@ -40,22 +43,6 @@ class Student:
         self.runs = 0
         self.begun = False  # whether a run has said with what it was begun, since this was last set to False
         self.pace = len(PACES) - 1
-        self._worker: Worker | None = None
-
-    @property
-    def state(self) -> State | None:
-        """How the run stands; None before the first."""
-        return self._worker.state if self._worker else None
-
-    @property
-    def alive(self) -> bool:
-        """Whether there is a run to pause, to step and to change."""
-        return self.state in (State.STARTING, State.RUNNING, State.PAUSED)
-
-    @property
-    def problem(self) -> str:
-        """Why the run failed, in words; empty if it did not."""
-        return self._worker.problem if self._worker and self.state is State.FAILED else ""
 
     @property
     def kept(self) -> bool:
@@ -67,7 +54,7 @@ class Student:
         self.close()
         if len(self.history):
             self.earlier.insert(0, (texts.TRAIN_RUN.format(number=self.runs), self.history))
-            del self.earlier[_EARLIER:]
+            del self.earlier[EARLIER:]
         note = ""
         self.history = History()
         try:
@@ -89,27 +76,6 @@ class Student:
         self.pace = index
         if self._worker:
             self._worker.set_pace(PACES[index])
-
-    def pause(self) -> None:
-        """Let the landers hang."""
-        if self._worker and self.alive:
-            self._worker.pause()
-
-    def resume(self) -> None:
-        """Let them fly on."""
-        if self._worker and self.alive:
-            self._worker.resume()
-
-    def step(self) -> None:
-        """Take one decision of all landers, and stand still after it."""
-        if self._worker and self.alive:
-            self._worker.pause()
-            self._worker.step()
-
-    def change(self, name: str, value: Any) -> None:
-        """Turn a live knob."""
-        if self._worker and self.alive:
-            self._worker.send(Change(name, value))
 
     def revert(self, checkpoint: Checkpoint) -> None:
         """Let the network be what it was."""
@@ -159,13 +125,8 @@ class Student:
             return str(error)
         if not len(history):
             return texts.TRAIN_NO_CURVES.format(name=name)
-        self.earlier = [(name, history), *(run for run in self.earlier if run[0] != name)][:_EARLIER]
+        self.earlier = [(name, history), *(run for run in self.earlier if run[0] != name)][:EARLIER]
         return ""
-
-    def close(self) -> None:
-        """End the run, and its process for certain; it has the time to keep itself even on a busy machine."""
-        if self._worker:
-            self._worker.close(grace=3.0)
 
 
 def _turned(config: Config, name: str, value: Any) -> Config:

@@ -8,21 +8,21 @@ import unicodedata
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from ai.digit_config import DigitConfig
 from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, Kept, Score, live_digits
 from ai.digit_runs import LAST_FILE, TRAINING_FILE
-from ai.messages import Change, Refused, Save
+from ai.messages import Refused, Save
 from ai.nn.folder import CONFIG, recover_folder
 from game import texts
 from game.digits import PATIENCE
+from game.learner import EARLIER, Learner
 from game.library import name_problem
-from game.worker import State, Worker
+from game.worker import Worker
 
 UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
 _BEFORE: Final = ".before"  # and the one that was discarded last, in case somebody wants it back
-_EARLIER: Final = 3  # runs of this visit that stay to be compared with
 _MOST_POINTS: Final = 4000
 
 
@@ -48,7 +48,7 @@ class Curves:
         return self.points[-1].seconds if self.points else 0.0
 
 
-class Pupil:
+class Pupil(Learner):
     """One run after another, each in a child process of its own; `poll` once a frame.
 
     A run keeps itself in the player's folder under no name, until `save` gives it one.
@@ -63,7 +63,10 @@ class Pupil:
 
     """
 
+    grace = 1.0
+
     def __init__(self, folder: Path) -> None:
+        super().__init__()
         self._folder = folder
         self.config, self.seed, self.steps = DigitConfig(), 0, 0
         self.begun = False
@@ -74,7 +77,6 @@ class Pupil:
         self.runs = 0
         self.stopping = False
         self._saving: list[Path] = []  # where it was asked to save itself, and has not answered
-        self._worker: Worker | None = None
 
     @property
     def unsaved(self) -> Path:
@@ -118,28 +120,13 @@ class Pupil:
             free = texts.PUPIL_NUMBERED.format(name=name, number=number)
         return free
 
-    @property
-    def state(self) -> State | None:
-        """How the run stands; None before the first."""
-        return self._worker.state if self._worker else None
-
-    @property
-    def alive(self) -> bool:
-        """Whether there is a run to pause, to stop and to change."""
-        return self.state in (State.STARTING, State.RUNNING, State.PAUSED)
-
-    @property
-    def problem(self) -> str:
-        """Why the run failed, in words; empty if it did not."""
-        return self._worker.problem if self._worker and self.state is State.FAILED else ""
-
     def begin(self, config: DigitConfig, seed: int, *, resume: bool = False) -> str:
         """Start a run, or go on with the unfinished one. Returns what the player should know, if anything."""
         self.close()
         note = "" if resume else self._put_aside()
         if self.curves.points:
             self.earlier.insert(0, (texts.TRAIN_RUN.format(number=self.runs), self.curves))
-            del self.earlier[_EARLIER:]
+            del self.earlier[EARLIER:]
         self.curves, self.confusion, self.test = Curves(), None, None
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
@@ -147,22 +134,6 @@ class Pupil:
         self._worker = Worker(live_digits, config, seed, keep=self.unsaved, resume=self.unsaved if resume else None)
         self._worker.patience = PATIENCE
         return note
-
-    def pause(self) -> None:
-        """Let it rest."""
-        if self._worker and self.alive:
-            self._worker.pause()
-
-    def resume(self) -> None:
-        """Let it learn on."""
-        if self._worker and self.alive:
-            self._worker.resume()
-
-    def step(self) -> None:
-        """Learn from one batch, and rest after it."""
-        if self._worker and self.alive:
-            self._worker.pause()
-            self._worker.step()
 
     def stop(self) -> None:
         """End the run; what it has learnt is kept, and measured. Asked again, it ends without being measured."""
@@ -172,11 +143,6 @@ class Pupil:
             self._worker.resume()
         elif self._worker:
             self._worker.stop()
-
-    def change(self, name: str, value: Any) -> None:
-        """Turn a live knob."""
-        if self._worker and self.alive:
-            self._worker.send(Change(name, value))
 
     def save(self, name: str) -> str:
         """Give the run a name; returns why that can't be, and later news come from `poll`."""
@@ -226,11 +192,6 @@ class Pupil:
                 folder = self._saving.pop()
                 notes.append(self._name(folder) or texts.PUPIL_SAVED.format(name=folder.name))
         return notes
-
-    def close(self) -> None:
-        """End the run, and its process for certain."""
-        if self._worker:
-            self._worker.close(grace=1.0)
 
     def _put_aside(self) -> str:
         """Move a nameless run out of the way of a new one; it can be had back by hand until the next."""
