@@ -183,6 +183,15 @@ def field_problem(item: Field[Any], value: Any) -> str | None:
     return None
 
 
+def nearest_preset(given: Mapping[str, Any], presets: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Name the preset with the fewest settings different, and those settings; all as `to_json` gives them."""
+    changes = {
+        name: {key: value for key, value in given.items() if value != preset[key]} for name, preset in presets.items()
+    }
+    nearest = min(changes, key=lambda name: len(changes[name]))
+    return {"preset": nearest, "changes": changes[nearest]}
+
+
 def _pays(weights: Any) -> bool:
     """Whether these are weights of a reward that can be reckoned with."""
     return isinstance(weights, RewardWeights) and all(

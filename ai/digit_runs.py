@@ -10,6 +10,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from ai.config import nearest_preset
 from ai.digit_config import DIGIT_PRESETS, DigitConfig
 from ai.digit_training import DigitTraining, accuracy
 from ai.digits import DigitClassifier
@@ -28,7 +29,7 @@ def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = Fa
     """
     best = training.best_classifier()
     described = {
-        **_nearest_preset(training.config),
+        **nearest_preset(training.config.to_json(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}),
         "seed": training.seed, "step": training.step, "epochs": training.step // training.steps_per_epoch,
         "seconds": round(training.seconds, 1), "held_out": training.best, "history": training.history,
     }  # fmt: skip
@@ -42,17 +43,6 @@ def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = Fa
             values = training.classifier.network.values
             np.savez(temporary / LAST_FILE, allow_pickle=False, values=values, average=training.average, **state)
     return described
-
-
-def _nearest_preset(config: DigitConfig) -> dict[str, Any]:
-    """Name the preset with the fewest settings different, and those settings."""
-    given = config.to_json()
-    changes = {
-        name: {key: value for key, value in given.items() if value != preset.to_json()[key]}
-        for name, preset in DIGIT_PRESETS.items()
-    }
-    nearest = min(changes, key=lambda name: len(changes[name]))
-    return {"preset": nearest, "changes": changes[nearest]}
 
 
 def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent import DeepQAgent
-from ai.config import LANDER, PRESETS, Config
+from ai.config import LANDER, PRESETS, nearest_preset
 from ai.gym_task import gym_config
 from ai.history import History
 from ai.nn import ModelFormatError, atomic_folder
@@ -71,10 +71,11 @@ class Snapshot:
 
 def snapshot(training: Training, history: History | None = None) -> Snapshot:
     """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best."""
-    agent = training.agent
+    agent, config = training.agent, training.config
+    presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
     described = {
-        "env": training.config.env,
-        **_nearest_preset(training.config),
+        "env": config.env,
+        **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 1), "best": training.best.to_json() if training.best else None,
@@ -97,18 +98,6 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
         score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
         kept.described["evaluation"] = score.to_json()
     kept.save(folder)
-
-
-def _nearest_preset(config: Config) -> dict[str, Any]:
-    """Name the preset with the fewest settings different, and those settings."""
-    given = config.to_json()
-    presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
-    changes = {
-        name: {key: value for key, value in given.items() if value != preset.to_json()[key]}
-        for name, preset in presets.items()
-    }
-    nearest = min(changes, key=lambda name: len(changes[name]))
-    return {"preset": nearest, "changes": changes[nearest]}
 
 
 def resume_run(folder: str | Path) -> Training:
