@@ -23,8 +23,8 @@ import numpy as np
 from ai.config import PRESETS, Config
 from ai.demonstrations import Demonstration, demonstrate, taught, teach
 from ai.pilots import ScriptedPilot
-from ai.training import TEST_SEED, Training, evaluate
-from benchmarks.learning import TEST_FLIGHTS, Checkpoint, followed, validated
+from ai.training import Training
+from benchmarks.learning import Checkpoint, race
 
 SHARE = 0.95
 PAUSE = {"modern": 1.0, "classic": 15.0}  # seconds between two looks at the network
@@ -44,18 +44,10 @@ def student(config: Config, seed: int, lessons: list[Demonstration], pause: floa
         yield spent, training.agent.decisions, training.agent, training.best_agent
 
 
-def race(training: Iterator[Checkpoint], limit: float) -> tuple[float, float, float]:
+def reached(training: Iterator[Checkpoint], limit: float) -> tuple[float, float, float]:
     """Seconds and decisions until the network kept lands the share, infinite if not within the limit; and its share."""
-    landed, seen = 0.0, None
-    for seconds, decisions, pilot, _ in followed(training, validated):
-        if pilot is not seen:
-            seen = pilot
-            landed = evaluate(pilot, TEST_FLIGHTS, TEST_SEED).success
-        if landed >= SHARE:
-            return seconds, float(decisions), landed
-        if seconds >= limit:
-            break
-    return np.inf, np.inf, landed
+    (kept,), landed = race(training, limit, (SHARE,))
+    return (kept.seconds, float(kept.decisions), landed) if kept else (np.inf, np.inf, landed)
 
 
 def main() -> None:
@@ -78,7 +70,7 @@ def main() -> None:
         if config.success_pass:
             del ways["second pass"]
         for name, (settings, given) in ways.items():
-            runs = [race(student(settings, seed, given, PAUSE[preset]), limit) for seed in range(arguments.seeds)]
+            runs = [reached(student(settings, seed, given, PAUSE[preset]), limit) for seed in range(arguments.seeds)]
             seconds, decisions, shares = zip(*runs, strict=True)
             each = " ".join("–" if np.isinf(second) else f"{second:.0f}" for second in seconds)
             middle, flown = statistics.median(seconds), statistics.median(decisions)

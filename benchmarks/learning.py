@@ -80,16 +80,18 @@ def validated(pilot: Pilot) -> Evaluation:
     return evaluate(pilot, VALIDATION_FLIGHTS, VALIDATION_SEED)
 
 
-def race(training: Iterator[Checkpoint], limit: float) -> tuple[list[Kept | None], float]:
+def race(
+    training: Iterator[Checkpoint], limit: float, shares: tuple[float, ...] = SHARES
+) -> tuple[list[Kept | None], float]:
     """The first network kept that lands each share, None for those not reached; and the last share seen."""
-    reached: list[Kept | None] = [None] * len(SHARES)
+    reached: list[Kept | None] = [None] * len(shares)
     last, seen = 0.0, None
     for seconds, decisions, pilot, _ in followed(training, validated):
         if pilot is not seen:
             seen = pilot
             kept = Kept(seconds, decisions, evaluate(pilot, TEST_FLIGHTS, TEST_SEED))
             last = kept.test.success
-            reached = [old or (kept if last >= share else None) for old, share in zip(reached, SHARES, strict=True)]
+            reached = [old or (kept if last >= share else None) for old, share in zip(reached, shares, strict=True)]
         if seconds >= limit or all(reached):
             break
     return reached, last

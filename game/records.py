@@ -191,6 +191,10 @@ def totals(entries: Sequence[Entry]) -> Totals:
 
 def skill(entries: Iterable[Entry], window: int = _WINDOW) -> list[float]:
     """Share of landings, 0 to 1, among the last `window` flights by the person alone, after each of them."""
-    landed = [entry.landed for entry in entries if entry.alone]
-    starts = [max(0, stop - window) for stop in range(1, len(landed) + 1)]
-    return [sum(landed[start:stop]) / (stop - start) for stop, start in enumerate(starts, 1)]
+    return shares([entry.landed for entry in entries if entry.alone], window)
+
+
+def shares(landed: Sequence[bool], window: int) -> list[float]:
+    """Share of landings among the last `window` of some flights, after each of them."""
+    recent = (landed[max(0, last - window) : last] for last in range(1, len(landed) + 1))
+    return [sum(few) / len(few) for few in recent]

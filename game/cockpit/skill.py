@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from game import texts
+from game.records import shares
 from game.settings import write_atomically
 
 FILE_NAME: Final = "skill.json"
@@ -83,9 +84,7 @@ class Skill:
     @property
     def curve(self) -> list[float]:
         """Share of landings among the last ten flights without help, after each of them."""
-        own = self.own
-        recent = (own[max(0, last - RECENT) : last] for last in range(1, len(own) + 1))
-        return [sum(few) / len(few) for few in recent]
+        return shares(self.own, RECENT)
 
     def _set_aside(self) -> None:
         self.problem = texts.SKILL_DAMAGED.format(name=DAMAGED_NAME)

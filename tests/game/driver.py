@@ -1,5 +1,7 @@
 """Plays the game in a test: real pygame events in, frames on."""
 
+import time
+from collections.abc import Callable
 from typing import Any
 
 import pygame
@@ -24,6 +26,14 @@ class Driver:
         for _ in range(number):
             goes_on = self.app.tick()
         return goes_on
+
+    def wait(self, until: Callable[[], object], seconds: float = 40.0) -> None:
+        """Play frames until something holds; the limit is only there so that a failure ends."""
+        end = time.monotonic() + seconds
+        while not until():
+            assert time.monotonic() < end, "it never happened"
+            self.frames(1)
+            time.sleep(0.005)
 
     def post(self, event_type: int, **values: Any) -> bool:
         pygame.event.post(pygame.event.Event(event_type, values))

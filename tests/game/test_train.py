@@ -32,15 +32,6 @@ from tests.game.driver import Driver
 SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1)
 
 
-def wait(driver: Driver, until: Callable[[], object], seconds: float = 40.0) -> None:
-    """Play frames until something holds; the limit is only there so that a failure ends."""
-    end = time.monotonic() + seconds
-    while not until():
-        assert time.monotonic() < end, "it never happened"
-        driver.frames(1)
-        time.sleep(0.005)
-
-
 @pytest.fixture
 def train(open_game: Callable[..., Driver]) -> Driver:
     driver = open_game(Train())
@@ -51,7 +42,7 @@ def train(open_game: Callable[..., Driver]) -> Driver:
 
 def start(driver: Driver) -> None:
     driver.key(pygame.K_RETURN)
-    wait(driver, lambda: len(driver.top.student.history) >= 2)
+    driver.wait(lambda: len(driver.top.student.history) >= 2)
 
 
 def test_start_pause_step_and_go_on(train: Driver) -> None:
@@ -60,7 +51,7 @@ def test_start_pause_step_and_go_on(train: Driver) -> None:
     assert scene.student.state is State.RUNNING
     assert len(scene.swarm.sight.outcome) == 4
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.student.state is State.PAUSED)
+    train.wait(lambda: scene.student.state is State.PAUSED)
     train.frames(20)
     time.sleep(0.2)
     train.frames(5)
@@ -69,16 +60,16 @@ def test_start_pause_step_and_go_on(train: Driver) -> None:
     train.frames(5)
     assert scene.student.sight.decisions == stood
     train.key(pygame.K_PERIOD)
-    wait(train, lambda: scene.student.sight.decisions > stood)
+    train.wait(lambda: scene.student.sight.decisions > stood)
     assert scene.student.sight.decisions == stood + 4
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.student.sight.decisions > stood + 8)
+    train.wait(lambda: scene.student.sight.decisions > stood + 8)
 
 
 def test_it_learns_as_it_would_without_a_window(train: Driver) -> None:
     start(train)
     scene = train.top
-    wait(train, lambda: len(scene.student.history.checkpoints) >= 2)
+    train.wait(lambda: len(scene.student.history.checkpoints) >= 2)
     checkpoint = scene.student.history.checkpoints[1]
     training = Training(SMALL, 3)
     while training.agent.decisions < checkpoint.decisions:
@@ -95,7 +86,7 @@ def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
     train.key(pygame.K_RETURN)
     assert train.top is scene
     library = Library(tmp_path / "user")
-    wait(train, library.runs)
+    train.wait(library.runs)
     (run,) = library.runs()
     assert not run.problem
     assert run.seed == 3
@@ -110,7 +101,7 @@ def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game:
     assert isinstance(driver.top, Asking)
     driver.key(pygame.K_RETURN)
     scene = driver.top
-    wait(driver, lambda: scene.student.begun or scene.student.sight)
+    driver.wait(lambda: scene.student.begun or scene.student.sight)
     assert scene.student.sight.decisions >= decisions
     assert scene.student.config.num_envs == SMALL.num_envs
 
@@ -133,14 +124,14 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     start(train)
     scene = train.top
     scene._save_as("mine")
-    wait(train, scene.student.library.runs)
+    train.wait(scene.student.library.runs)
     train.app.scenes.apply(scene._open_runs())
     train.frames(2)
     verbs = train.top._verbs
     train.top._form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    wait(train, lambda: scene.student.sight is not None)
+    train.wait(lambda: scene.student.sight is not None)
     assert scene.student.state is State.RUNNING
 
 
@@ -155,14 +146,14 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     train.post(pygame.TEXTINPUT, text="M2")
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    wait(train, scene.student.library.runs)
+    train.wait(scene.student.library.runs)
 
 
 def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
     start(train)
     scene = train.top
     scene.knobs.turn("discount", 0.9)
-    wait(train, lambda: scene.student.config.discount == 0.9)
+    train.wait(lambda: scene.student.config.discount == 0.9)
     assert scene.student.history.alterations[-1].name == "discount"
     scene.knobs.turn("n_step", 3)
     assert scene.knobs.waiting == ["n_step"]
@@ -176,17 +167,17 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     train.key(pygame.K_LEFT)
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, Play)
-    wait(train, lambda: scene.student.state is State.PAUSED)
+    train.wait(lambda: scene.student.state is State.PAUSED)
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
-    wait(train, lambda: scene.student.state is State.RUNNING)
+    train.wait(lambda: scene.student.state is State.RUNNING)
 
 
 def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
     start(train)
     scene = train.top
-    wait(train, lambda: scene.inside._network is not None)
+    train.wait(lambda: scene.inside._network is not None)
     train.click((1060, 530))
     assert scene.inside.large
     train.click((150, 102))
@@ -239,9 +230,9 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
 
     scene = train.top
     press("confirm")
-    wait(train, lambda: len(scene.student.history) >= 2)
+    train.wait(lambda: len(scene.student.history) >= 2)
     press("confirm")
-    wait(train, lambda: scene.student.state is State.PAUSED)
+    train.wait(lambda: scene.student.state is State.PAUSED)
     press("right")
     assert scene._form.focused is scene._step_word
     scene._form.focus(scene._save_word)
@@ -249,7 +240,7 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     assert isinstance(train.top, Naming)
     press("confirm")
     assert train.top is scene
-    wait(train, scene.student.library.runs)
+    train.wait(scene.student.library.runs)
     press("back")
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
@@ -257,10 +248,10 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
 def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp_path: Path) -> None:
     start(train)
     scene = train.top
-    wait(train, lambda: scene.student.library.unsaved.is_dir() or scene.student.state is State.FAILED, 60)
+    train.wait(lambda: scene.student.library.unsaved.is_dir() or scene.student.state is State.FAILED, 60)
     for child in active_children():
         child.kill()
-    wait(train, lambda: scene.student.state is State.FAILED)
+    train.wait(lambda: scene.student.state is State.FAILED)
     assert scene.student.problem
     train.frames(20)
     scene._save_as("saved all the same")
@@ -272,7 +263,7 @@ def test_numbers_that_run_away_are_told(train: Driver) -> None:
     wild = SMALL.changed(cost="mse", reward_scale=1.0, weights=RewardWeights(terminal=1e30))
     train.top.knobs.set_config(wild, 0)
     train.key(pygame.K_RETURN)
-    wait(train, lambda: train.top.student.state is State.FAILED, 60)
+    train.wait(lambda: train.top.student.state is State.FAILED, 60)
     assert "learning step" in train.top.student.problem
     train.frames(20)
     assert isinstance(train.top, Train)
@@ -286,7 +277,7 @@ def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(train: Drive
         time.sleep(0.05 * number)
         for child in active_children():
             child.kill()
-        wait(train, lambda: scene.student.state is State.FAILED)
+        train.wait(lambda: scene.student.state is State.FAILED)
         assert train.top is scene
     for run in scene.student.library.runs():
         assert not run.problem
@@ -305,11 +296,11 @@ def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> Non
         scene.knobs.set_config(SMALL, 0)
         game.key(pygame.K_RETURN)
         if visit % 4 == 0:  # the others leave while it starts
-            wait(game, lambda scene=scene: scene.student.sight)
+            game.wait(lambda scene=scene: scene.student.sight)
         game.key(pygame.K_ESCAPE)
         assert not active_children()
     del scene
-    wait(game, lambda: threading.active_count() <= threads)
+    game.wait(lambda: threading.active_count() <= threads)
     gc.collect()
     assert not [each for each in gc.get_objects() if isinstance(each, Train | Student | NetView)]
 

@@ -1,6 +1,5 @@
 """Train it here: the screen, through real pygame events and with a real worker beside it."""
 
-import time
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -28,13 +27,8 @@ from tests.game.driver import Driver
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
 
 
-def wait(driver: Driver, until: Callable[[], object], seconds: float = 90.0) -> None:
-    """Play frames until something holds; the limit is only there so that a failure ends."""
-    end = time.monotonic() + seconds
-    while not until():
-        assert time.monotonic() < end, "it never happened"
-        driver.frames(1)
-        time.sleep(0.005)
+def wait(driver: Driver, until: Callable[[], object]) -> None:
+    driver.wait(until, seconds=90.0)
 
 
 @pytest.fixture
