@@ -266,6 +266,18 @@ class LanderEnv:
             components=components,
         )
 
+    def glide(self, actions: Ints) -> Floats:
+        """Fly one decision in every slot as if there were nothing to touch; return what is sensed, (n, 9).
+
+        For looking ahead: the same as `step`, bit for bit, as long as nothing touches, but nothing is judged or
+        paid, and `actions` (n,) are not looked over.
+        """
+        self.actions = actions
+        flying = self.outcome == Outcome.FLYING
+        for _ in range(self.frame_skip):
+            self._move(flying, touching=False)
+        return self.observe()
+
     def observe(self, pad: Any = None) -> Floats:
         """What every lander senses now of its target, or of another `pad`, one number or (n,): (n, 9)."""
         pad = self.target if pad is None else np.asarray(pad)
@@ -337,6 +349,11 @@ class LanderEnv:
 
     def _fly(self, flying: Bools) -> None:
         """One physics step of the slots that fly: push, move, judge."""
+        self._move(flying)
+        self._judge(flying)
+
+    def _move(self, flying: Bools, touching: bool = True) -> None:
+        """Push and move, without `touching` through whatever is in the way."""
         params, state, body = self.params, self.world.state, self.lander.index
         actions = self.fired
         main, steer = actions >= 3, actions % 3
@@ -350,11 +367,10 @@ class LanderEnv:
             state.force[:, body, 0] += self.conditions.push(self.time)
         if self.conditions.moves:
             self._move_pads()
-        self.world.step()
+        self.world.step(touching)
         self.steps += flying
         self.main_steps += flying & main
         self.side_steps += flying & (steer > 0)
-        self._judge(flying)
 
     def _judge(self, flying: Bools) -> None:
         """Decide which flights have ended, and how."""

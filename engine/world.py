@@ -119,9 +119,12 @@ class World:
         self._detector = self._moving = None
         return self.bodies[-1]
 
-    def step(self) -> None:
-        """Advance every world by exactly 1/60 s."""
-        contacts = self.detector.find(self.state)
+    def step(self, touching: bool = True) -> None:
+        """Advance every world by exactly 1/60 s; without `touching`, nothing is looked for that is in the way.
+
+        That is cheaper, and the same, bit for bit, as long as nothing is.
+        """
+        contacts = self.detector.find(self.state) if touching else None
         solver = Solver(self.state, self.params, contacts) if contacts else None
         integrate_velocity(self.state, self.params, self.moving, self.gravity, DT)
         if solver:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
@@ -12,11 +11,9 @@ import numpy as np
 
 from ai.env import Bools, Doubles, Floats, Ints
 from ai.ground import Ground, hilly
-from ai.lander import PARAMS, LanderEnv, Outcome
+from ai.lander import LanderEnv, Outcome
 from ai.missions import MISSIONS
 from ai.pilots import COAST
-from engine.integrate import integrate_position, integrate_velocity
-from engine.world import DT
 from game.cockpit.hands import OWN, Hands
 from game.networks import Flyer, Thinker
 
@@ -27,7 +24,6 @@ if TYPE_CHECKING:
 DECISION_STEPS: Final = 4
 # Steps that an ended flight of a swarm stays to be seen.
 _REST_STEPS: Final = 75
-_PATH_STRIDE: Final = 4
 _PROFILE_REACH: Final = 30.0  # metres to both sides of which the ground's height is kept
 _PROFILE_STEP: Final = 0.02
 
@@ -290,38 +286,6 @@ class Swarm:
         self.lost += int(ended.sum()) - landed
         self.poses.take(self.fresh)
         return ended
-
-
-def coast_path(env: LanderEnv) -> Doubles:
-    """Where a lander goes if nobody touches anything: positions (k, 2), every 1/15 s, down to the ground."""
-    return down_to_ground(env.ground, list(drift(env)))
-
-
-def drift(env: LanderEnv, seconds: float = 9.0) -> Iterator[Doubles]:
-    """Yield where a lander will be from now on if nobody touches anything, (2,) every 1/15 s, as far as the plain."""
-    world, body = env.world, env.lander.index
-    state = world.state
-    state = replace(
-        state,
-        **{name: getattr(state, name)[:1].copy() for name in ("pose", "velocity", "active", "cos", "sin")},
-        force=np.zeros_like(state.force[:1]),
-    )
-    yield state.pose[0, body, :2].copy()
-    lowest = env.ground.base + PARAMS.stand
-    for _ in range(round(seconds / (_PATH_STRIDE * DT))):
-        integrate_velocity(state, world.params, world.moving, world.gravity, _PATH_STRIDE * DT)
-        integrate_position(state, world.moving, _PATH_STRIDE * DT)
-        yield state.pose[0, body, :2].copy()
-        x, y = state.pose[0, body, :2].tolist()
-        if y < lowest or abs(x) > env.limits.half_width:
-            return
-
-
-def down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
-    """Return a path (k, 2) as far as the first place at which feet would be in the ground."""
-    way = np.array(places)
-    low = np.flatnonzero(way[1:, 1] < ground.height(way[1:, 0]) + PARAMS.stand)
-    return way[: low[0] + 2] if len(low) else way
 
 
 def surface_height(env: LanderEnv, x: float) -> float:

@@ -152,6 +152,19 @@ def test_frame_skip_only_holds_the_action():
         assert result.reward[0] == pytest.approx(sum(rewards), abs=1e-4)
 
 
+def test_gliding_is_flying_until_something_touches_and_goes_through_it_after():
+    flown, glided = (placed((3, 12, 1, -1, 0.2, 0.1), (0, 5, 0, -2, 0, 0), frame_skip=4) for _ in range(2))
+    for action in (0, 3, 4, 5, 2):
+        actions = np.array([action, 0])
+        assert np.array_equal(flown.step(actions).observation[0], glided.glide(actions)[0])
+    for _ in range(20):
+        flown.step(np.array([0, 0]))
+        glided.glide(np.array([0, 0]))
+    assert flown.outcome[1] == Outcome.CRASHED
+    assert glided.outcome[1] == Outcome.FLYING
+    assert glided.position[1, 1] < 0 < flown.position[1, 1]
+
+
 def test_ended_slots_stay_as_they_ended_until_reset():
     env = placed((0, STAND + 0.02, 0, -3, 0, 0), (0, 15, 0, 0, 0, 0))
     ended = fly(env, steps=10)

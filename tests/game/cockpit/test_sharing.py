@@ -4,7 +4,8 @@ import pytest
 from ai.copilot import Mode
 from ai.lander import Outcome
 from game.cockpit.hands import HANDS, OWN, Hands
-from game.flight import DECISION_STEPS, Flight, Hand, coast_path, surface_height
+from game.flight import DECISION_STEPS, Flight, Hand, surface_height
+from game.forecast import coast_path
 
 COAST, LEFT, RIGHT, MAIN = range(4)
 
@@ -168,6 +169,7 @@ def test_the_path_ahead_ends_on_the_hills_and_heights_are_the_grounds():
     path = coast_path(flight.env)
     ground = flight.env.ground
     assert (path[:-1, 1] >= ground.height(path[:-1, 0]) + 0.9).all()
+    assert abs(path[-1, 1] - ground.height(path[-1, 0]) - 0.96) < 0.25
     for x in np.linspace(-18.0, 18.0, 200):
         near = ground.height(np.array([x - 0.02, x, x + 0.02]))
         assert near.min() - 0.02 <= surface_height(flight.env, float(x)) <= near.max() + 0.02
