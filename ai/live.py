@@ -14,55 +14,47 @@ import numpy as np
 
 from ai.agent import DeepQAgent
 from ai.config import Config
-from ai.demonstrations import read, teach
+from ai.demonstrations import Demonstration, read, taught, teach
 from ai.env import Ints, StepResult
 from ai.history import PARTS, Alteration, Checkpoint, Entry, History, Point, Validation
 from ai.lander import NUM_ACTIONS, NUM_FEATURES, LanderEnv
 from ai.lander_task import Evaluation, trial
-from ai.messages import Begun, Change, Command, Insight, Message, Refused, Revert, Save, Saved, Sight
+from ai.messages import Begun, Change, Command, Insight, Message, Refused, Revert, Save, Saved, Sight, Teach
 from ai.runs import resume_run, snapshot
 from ai.scaling import RunningScale
 from ai.task import VALIDATION_SEED
 from ai.training import Progress, Training
 
 __all__ = [
-    "CAREFUL", "REVERTED", "Begun", "Change", "Insight", "Refused", "Revert", "Save", "Saved", "Sight", "agent_of",
-    "live", "turned",
+    "CAREFUL", "REVERTED", "TAUGHT", "Begun", "Change", "Insight", "Refused", "Revert", "Save", "Saved", "Sight",
+    "Teach", "agent_of", "live", "turned",
 ]  # fmt: skip
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
 INSIGHT_SECONDS: Final = 0.25
 KEEP_SECONDS: Final = 10.0
 REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
+TAUGHT: Final = "demonstrations"  # the name of the alteration that gives it some to learn from
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
 
 
 def live(
-    config: Config,
-    seed: int = 0,
-    *,
-    keep: Path | None = None,
-    resume: Path | None = None,
-    demonstrations: Path | None = None,
+    config: Config, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None
 ) -> Generator[tuple[Message, ...], Command | None, None]:
     """Train landers without end; every turn is one decision of all landers, and yields what there is to tell.
 
     The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
     without a decision, and yields the answer. The run saves itself to `keep` now and then and when it is closed.
-    With `resume`, it goes on from a saved run, with the settings, seed and history of that. With `demonstrations`,
-    a file of `ai.demonstrations`, the agent remembers those as well from the start.
+    With `resume`, it goes on from a saved run, with the settings, seed and history of that.
 
-    Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's and
-    for a damaged file of demonstrations, and FloatingPointError, which names the learning step and the likely cause,
-    when the numbers run away.
+    Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's, and
+    FloatingPointError, which names the learning step and the likely cause, when the numbers run away.
     """
-    lessons = [] if demonstrations is None else read(demonstrations)
     if resume is None:
         run = _LiveRun(Training(config, seed), History(), keep)
     else:
         run = _LiveRun(resume_run(resume), History.read(resume), keep)
-    teach(run.training.agent, lessons)
     try:
         told = run.begin()
         while True:
@@ -138,6 +130,7 @@ class _LiveRun:
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._trouble = ""
+        self._lessons: set[Demonstration] = set()
         self._writer = ThreadPoolExecutor(max_workers=1)
         self._writing: Future[None] | None = None
         self._told: list[Message] = []
@@ -184,6 +177,8 @@ class _LiveRun:
                 self._change(command)
             case Revert():
                 self._revert(command)
+            case Teach():
+                self._teach(command)
             case Save(folder):
                 self._finish_trial()
                 self._told.append(Saved(folder, self._save(folder)))
@@ -269,8 +264,27 @@ class _LiveRun:
         except ValueError as error:
             self._told.append(Refused(command, str(error)))
             return
-        decisions, read = self.training.agent.decisions, attrgetter(command.name)
-        self._note(Alteration(decisions, command.name, read(before), read(self.training.config)))
+        value = attrgetter(command.name)
+        self._alter(command.name, value(before), value(self.training.config))
+
+    def _teach(self, command: Teach) -> None:
+        agent = self.training.agent
+        try:
+            new = [lesson for lesson in read(command.path) if lesson not in self._lessons]
+        except (OSError, ValueError) as error:
+            self._told.append(Refused(command, str(error)))
+            return
+        self._lessons.update(new)
+        used = teach(agent, new)
+        if not used:
+            self._told.append(Refused(command, "there are no landings that this run has not learnt from already"))
+            return
+        if not self.training.config.success_pass:
+            self._change(Change("success_pass", taught(self.training.config).success_pass))
+        self._alter(TAUGHT, None, used)
+
+    def _alter(self, name: str, before: Any, after: Any) -> None:
+        self._note(Alteration(self.training.agent.decisions, name, before, after))
 
     def _revert(self, command: Revert) -> None:
         checkpoint = self.history.checkpoint_at(command.decisions)
@@ -278,7 +292,7 @@ class _LiveRun:
             self._told.append(Refused(command, "this run has no checkpoints yet"))
             return
         self._go_back(checkpoint)
-        self._note(Alteration(self.training.agent.decisions, REVERTED, None, checkpoint.decisions))
+        self._alter(REVERTED, None, checkpoint.decisions)
         self._told.append(self._insight())
 
     def _go_back(self, checkpoint: Checkpoint) -> None:

@@ -72,6 +72,13 @@ class Revert:
 
 
 @dataclass(frozen=True)
+class Teach:
+    """Learn from the demonstrations in a file as well, as far as this run has not done so yet."""
+
+    path: Path
+
+
+@dataclass(frozen=True)
 class Saved:
     """What became of a save; no problem means that it is on the disk, whole."""
 
@@ -83,9 +90,9 @@ class Saved:
 class Refused:
     """A command that could not be carried out, and why. Nothing has changed."""
 
-    command: Change | Revert
+    command: Change | Revert | Teach
     problem: str
 
 
 Message = Begun | Sight | Insight | Point | Checkpoint | Validation | Alteration | Saved | Refused
-Command = Change | Save | Revert
+Command = Change | Save | Revert | Teach

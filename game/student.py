@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from ai.config import Config
 from ai.history import Alteration, Checkpoint, History, Point, Validation
-from ai.live import Begun, Insight, Refused, Revert, Save, Saved, Sight, live, turned
+from ai.live import TAUGHT, Begun, Insight, Refused, Revert, Save, Saved, Sight, Teach, live, turned
 from ai.nn import ModelFormatError
 from game import texts
 from game.learner import EARLIER, Learner
@@ -71,6 +71,16 @@ class Student(Learner):
         self._worker.set_pace(PACES[self.pace])
         return note
 
+    @property
+    def lessons(self) -> int:
+        """Of how many demonstrations this run has learnt."""
+        return sum(each.after for each in self.history.alterations if each.name == TAUGHT)
+
+    def teach(self, demonstrations: Path) -> None:
+        """Let the run learn from a file of demonstrations as well; that is told by `poll`."""
+        if self._worker and self.alive:
+            self._worker.send(Teach(demonstrations))
+
     def set_pace(self, index: int) -> None:
         """Choose one of the paces."""
         self.pace = index
@@ -105,6 +115,8 @@ class Student(Learner):
                 case Alteration(_, name, _, after):
                     self.history.append(message)
                     self.config = _turned(self.config, name, after)
+                    if name == TAUGHT:
+                        notes.append(texts.TRAIN_TAUGHT.format(count=after))
                 case Point() | Checkpoint() | Validation():
                     self.history.append(message)
                 case Begun(config, seed, _):

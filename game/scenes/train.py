@@ -11,6 +11,7 @@ import pygame
 from ai.config import PRESETS, Config
 from ai.live import agent_of
 from game import texts
+from game.cockpit.lesson import FILE_NAME, lessons
 from game.context import Context
 from game.controls import Command, translate
 from game.library import Library, LibraryError, SavedRun
@@ -34,8 +35,8 @@ _LEFT: Final = 40.0
 _FLOOR: Final = 434.0  # where the charts begin
 _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 50)
-_TITLE: Final = pygame.Rect(24, 16, 300, 124)
-_WORDS: Final = pygame.Rect(684, 16, 136, 98)  # beside the swarm
+_TITLE: Final = pygame.Rect(24, 16, 350, 124)
+_WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
@@ -186,6 +187,17 @@ class Train:
         """Go on with a saved run, with its own settings."""
         self._begin(Config(), 0, folder)  # its first word says what it really is made with
 
+    def _teach(self) -> None:
+        """Let the run learn from the player's landings as well, or begin one that does."""
+        assert self._context is not None
+        folder = self._context.user_dir
+        if not lessons(folder):
+            self._context.note(texts.TRAIN_NO_LESSONS)
+            return
+        if not self.student.alive:
+            self._begin(self.knobs.config, self.knobs.seed)
+        self.student.teach(folder / FILE_NAME)
+
     def _change(self, name: str, value: object) -> None:
         self.student.change(name, value)
 
@@ -196,7 +208,8 @@ class Train:
         if not self.student.kept:
             self._context.note(texts.TRAIN_NOTHING)
             return None
-        suggestion = self.student.library.free_name(texts.TRAIN_NAME.format(preset=self.knobs.name))
+        name = texts.TRAIN_TAUGHT_NAME if self.student.lessons else texts.TRAIN_NAME
+        suggestion = self.student.library.free_name(name.format(preset=self.knobs.name))
         return Push(Naming(self, texts.TRAIN_NAMING, suggestion, self._save_as))
 
     def _save_as(self, name: str) -> str:
@@ -301,7 +314,7 @@ class Train:
         beside = self.inside.place(large)
         if not beside:
             words = ((texts.TRAIN_RUNS, self._open_runs), (texts.TRAIN_DUEL, self._duel),
-                     (texts.TRAIN_COMPARE, self._compare))  # fmt: skip
+                     (texts.TRAIN_COMPARE, self._compare), (texts.TRAIN_TEACH, self._teach))  # fmt: skip
             beside = [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from ai.history import Alteration, Checkpoint, History
-from ai.live import REVERTED
+from ai.live import REVERTED, TAUGHT
 from game import texts
 from game.dials import told
 from game.ui.canvas import Canvas
@@ -112,6 +112,8 @@ def _ticks(history: History) -> list[Tick]:
 
 
 def _told(turn: Alteration) -> str:
+    if turn.name == TAUGHT:
+        return texts.TRAIN_TAUGHT_TICK.format(count=turn.after)
     return texts.TRAIN_REVERTED if turn.name == REVERTED else told({turn.name: turn.after})
 
 

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -6,7 +8,7 @@ from ai.config import PRESETS
 from ai.demonstrations import Demonstration, demonstrate, read, relive, takeover, taught, teach, write
 from ai.ground import hilly
 from ai.lander import LanderEnv
-from ai.live import Insight, live
+from ai.live import TAUGHT, Insight, Refused, Sight, Teach, live
 from ai.pilots import ScriptedPilot
 
 MODERN = PRESETS["modern"]
@@ -99,15 +101,33 @@ def test_demonstrations_are_kept_in_a_file(landings, tmp_path):
 def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path):
     path = tmp_path / "flights.json"
     write(path, landings)
-    config = taught(PRESETS["classic"])
-    lonely, led = live(config), live(config, demonstrations=path)
-    told = []
-    for run in (lonely, led):
-        next(run)
-        told.append([message for message in next(run) if isinstance(message, Insight)])
-        run.close()
-    assert not told[0][-1:] or not told[0][-1].gradients.any()  # still warming up
-    assert told[1][-1].gradients.any()
+    config = PRESETS["classic"].changed(success_pass=False)
+    lonely, led = live(config), live(config)
+    next(lonely)
+    next(led)
+    answer = led.send(Teach(path))
+    assert [(told.name, told.after) for told in answer] == [("success_pass", True), (TAUGHT, len(landings))]
+    insights = [[message for message in next(run) if isinstance(message, Insight)] for run in (lonely, led)]
+    assert not insights[0][-1:] or not insights[0][-1].gradients.any()  # still warming up
+    assert insights[1][-1].gradients.any()
+    write(path, [*landings, replace(landings[0], begins=30)])
+    assert [told.after for told in led.send(Teach(path))] == [1]  # only the new one
+    lonely.close()
+    led.close()
+
+
+@pytest.mark.parametrize(("content", "words"), [("{", "flights.json"), (None, "no landings")])
+def test_a_live_run_goes_on_where_there_is_nothing_to_learn_from(content, words, tmp_path):
+    path = tmp_path / "flights.json"
+    if content is not None:
+        path.write_text(content)
+    run = live(PRESETS["classic"])
+    next(run)
+    (refused,) = run.send(Teach(path))
+    assert isinstance(refused, Refused)
+    assert words in refused.problem
+    assert any(isinstance(message, Sight) for message in next(run))
+    run.close()
 
 
 KNOWN = '"format": "tranquility demonstrations", "version": 1'

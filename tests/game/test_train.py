@@ -12,10 +12,15 @@ import pygame
 import pytest
 
 from ai.config import PRESETS
+from ai.demonstrations import demonstrate, write
+from ai.history import History
+from ai.live import TAUGHT
+from ai.pilots import ScriptedPilot
 from ai.rewards import RewardWeights
 from ai.runs import resume_run
 from ai.training import Training
 from game import texts
+from game.cockpit.lesson import FILE_NAME
 from game.library import Library
 from game.scene import Push
 from game.scenes.dialog import Asking, Naming
@@ -147,6 +152,30 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     train.key(pygame.K_RETURN)
     assert train.top is scene
     train.wait(scene.student.library.runs)
+
+
+def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
+    scene, notes = train.top, list[str]()
+    train.app.context.note = notes.append
+    (word,) = [widget for widget in scene._form.widgets if widget.label == texts.TRAIN_TEACH]
+    scene._form.focus(word)
+    train.key(pygame.K_RETURN)
+    assert scene.student.state is None, "nothing to learn from, nothing begun"
+    assert texts.TRAIN_NO_LESSONS in notes
+    write(tmp_path / "user" / FILE_NAME, demonstrate(ScriptedPilot(), 2, seed=5, spawn="near"))
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.student.lessons == 2 and len(scene.student.history))
+    assert scene.student.config.success_pass
+    assert scene.knobs.config.success_pass
+    train.frames(1)
+    assert texts.TRAIN_TAUGHT.format(count=2) in notes
+    scene._form.focus(scene._save_word)
+    train.key(pygame.K_RETURN)
+    train.key(pygame.K_RETURN)
+    train.wait(scene.student.library.runs)
+    (run,) = scene.student.library.runs()
+    assert "trained on you" in run.name
+    assert sum(each.name == TAUGHT for each in History.read(run.folder).alterations) == 1
 
 
 def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
