@@ -68,6 +68,7 @@ class App:
         context.in_window = self.canvas.in_window
         self._palette()
         context.sound.follow(context.settings)
+        context.controls.follow(context.settings)
         self._start_pads()
         self.scenes = SceneManager(context, first or _menu())
         # What lives as long as the game need not be looked through again and again: that took 20 ms at a time.
@@ -178,6 +179,10 @@ class App:
         controls = self.context.controls
         used_mouse = controls.mouse_in_use
         controls.process(event)
+        if event.type == pygame.CONTROLLERDEVICEADDED and controls.pad_name:
+            self._notes.show(texts.PAD_FOUND.format(name=controls.pad_name))
+        elif translate(event) is Command.UNPLUGGED:
+            self._notes.show(texts.PAD_LOST)
         if controls.mouse_in_use != used_mouse:
             pygame.mouse.set_visible(controls.mouse_in_use)
 

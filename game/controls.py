@@ -2,90 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from enum import Enum, auto
-from typing import Final
+from typing import Any, Final
 
 import pygame
 
+from game import texts
+from game.bindings import KEYBOARD, PAD, TRIGGERS, Bindings, Command, Held, Meaning
+from game.settings import Settings
+from game.ui import glyphs
 
-class Command(Enum):
-    """One press, whatever device it came from."""
+__all__ = ["Command", "Controls", "Held", "presses_main", "translate"]
 
-    CONFIRM = auto()
-    BACK = auto()
-    UP = auto()
-    DOWN = auto()
-    LEFT = auto()
-    RIGHT = auto()
-    HANDOVER = auto()
-    PAUSE = auto()
-    RETRY = auto()
-    STEP = auto()
-    SLOWER = auto()
-    FASTER = auto()
-    NEXT = auto()
-    PREVIOUS = auto()
-    CHOICES = auto()
-    MODE = auto()
-    FULLSCREEN = auto()
-    SCREENSHOT = auto()
-
-
-class Held(Enum):
-    """What a pilot holds down."""
-
-    MAIN = auto()
-    LEFT = auto()
-    RIGHT = auto()
-
-
-# The one table of bindings. A key may stand in both halves: Up thrusts in flight and moves in a menu.
-KEYS: Final[dict[Command | Held, tuple[int, ...]]] = {
-    Held.MAIN: (pygame.K_SPACE, pygame.K_UP, pygame.K_w),
-    Held.LEFT: (pygame.K_LEFT, pygame.K_a),
-    Held.RIGHT: (pygame.K_RIGHT, pygame.K_d),
-    Command.CONFIRM: (pygame.K_RETURN, pygame.K_KP_ENTER),
-    Command.BACK: (pygame.K_BACKSPACE, pygame.K_AC_BACK),
-    Command.UP: (pygame.K_UP, pygame.K_w),
-    Command.DOWN: (pygame.K_DOWN, pygame.K_s),
-    Command.LEFT: (pygame.K_LEFT, pygame.K_a),
-    Command.RIGHT: (pygame.K_RIGHT, pygame.K_d),
-    Command.HANDOVER: (pygame.K_TAB,),
-    Command.PAUSE: (pygame.K_ESCAPE, pygame.K_p),
-    Command.RETRY: (pygame.K_r,),
-    Command.STEP: (pygame.K_PERIOD,),
-    Command.SLOWER: (pygame.K_MINUS, pygame.K_KP_MINUS, pygame.K_LEFTBRACKET),
-    Command.FASTER: (pygame.K_PLUS, pygame.K_EQUALS, pygame.K_KP_PLUS, pygame.K_RIGHTBRACKET),
-    Command.NEXT: (pygame.K_n, pygame.K_PAGEDOWN),
-    Command.PREVIOUS: (pygame.K_b, pygame.K_PAGEUP),
-    Command.CHOICES: (pygame.K_c,),
-    Command.MODE: (pygame.K_g,),
-    Command.FULLSCREEN: (pygame.K_F11,),
-    Command.SCREENSHOT: (pygame.K_F12,),
-}
-BUTTONS: Final[dict[Command | Held, tuple[int, ...]]] = {
-    Held.MAIN: (pygame.CONTROLLER_BUTTON_A, pygame.CONTROLLER_BUTTON_DPAD_UP),
-    Held.LEFT: (pygame.CONTROLLER_BUTTON_DPAD_LEFT,),
-    Held.RIGHT: (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,),
-    Command.CONFIRM: (pygame.CONTROLLER_BUTTON_A,),
-    Command.BACK: (pygame.CONTROLLER_BUTTON_B,),
-    Command.UP: (pygame.CONTROLLER_BUTTON_DPAD_UP,),
-    Command.DOWN: (pygame.CONTROLLER_BUTTON_DPAD_DOWN,),
-    Command.LEFT: (pygame.CONTROLLER_BUTTON_DPAD_LEFT,),
-    Command.RIGHT: (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,),
-    Command.HANDOVER: (pygame.CONTROLLER_BUTTON_Y,),
-    Command.PAUSE: (pygame.CONTROLLER_BUTTON_START,),
-    Command.RETRY: (pygame.CONTROLLER_BUTTON_X,),
-    Command.STEP: (pygame.CONTROLLER_BUTTON_RIGHTSTICK,),
-    Command.CHOICES: (pygame.CONTROLLER_BUTTON_BACK,),
-    Command.MODE: (pygame.CONTROLLER_BUTTON_LEFTSTICK,),
-    Command.PREVIOUS: (pygame.CONTROLLER_BUTTON_LEFTSHOULDER,),
-    Command.NEXT: (pygame.CONTROLLER_BUTTON_RIGHTSHOULDER,),
-}
 # Axis, direction, how far out of 32767 it must be pushed.
 AXES: Final[dict[Held, tuple[int, int, int]]] = {
-    Held.MAIN: (pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 1, 8000),
     Held.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1, 11000),
     Held.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1, 11000),
 }
@@ -99,55 +30,43 @@ STICK_COMMANDS: Final[dict[Command, tuple[int, int]]] = {
 }
 STICK_PUSHED: Final = 20000
 STICK_RELEASED: Final = 12000
-
-KEY_WORDS: Final[dict[Command, str]] = {
-    Command.CONFIRM: "Enter",
-    Command.BACK: "Esc",
-    Command.PAUSE: "Esc",
-    Command.HANDOVER: "Tab",
-    Command.RETRY: "R",
-    Command.STEP: ".",
-    Command.SLOWER: "−",
-    Command.FASTER: "+",
-    Command.NEXT: "N",
-    Command.PREVIOUS: "B",
-    Command.CHOICES: "C",
-    Command.MODE: "G",
-    Command.FULLSCREEN: "F11",
-    Command.SCREENSHOT: "F12",
+TRIGGER_PRESSED: Final = 8000
+TRIGGER_RELEASED: Final = 5000
+# Signs of what a stick does, beside the buttons.
+_STICK_SIGNS: Final[dict[Meaning, int]] = {
+    Held.LEFT: glyphs.TURN,
+    Held.RIGHT: glyphs.TURN,
+    Command.SLOWER: glyphs.STICK_LEFT,
+    Command.FASTER: glyphs.STICK_RIGHT,
 }
-BUTTON_WORDS: Final[dict[Command, str]] = {
-    Command.CONFIRM: "A",
-    Command.BACK: "B",
-    Command.PAUSE: "Start",
-    Command.HANDOVER: "Y",
-    Command.RETRY: "X",
-    Command.STEP: "R3",
-    Command.NEXT: "RB",
-    Command.PREVIOUS: "LB",
-    Command.SLOWER: "R ←",
-    Command.FASTER: "R →",
-    Command.CHOICES: "View",
-    Command.MODE: "L3",
-}
-_KEY_COMMANDS: Final = {key: c for c, keys in KEYS.items() if isinstance(c, Command) for key in keys}
-_BUTTON_COMMANDS: Final = {b: c for c, buttons in BUTTONS.items() if isinstance(c, Command) for b in buttons}
+_KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
+_STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
 
 
 def translate(event: pygame.event.Event) -> Command | None:
-    """Return the command an event means, if any. A stick's push was marked by `Controls.process`."""
-    if event.type == pygame.KEYDOWN:
-        if event.key == pygame.K_RETURN and getattr(event, "mod", 0) & pygame.KMOD_ALT:
-            return Command.FULLSCREEN
-        return _KEY_COMMANDS.get(event.key)
-    if event.type == pygame.CONTROLLERBUTTONDOWN:
-        return _BUTTON_COMMANDS.get(event.button)
-    return getattr(event, "command", None)
+    """Return the command an event means, if any, as `Controls.process` has marked it.
+
+    An event that no `Controls` has seen means what it does in the game as it comes.
+    """
+    if hasattr(event, "command"):
+        command: Command | None = event.command
+        return command
+    return _command(event, _STANDARD[pygame.KEYDOWN], _STANDARD[pygame.CONTROLLERBUTTONDOWN])
 
 
 def presses_main(event: pygame.event.Event) -> bool:
-    """Tell whether the event presses the main engine, which in a menu confirms as well."""
-    return event.type == pygame.KEYDOWN and event.key in KEYS[Held.MAIN]
+    """Tell whether a key presses the main engine, which in a menu confirms as well; Space always does."""
+    return event.type == pygame.KEYDOWN and (
+        event.key == pygame.K_SPACE or event.key in getattr(event, "main_keys", KEYBOARD.standard[Held.MAIN])
+    )
+
+
+def _command(event: pygame.event.Event, keys: Bindings, buttons: Bindings) -> Command | None:
+    if event.type == pygame.KEYDOWN:
+        if event.key == pygame.K_RETURN and getattr(event, "mod", 0) & pygame.KMOD_ALT:
+            return Command.FULLSCREEN
+        return keys.command(event.key)
+    return buttons.command(event.button) if event.type == pygame.CONTROLLERBUTTONDOWN else None
 
 
 @dataclass
@@ -155,23 +74,38 @@ class _Pad:
     buttons: set[int] = field(default_factory=set)
     axes: dict[int, int] = field(default_factory=dict)
     pushed: set[Command] = field(default_factory=set)
-    device: object = None  # SDL closes a pad that nobody holds on to
+    device: Any = None  # SDL closes a pad that nobody holds on to
+    family: glyphs.Family = "xbox"
 
 
 class Controls:
     """What is held down at the moment, on the keyboard and on every pad together.
 
     Attributes:
-        pad_in_use: whether a pad was touched last, rather than the keyboard; hints name its buttons then.
+        keys, buttons: what the keyboard's keys and the pads' buttons mean.
         mouse_in_use: whether the mouse was touched last; no ring is drawn around what is in focus then.
+        listening: whether the next press is to be bound, and commands nothing.
+        pad_name: what the pad plugged in last calls itself.
 
     """
 
     def __init__(self) -> None:
+        self.keys, self.buttons = Bindings(KEYBOARD), Bindings(PAD)
         self._keys: set[int] = set()
         self._pads: dict[int, _Pad] = {}
-        self.pad_in_use = False
-        self.mouse_in_use = False
+        self._used: int | None = None  # the pad touched last, while a pad is in use
+        self.mouse_in_use = self.listening = False
+        self.pad_name = ""
+
+    @property
+    def pad_in_use(self) -> bool:
+        """Whether a pad was touched last, rather than the keyboard; hints show its buttons then."""
+        return self._used is not None
+
+    @property
+    def pads(self) -> int:
+        """How many pads there are."""
+        return len(self._pads)
 
     @property
     def main(self) -> bool:
@@ -189,9 +123,42 @@ class Controls:
         """The lander's action: 3 · main + steer."""
         return 3 * self.main + self.steer
 
-    def word(self, command: Command) -> str:
-        """Name the key for a command, or the button while a pad is in use."""
-        return (BUTTON_WORDS if self.pad_in_use else KEY_WORDS).get(command) or KEY_WORDS.get(command, "")
+    # Names
+
+    def word(self, meaning: Meaning) -> str:
+        """Name the key for a meaning, or show the button while a pad is in use; the key, if no button has it."""
+        signs = self.pad_signs(meaning) if self.pad_in_use else []
+        return next(iter(signs or self.key_names(meaning)), texts.BINDINGS_NONE)
+
+    @property
+    def arrows(self) -> str:
+        """What moves the focus."""
+        return self.pad_sign(glyphs.CROSS) if self.pad_in_use else texts.ARROWS
+
+    def key_names(self, meaning: Meaning) -> list[str]:
+        """Name every key of a meaning, as written on the keyboard."""
+        if meaning is Command.BACK:  # in a form, what pauses goes back; its own keys are less known
+            meaning = Command.PAUSE
+        return [key_name(code) for code in self.keys.codes(meaning)]
+
+    def pad_signs(self, meaning: Meaning) -> list[str]:
+        """Show every button and stick of a meaning, as the pad in use, or the one plugged in last, has them."""
+        stick = [_STICK_SIGNS[meaning]] if meaning in _STICK_SIGNS else []
+        signs = dict.fromkeys([*stick, *self.buttons.codes(meaning)])
+        return [self.pad_sign(number) for number in signs]
+
+    def pad_sign(self, number: int) -> str:
+        """Show a button by its number, or one of the further signs of `game.ui.glyphs`."""
+        pads = [*self._pads.values()]
+        pad = self._pads.get(-1 if self._used is None else self._used) or (pads[-1] if pads else _Pad())
+        return glyphs.sign(pad.family, number)
+
+    # Events
+
+    def follow(self, settings: Settings) -> None:
+        """Take what the player has changed."""
+        self.keys.follow(settings.keys)
+        self.buttons.follow(settings.buttons)
 
     def release_all(self) -> None:
         """Let go of everything: the window no longer hears what is released."""
@@ -202,11 +169,13 @@ class Controls:
             pad.pushed.clear()
 
     def process(self, event: pygame.event.Event) -> None:
-        """Follow one event. A stick pushed far enough marks its event with a `command`."""
+        """Follow one event, and mark it with the `command` it means."""
         match event.type:
             case pygame.KEYDOWN:
                 self._keys.add(event.key)
-                self.pad_in_use = self.mouse_in_use = False
+                event.command = self._command(event)
+                event.main_keys = self.keys.codes(Held.MAIN)
+                self._used, self.mouse_in_use = None, False
             case pygame.MOUSEMOTION | pygame.MOUSEBUTTONDOWN:
                 self.mouse_in_use = True
             case pygame.KEYUP:
@@ -216,26 +185,31 @@ class Controls:
             case pygame.CONTROLLERDEVICEADDED:
                 self._open(event.device_index)
             case pygame.CONTROLLERDEVICEREMOVED:
-                self._pads.pop(event.instance_id, None)
+                self._close(event)
             case pygame.CONTROLLERBUTTONDOWN:
                 self._pad(event).buttons.add(event.button)
-                self._use_pad()
+                event.command = self._command(event)
+                self._use(event)
             case pygame.CONTROLLERBUTTONUP:
                 self._pad(event).buttons.discard(event.button)
             case pygame.CONTROLLERAXISMOTION:
                 self._move(event)
 
+    def _command(self, event: pygame.event.Event) -> Command | None:
+        return None if self.listening else _command(event, self.keys, self.buttons)
+
     def _held(self, held: Held) -> bool:
-        if not self._keys.isdisjoint(KEYS[held]):
+        if not self._keys.isdisjoint(self.keys.codes(held)):
             return True
-        axis, direction, threshold = AXES[held]
+        buttons = self.buttons.codes(held)
+        axis, direction, threshold = AXES.get(held, (-1, 0, 0))
         return any(
-            not pad.buttons.isdisjoint(BUTTONS[held]) or direction * pad.axes.get(axis, 0) > threshold
+            not pad.buttons.isdisjoint(buttons) or direction * pad.axes.get(axis, 0) > threshold
             for pad in self._pads.values()
         )
 
-    def _use_pad(self) -> None:
-        self.pad_in_use, self.mouse_in_use = True, False
+    def _use(self, event: pygame.event.Event) -> None:
+        self._used, self.mouse_in_use = event.instance_id, False
 
     def _pad(self, event: pygame.event.Event) -> _Pad:
         return self._pads.setdefault(event.instance_id, _Pad())
@@ -248,11 +222,21 @@ class Controls:
             instance = device.as_joystick().get_instance_id()
         except pygame.error:
             return  # pulled out again before its turn came
-        self._pads.setdefault(instance, _Pad()).device = device
+        self.pad_name = device.name or ""
+        pad = self._pads.setdefault(instance, _Pad())
+        pad.device, pad.family = device, glyphs.family_of(self.pad_name)
+
+    def _close(self, event: pygame.event.Event) -> None:
+        self._pads.pop(event.instance_id, None)
+        if event.instance_id == self._used:
+            self._used = None
+            event.command = Command.UNPLUGGED
 
     def _move(self, event: pygame.event.Event) -> None:
         pad = self._pad(event)
         pad.axes[event.axis] = event.value
+        if event.axis in TRIGGERS:
+            self._pull(event, pad, TRIGGERS[event.axis])
         for command, (axis, direction) in STICK_COMMANDS.items():
             if axis != event.axis:
                 continue
@@ -260,6 +244,28 @@ class Controls:
             if push > STICK_PUSHED and command not in pad.pushed:
                 pad.pushed.add(command)
                 event.command = command
-                self._use_pad()
+                self._use(event)
             elif push < STICK_RELEASED:
                 pad.pushed.discard(command)
+
+    def _pull(self, event: pygame.event.Event, pad: _Pad, trigger: int) -> None:
+        """Take a trigger for a button."""
+        if event.value > TRIGGER_PRESSED and trigger not in pad.buttons:
+            pad.buttons.add(trigger)
+            event.command, event.trigger = None if self.listening else self.buttons.command(trigger), trigger
+            self._use(event)
+        elif event.value < TRIGGER_RELEASED:
+            pad.buttons.discard(trigger)
+
+
+def key_name(code: int) -> str:
+    """Name a key as it is written on it."""
+    name = _KEY_NAMES.get(code)
+    if name is None:
+        return chr(code).upper() if 32 < code < 0x10000 else f"#{code}"
+    return texts.KEY_NAMES.get(name) or name.replace("kp_", "Num ").replace("kp", "Num ").title()
+
+
+def names(words: Iterable[str]) -> str:
+    """Write several keys, or signs, in a row."""
+    return "  ".join(words)

@@ -33,6 +33,8 @@ class Settings:
     check_flights: bool = False  # every fifth flight without help
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether a panel says what the co-pilot thinks
+    keys: dict[str, Any] = field(default_factory=dict)  # what was changed, as game.bindings writes it
+    buttons: dict[str, Any] = field(default_factory=dict)  # of the pads
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
 
     def to_dict(self) -> dict[str, Any]:

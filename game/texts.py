@@ -21,7 +21,6 @@ FAULT_BACK: Final = "{key}  back to the menu"
 
 # Keys' names and hints
 ARROWS: Final = "↑ ↓"
-DPAD: Final = "D-pad"
 HINT_MOVE: Final = "move"
 HINT_CHOOSE: Final = "choose"
 HINT_CHANGE: Final = "change"
@@ -29,6 +28,7 @@ HINT_BACK: Final = "back"
 HINT_RESUME: Final = "resume"
 HINT_FULL_SCREEN: Final = "full screen"
 BACK: Final = "Back"
+# What is written on a key, by pygame's name for it; a letter or a word that is not here is written as it is.
 KEY_NAMES: Final = {
     "up": "↑",
     "down": "↓",
@@ -36,8 +36,30 @@ KEY_NAMES: Final = {
     "right": "→",
     "escape": "Esc",
     "return": "Enter",
-    "space": "Space",
-    "tab": "Tab",
+    "kp_enter": "Num Enter",
+    "pageup": "Page ↑",
+    "pagedown": "Page ↓",
+    "lshift": "Left Shift",
+    "rshift": "Right Shift",
+    "lctrl": "Left Ctrl",
+    "rctrl": "Right Ctrl",
+    "period": ".",
+    "comma": ",",
+    "minus": "−",
+    "plus": "+",
+    "equals": "=",
+    "slash": "/",
+    "backslash": "\\",
+    "semicolon": ";",
+    "quote": "'",
+    "backquote": "`",
+    "leftbracket": "[",
+    "rightbracket": "]",
+    "kp_plus": "Num +",
+    "kp_minus": "Num −",
+    "kp_multiply": "Num ×",
+    "kp_divide": "Num ÷",
+    "kp_period": "Num .",
 }
 
 # The menu: word, and the line beside it while it is in focus
@@ -78,17 +100,6 @@ SWATCH_WARN: Final = "beyond limits"
 KEYS_TITLE: Final = "CONTROLS"
 KEYS_KEYBOARD: Final = "KEYBOARD"
 KEYS_PAD: Final = "GAMEPAD"
-# What it does, and the pad's words where no single button says it.
-KEYS: Final = (
-    ("Main engine", "A, right trigger"),
-    ("Steer left", "Left stick, D-pad"),
-    ("Steer right", "Left stick, D-pad"),
-    ("Hand over", ""),
-    ("Retry", ""),
-    ("Pause", ""),
-    ("Full screen", "–"),
-    ("Take a picture", "–"),
-)
 
 # Pause
 PAUSE_TITLE: Final = "Paused"
@@ -147,8 +158,6 @@ ALONE: Final = "on your own"
 BEGIN: Final = "The moon waits for your first touch."
 PATH_YOURS: Final = "where you drift, hands off"
 PATH_NETWORK: Final = "where the network would fly"
-FLIGHT_KEYS: Final = (("↑", "main engine"), ("←", "turn left"), ("→", "turn right"))
-FLIGHT_KEYS_PAD: Final = (("A", "main engine"), ("stick", "turn"))
 NO_NETWORK: Final = "No network to hand over to: {problem}"
 HINT_HAND_OVER: Final = "hand over"
 HINT_TAKE_BACK: Final = "take back"
@@ -920,3 +929,44 @@ EXPORT_EARLY: Final = "One moment: the flight is still being looked through."
 EXPORT_GOES_ON: Final = "Drawing the moving picture: {percent} %"
 EXPORT_DONE: Final = "Saved: {path}"
 EXPORT_FAILED: Final = "The moving picture could not be saved: {reason}"
+
+# Keys and buttons
+BINDINGS_TITLE: Final = "Keys and buttons"
+BINDINGS_OPEN: Final = "Change keys and buttons"
+BINDINGS: Final = {
+    "MAIN": "Main engine",
+    "LEFT": "Steer left",
+    "RIGHT": "Steer right",
+    "HANDOVER": "Hand over",
+    "RETRY": "Retry",
+    "PAUSE": "Pause",
+    "CHOICES": "Choices",
+    "SLOWER": "Less help, slower",
+    "FASTER": "More help, faster",
+    "MODE": "Way of helping",
+    "STEP": "One step",
+    "NEXT": "Next, new start",
+    "PREVIOUS": "Previous",
+    "FULLSCREEN": "Full screen",
+    "SCREENSHOT": "Take a picture",
+}
+BINDINGS_PRESS_KEY: Final = "Press a key …"
+BINDINGS_PRESS_BUTTON: Final = "Press a button …"
+BINDINGS_NONE: Final = "–"
+BINDINGS_NO_PAD: Final = "Plug in a gamepad first."
+BINDINGS_FIXED: Final = "{key} keeps what it means in menus. Choose another."
+BINDINGS_TAKEN: Final = "It was {other}, which now has {key}."
+BINDINGS_LOST: Final = "It was {other}, which now has none."
+BINDINGS_RESET: Final = "{what} is as it was."
+BINDINGS_ALL: Final = "All as it was"
+BINDINGS_ALL_RESET: Final = "Everything is as the game comes."
+HINT_AS_IT_WAS: Final = "as it was"
+HINT_LEAVE_KEY: Final = "leave it"
+MAIN_ENGINE: Final = "main engine"
+TURN: Final = "turn"
+TURN_LEFT: Final = "turn left"
+TURN_RIGHT: Final = "turn right"
+
+# Gamepads that come and go
+PAD_FOUND: Final = "Gamepad: {name}"
+PAD_LOST: Final = "The gamepad was pulled out."

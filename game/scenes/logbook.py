@@ -202,7 +202,7 @@ class Logbook:
     def _draw_hints(self, canvas: Canvas) -> None:
         assert self._context is not None
         controls = self._context.controls
-        arrows = texts.DPAD if controls.pad_in_use else texts.ARROWS
+        arrows = controls.arrows
         hints = [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
                  (controls.word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))

@@ -137,7 +137,7 @@ class Menu:
         return self._form
 
     def _draw_hints(self, canvas: Canvas) -> None:
-        arrows = texts.DPAD if self._controls.pad_in_use else texts.ARROWS
+        arrows = self._controls.arrows
         hints = [
             (arrows, texts.HINT_MOVE),
             (self._controls.word(Command.CONFIRM), texts.HINT_CHOOSE),

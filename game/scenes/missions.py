@@ -108,7 +108,7 @@ class Missions:
         self._form.draw(canvas)
         self._draw_mission(canvas, self.chosen)
         controls = self._context.controls
-        arrows = texts.DPAD if controls.pad_in_use else texts.ARROWS
+        arrows = controls.arrows
         draw_hints(canvas, [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
                             (controls.word(Command.BACK), texts.HINT_BACK)], (MARGIN, VIEW_SIZE[1] - 40))  # fmt: skip
 

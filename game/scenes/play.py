@@ -23,7 +23,7 @@ from game.render import Camera
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.ui.canvas import Canvas
-from game.ui.hints import draw_hints
+from game.ui.hints import draw_hints, flight_hints
 from game.ui.tokens import HUMAN, MARGIN, NET, NIGHT0, VIEW_SIZE
 from game.ui.widgets import OnPress
 from game.world.backdrop import landscape
@@ -101,6 +101,8 @@ class Play:
         match translate(event):
             case Command.PAUSE:
                 return Pop() if self._leaves else self._pause()
+            case Command.UNPLUGGED if not (self.waiting or self.flight.over):
+                return self._pause()
             case Command.HANDOVER:
                 self._hand_over()
             case Command.CHOICES:
@@ -350,13 +352,12 @@ class Play:
             self._draw_hints(canvas)
 
     def _draw_opening(self, canvas: Canvas) -> None:
-        keys = texts.FLIGHT_KEYS_PAD if self._controls.pad_in_use else texts.FLIGHT_KEYS
         line, paths = texts.BEGIN, [(texts.PATH_YOURS, HUMAN)]
         if self._course:
             line = self._course.opening
         if self._forecast:
             paths.append((texts.PATH_NETWORK, NET))
-        hud.draw_opening(canvas, keys, line, paths)
+        hud.draw_opening(canvas, flight_hints(self._controls), line, paths)
 
     def _draw_hints(self, canvas: Canvas) -> None:
         word = self._controls.word

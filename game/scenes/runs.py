@@ -333,7 +333,7 @@ class Runs:
     def _draw_hints(self, canvas: Canvas) -> None:
         assert self._context is not None
         controls = self._context.controls
-        word, arrows = controls.word, texts.DPAD if controls.pad_in_use else texts.ARROWS
+        word, arrows = controls.word, controls.arrows
         if self._entry:
             hints = [(word(Command.CONFIRM), texts.HINT_KEEP_NAME), (word(Command.BACK), texts.HINT_LEAVE_NAME)]
         else:

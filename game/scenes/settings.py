@@ -9,8 +9,8 @@ import pygame
 
 from game import texts
 from game.context import Context
-from game.controls import BUTTON_WORDS, KEYS, Command, Held
-from game.scene import Pop, Transition
+from game.controls import Command, Held, names
+from game.scene import Pop, Push, Transition
 from game.sounds.instruments import GROUPS, altitude_key
 from game.ui.canvas import Canvas
 from game.ui.form import Form
@@ -29,16 +29,11 @@ _BACK: Final = 624
 # What is heard when a volume is changed, beside the click of the slider itself and what goes on anyway.
 _SAMPLES: Final = {"effects": "touchdown", "altitude": altitude_key(9)}
 _KEYS_LEFT: Final = 704
-_KEYS: Final[tuple[tuple[Command | Held, ...], ...]] = (
-    (Held.MAIN,),
-    (Held.LEFT,),
-    (Held.RIGHT,),
-    (Command.HANDOVER,),
-    (Command.RETRY,),
-    (Command.PAUSE,),
-    (Command.FULLSCREEN,),
-    (Command.SCREENSHOT,),
-)
+_KEYS_WORD: Final = 512
+_KEYS: Final = (
+    Held.MAIN, Held.LEFT, Held.RIGHT, Command.HANDOVER, Command.RETRY, Command.PAUSE, Command.CHOICES,
+    Command.FULLSCREEN, Command.SCREENSHOT,
+)  # fmt: skip
 
 
 class SettingsScene:
@@ -57,6 +52,8 @@ class SettingsScene:
         for number, group in enumerate(GROUPS):
             self._form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
         self._form.add(Word(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
+        keys = (_KEYS_LEFT, _KEYS_WORD, 240, 32)
+        self._form.add(Word(self._form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
 
     def exit(self) -> None:
         """Nothing is held: every change was saved as it was made."""
@@ -125,19 +122,21 @@ class SettingsScene:
         canvas.text(texts.KEYS_TITLE, (_KEYS_LEFT, y), size=LABEL, weight="medium", colour=MUTE)
         canvas.text(texts.KEYS_KEYBOARD, (_KEYS_LEFT + 192, y), size=LABEL, weight="medium", colour=MUTE)
         canvas.text(texts.KEYS_PAD, (pad_left, y), size=LABEL, weight="medium", colour=MUTE, align="right")
-        for (command, *_), (meaning, pad) in zip(_KEYS, texts.KEYS, strict=True):
+        controls = self._context.controls
+        for meaning in _KEYS:
             canvas.line((_KEYS_LEFT, y + 12), (pad_left, y + 12), LINE, 1)
             y += 36
-            canvas.text(meaning, (_KEYS_LEFT, y), size=TEXT - 1, colour=INK)
-            canvas.text(_key_names(command), (_KEYS_LEFT + 192, y), size=TEXT - 1, colour=MUTE)
-            button = pad or (BUTTON_WORDS.get(command, "") if isinstance(command, Command) else "")
-            canvas.text(button, (pad_left, y), size=TEXT - 1, colour=MUTE, align="right")
+            canvas.text(texts.BINDINGS[meaning.name], (_KEYS_LEFT, y), size=TEXT - 1, colour=INK)
+            canvas.text(names(controls.key_names(meaning)), (_KEYS_LEFT + 192, y), size=TEXT - 1, colour=MUTE)
+            signs = names(controls.pad_signs(meaning)) or texts.BINDINGS_NONE
+            canvas.text(signs, (pad_left, y), size=TEXT - 1, colour=MUTE, align="right")
 
 
 def _loudness(volume: float) -> str:
     return texts.SOUND_SHARE.format(percent=round(100 * volume)) if volume else texts.SOUND_OFF
 
 
-def _key_names(command: Command | Held) -> str:
-    names = [pygame.key.name(key) for key in KEYS[command]]
-    return "  ".join(texts.KEY_NAMES.get(name, name.capitalize()) for name in names)
+def _open_bindings() -> Transition:
+    from game.scenes.bindings import BindingsScene
+
+    return Push(BindingsScene())

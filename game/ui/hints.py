@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+from game import texts
+from game.controls import Controls, Held
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, MUTE, SMALL
 
@@ -34,3 +36,10 @@ def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = 
     keys = sum(canvas.text_width(key, size=size, weight="medium") for key, _ in hints)
     meanings = sum(canvas.text_width(meaning, size=size) for _, meaning in hints)
     return keys + meanings + len(hints) * sum(_GAPS) - _GAPS[1]
+
+
+def flight_hints(controls: Controls) -> list[tuple[str, str]]:
+    """Return what flies, on the device in use; one word for both turns where one stick does both."""
+    left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
+    turns = [(left, texts.TURN)] if left == right else [(left, texts.TURN_LEFT), (right, texts.TURN_RIGHT)]
+    return [(controls.word(Held.MAIN), texts.MAIN_ENGINE), *turns]

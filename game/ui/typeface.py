@@ -1,7 +1,7 @@
 """Manrope at any size: strings become surfaces, once.
 
 Text is drawn large and scaled down, so sizes need not be whole pixels and letters keep their spacing;
-hinted small sizes do neither.
+hinted small sizes do neither. A pad's buttons are letters as well: see `game.ui.glyphs`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 import pygame
 from font_manrope import font_files
 
+from game.ui.glyphs import SIGN, draw_sign, sign_width
 from game.ui.tokens import Colour
 
 Weight = Literal["extralight", "light", "regular", "medium", "semibold"]
@@ -40,7 +41,12 @@ def _font(pixels: float, weight: Weight) -> pygame.font.Font:
 @lru_cache(maxsize=2048)
 def width(string: str, pixels: float, weight: Weight) -> float:
     """How far the string reaches, in pixels and their fractions."""
-    return _font(pixels, weight).size(string)[0] / _oversampling(pixels)
+    font, factor = _font(pixels, weight), _oversampling(pixels)
+    if not SIGN.search(string):
+        return font.size(string)[0] / factor
+    parts = SIGN.split(string)  # every second one is a sign
+    signs = sum(sign_width(part, pixels) for part in parts[1::2])
+    return signs + sum(font.size(part)[0] for part in parts[::2]) / factor
 
 
 @lru_cache(maxsize=64)
@@ -60,7 +66,7 @@ def digit_width(pixels: float, weight: Weight) -> float:
 def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[pygame.Surface, int]:
     """Return the string's surface and the row of its baseline in it."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
-    large = font.render(string, True, colour)
+    large = _write(string, pixels, weight, colour) if SIGN.search(string) else font.render(string, True, colour)
     baseline = -(-font.get_ascent() // factor)
     top = baseline * factor - font.get_ascent()
     columns = max(1, -(-large.get_width() // factor))
@@ -73,6 +79,25 @@ def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[
     alpha[:] = _COVERAGE[alpha]
     del alpha
     return surface, baseline
+
+
+def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame.Surface:
+    """Return a string with signs in it, before it is scaled down."""
+    font, factor = _font(pixels, weight), _oversampling(pixels)
+    surface = pygame.Surface((-(-width(string, pixels, weight) * factor // 1), font.get_height()), pygame.SRCALPHA)
+    surface.fill((*colour, 0))
+    x = 0.0
+    for number, part in enumerate(SIGN.split(string)):
+        if number % 2:
+            draw_sign(
+                surface, part, (x, font.get_ascent()), pixels * factor, colour,
+                lambda letters, size: _font(size / factor, "semibold").render(letters, True, colour),
+            )  # fmt: skip
+            x += sign_width(part, pixels) * factor
+        elif part:
+            surface.blit(font.render(part, True, colour), (round(x), 0))
+            x += font.size(part)[0]
+    return surface
 
 
 def forget() -> None:

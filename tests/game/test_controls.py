@@ -1,7 +1,10 @@
 import pygame
 import pytest
 
-from game.controls import BUTTONS, KEYS, Command, Controls, Held, presses_main, translate
+from game.bindings import FIXED_KEYS, KEYBOARD, KEYS, PAD, Bindings, Command, Held
+from game.controls import Controls, presses_main, translate
+from game.settings import Settings
+from game.ui.glyphs import SIGN, family_of, sign
 
 
 def send(controls: Controls, event_type: int, **values) -> pygame.event.Event:
@@ -79,21 +82,148 @@ def test_hints_name_the_device_in_use():
     controls = Controls()
     assert controls.word(Command.HANDOVER) == "Tab"
     send(controls, pygame.CONTROLLERBUTTONDOWN, instance_id=0, button=pygame.CONTROLLER_BUTTON_Y)
-    assert controls.word(Command.HANDOVER) == "Y"
+    assert controls.word(Command.HANDOVER) == sign("xbox", pygame.CONTROLLER_BUTTON_Y)
     assert controls.word(Command.FULLSCREEN) == "F11"
     hold(controls, pygame.K_TAB)
     assert controls.word(Command.HANDOVER) == "Tab"
 
 
-@pytest.mark.parametrize("table", [KEYS, BUTTONS])
-def test_no_key_has_two_meanings_of_one_kind(table):
-    for kind in (Command, Held):
-        bound = [key for meaning, keys in table.items() if isinstance(meaning, kind) for key in keys]
+def test_signs_go_with_the_pad_and_another_pads_release_does_not_matter():
+    controls = Controls()
+    send(controls, pygame.CONTROLLERBUTTONDOWN, instance_id=4, button=pygame.CONTROLLER_BUTTON_A)
+    assert SIGN.fullmatch(controls.word(Command.CONFIRM))
+    event = send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=9)
+    assert controls.pad_in_use
+    assert translate(event) is None
+    event = send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=4)
+    assert translate(event) is Command.UNPLUGGED
+    assert controls.word(Command.CONFIRM) == "Enter"
+
+
+@pytest.mark.parametrize(
+    ("name", "family"),
+    [
+        ("Xbox Wireless Controller", "xbox"),
+        ("DualSense Wireless Controller", "playstation"),
+        ("PS4 Controller", "playstation"),
+        ("Nintendo Switch Pro Controller", "nintendo"),
+        ("Generic USB Joystick", "xbox"),
+    ],
+)
+def test_a_pad_has_the_signs_of_its_make(name: str, family: str):
+    assert family_of(name) == family
+
+
+@pytest.mark.parametrize("device", [KEYBOARD, PAD])
+def test_no_key_has_two_meanings(device):
+    for table in (device.standard, device.fixed):
+        bound = [key for keys in table.values() for key in keys]
         assert len(bound) == len(set(bound))
 
 
 def test_every_command_has_a_key():
-    assert {meaning for meaning in KEYS if isinstance(meaning, Command)} == set(Command)
+    bound = {meaning for table in (KEYS, FIXED_KEYS) for meaning in table if isinstance(meaning, Command)}
+    assert bound == set(Command) - {Command.UNPLUGGED}
+
+
+def test_a_key_that_is_bound_means_that_alone():
+    controls = Controls()
+    assert controls.keys.bind(Held.MAIN, pygame.K_f) is None
+    hold(controls, pygame.K_UP)
+    assert controls.action == 0
+    hold(controls, pygame.K_f)
+    assert controls.action == 3
+    assert controls.word(Held.MAIN) == "F"
+    assert presses_main(send(controls, pygame.KEYDOWN, key=pygame.K_f, mod=0))
+    assert not presses_main(send(controls, pygame.KEYDOWN, key=pygame.K_w, mod=0))
+    assert presses_main(send(controls, pygame.KEYDOWN, key=pygame.K_SPACE, mod=0))
+
+
+def test_keys_change_places():
+    keys = Bindings(KEYBOARD)
+    assert keys.bind(Command.RETRY, pygame.K_c) is Command.CHOICES
+    assert keys.command(pygame.K_c) is Command.RETRY
+    assert keys.command(pygame.K_r) is Command.CHOICES
+    assert keys.bind(Command.CHOICES, pygame.K_n) is Command.NEXT
+    assert keys.codes(Command.NEXT) == (pygame.K_PAGEDOWN,)
+    assert keys.bind(Held.MAIN, pygame.K_g) is Command.MODE
+    assert keys.codes(Command.MODE) == (pygame.K_w,)  # of three keys, the one that menus can spare
+    keys.reset()
+    assert keys.table == KEYS
+    assert keys.to_dict() == {}
+
+
+def test_one_meaning_can_be_reset_alone():
+    keys = Bindings(KEYBOARD)
+    keys.bind(Command.RETRY, pygame.K_c)
+    keys.reset(Command.CHOICES)
+    assert keys.codes(Command.CHOICES) == (pygame.K_c,)
+    assert pygame.K_c not in keys.codes(Command.RETRY)
+
+
+@pytest.mark.parametrize("device", [KEYBOARD, PAD])
+def test_nobody_can_lock_themselves_out(device):
+    """Bind everything that can be bound to everything: menus can still be walked and left."""
+    bindings = Bindings(device)
+    for meaning in device.standard:
+        for code in set(device.names.values()):
+            if bindings.may(meaning, code):
+                bindings.bind(meaning, code)
+            for command, codes in device.fixed.items():
+                assert all(bindings.command(each) is command for each in codes)
+    owners = [code for codes in bindings.table.values() for code in codes]
+    assert len(owners) == len(set(owners))
+
+
+def test_bindings_survive_the_settings_file():
+    controls, settings = Controls(), Settings()
+    controls.keys.bind(Held.LEFT, pygame.K_j)
+    controls.keys.bind(Command.NEXT, 0xE9)  # a letter that only some keyboards have
+    controls.buttons.bind(Command.RETRY, pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
+    settings.keys, settings.buttons = controls.keys.to_dict(), controls.buttons.to_dict()
+    again = Controls()
+    again.follow(Settings.from_dict(settings.to_dict()))
+    assert again.keys.table == controls.keys.table
+    assert again.buttons.table == controls.buttons.table
+    assert again.word(Command.NEXT) == "\xc9"
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        {"keys": {"main": "space", "left": 5, "retry": ["no such key", None, 7, "#x", "#-1"]}},
+        {"keys": {"retry": ["escape", "return", "up"], "unheard": ["a"], "7": []}},
+        {"keys": [1], "buttons": "a"},
+        {"keys": {"retry": ["c"], "next": ["c"], "choices": ["c", "c"]}},
+        {"buttons": {"retry": ["start", "#99999999999999999999"], "main": [["a"]]}},
+    ],
+)
+def test_damaged_bindings_are_passed_over(damaged):
+    controls = Controls()
+    controls.follow(Settings.from_dict(damaged))
+    for bindings in (controls.keys, controls.buttons):
+        codes = [code for codes in bindings.table.values() for code in codes]
+        assert len(codes) == len(set(codes))
+    assert translate(send(controls, pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0)) is Command.PAUSE
+    assert translate(send(controls, pygame.KEYDOWN, key=pygame.K_RETURN, mod=0)) is Command.CONFIRM
+
+
+def test_triggers_are_buttons_like_others():
+    controls = Controls()
+
+    def pull(value: int) -> pygame.event.Event:
+        axis = pygame.CONTROLLER_AXIS_TRIGGERRIGHT
+        return send(controls, pygame.CONTROLLERAXISMOTION, instance_id=0, axis=axis, value=value)
+
+    pull(20000)
+    assert controls.action == 3
+    pull(0)
+    assert controls.action == 0
+    controls.buttons.bind(Command.RETRY, 33)
+    assert [translate(pull(value)) for value in (9000, 30000, 7000, 9000, 0, 9000)] == [
+        Command.RETRY, None, None, None, None, Command.RETRY,
+    ]  # fmt: skip
+    assert controls.action == 0
 
 
 def test_space_confirms_as_the_main_engine_does():

@@ -299,7 +299,7 @@ def test_hints_come_with_the_setting_and_go_with_it(open_game: Open, flown_by, m
     written: list[str] = []
     monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
     driver.frames(1)
-    assert texts.FLIGHT_KEYS[0][1] in written  # the keys that fly are told on the first screen in any case
+    assert texts.MAIN_ENGINE in written  # the keys that fly are told on the first screen in any case
     assert (texts.HINT_HAND_OVER in written) is hints
     start_at(scene(driver), 0.0, 2.6, 0.0, -6.0, 0.0, 0.0)
     driver.frames(120)

@@ -1,0 +1,192 @@
+"""Keys and buttons: press a row, then the key that shall do it from now on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import pygame
+
+from game import texts
+from game.bindings import Bindings, Meaning
+from game.context import Context
+from game.controls import Command, Controls, key_name, names, translate
+from game.scene import Pop, Transition
+from game.ui.canvas import Canvas
+from game.ui.form import Form
+from game.ui.hints import draw_hints
+from game.ui.sky import NightSky
+from game.ui.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
+from game.ui.widgets import PointsManager, Widget, Word, mix
+
+_FIRST: Final = 144
+_ROW: Final = 31
+_KEYS: Final = 400
+_BUTTONS: Final = 800
+_CELL: Final = 352
+_WORDS: Final = 628
+
+
+class Cell(Widget):
+    """The keys, or the buttons, of one meaning. Pressed, it waits for another; Escape, or a pad's Start, ends that."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        controls: Controls,
+        bindings: Bindings,
+        meaning: Meaning,
+        on_change: Callable[[str], None],
+    ) -> None:
+        super().__init__(manager, box, texts.BINDINGS[meaning.name])
+        self._controls, self._bindings, self._meaning, self._on_change = controls, bindings, meaning, on_change
+
+    def press(self) -> None:
+        """Wait for a key or a button; for a button only if there is a pad."""
+        if self._for_pads and not self._controls.pads:
+            self._on_change(texts.BINDINGS_NO_PAD)
+            return
+        self.typing = self._controls.listening = True
+        self._on_change("")
+
+    def stop(self) -> None:
+        """Wait no longer."""
+        if self.typing:
+            self.typing = self._controls.listening = False
+
+    def reset(self) -> None:
+        """Take back what the game comes with."""
+        self._bindings.reset(self._meaning)
+        self._on_change(texts.BINDINGS_RESET.format(what=self.label))
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Take the next key or button; what is of the other device is passed over."""
+        if not self.typing:
+            if translate(event) is Command.RETRY or (event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE):
+                self.reset()
+                return True
+            return False
+        key, button = _pressed(event)
+        if key == pygame.K_ESCAPE or button == pygame.CONTROLLER_BUTTON_START:
+            self.stop()
+            self._on_change("")
+        elif (code := button if self._for_pads else key) is not None:
+            self._bind(code)
+        return True
+
+    def _bind(self, code: int) -> None:
+        if not self._bindings.may(self._meaning, code):
+            what = self._controls.pad_sign(code) if self._for_pads else key_name(code)
+            self._on_change(texts.BINDINGS_FIXED.format(key=what))
+            return
+        self.stop()
+        loser = self._bindings.bind(self._meaning, code)
+        if loser is None:
+            self._on_change("")
+            return
+        left = names(self._words(loser))
+        text = texts.BINDINGS_TAKEN if left else texts.BINDINGS_LOST
+        self._on_change(text.format(what=self.label, other=texts.BINDINGS[loser.name], key=left))
+
+    @property
+    def _for_pads(self) -> bool:
+        return self._bindings is self._controls.buttons
+
+    def _words(self, meaning: Meaning) -> list[str]:
+        return self._controls.pad_signs(meaning) if self._for_pads else self._controls.key_names(meaning)
+
+    def ease(self, at_once: bool) -> None:
+        """Stop waiting once the focus is elsewhere."""
+        super().ease(at_once)
+        if not self.focused:
+            self.stop()
+
+    def paint(self, canvas: Canvas) -> None:
+        """Write the keys, or that one is waited for."""
+        if self.warmth > 0.02:
+            colour = HUMAN if self.typing else INK
+            canvas.outline(self.box.inflate(24, -3), 6, colour, 1, (0.9 if self.typing else 0.4) * self.warmth)
+        left, baseline = self.box.left, self.box.centery + 5
+        if self.typing:
+            text = texts.BINDINGS_PRESS_BUTTON if self._for_pads else texts.BINDINGS_PRESS_KEY
+            canvas.text(text, (left, baseline), size=TEXT, colour=HUMAN)
+            return
+        words = self._words(self._meaning)
+        canvas.text(
+            names(words) or texts.BINDINGS_NONE, (left, baseline), size=TEXT, colour=mix(MUTE, INK, self.warmth)
+        )
+
+
+class BindingsScene:
+    """A row for everything that can be changed: its keys, and a pad's buttons. Each change is kept at once."""
+
+    def enter(self, context: Context) -> None:
+        """Build the table."""
+        self._context, self._controls = context, context.controls
+        self._sky = NightSky(context.rng, ember=0.4, stars=60)
+        self._form = form = Form(context, on_back=Pop)
+        self._said = ""
+        for row, meaning in enumerate(self._controls.keys.table):
+            for left, bindings in ((_KEYS, self._controls.keys), (_BUTTONS, self._controls.buttons)):
+                box = (left, _FIRST + row * _ROW, _CELL, _ROW)
+                form.add(Cell(form.manager, box, self._controls, bindings, meaning, self._changed))
+        form.add(Word(form.manager, (MARGIN, _WORDS, 96, 32), texts.BACK, Pop, size=18))
+        form.add(Word(form.manager, (_KEYS, _WORDS, 240, 32), texts.BINDINGS_ALL, self._reset_all, size=18))
+
+    def exit(self) -> None:
+        """Wait for no key any more: each change was saved as it was made."""
+        self._controls.listening = False
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Leave it to the cells."""
+        if event.type == pygame.CONTROLLERDEVICEREMOVED:
+            for widget in self._form.widgets:
+                if isinstance(widget, Cell):
+                    widget.stop()
+        return self._form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Let the cells ease."""
+        return self._form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the table, and what came of the last change."""
+        self._sky.draw(canvas)
+        canvas.text(texts.BINDINGS_TITLE, (MARGIN, 88), size=34, weight="light")
+        for text, left in ((texts.KEYS_KEYBOARD, _KEYS), (texts.KEYS_PAD, _BUTTONS)):
+            canvas.text(text, (left, _FIRST - 14), size=LABEL, weight="medium", colour=MUTE)
+        for row, meaning in enumerate(self._controls.keys.table):
+            y = _FIRST + row * _ROW
+            canvas.line((MARGIN, y), (VIEW_SIZE[0] - MARGIN, y), LINE, 1)
+            canvas.text(texts.BINDINGS[meaning.name], (MARGIN, y + _ROW / 2 + 5), size=TEXT, colour=INK)
+        self._form.draw(canvas)
+        if self._said:
+            canvas.text(self._said, (_BUTTONS - 120, _WORDS + 21), size=SMALL, colour=HUMAN)
+        self._draw_hints(canvas)
+
+    def _draw_hints(self, canvas: Canvas) -> None:
+        word = self._controls.word
+        hints = [(word(Command.PAUSE), texts.HINT_LEAVE_KEY)]
+        if not self._controls.listening:
+            hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.RETRY), texts.HINT_AS_IT_WAS),
+                     (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
+        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+
+    def _changed(self, said: str) -> None:
+        self._said = said
+        settings = self._context.settings
+        settings.keys, settings.buttons = self._controls.keys.to_dict(), self._controls.buttons.to_dict()
+        self._context.apply_settings()
+
+    def _reset_all(self) -> None:
+        self._controls.keys.reset()
+        self._controls.buttons.reset()
+        self._changed(texts.BINDINGS_ALL_RESET)
+
+
+def _pressed(event: pygame.event.Event) -> tuple[int | None, int | None]:
+    """Return the key, or the pad's button or trigger, that an event presses."""
+    key = event.key if event.type == pygame.KEYDOWN else None
+    button = event.button if event.type == pygame.CONTROLLERBUTTONDOWN else getattr(event, "trigger", None)
+    return key, button

@@ -1,0 +1,215 @@
+"""Signs for what a pad has under its thumbs, of our own drawing: letters of a script that every text can contain.
+
+Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence, and is
+measured, drawn and kept like any other letter.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Final, Literal
+
+import pygame
+
+from game.ui.tokens import Colour
+
+Family = Literal["xbox", "playstation", "nintendo"]
+FAMILIES: Final[tuple[Family, ...]] = ("xbox", "playstation", "nintendo")
+# Beside the buttons, which have SDL's numbers, and the triggers, 32 and 33 (see `game.bindings`).
+TURN, STICK_LEFT, STICK_RIGHT, CROSS = 40, 41, 42, 43
+
+SIGN: Final = re.compile("([\ue000-\ue2ff])")
+_FIRST: Final = 0xE000
+_FAMILY: Final = 0x100
+
+# What surrounds a sign, and what stands in it: letters, or the name of a drawing.
+_XBOX: Final[dict[int, tuple[str, str]]] = {
+    pygame.CONTROLLER_BUTTON_A: ("round", "A"),
+    pygame.CONTROLLER_BUTTON_B: ("round", "B"),
+    pygame.CONTROLLER_BUTTON_X: ("round", "X"),
+    pygame.CONTROLLER_BUTTON_Y: ("round", "Y"),
+    pygame.CONTROLLER_BUTTON_BACK: ("round", "windows"),
+    pygame.CONTROLLER_BUTTON_START: ("round", "lines"),
+    pygame.CONTROLLER_BUTTON_LEFTSTICK: ("stick", "L"),
+    pygame.CONTROLLER_BUTTON_RIGHTSTICK: ("stick", "R"),
+    pygame.CONTROLLER_BUTTON_LEFTSHOULDER: ("wide", "LB"),
+    pygame.CONTROLLER_BUTTON_RIGHTSHOULDER: ("wide", "RB"),
+    pygame.CONTROLLER_BUTTON_DPAD_UP: ("cross", "up"),
+    pygame.CONTROLLER_BUTTON_DPAD_DOWN: ("cross", "down"),
+    pygame.CONTROLLER_BUTTON_DPAD_LEFT: ("cross", "left"),
+    pygame.CONTROLLER_BUTTON_DPAD_RIGHT: ("cross", "right"),
+    32: ("wide", "LT"),
+    33: ("wide", "RT"),
+    TURN: ("stick", "turn"),
+    STICK_LEFT: ("stick", "left"),
+    STICK_RIGHT: ("stick", "right"),
+    CROSS: ("cross", "all"),
+}
+_SIGNS: Final[dict[Family, dict[int, tuple[str, str]]]] = {
+    "xbox": _XBOX,
+    "playstation": {
+        **_XBOX,
+        pygame.CONTROLLER_BUTTON_A: ("round", "saltire"),
+        pygame.CONTROLLER_BUTTON_B: ("round", "ring"),
+        pygame.CONTROLLER_BUTTON_X: ("round", "square"),
+        pygame.CONTROLLER_BUTTON_Y: ("round", "triangle"),
+        pygame.CONTROLLER_BUTTON_LEFTSHOULDER: ("wide", "L1"),
+        pygame.CONTROLLER_BUTTON_RIGHTSHOULDER: ("wide", "R1"),
+        32: ("wide", "L2"),
+        33: ("wide", "R2"),
+    },
+    "nintendo": {
+        **_XBOX,
+        pygame.CONTROLLER_BUTTON_BACK: ("round", "minus"),
+        pygame.CONTROLLER_BUTTON_START: ("round", "plus"),
+        pygame.CONTROLLER_BUTTON_LEFTSHOULDER: ("wide", "L"),
+        pygame.CONTROLLER_BUTTON_RIGHTSHOULDER: ("wide", "R"),
+        32: ("wide", "ZL"),
+        33: ("wide", "ZR"),
+    },
+}
+_FAMILY_WORDS: Final[dict[Family, tuple[str, ...]]] = {
+    "playstation": ("playstation", "dualshock", "dualsense", "ps3", "ps4", "ps5", "sony", "wireless controller"),
+    "nintendo": ("nintendo", "switch", "joy-con", "joycon", "pro controller"),
+}
+# Lengths, in sizes of the type: half a sign's height, the middle of it above the baseline, the room beside it.
+_RADIUS: Final = 0.66
+_MIDDLE: Final = 0.36
+_BESIDE: Final = 0.07
+_STROKE: Final = 0.085
+_WIDE: Final = 1.9
+
+
+def family_of(name: str) -> Family:
+    """Return whose signs a pad has, by the name it gives itself; letters as on an Xbox's for all that are not known."""
+    name = name.lower()
+    if "xbox" in name:
+        return "xbox"
+    return next((family for family, words in _FAMILY_WORDS.items() if any(word in name for word in words)), "xbox")
+
+
+def sign(family: Family, button: int) -> str:
+    """Return the character that shows a pad's button, or one of the further signs above."""
+    return chr(_FIRST + FAMILIES.index(family) * _FAMILY + button)
+
+
+def sign_width(character: str, size: float) -> float:
+    """How far a sign reaches, with the room beside it, at a size of type in pixels."""
+    return size * ((_WIDE if _sign(character)[0] == "wide" else 2 * _RADIUS) + 2 * _BESIDE)
+
+
+def draw_sign(
+    surface: pygame.Surface,
+    character: str,
+    start: tuple[float, float],
+    size: float,
+    colour: Colour,
+    write: Callable[[str, float], pygame.Surface],
+) -> None:
+    """Draw a sign from a point of the baseline on; `write` gives letters of a size, as a surface."""
+    frame, mark = _sign(character)
+    width = sign_width(character, size)
+    middle = pygame.Vector2(start[0] + width / 2, start[1] - _MIDDLE * size)
+    stroke = max(1, round(_STROKE * size))
+    radius = _RADIUS * size
+    if frame == "cross":
+        _draw_cross(surface, middle, radius, colour, stroke, mark)
+        return
+    if frame == "wide":
+        box = pygame.Rect(0, 0, round(_WIDE * size), round(1.75 * radius))
+        box.center = round(middle.x), round(middle.y)
+        pygame.draw.rect(surface, colour, box, stroke, border_radius=round(0.6 * radius))
+    else:
+        pygame.draw.circle(surface, colour, middle, radius, stroke)
+    if frame == "stick":
+        pygame.draw.circle(surface, colour, middle, 0.74 * radius, max(1, stroke // 2))
+    if mark in _MARKS:
+        _MARKS[mark](surface, middle, 0.5 * radius, colour, round(1.3 * stroke))
+    else:
+        letters = write(mark, (0.62 if frame == "stick" else 0.74) * size)
+        ink = letters.get_bounding_rect()
+        surface.blit(letters, (middle.x - ink.centerx, middle.y - ink.centery))
+
+
+def _sign(character: str) -> tuple[str, str]:
+    family, button = divmod(ord(character) - _FIRST, _FAMILY)
+    return _SIGNS[FAMILIES[family]].get(button, ("round", str(button)))
+
+
+Mark = Callable[[pygame.Surface, pygame.Vector2, float, Colour, int], object]
+
+
+def _lines(*strokes: tuple[tuple[float, float], tuple[float, float]]) -> Mark:
+    """Return a mark of straight strokes, in half widths from its middle."""
+
+    def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
+        for a, b in strokes:
+            pygame.draw.line(
+                surface, colour, middle + half * pygame.Vector2(a), middle + half * pygame.Vector2(b), stroke
+            )
+
+    return draw
+
+
+def _outline(*corners: tuple[float, float], filled: bool = False) -> Mark:
+    """Return a mark with these corners."""
+
+    def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
+        points = [middle + half * pygame.Vector2(corner) for corner in corners]
+        pygame.draw.polygon(surface, colour, points, 0 if filled else stroke)
+
+    return draw
+
+
+def _both(*marks: Mark) -> Mark:
+    def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
+        for mark in marks:
+            mark(surface, middle, half, colour, stroke)
+
+    return draw
+
+
+def _ring(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
+    pygame.draw.circle(surface, colour, middle, half, stroke)
+
+
+def _arrow(degrees: float, away: float = 0.0) -> Mark:
+    """Return a filled arrow head that points there, 0 being up, that far from the middle."""
+    corners = [pygame.Vector2(x, y - away).rotate(degrees) for x, y in ((-0.8, 0.5), (0.8, 0.5), (0.0, -0.6))]
+    return _outline(*((corner.x, corner.y) for corner in corners), filled=True)
+
+
+_SQUARE: Final = ((-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85))
+_MARKS: Final[dict[str, Mark]] = {
+    "saltire": _lines(((-0.9, -0.9), (0.9, 0.9)), ((-0.9, 0.9), (0.9, -0.9))),
+    "ring": _ring,
+    "square": _outline(*_SQUARE),
+    "triangle": _outline((0.0, -1.1), (1.0, 0.65), (-1.0, 0.65)),
+    "lines": _lines(*(((-1.0, y), (1.0, y)) for y in (-0.7, 0.0, 0.7))),
+    "windows": _both(
+        _outline((-1.0, -0.9), (0.4, -0.9), (0.4, 0.4), (-1.0, 0.4)),
+        _lines(((0.0, 1.0), (1.0, 1.0)), ((1.0, 1.0), (1.0, 0.0))),
+    ),
+    "minus": _lines(((-0.9, 0.0), (0.9, 0.0))),
+    "plus": _lines(((-0.9, 0.0), (0.9, 0.0)), ((0.0, -0.9), (0.0, 0.9))),
+    "turn": _both(_arrow(-90, 0.62), _arrow(90, 0.62)),
+    "left": _arrow(-90),
+    "right": _arrow(90),
+}
+_ARMS: Final = {"up": -90, "down": 90, "left": 180, "right": 0}
+
+
+def _draw_cross(
+    surface: pygame.Surface, middle: pygame.Vector2, radius: float, colour: Colour, stroke: int, arm: str
+) -> None:
+    """Draw a D-pad, with the arm that is meant filled."""
+    half, reach = 0.34 * radius, 0.98 * radius
+    corner = [(half, half), (reach, half), (reach, -half), (half, -half)]
+    outline = [pygame.Vector2(x, y).rotate(-90 * turn) for turn in range(4) for x, y in corner[:3]]
+    pygame.draw.polygon(surface, colour, [middle + point for point in outline], stroke)
+    if arm in _ARMS:
+        filled = [pygame.Vector2(x, y).rotate(_ARMS[arm]) for x, y in corner]
+        pygame.draw.polygon(surface, colour, [middle + point for point in filled])
+    else:
+        pygame.draw.circle(surface, colour, middle, 0.8 * half)
