@@ -1,0 +1,96 @@
+"""Every scene of the game and how to get into it, with a player's folder in which there is something to be seen."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import time
+from collections.abc import Callable
+from datetime import date
+from inspect import Parameter, isclass, signature
+from shutil import copytree
+
+import game.scenes
+from ai.digits import DigitClassifier
+from ai.missions import MISSIONS
+from ai.pilots import ScriptedPilot
+from game.context import Context
+from game.course import Daily, Flown
+from game.exhibits import EXHIBITS
+from game.flight import Flight
+from game.records import Records
+from game.scene import Scene
+from game.scenes.dream import Dream
+from game.scenes.physics import Physics
+from game.scenes.play import Play
+from game.scenes.quiz import Quiz
+from game.scenes.race import race
+from game.scenes.replay import Replay
+from game.scenes.watch import COUNTS, Watch
+
+FLIGHTS = 3
+
+
+def scene_types() -> list[type]:
+    """Return the classes of all scenes there are, in the modules of `game.scenes`."""
+    found = []
+    for module in pkgutil.iter_modules(game.scenes.__path__):
+        for each in vars(importlib.import_module(f"game.scenes.{module.name}")).values():
+            here = isclass(each) and each.__module__ == f"game.scenes.{module.name}"
+            if here and not each.__name__.startswith("_") and all(hasattr(each, name) for name in ("enter", "draw")):
+                found.append(each)
+    return found
+
+
+def stock(context: Context) -> None:
+    """Put a few flights and a network of their own into the player's folder, as far as they are not there."""
+    records = Records(context.user_dir)
+    for seed in range(FLIGHTS - len(records.kept())):
+        flight = Flight(seed, ScriptedPilot())
+        flight.hand_over()
+        while not flight.over:
+            flight.step(0)
+        records.keep(flight, time.time(), alone=True)
+    own = context.user_dir / "models" / "mine"
+    if not own.exists():
+        copytree(context.models_dir / "lander" / "modern", own)
+
+
+def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
+    """Return what makes each scene that can be entered from outside; None if what it shows can't be read now."""
+    rng = context.rng
+    plain = {each.__name__: each for each in scene_types() if _needs_nothing(each)}
+    missions = list(MISSIONS.values())
+
+    def replayed(make: Callable[..., Scene]) -> Scene | None:
+        records = Records(context.user_dir)
+        files = sorted(records.kept())
+        try:
+            return make(records.read(files[rng.integers(len(files))])) if files else None
+        except ValueError:
+            return None
+
+    def of_digits(make: Callable[..., Scene]) -> Scene | None:
+        try:
+            return make(DigitClassifier.load(context.models_dir / "digits" / str(rng.choice(["modern", "classic"]))))
+        except (OSError, ValueError):
+            return None
+
+    return {
+        **plain,
+        "Watch": lambda: Watch(int(rng.choice(COUNTS))),
+        "Physics": lambda: Physics(str(rng.choice(list(EXHIBITS)))),
+        "mission": lambda: Play(0, course=Flown(missions[rng.integers(len(missions))])),
+        "daily": lambda: Play(1, course=Daily(date(2026, 1, 1))),
+        "race": lambda: replayed(race),
+        "Replay": lambda: replayed(Replay),
+        "Dream": lambda: of_digits(Dream),
+        "Quiz": lambda: of_digits(Quiz),
+    }
+
+
+def _needs_nothing(scene: type) -> bool:
+    return all(
+        each.default is not Parameter.empty or each.kind in (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
+        for each in signature(scene).parameters.values()
+    )
