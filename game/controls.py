@@ -268,4 +268,4 @@ def key_name(code: int) -> str:
 
 def names(words: Iterable[str]) -> str:
     """Write several keys, or signs, in a row."""
-    return "  ".join(words)
+    return "   ".join(words)

@@ -43,8 +43,8 @@ KEY_NAMES: Final = {
     "rshift": "Right Shift",
     "lctrl": "Left Ctrl",
     "rctrl": "Right Ctrl",
-    "period": ".",
-    "comma": ",",
+    "period": "Period",
+    "comma": "Comma",
     "minus": "−",
     "plus": "+",
     "equals": "=",
@@ -970,3 +970,19 @@ TURN_RIGHT: Final = "turn right"
 # Gamepads that come and go
 PAD_FOUND: Final = "Gamepad: {name}"
 PAD_LOST: Final = "The gamepad was pulled out."
+
+# Missions: medals, what flies beside one, and how the network does
+AND: Final = " and "
+MEDAL_NEXT: Final = "{medal} asks for {less}."
+MEDAL_LESS_FUEL: Final = "{:.1f} s less fuel"
+MEDAL_LESS_TIME: Final = "{:.1f} s less time"
+MEDAL_GOLD: Final = "Both feet down, within gold's fuel and time."
+MEDAL_BY_HAND: Final = "Landed. Medals are for flights by your own hand, all the way."
+MISSION_GOAL: Final = "Gold: {fuel:.1f} s of fuel, {seconds:.1f} s of time"
+MISSION_RIVAL_LABEL: Final = "Beside you"
+MISSION_RIVALS: Final = {"network": "the network", "recorded": "a recorded flight", "own": "your best"}
+MISSION_NETWORK: Final = "The network that comes with the game lands {landed} of 20 starts near this one."
+MISSION_NETWORK_FAILS: Final = {
+    "earth": "It lands {landed} of 20 starts near this one: where it leans too far, the engine carries it away.",
+    "outage": "It lands none of 20 starts near this one: it does not know that its engine will fail.",
+}

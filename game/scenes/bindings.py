@@ -106,7 +106,7 @@ class Cell(Widget):
         """Write the keys, or that one is waited for."""
         if self.warmth > 0.02:
             colour = HUMAN if self.typing else INK
-            canvas.outline(self.box.inflate(24, -3), 6, colour, 1, (0.9 if self.typing else 0.4) * self.warmth)
+            canvas.outline(self.box.inflate(24, 0), 6, colour, 1, (0.9 if self.typing else 0.4) * self.warmth)
         left, baseline = self.box.left, self.box.centery + 5
         if self.typing:
             text = texts.BINDINGS_PRESS_BUTTON if self._for_pads else texts.BINDINGS_PRESS_KEY
@@ -129,7 +129,7 @@ class BindingsScene:
         self._said = ""
         for row, meaning in enumerate(self._controls.keys.table):
             for left, bindings in ((_KEYS, self._controls.keys), (_BUTTONS, self._controls.buttons)):
-                box = (left, _FIRST + row * _ROW, _CELL, _ROW)
+                box = (left, _FIRST + row * _ROW + 2, _CELL, _ROW - 3)
                 form.add(Cell(form.manager, box, self._controls, bindings, meaning, self._changed))
         form.add(Word(form.manager, (MARGIN, _WORDS, 96, 32), texts.BACK, Pop, size=18))
         form.add(Word(form.manager, (_KEYS, _WORDS, 240, 32), texts.BINDINGS_ALL, self._reset_all, size=18))

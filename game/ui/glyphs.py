@@ -125,7 +125,8 @@ def draw_sign(
     if frame == "stick":
         pygame.draw.circle(surface, colour, middle, 0.74 * radius, max(1, stroke // 2))
     if mark in _MARKS:
-        _MARKS[mark](surface, middle, 0.5 * radius, colour, round(1.3 * stroke))
+        half = (0.62 if frame == "stick" else 0.5) * radius
+        _MARKS[mark](surface, middle, half, colour, round(1.3 * stroke))
     else:
         letters = write(mark, (0.62 if frame == "stick" else 0.74) * size)
         ink = letters.get_bounding_rect()
