@@ -118,7 +118,7 @@ class Digits:
             return None
         if event.type == pygame.KEYDOWN and event.key == pygame.K_z:
             self.pad.undo()
-        elif event.type == pygame.KEYDOWN and event.key in (pygame.K_c, pygame.K_DELETE):
+        elif event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
             self.pad.clear()
         elif event.type == pygame.KEYDOWN and event.key in _DIGITS:
             self._correct(_DIGITS[event.key])
@@ -130,7 +130,7 @@ class Digits:
         match translate(event):
             case Command.HANDOVER if event.type != pygame.KEYDOWN:  # Tab moves the focus
                 self.pad.undo()
-            case Command.RETRY:
+            case Command.RETRY | Command.CHOICES:
                 self.pad.clear()
             case Command.NEXT | Command.PREVIOUS as command:
                 self._turn(1 if command is Command.NEXT else -1)
@@ -352,7 +352,7 @@ class Digits:
             canvas.text(line, (LEFT, _PROBLEMS + 17 * number), size=SMALL, colour=canvas.palette.warn)
         controls = self._context.controls
         word = controls.word
-        keys = (word(Command.HANDOVER), word(Command.RETRY)) if controls.pad_in_use else ("Z", "C")
+        keys = (word(Command.HANDOVER) if controls.pad_in_use else "Z", word(Command.CHOICES))
         for key, widget in zip(keys, self._under, strict=True):
             left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
             canvas.text(key, (left, widget.baseline), size=SMALL, weight="medium")

@@ -96,15 +96,14 @@ class Physics:
         if _stops(event):
             self.stopped = not self.stopped
             return None
-        if event.type == pygame.KEYDOWN and event.key == pygame.K_c:
-            self._contacts.choose(1 - self._contacts.index)
-            return None
         return self._obey(event)
 
     def _obey(self, event: pygame.event.Event) -> Transition | None:
         match translate(event):
             case Command.PAUSE:
                 return self._pause()
+            case Command.CHOICES:
+                self._contacts.choose(1 - self._contacts.index)
             case Command.STEP:
                 self.stopped = True
                 self._step()
@@ -244,12 +243,10 @@ class Physics:
              texts.HINT_GO if self.stopped else texts.HINT_STOP),
             (word(Command.STEP), texts.HINT_STEP),
             (word(Command.NEXT), texts.HINT_NEXT_EXHIBIT),
-            ("C", texts.HINT_CONTACTS),
+            (word(Command.CHOICES), texts.HINT_CONTACTS),
             (word(Command.RETRY), texts.HINT_RESTART_EXHIBIT),
             (word(Command.PAUSE), texts.HINT_PAUSE),
         ]  # fmt: skip
-        if controls.pad_in_use:
-            del hints[3]
         draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True)
         self._draw_state(canvas)
 

@@ -103,7 +103,7 @@ class Quiz:
             self._read(event.key - pygame.K_0)
         elif event.type == pygame.KEYDOWN and event.key == pygame.K_z:
             self._undo()
-        elif event.type == pygame.KEYDOWN and event.key in (pygame.K_c, pygame.K_DELETE):
+        elif event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
             self._clear()
         else:
             return self._obey(event)
@@ -113,7 +113,7 @@ class Quiz:
         match translate(event):
             case Command.HANDOVER if event.type != pygame.KEYDOWN:  # Tab moves the focus
                 self._undo()
-            case Command.RETRY:
+            case Command.RETRY | Command.CHOICES:
                 self._clear()
             case _:
                 return self._form.handle_event(event)
@@ -270,7 +270,7 @@ class Quiz:
         if current and current.answer is None and current.kind == "draw":
             hints[:0] = [
                 (word(Command.HANDOVER) if pad else "Z", texts.DIGITS_UNDO.lower()),
-                (word(Command.RETRY) if pad else "C", texts.DIGITS_CLEAR.lower()),
+                (word(Command.CHOICES), texts.DIGITS_CLEAR.lower()),
             ]
         elif current and current.answer is None and not pad:
             hints[:1] = [("0 – 9", texts.HINT_CHOOSE)]
