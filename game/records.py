@@ -24,7 +24,7 @@ LOGBOOK: Final = "logbook.jsonl"
 RECENT: Final = 100  # flights whose files are kept whatever they came to
 BEST: Final = 5  # and the best landings of each course
 _SLACK: Final = 25  # files too many before they are looked through
-_WINDOW: Final = 20
+RECENT_OWN: Final = 10  # flights by the person alone that their skill is told by
 
 
 def describe(flight: Flight, when: float, **more: Any) -> Entry:
@@ -189,7 +189,7 @@ def totals(entries: Sequence[Entry]) -> Totals:
     )
 
 
-def skill(entries: Iterable[Entry], window: int = _WINDOW) -> list[float]:
+def skill(entries: Iterable[Entry], window: int = RECENT_OWN) -> list[float]:
     """Share of landings, 0 to 1, among the last `window` flights by the person alone, after each of them."""
     return shares([entry.landed for entry in entries if entry.alone], window)
 

@@ -16,7 +16,6 @@ from game.cockpit.hands import OWN
 from game.cockpit.insight import Insight
 from game.cockpit.lesson import keep_lesson
 from game.cockpit.overrides import Overrides
-from game.cockpit.skill import Entry, Skill
 from game.cockpit.track import Track
 from game.controls import Command, translate
 from game.flight import Flight, Hand
@@ -72,15 +71,13 @@ class Cockpit:
         """Whether the flight was flown by the person's own hands from start to end, and without help."""
         return hands == OWN and not self.helped and self._flight.share == 1.0
 
-    def write_down(self, skill: Skill, folder: Path, hands: str) -> str:
-        """Note a flight that is over, and keep it as an example if wished; return what to tell the player of that."""
+    def keep_lesson(self, folder: Path, hands: str) -> str:
+        """Keep a flight that is over as an example, if wished and worth it; return what to tell the player of that."""
         flight = self._flight
-        landed = flight.outcome is Outcome.LANDED
-        skill.add(Entry(landed, self.alone(hands), len(flight.env.ground.pads), landing_score(flight.env)))
-        if not (landed and self._settings.teach and hands == OWN):
-            return skill.problem
+        if not (flight.outcome is Outcome.LANDED and self._settings.teach and hands == OWN):
+            return ""
         try:
-            return texts.TAUGHT if keep_lesson(flight, folder) else skill.problem
+            return texts.TAUGHT if keep_lesson(flight, folder) else ""
         except (OSError, ValueError) as error:
             return texts.NOT_TAUGHT.format(reason=error)
 

@@ -11,9 +11,10 @@ import pygame
 from game import texts
 from game.cockpit.hands import HANDS
 from game.cockpit.lesson import lessons
-from game.cockpit.skill import RECENT, Skill
+from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command, translate
+from game.records import RECENT_OWN
 from game.scene import Pop, Scene, Transition
 from game.scenes.pause import blurred
 from game.ui.canvas import Canvas
@@ -141,7 +142,7 @@ class ChoicesScene:
         self._draw_figures(canvas, top + height + 80)
 
     def _draw_figures(self, canvas: Canvas, y: float) -> None:
-        left, own = _CHART.left, self._skill.own[-RECENT:]
+        left, own = _CHART.left, self._skill.own[-RECENT_OWN:]
         if own:
             figure = canvas.text(str(sum(own)), (left, y), size=FIGURE, weight="light", colour=HUMAN)
             canvas.text(texts.SKILL_FIGURE.format(count=len(own)), (figure.right + 10, y), size=SMALL, colour=MUTE)

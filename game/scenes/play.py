@@ -77,9 +77,10 @@ class Play:
         self._context = context
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
-        self._skill, self._records = Skill(context.user_dir), Records(context.user_dir)
-        if self._skill.problem:
-            context.note(self._skill.problem)
+        self._records = Records(context.user_dir)
+        self._skill = Skill(self._records.entries())
+        if self._records.problem:
+            context.note(self._records.problem)
         self._begin(self._new_seed() if self._seed is None else self._seed)
 
     def exit(self) -> None:
@@ -229,8 +230,8 @@ class Play:
         assert self._context is not None
         self._card = self._cockpit.card(self._skill.best, self._camera.view(1.0))
         course, alone = self._course, self._cockpit.alone(self._hands)
-        told = "" if course else self._cockpit.write_down(self._skill, self._context.user_dir, self._hands)
-        self._records.keep(
+        told = "" if course else self._cockpit.keep_lesson(self._context.user_dir, self._hands)
+        entry = self._records.keep(
             self.flight,
             time.time(),
             alone=alone and (course is None or course.counts),
@@ -238,6 +239,7 @@ class Play:
             course=course.name if course else "",
             medal=course.medal(self.flight) if course else 0,
         )
+        self._skill.add(entry)
         if course:
             self._card = course.card(self._card, self.flight)
         if told or self._records.problem:

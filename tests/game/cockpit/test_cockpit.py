@@ -1,4 +1,6 @@
+import json
 from collections.abc import Callable
+from dataclasses import asdict
 
 import numpy as np
 import pygame
@@ -7,9 +9,10 @@ import pytest
 from ai.lander import PARAMS, Outcome
 from game import networks, texts
 from game.cockpit.overrides import difference
-from game.cockpit.skill import Entry, Skill
 from game.context import Context
 from game.flight import Hand
+from game.flight_file import Entry
+from game.records import LOGBOOK, Records
 from game.scenes.play import Play
 from game.settings import SettingsFile
 from game.ui.canvas import Canvas
@@ -168,7 +171,7 @@ def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_gam
     assert texts.SHARE_YOU.format(percent=you) in words
     assert texts.SHARE_COPILOT.format(percent=100 - you) in words
     assert texts.SHARE_MOMENTS.format(times=1) in words
-    assert Skill(context.user_dir).entries[-1].alone is False
+    assert Records(context.user_dir).entries()[-1].alone is False
 
 
 @pytest.mark.parametrize("device", ["keys", "pad", "mouse"])
@@ -211,9 +214,9 @@ def test_pads_and_hands_do_not_change_under_a_flight_that_has_begun(open_game: O
 
 
 def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Open, context: Context):
-    skill = Skill(context.user_dir)
-    for _ in range(4):
-        skill.add(Entry(landed=True, alone=False))
+    helped = Entry(0.0, "LANDED", 7.0, 3.0, 0.4, 0.5)
+    context.user_dir.mkdir(exist_ok=True)
+    (context.user_dir / LOGBOOK).write_text(4 * (json.dumps(asdict(helped)) + "\n"))
     driver = fly(open_game, context, check_flights=True, assist=0.8, hands="noisy")
     start_at(driver, 0, 16, 0, 0, 0, 0)
     driver.keys(pygame.K_TAB, pygame.K_PLUS)
@@ -222,7 +225,8 @@ def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Ope
     assert set(play(driver).flight.recording.actions) == {COAST}
     start_at(driver, 8, 3, 0, -4, 0, 0)
     driver.frames(60)
-    assert Skill(context.user_dir).entries[-1] == Entry(landed=False, alone=True)
+    last = Records(context.user_dir).entries()[-1]
+    assert (last.landed, last.alone) == (False, True)
     driver.key(pygame.K_n)
     driver.key(pygame.K_TAB)
     assert play(driver).flight.hand is Hand.NETWORK
