@@ -21,6 +21,7 @@ from game.ui.tokens import NET
 from game.world import lander as art
 from game.world.flame import NET_PLUME, plume
 from game.world.paths import Trails
+from game.world.sheet import fitted
 
 _FIRE: Final = 0.5  # of full thrust: a ghost's flame must not be taken for one's own
 _BODY: Final = 0.30  # how much of a ghost covers what lies behind it, and of its rim
@@ -59,10 +60,10 @@ class Ghost:
         if not flight.over and flight.env.fired[0] >= 3:
             _draw_fire(canvas, view, pose, int(flight.env.steps[0]))
         x, y = view.pixels(pose[:2]).tolist()
-        degrees, halves = round(math.degrees(pose[2])) % 360, (int(x % 1 * 2), int(y % 1 * 2))
-        sprite = _phantom(view.pixels_per_metre, degrees, halves, flight.outcome is Outcome.CRASHED)
-        half = sprite.get_width() // 2
-        canvas.surface.blit(sprite, (math.floor(x) - half, math.floor(y) - half))
+        fine, degrees = view.painted_per_metre, round(math.degrees(pose[2])) % 360
+        crashed = flight.outcome is Outcome.CRASHED
+        ratio = view.pixels_per_metre / fine
+        canvas.surface.blit(*fitted(lambda halves: _phantom(fine, degrees, halves, crashed), ratio, (x, y)))
 
 
 def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
@@ -83,14 +84,14 @@ def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
         sheet, (left, top) = fire
         reach = art.NOZZLE[1]
         nozzle = view.pixels((x - reach * math.sin(angle), y + reach * math.cos(angle))).tolist()
-        corner = (round(nozzle[0]) - left, round(nozzle[1]) - top)
+        corner = (round(nozzle[0] - left), round(nozzle[1] - top))
         canvas.surface.blit(sheet, corner, special_flags=pygame.BLEND_RGB_ADD)
 
 
 @lru_cache(maxsize=512)
 def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
     """Return the lander as glass: its shades in blue, seen through, and a line of light around it."""
-    craft = art.sprite(pixels_per_metre, math.radians(degrees), halves[0] / 2, halves[1] / 2)
+    craft = art.painted(pixels_per_metre, degrees, halves)
     phantom = craft.copy()
     cover = pygame.surfarray.array_alpha(craft).astype(float) / 255
     reach = max(1, round(pixels_per_metre / 24))

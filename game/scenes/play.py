@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from game import hud, networks, texts
+from game import framing, hud, networks, texts
 from game.clock import STEP
 from game.cockpit.cockpit import Cockpit
 from game.cockpit.hands import HANDS, OWN
@@ -142,7 +142,7 @@ class Play:
         self._stage.follow(np.array([flight.flown_by is Hand.NETWORK]), ended)
         self._heard.follow(self._stage.thrust[0])
         if not self._settings.reduced_motion:
-            self._camera.follow(flight.env.position[0])
+            framing.follow(self._camera, flight.env)
         self._steps += 1
         if flight.over:
             self._since_end += 1
@@ -219,6 +219,8 @@ class Play:
         self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
         self._heard = FlightSound(self._sound, self.flight.env)
         self._camera = Camera()
+        if not reduced:
+            self._camera.cut(framing.framed(self.flight.env))
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
         self._drift = Drift(self.flight.env)

@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 
 from ai.lander import Outcome
-from game import export, hud, texts
+from game import export, framing, hud, texts
 from game.clock import STEP
 from game.context import Context
 from game.controls import Command, translate
@@ -41,6 +41,7 @@ _EARTH: Final = (208.0, 268.0)  # points; clear of the words
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 54.0)
 _VERBS: Final = 144.0
+_HEAD: Final = 190.0  # points: below the verbs
 _VERB: Final = 20.0
 
 
@@ -68,6 +69,7 @@ class Replay:
         self._stage = Stage(env, np.random.default_rng(self.record.recording.seed), self._settings.reduced_motion)
         self._heard = FlightSound(context.sound, env, warns=False)
         self._camera = Camera()
+        self._frame()
         self._build(context)
         self._look()
 
@@ -131,6 +133,7 @@ class Replay:
         self._stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
         self._stage.blue[:] = self.tape.flight.flown_by is Hand.NETWORK
         self._due = 0.0
+        self._frame()
         self._look()
 
     @property
@@ -148,8 +151,13 @@ class Replay:
         ended = np.array([flight.over and not was_over])
         self._stage.follow(np.array([flight.flown_by is Hand.NETWORK]), ended)
         if not self._settings.reduced_motion:
-            self._camera.follow(flight.env.position[0])
+            framing.follow(self._camera, flight.env, head=_HEAD)
         self._look()
+
+    def _frame(self) -> None:
+        """Turn the camera to the moment at once."""
+        if not self._settings.reduced_motion:
+            self._camera.cut(framing.framed(self.tape.flight.env, head=_HEAD))
 
     def _look(self) -> None:
         """Read the figures; at the end they stay those of the last moment before."""

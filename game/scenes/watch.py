@@ -11,7 +11,7 @@ import pygame
 
 from ai.env import Bools, Doubles
 from ai.lander import Outcome
-from game import hud, networks, texts
+from game import framing, hud, networks, texts
 from game.clock import STEP
 from game.context import Context
 from game.controls import Command, translate
@@ -155,6 +155,8 @@ class Watch:
         self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._camera = Camera()
+        if count == 1 and not self._settings.reduced_motion:
+            self._camera.cut(framing.framed(self.swarm.env))
         self._mind = Mind()
         self._due = 0.0
         self.shown = min(self.shown, count - 1)
@@ -171,7 +173,7 @@ class Watch:
         self._trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
         self._mind.follow(swarm.flyer, swarm.observation[self.shown], int(swarm.env.actions[self.shown]))
         if swarm.env.num_envs == 1 and not self._settings.reduced_motion:
-            self._camera.follow(swarm.env.position[0])
+            framing.follow(self._camera, swarm.env)
 
     def _show(self, slot: int) -> None:
         self.shown = slot

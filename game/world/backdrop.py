@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from functools import lru_cache
 from typing import Final
 
 import numpy as np
 import pygame
 
-from game.render import Camera
+from game.render import POINTS_PER_METRE, Camera, View
 from game.ui.canvas import Canvas
+from game.ui.tokens import NIGHT0, VIEW_SIZE
 from game.world.earth import paint_earth
+from game.world.sheet import Sheet
 from game.world.sky import NearStars, paint_sky
-from game.world.terrain import MARGIN, RIDGES, paint_plain, paint_ridge
+from game.world.terrain import HORIZON_HEIGHT, MARGIN, PLAIN_HORIZON, RIDGES, WIDE_MARGIN, paint_plain, paint_ridge
 
 EARTH: Final = (312.0, 152.0)  # points
 EARTH_RADIUS: Final = 43.0
-_EARTH_DEPTH: Final = 0.04
+_EARTH_DEPTH: Final = 0.008
 _MOON: Final = 5
+_PLAIN_DETAIL: Final = 1.5  # as finely as the plain is painted for a camera that comes near
 
 
 class Backdrop:
@@ -29,14 +33,14 @@ class Backdrop:
 
     def __init__(self, size: tuple[int, int], rng: np.random.Generator, reduced_motion: bool = False) -> None:
         self.size = size
-        sky, stars, earth, plain, *ranges = rng.spawn(4 + len(RIDGES))
+        sky, stars, earth, self._plain_chance, *ranges = rng.spawn(4 + len(RIDGES))
         self._sky = paint_sky(size, sky)
         self._stars = NearStars(size, stars, still=reduced_motion)
         self._disc, self._air = paint_earth(EARTH_RADIUS * size[1] / 720, earth)
-        self._layers = [
+        self._ridges = [
             (*paint_ridge(size, ridge, own), ridge.depth) for ridge, own in zip(RIDGES, ranges, strict=True)
         ]
-        self._layers.append((*paint_plain(size, plain), 1.0))
+        self._plains: dict[float, tuple[Sheet, tuple[float, float]]] = {}
 
     def draw(
         self, canvas: Canvas, camera: Camera, time: float, alpha: float = 1.0, earth: tuple[float, float] = EARTH
@@ -45,28 +49,52 @@ class Backdrop:
 
         `earth` is where the Earth's middle stands, in points.
         """
-        self.paint(canvas.surface, camera.view(canvas.scale, alpha).shift, time, earth)
+        self.paint(canvas.surface, camera.view(canvas.scale, alpha), time, earth)
 
     def paint(
         self,
         surface: pygame.Surface,
-        shift: tuple[float, float] = (0.0, 0.0),
+        view: View | None = None,
         time: float = 0.0,
         earth: tuple[float, float] = EARTH,
     ) -> None:
-        """Fill a surface of this backdrop's size, the near world moved by `shift` pixels."""
-        across, down = shift
-        surface.blit(self._sky, (0, 0))
+        """Fill a surface of this backdrop's size, as seen in a view; without one, as at rest.
+
+        What is far away keeps its size however close the camera comes. It goes up and down with the horizon, and
+        aside by a small share of what the camera does.
+        """
+        view = view or View(self.size[1] / 720)
+        across = -view.centre[0] * POINTS_PER_METRE * view.scale
+        down = round(float(view.pixels((0.0, HORIZON_HEIGHT))[1]) - PLAIN_HORIZON * self.size[1])
+        surface.blit(self._sky, (0, down))
+        if down > 0:  # no sky was painted there, but it is as dark as its top rows
+            surface.blit(self._sky, (0, 0), (0, 0, self.size[0], down))
+        elif down < 0:  # behind the plain, which may be the least bit translucent
+            surface.fill(NIGHT0, (0, self.size[1] + down, self.size[0], -down))
         self._stars.draw(surface, (across, down), time)
         self._draw_earth(surface, earth, across, down)
         margin = MARGIN * self.size[0]
-        for sheet, top, depth in self._layers:
-            surface.blit(sheet, (round(across * depth - margin), round(top + down * depth)))
+        for sheet, top, depth in self._ridges:
+            surface.blit(sheet, (round(across * depth - margin), top + down))
+        plain, corner = self._plain(view)
+        plain.draw(surface, view, corner)
 
-    def _draw_earth(self, surface: pygame.Surface, earth: tuple[float, float], across: float, down: float) -> None:
+    def _plain(self, view: View) -> tuple[Sheet, tuple[float, float]]:
+        """Return the plain, and where in the world its top left corner is; painted when it is first seen so large."""
+        detail = min(view.closest, _PLAIN_DETAIL) or 1.0
+        if detail not in self._plains:
+            width, height = (round(length * detail) for length in self.size)
+            rest = View(height / 720)
+            margin = WIDE_MARGIN if view.closest else MARGIN
+            picture, top = paint_plain((width, height), deepcopy(self._plain_chance), margin)
+            x, y = rest.metres((-margin * VIEW_SIZE[0], top / rest.scale)).tolist()
+            self._plains[detail] = Sheet(picture, rest.pixels_per_metre), (x, y)
+        return self._plains[detail]
+
+    def _draw_earth(self, surface: pygame.Surface, earth: tuple[float, float], across: float, down: int) -> None:
         unit = self.size[1] / 720
         x = round(earth[0] * unit + across * _EARTH_DEPTH)
-        y = round(earth[1] * unit + down * _EARTH_DEPTH)
+        y = round(earth[1] * unit) + down
         for sprite, flags in ((self._air, pygame.BLEND_RGB_ADD), (self._disc, 0)):
             surface.blit(sprite, (x - sprite.get_width() // 2, y - sprite.get_height() // 2), special_flags=flags)
 

@@ -16,6 +16,7 @@ from game.world.paint import light
 
 LEVELS: Final = 8
 FLICKERS: Final = 5
+_FINE: Final = 40.0  # pixels per metre at which fire is painted, to be turned and scaled: it has no sharp edges
 
 
 @dataclass(frozen=True, eq=False)  # one of a kind each, and so a quick key
@@ -36,7 +37,7 @@ JET: Final = Plume(0.95, 0.085, (236, 242, 255), (150, 178, 226), (70, 92, 150))
 
 def plume(
     kind: Plume, pixels_per_metre: float, angle: float, thrust: float, flicker: int
-) -> tuple[pygame.Surface, tuple[int, int]] | None:
+) -> tuple[pygame.Surface, tuple[float, float]] | None:
     """Return fire that leaves along `angle` (radians; 0 is straight down), and where in it the nozzle is.
 
     `thrust` is 0 to 1; None stands for no fire at all.
@@ -44,9 +45,12 @@ def plume(
     level = math.ceil(min(thrust, 1.0) * LEVELS - 0.25)
     if level <= 0:
         return None
-    step = 3 if pixels_per_metre >= 20 else 6
-    degrees = round(math.degrees(angle) / step) * step % 360
-    return _paint(kind, pixels_per_metre, degrees, level, flicker % FLICKERS)
+    upright, (left, top) = _paint(kind, _FINE, 0, level, flicker % FLICKERS)
+    ratio = pixels_per_metre / _FINE
+    fire = pygame.transform.rotozoom(upright, math.degrees(angle), ratio)
+    right, down = ratio * (left - upright.get_width() / 2), ratio * (top - upright.get_height() / 2)
+    cos, sin = math.cos(angle), math.sin(angle)
+    return fire, (fire.get_width() / 2 + right * cos + down * sin, fire.get_height() / 2 - right * sin + down * cos)
 
 
 def plumes(

@@ -6,18 +6,19 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-import pygame
 
 from ai.env import Doubles
 from ai.ground import Ground
-from game.render import WORLD_WIDTH, View
+from game.render import LAND_REACH, WORLD_WIDTH, View
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, SMALL
 from game.world.pad import draw_pad
 from game.world.paint import Picture, bell, clouds, layer
+from game.world.sheet import Sheet
 from game.world.sky import SUN
 
-_REACH: Final = WORLD_WIDTH / 2 + 2.0  # metres to both sides that are painted
+_REACH: Final = LAND_REACH  # metres to both sides that are painted
+_DETAIL: Final = 0.75  # of what the closest view would need: slopes are soft
 _FOOT: Final = 0.55  # metres below the plain's line over which a hill fades into it
 _CREST_COLOUR: Final = np.array((44, 42, 64), np.float32)
 _FOOT_COLOUR: Final = np.array((20, 22, 38), np.float32)
@@ -28,9 +29,8 @@ _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
     """Draw hills, if there are any, and pads, `shift` metres to the right; of several, each with its factor."""
     if ground.hills:
-        sheet, left, top = paint_hills(ground, round(view.pixels_per_metre, 3))
-        corner = view.pixels((left, top)).tolist()
-        canvas.surface.blit(sheet, (round(corner[0]), round(corner[1])))
+        sheet, corner = paint_hills(ground, round((_DETAIL if view.closest else 1.0) * view.painted_per_metre, 3))
+        sheet.draw(canvas.surface, view, corner)
     several = len(ground.pads) > 1
     for pad in ground.pads:
         floor = pad.top - _LIP if several else ground.base
@@ -41,8 +41,8 @@ def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: 
 
 
 @lru_cache(maxsize=2)
-def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[pygame.Surface, float, float]:
-    """Return the hills as a layer, and the place in metres of its top left corner."""
+def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[Sheet, tuple[float, float]]:
+    """Return the hills, and the place in metres of their top left corner."""
     crest_x = np.arange(-_REACH, _REACH, 1 / pixels_per_metre)
     crest = hills_height(ground, crest_x).astype(np.float32)
     top = float(crest.max()) + 0.1
@@ -62,7 +62,7 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[pygame.Surface
     foot = _FOOT * np.clip((crest - ground.base) / 0.8, 0, 1) ** 0.6  # none where there is no hill
     cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (crest > ground.base + 0.01)
     cover = cover * np.clip(1 + (rows - ground.base) / np.maximum(foot, 0.02), 0, 1) ** 1.5
-    return layer(picture.astype(np.float32), cover.astype(np.float32), rng), -_REACH, top
+    return Sheet(layer(picture.astype(np.float32), cover.astype(np.float32), rng), pixels_per_metre), (-_REACH, top)
 
 
 def hills_height(ground: Ground, x: Doubles) -> Doubles:

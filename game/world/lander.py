@@ -17,6 +17,7 @@ import pygame
 from ai.env import Doubles
 from ai.lander import FOOT_CENTRE, FOOT_SIZE
 from game.ui.tokens import Colour
+from game.world.sheet import fitted
 
 Corner = tuple[float, float]
 
@@ -26,6 +27,7 @@ NOZZLE: Final = (0.0, -0.66)
 JETS: Final = ((-0.56, 0.60), (0.56, 0.60))  # the left-hand and the right-hand one
 
 _FACTOR: Final = 4
+_LARGE: Final = 60.0  # pixels per metre from which half of that will do
 _SUN: Final = np.array((0.84, 0.06, 0.54))
 _EARTH: Final = np.array((-0.62, 0.58, 0.53))
 _SUNLIGHT: Final = np.array((1.0, 0.86, 0.70))
@@ -155,32 +157,42 @@ _RIMS: Final = (
 
 
 def sprite(
-    pixels_per_metre: float, angle: float, x: float = 0.0, y: float = 0.0, wreck: bool = False
-) -> pygame.Surface:
-    """Return the lander turned by `angle`, its centre of mass in the middle, moved by a pixel's fraction x, y."""
-    return _paint(pixels_per_metre, round(math.degrees(angle)) % 360, (int(x * 2) & 1, int(y * 2) & 1), wreck)
+    pixels_per_metre: float,
+    angle: float,
+    middle: tuple[float, float] = (0.0, 0.0),
+    ratio: float = 1.0,
+    wreck: bool = False,
+) -> tuple[pygame.Surface, tuple[int, int]]:
+    """Return the lander turned by `angle`, and the corner that brings its centre of mass to `middle` in pixels.
+
+    It is painted at so many pixels per metre and then scaled by `ratio`.
+    """
+    degrees = round(math.degrees(angle)) % 360
+    return fitted(lambda halves: painted(pixels_per_metre, degrees, halves, wreck), ratio, middle)
 
 
 def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[tuple[pygame.Surface, tuple[int, int]]]:
     """Return a swarm ready to be blitted: angles (n,), centres of mass (n, 2) in pixels."""
     degrees = np.rint(np.degrees(angles) / 5).astype(int) * 5 % 360
-    half = _paint(pixels_per_metre, 0, (0, 0)).get_width() // 2
+    half = painted(pixels_per_metre, 0, (0, 0)).get_width() // 2
     corners = np.rint(middles - half).astype(int).tolist()
     return [
-        (_paint(pixels_per_metre, turn, (0, 0)), (left, top))
+        (painted(pixels_per_metre, turn, (0, 0)), (left, top))
         for turn, (left, top) in zip(degrees.tolist(), corners, strict=True)
     ]
 
 
 @lru_cache(maxsize=1536)
-def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool = False) -> pygame.Surface:
+def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool = False) -> pygame.Surface:
+    """Return the lander at a size and angle, its middle moved right and down by so many half pixels, 0 or 1."""
     half = math.ceil(REACH * pixels_per_metre) + 1
     side = 2 * half + 1
-    sheet = pygame.Surface((side * _FACTOR, side * _FACTOR), pygame.SRCALPHA)
+    factor = _FACTOR if pixels_per_metre < _LARGE else _FACTOR // 2
+    sheet = pygame.Surface((side * factor, side * factor), pygame.SRCALPHA)
     sheet.fill((60, 60, 78, 0))
     turn = math.radians(degrees)
-    scale = pixels_per_metre * _FACTOR
-    middle = [_FACTOR * (half + 0.5 + part / 2) for part in halves]
+    scale = pixels_per_metre * factor
+    middle = [factor * (half + 0.5 + part / 2) for part in halves]
     placed = _CORNERS @ np.array(((math.cos(turn), -math.sin(turn)), (math.sin(turn), math.cos(turn)))).T
     places = (placed * (scale, -scale) + middle).tolist()
     colours = _lit(turn, 0.42 if wreck else 1.0)

@@ -14,6 +14,7 @@ from game.render import View
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, NIGHT0, NIGHT1, Colour
 from game.world.paint import light, mix
+from game.world.sheet import Sheet
 
 _FACTOR: Final = 4
 _BACK: Final = 0.20  # how far the deck's far edge is seen above its near one, in metres
@@ -26,18 +27,11 @@ def draw_pad(
 ) -> None:
     """Draw a pad whose top has its middle at `centre` and that stands on `floor`; lamps breathe with `time` in s."""
     colour = canvas.palette.good
-    deck, (left, top) = _paint(view.pixels_per_metre, width, round(centre[1] - floor, 2), colour)
-    x, y = view.pixels(centre)
-    corner = (round(float(x)) - left, round(float(y)) - top)
-    pool = _pool(view.pixels_per_metre, width, colour)
-    ground = view.pixels((centre[0], floor - 0.05))
-    surface = canvas.surface
-    surface.blit(
-        pool,
-        (round(float(x)) - pool.width // 2, round(float(ground[1])) - pool.height // 2),
-        special_flags=pygame.BLEND_RGB_ADD,
-    )
-    surface.blit(deck, corner)
+    x, top = centre
+    deck, corner = _paint(view.painted_per_metre, width, round(top - floor, 2), colour)
+    pool, reach = _pool(view.painted_per_metre, width, colour)
+    pool.draw(canvas.surface, view, (x - reach[0], floor - 0.05 + reach[1]), pygame.BLEND_RGB_ADD)
+    deck.draw(canvas.surface, view, (x + corner[0], top + corner[1]))
     breath = 0.86 + 0.14 * math.sin(1.7 * time)
     for side in (-1, 1):
         lamp = view.points((centre[0] + side * (width / 2 - 0.08), centre[1] + _LAMP)).tolist()
@@ -48,10 +42,8 @@ def draw_pad(
 
 
 @lru_cache(maxsize=8)
-def _paint(
-    pixels_per_metre: float, width: float, height: float, colour: Colour
-) -> tuple[pygame.Surface, tuple[int, int]]:
-    """Return the deck of a pad that is so high, and where in it the middle of its top is."""
+def _paint(pixels_per_metre: float, width: float, height: float, colour: Colour) -> tuple[Sheet, tuple[float, float]]:
+    """Return the deck of a pad that is so high, and where its corner is from the middle of its top, in metres."""
     scale = pixels_per_metre * _FACTOR
     half = math.ceil((width / 2 + _MARGIN) * pixels_per_metre)
     above, below = math.ceil(_MARGIN * pixels_per_metre), math.ceil((height + 0.25) * pixels_per_metre)
@@ -80,7 +72,8 @@ def _paint(
     for side in (-1, 1):
         x = side * (edge - 0.08)
         quad((150, 158, 178), (x - 0.035, 0.0), (x + 0.035, 0.0), (x + 0.035, _LAMP), (x - 0.035, _LAMP))
-    return pygame.transform.smoothscale(sheet, (2 * half, above + below)), (half, above)
+    picture = pygame.transform.smoothscale(sheet, (2 * half, above + below))
+    return Sheet(picture, pixels_per_metre), (-half / pixels_per_metre, above / pixels_per_metre)
 
 
 def _dashes(quad: object, inset: float, colour: Colour) -> None:
@@ -93,11 +86,12 @@ def _dashes(quad: object, inset: float, colour: Colour) -> None:
 
 
 @lru_cache(maxsize=8)
-def _pool(pixels_per_metre: float, width: float, colour: Colour) -> pygame.Surface:
-    """Return the lamps' light on the regolith around the pad."""
+def _pool(pixels_per_metre: float, width: float, colour: Colour) -> tuple[Sheet, tuple[float, float]]:
+    """Return the lamps' light on the regolith around the pad, and half its width and height in metres."""
     half_width, half_height = (width / 2 + 2.6) * pixels_per_metre, 0.75 * pixels_per_metre
     x = np.arange(-half_width, half_width, dtype=np.float32)[None, :] / pixels_per_metre
     y = np.arange(-half_height, half_height, dtype=np.float32)[:, None] / half_height
     shine = sum(np.exp(-(((x - side * width / 2) / 1.25) ** 2) - (y / 0.42) ** 2) for side in (-1, 1))
     fade = np.clip(1 - np.abs(y), 0, 1) * np.clip(1 - np.abs(x) / (width / 2 + 2.6), 0, 1)
-    return light((0.30 * shine * fade)[..., None] * np.array(colour, np.float32))
+    picture = light((0.30 * shine * fade)[..., None] * np.array(colour, np.float32))
+    return Sheet(picture, pixels_per_metre), (half_width / pixels_per_metre, half_height / pixels_per_metre)

@@ -94,9 +94,8 @@ class Stage:
         sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
         angle += 0.16 * sag * (1 if angle >= 0 else -1)
         middle = view.pixels(stand(x, y - 0.16 * sag, angle, size)).tolist()
-        craft = art.sprite(view.pixels_per_metre * size, angle, wreck=True)
-        corner = [round(place) - craft.get_width() // 2 for place in middle]
-        canvas.surface.blit(craft, (corner[0], corner[1]))
+        craft = art.sprite(view.painted_per_metre * size, angle, (middle[0], middle[1]), _ratio(view), wreck=True)
+        canvas.surface.blit(*craft)
 
     # A swarm, small and in one go, each standing on its feet; `shown` is a mask (n,)
 
@@ -119,14 +118,17 @@ class Stage:
         level = round(8 * max(0.0, 1 - clearance / 7) ** 1.6)
         if level:
             across = (1.25 + 0.10 * clearance) * metre
-            _blit_middle(canvas, _shade(round(across), round(0.15 * metre), level), view, (x, ground + 0.03))
+            shadow = pygame.transform.smoothscale(_shade(level), (2 * round(across), 2 * round(0.15 * metre)))
+            _blit_middle(canvas, shadow, view, (x, ground + 0.03))
         for side in (-1, 1):
             foot_x = x + side * FOOT_CENTRE[0] * math.cos(angle) - FOOT_CENTRE[1] * math.sin(angle)
             foot_y = y + side * FOOT_CENTRE[0] * math.sin(angle) + FOOT_CENTRE[1] * math.cos(angle) - 0.06
             under = surface_height(self._env, foot_x)
             near = round(8 * max(0.0, 1 - max(0.0, foot_y - under) / 0.6))
             if near:
-                spot = _shade(round(0.34 * metre), max(2, round(0.075 * metre)), near)
+                spot = pygame.transform.smoothscale(
+                    _shade(near), (2 * round(0.34 * metre), 2 * max(2, round(0.075 * metre)))
+                )
                 _blit_middle(canvas, spot, view, (foot_x, under + 0.02))
 
     def _draw_ground_light(self, canvas: Canvas, view: View, x: float, y: float, angle: float, slot: int) -> None:
@@ -139,7 +141,8 @@ class Stage:
         if level:
             colour = mix(HUMAN, NET, round(float(self.blue[slot]) * 4) / 4)
             metre = view.pixels_per_metre
-            pool = _pool(round((2.0 + 0.25 * reach) * metre), round(0.42 * metre), level, colour)
+            size = (2 * round((2.0 + 0.25 * reach) * metre), 2 * round(0.42 * metre))
+            pool = pygame.transform.smoothscale(_pool(level, colour), size)
             _blit_middle(canvas, pool, view, (aim, surface_height(self._env, aim) - 0.02), pygame.BLEND_RGB_ADD)
 
     def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
@@ -183,10 +186,7 @@ def draw_craft(
         canvas.glow(spot, 2.3 * metre / scale, fire, 0.42 * main)
         fire_kind = NET_PLUME if blue > 0.5 else HUMAN_PLUME
         _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
-    fraction_x, fraction_y = middle_x - math.floor(middle_x), middle_y - math.floor(middle_y)
-    craft = art.sprite(metre, angle, fraction_x, fraction_y)
-    half = craft.get_width() // 2
-    surface.blit(craft, (math.floor(middle_x) - half, math.floor(middle_y) - half))
+    surface.blit(*art.sprite(view.painted_per_metre * size, angle, (middle_x, middle_y), _ratio(view)))
     for side, force in enumerate(jets):
         if force > 0.06:
             outward = angle + (math.pi / 2 if side else -math.pi / 2)
@@ -240,7 +240,7 @@ def _burn(
     fire = plume(kind, metre, angle, thrust, flicker)
     if fire:
         sheet, (x, y) = fire
-        left, top = round(nozzle[0]) - x, round(nozzle[1]) - y
+        left, top = round(nozzle[0] - x), round(nozzle[1] - y)
         height = min(sheet.get_height(), max(0.0, floor - top))
         surface.blit(sheet, (left, top), (0, 0, sheet.get_width(), height), pygame.BLEND_RGB_ADD)
 
@@ -253,23 +253,26 @@ def _blit_middle(
     canvas.surface.blit(sprite, corner, special_flags=flags)
 
 
-@lru_cache(maxsize=512)
-def _shade(across: int, down: int, level: int) -> pygame.Surface:
-    """Return a soft dark ellipse; `level` is in 1/8."""
-    x = np.linspace(-1, 1, 2 * across + 1)[:, None]
-    y = np.linspace(-1, 1, 2 * down + 1)[None, :]
-    cover = np.clip(1 - np.hypot(x, y), 0, 1) ** 0.8 * 200 * level / 8
-    surface = pygame.Surface((2 * across + 1, 2 * down + 1), pygame.SRCALPHA)
+@lru_cache(maxsize=16)
+def _shade(level: int) -> pygame.Surface:
+    """Return a soft dark disc, to be squeezed into a shadow; `level` is in 1/8."""
+    axis = np.linspace(-1, 1, 97)
+    cover = np.clip(1 - np.hypot(axis[:, None], axis[None, :]), 0, 1) ** 0.8 * 200 * level / 8
+    surface = pygame.Surface(cover.shape, pygame.SRCALPHA)
     surface.fill((4, 5, 12, 0))
     pygame.surfarray.pixels_alpha(surface)[:] = cover.astype(np.uint8)
     return surface
 
 
-@lru_cache(maxsize=256)
-def _pool(across: int, down: int, level: int, colour: tuple[int, int, int]) -> pygame.Surface:
-    """Return a flat pool of light, to be added; `level` is in 1/12."""
-    x = np.linspace(-1, 1, 2 * across + 1)[None, :]
-    y = np.linspace(-1, 1, 2 * down + 1)[:, None]
-    away = np.clip(1 - np.hypot(x, y), 0, 1)
+@lru_cache(maxsize=128)
+def _pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
+    """Return a disc of light, to be squeezed flat and added; `level` is in 1/12."""
+    axis = np.linspace(-1, 1, 97)
+    away = np.clip(1 - np.hypot(axis[None, :], axis[:, None]), 0, 1)
     shine = (0.34 * away**2 + 0.42 * away**6) * level / 12
     return light(shine[..., None] * np.array(colour, np.float32))
+
+
+def _ratio(view: View) -> float:
+    """By what to scale a picture that was painted for the closest view."""
+    return view.pixels_per_metre / view.painted_per_metre

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 import pygame
 
-from game.render import WORLD_WIDTH
-from game.ui.tokens import DUSK, NIGHT0, NIGHT1, Colour
+from game.render import LAND_REACH, POINTS_PER_METRE, VIEW_BOTTOM, WORLD_WIDTH
+from game.ui.tokens import DUSK, NIGHT0, NIGHT1, VIEW_SIZE, Colour
 from game.world.paint import Picture, bell, clouds, layer, mix, profile
 from game.world.sky import SUN
 
@@ -17,8 +17,12 @@ from game.world.sky import SUN
 SURFACE: Final = 1.0
 _METRES_HIGH: Final = WORLD_WIDTH * 9 / 16
 PLAIN_HORIZON: Final = 0.856
-# How much wider than the view the land is, so that it can move sideways.
+HORIZON_HEIGHT: Final = VIEW_BOTTOM + (1 - PLAIN_HORIZON) * VIEW_SIZE[1] / POINTS_PER_METRE  # metres
+# How much wider than the view the land is to either side, so that it can move sideways; and the plain, where a
+# camera goes about.
 MARGIN: Final = 0.04
+WIDE_MARGIN: Final = LAND_REACH / WORLD_WIDTH - 0.5 + 0.01
+_PLAIN_FOOT: Final = 0.085  # shares of the view's height that the plain goes on below it, for a camera far away
 _WARM: Final = np.array((255, 150, 96), np.float32)
 
 
@@ -38,9 +42,9 @@ class Ridge:
 
 
 RIDGES: Final = (
-    Ridge(0.740, 0.105, 3.3, (47, 43, 68), (84, 64, 82), 0.22, 0.62, 0.75),
-    Ridge(0.797, 0.075, 4.4, (33, 33, 55), (54, 47, 70), 0.40, 0.46, 0.55),
-    Ridge(0.838, 0.038, 6.3, (21, 23, 42), (34, 34, 55), 0.62, 0.34, 0.30),
+    Ridge(0.740, 0.105, 3.3, (47, 43, 68), (84, 64, 82), 0.04, 0.62, 0.75),
+    Ridge(0.797, 0.075, 4.4, (33, 33, 55), (54, 47, 70), 0.07, 0.46, 0.55),
+    Ridge(0.838, 0.038, 6.3, (21, 23, 42), (34, 34, 55), 0.11, 0.34, 0.30),
 )
 
 
@@ -71,10 +75,11 @@ def paint_ridge(size: tuple[int, int], ridge: Ridge, rng: np.random.Generator) -
     return layer(picture, cover, rng), top
 
 
-def _sunlight(width: int, view_width: int) -> tuple[Picture, Picture]:
+def _sunlight(width: int, view_width: int, margin: float = MARGIN) -> tuple[Picture, Picture]:
     """Return for each column the sun's side, -1 left to 1 right, and how near its glow is, 0 to 1."""
-    away = np.arange(width, dtype=np.float32) - (SUN[0] + MARGIN) * view_width
-    return -np.tanh(away / (0.08 * view_width)), bell(width, (SUN[0] + MARGIN) * view_width, 0.30 * view_width)
+    sun = (SUN[0] + margin) * view_width
+    away = np.arange(width, dtype=np.float32) - sun
+    return -np.tanh(away / (0.08 * view_width)), bell(width, sun, 0.30 * view_width)
 
 
 def _smooth(line: Picture) -> Picture:
@@ -96,18 +101,18 @@ def _relief(depth: Picture, height: int, rng: np.random.Generator) -> Picture:
     return folds
 
 
-def paint_plain(size: tuple[int, int], rng: np.random.Generator) -> tuple[pygame.Surface, int]:
-    """Return the plain with its craters and stones, and the row its top belongs on."""
+def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float = MARGIN) -> tuple[pygame.Surface, int]:
+    """Return the plain with its craters and stones, wider than the view by its margins, and its top's row."""
     view_width, height = size
-    width = round(view_width * (1 + 2 * MARGIN))
-    edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 7, octaves=6))
+    width = round(view_width * (1 + 2 * margin))
+    edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 6.5 * width / view_width, octaves=6))
     top = int(edge.min()) - 2
-    bottom = height + round(0.03 * height)
+    bottom = height + round(_PLAIN_FOOT * height)
     rows = np.arange(top, bottom, dtype=np.float32)[:, None] + 0.5
-    near = np.clip((rows - height * PLAIN_HORIZON) / (height * (1 - PLAIN_HORIZON)), 0, 1.2)
-    sunward, glow = _sunlight(width, view_width)
-    bumps = _plain_noise(near[:, 0], width, rng) * 0.5
-    for _ in range(52):
+    near = np.clip((rows - height * PLAIN_HORIZON) / (height * (1 - PLAIN_HORIZON)), 0, 1.6)
+    sunward, glow = _sunlight(width, view_width, margin)
+    bumps = _plain_noise(near[:, 0], width, view_width, rng) * 0.5
+    for _ in range(round(48 * (1 + 2 * margin))):
         _sink_crater(bumps, near[:, 0], view_width, rng)
     lean = np.diff(bumps, axis=1, append=bumps[:, -1:]) * (height / 720) * -1.0 * -sunward
     far, close = (
@@ -122,16 +127,16 @@ def paint_plain(size: tuple[int, int], rng: np.random.Generator) -> tuple[pygame
     depth = rows - edge
     rim = np.exp(-np.clip(depth, 0, None) / (1.3 * height / 720)) * (0.10 + 0.42 * glow)
     picture += rim[..., None] * _WARM
-    _scatter_stones(picture, near[:, 0], sunward, glow, rng)
+    _scatter_stones(picture, near[:, 0], sunward, glow, view_width, rng)
     return layer(picture, np.clip(depth + 0.5, 0, 1), rng), top
 
 
-def _plain_noise(near: Picture, width: int, rng: np.random.Generator) -> Picture:
+def _plain_noise(near: Picture, width: int, view_width: int, rng: np.random.Generator) -> Picture:
     """Return a rolling surface seen from low above it: fine far away, coarse in front."""
     side = 512
     field = clouds((side, side), rng, (30, 30), octaves=5, gain=0.62) * 2.2
     scale = 0.16 + near
-    across = ((np.arange(width) - width / 2)[None, :] * (0.62 * 1280 / width / scale[:, None]) + side / 2) % side
+    across = ((np.arange(width) - width / 2)[None, :] * (0.574 * 1280 / view_width / scale[:, None]) + side / 2) % side
     down = (210 * np.log(scale) + 500) % side
     seen: Picture = field[down.astype(np.intp)[:, None], across.astype(np.intp)]
     return seen * (0.35 + 0.65 * near)[:, None]
@@ -155,10 +160,12 @@ def _sink_crater(bumps: Picture, near: Picture, view_width: int, rng: np.random.
     bumps[above:below, left:right] += (bowl * radius * 0.85).astype(np.float32)
 
 
-def _scatter_stones(picture: Picture, near: Picture, sunward: Picture, glow: Picture, rng: np.random.Generator) -> None:
+def _scatter_stones(
+    picture: Picture, near: Picture, sunward: Picture, glow: Picture, view_width: int, rng: np.random.Generator
+) -> None:
     rows, columns = picture.shape[:2]
-    unit = columns / 1280 / (1 + 2 * MARGIN)
-    for _ in range(150):
+    unit = view_width / 1280
+    for _ in range(round(139 * columns / view_width)):
         row, column = int(rng.uniform(0.10, 1) ** 0.9 * rows), int(rng.uniform(0, columns))
         radius = unit * (0.16 + near[min(row, rows - 1)]) * (1.0 + 3.6 * rng.random() ** 5)
         half = int(radius * 4) + 1
