@@ -105,6 +105,8 @@ class LanderEnv:
 
     def _build_world(self) -> None:
         params = self.params
+        self._up = params.main_thrust * np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])  # thrust of every action, N
+        self._aside = params.side_thrust * np.array([0.0, -1.0, 1.0, 0.0, -1.0, 1.0])  # along the craft's right
         surface: dict[str, Any] = {"restitution": params.restitution, "friction": params.friction}
         self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5)
         foot_x, foot_y = FOOT_CENTRE
@@ -229,14 +231,8 @@ class LanderEnv:
 
     def step(self, actions: Any) -> StepResult:
         """Fly one decision; `actions` (n,) are 0 to 5. Raises ValueError for others, RuntimeError before a reset."""
-        actions = np.asarray(actions)
-        if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
-            raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
-        if ((actions < 0) | (actions >= NUM_ACTIONS)).any():
-            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
-        if not self._started:
-            raise RuntimeError("reset() must come before the first step()")
-        held, self.actions = self.actions, actions.astype(np.intp)
+        held = self.actions
+        self._take(actions)
         flying = self.outcome == Outcome.FLYING
         before = self._situation()
         flown, tilted, feet = self.steps.copy(), np.zeros_like(self.steps), self._feet_steps.copy()
@@ -247,7 +243,6 @@ class LanderEnv:
             self._fly(still_flying)
             tilted += still_flying & (self.tilt > TILT_ALLOWED)
         ended = flying & (self.outcome != Outcome.FLYING)
-        self.landings += int((ended & (self.outcome == Outcome.LANDED)).sum())
         flown = self.steps - flown
         change = Change(
             before, self._situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
@@ -265,6 +260,14 @@ class LanderEnv:
             outcome=self.outcome.copy(),
             components=components,
         )
+
+    def fly(self, actions: Any) -> None:
+        """Fly one decision as `step` does, where nobody asks what it pays; raises as that does."""
+        self._take(actions)
+        for _ in range(self.frame_skip):
+            flying = self.outcome == Outcome.FLYING
+            if flying.any():
+                self._fly(flying)
 
     def glide(self, actions: Ints) -> Floats:
         """Fly one decision in every slot as if there were nothing to touch; return what is sensed, (n, 9).
@@ -347,6 +350,17 @@ class LanderEnv:
             tilt=self.tilt,
         )
 
+    def _take(self, actions: Any) -> None:
+        """Let these actions be flown from now on, if they are such."""
+        actions = np.asarray(actions)
+        if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
+            raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
+        if ((actions < 0) | (actions >= NUM_ACTIONS)).any():
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
+        if not self._started:
+            raise RuntimeError("reset() must come before the first step()")
+        self.actions = actions.astype(np.intp)
+
     def _fly(self, flying: Bools) -> None:
         """One physics step of the slots that fly: push, move, judge."""
         self._move(flying)
@@ -354,38 +368,32 @@ class LanderEnv:
 
     def _move(self, flying: Bools, touching: bool = True) -> None:
         """Push and move, without `touching` through whatever is in the way."""
-        params, state, body = self.params, self.world.state, self.lander.index
+        state, body = self.world.state, self.lander.index
         actions = self.fired
-        main, steer = actions >= 3, actions % 3
-        up = params.main_thrust * main
-        aside = params.side_thrust * ((steer == 2) * 1.0 - (steer == 1))  # along the craft's right
+        up, aside = self._up[actions], self._aside[actions]
         cos, sin = state.cos[:, body], state.sin[:, body]
         state.force[:, body, 0] = aside * cos - up * sin
         state.force[:, body, 1] = aside * sin + up * cos
-        state.force[:, body, 2] = -aside * params.side_arm
+        state.force[:, body, 2] = -aside * self.params.side_arm
         if self.conditions.pushes:
             state.force[:, body, 0] += self.conditions.push(self.time)
         if self.conditions.moves:
             self._move_pads()
         self.world.step(touching)
         self.steps += flying
-        self.main_steps += flying & main
-        self.side_steps += flying & (steer > 0)
+        self.main_steps += flying & (actions >= 3)
+        self.side_steps += flying & (actions % 3 > 0)
 
     def _judge(self, flying: Bools) -> None:
         """Decide which flights have ended, and how."""
-        limits, position, velocity = self.limits, self.position, self._relative_velocity()
+        limits, position = self.limits, self.position
         crashed = self._touch(flying)
-        calm = self.contacts.all(axis=1)
-        if calm.any():
-            calm &= velocity[:, 0] ** 2 + velocity[:, 1] ** 2 < limits.rest_speed**2
-            self._feet_steps += flying & self.contacts.all(axis=1)
-            calm &= (self.tilt < limits.rest_tilt) & (np.abs(self.angular_velocity) < limits.rest_spin)
-        self._still = np.where(flying & calm, self._still + 1, np.where(flying, 0, self._still))
         gone = np.abs(position[:, 0]) > limits.half_width
         gone |= position[:, 1] > limits.ceiling
         late = self.steps * DT >= limits.time - 1e-9
-        landed = self._still >= limits.rest_steps
+        landed = self._rest(flying)
+        if not (flying & (gone | late | crashed | landed)).any():
+            return
         verdict = np.where(late, Outcome.TIMED_OUT, Outcome.FLYING)
         for happened, outcome in (
             (gone, Outcome.OUT_OF_BOUNDS),
@@ -395,6 +403,20 @@ class LanderEnv:
             verdict[happened] = outcome
         self.outcome = np.where(flying, verdict, self.outcome)
         self.lander.active = self.outcome == Outcome.FLYING
+        self.landings += int((flying & (verdict == Outcome.LANDED)).sum())
+
+    def _rest(self, flying: Bools) -> Bools:
+        """Count for how long each has stood still on both feet; whether that is long enough, (n,)."""
+        limits, calm = self.limits, flying & self.contacts.all(axis=1)
+        if not calm.any():
+            self._still *= ~flying
+            return calm
+        self._feet_steps += calm
+        velocity = self._relative_velocity()
+        calm &= velocity[:, 0] ** 2 + velocity[:, 1] ** 2 < limits.rest_speed**2
+        calm &= (self.tilt < limits.rest_tilt) & (np.abs(self.angular_velocity) < limits.rest_spin)
+        self._still = np.where(flying, (self._still + 1) * calm, self._still)
+        return calm & (self._still >= limits.rest_steps)
 
     def _touch(self, flying: Bools) -> Bools:
         """Read the step's contacts: which feet are down, how hard the touch was, and which slots it wrecked."""

@@ -28,11 +28,6 @@ class Memory:
     impulse: Array  # (3, k)
 
     @classmethod
-    def empty(cls) -> Memory:
-        """Nothing touched."""
-        return cls(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), np.zeros((3, 0)))
-
-    @classmethod
     def of(cls, contacts: Contacts, pairs: int) -> Memory:
         """What is worth remembering of a solved step."""
         key = contacts.world * pairs + contacts.pair
@@ -43,6 +38,9 @@ class Memory:
     def where(self, kept: Bools) -> Memory:
         """Only these manifolds."""
         return Memory(self.key[kept], self.feature[kept], self.impulse[:, kept])
+
+
+_NOTHING = Memory(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), np.zeros((3, 0)))
 
 
 class Detector:
@@ -57,7 +55,7 @@ class Detector:
         self.friction = _mix(params.friction[self.body_pairs], _geometric_mean, _DEFAULT_FRICTION)
         self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
         self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
-        self._memory = Memory.empty()
+        self._memory = _NOTHING
         self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
 
     def find(self, state: BodyState) -> Contacts | None:
@@ -86,7 +84,7 @@ class Detector:
 
     def remember(self, contacts: Contacts | None) -> None:
         """Keep the impulses of a step for the next one, and only for that."""
-        self._memory = Memory.of(contacts, len(self.pairs)) if contacts else Memory.empty()
+        self._memory = Memory.of(contacts, len(self.pairs)) if contacts else _NOTHING
 
     def memory(self) -> Memory:
         """What `remember` has kept, to be put back by `recall_memory`."""

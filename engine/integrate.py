@@ -4,30 +4,48 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.state import BodyParams, BodyState, Span
-from engine.vector import Array
+from engine.state import BodyParams, BodyState, Span, span
+from engine.vector import Array, Bools
 
 
-def integrate_velocity(state: BodyState, params: BodyParams, bodies: Span, gravity: Array, dt: float) -> None:
-    """Let gravity (2,) or (batch, 2), gathered forces and drag change the velocities of `bodies` in place.
+class Movers:
+    """The `chosen` bodies (bodies,) that a step moves, and what of their parameters it takes, gathered once."""
+
+    def __init__(self, params: BodyParams, chosen: Bools) -> None:
+        self.bodies: Span = span(chosen)
+        self.inverse_mass = params.inverse_mass[self.bodies]
+        self.linear_drag = params.linear_drag[self.bodies]
+        self.quadratic_drag = params.quadratic_drag[self.bodies]
+        self.falls = params.dynamic[self.bodies, None]
+        self.all_fall = bool(self.falls.all())
+        self.fast_drag = bool(self.quadratic_drag.any())  # that grows with the speed
+        self.any_drag = self.fast_drag or bool(self.linear_drag.any())
+
+
+def integrate_velocity(state: BodyState, movers: Movers, gravity: Array, dt: float) -> None:
+    """Let gravity (2,) or (batch, 2), gathered forces and drag change the velocities of `movers` in place.
 
     Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. It is taken implicitly
     in v, so that no coefficient, however large, can turn a motion round; terminal speeds are exact.
     """
+    bodies = movers.bodies
     velocity = state.velocity[:, bodies]
-    ease = params.inverse_mass[bodies] * dt  # how much a unit of force changes a velocity in one step
-    fall = np.where(params.dynamic[bodies, None], np.asarray(gravity)[..., None, :] * dt, 0.0)
+    ease = movers.inverse_mass * dt  # how much a unit of force changes a velocity in one step
+    fall = np.asarray(gravity)[..., None, :] * dt
+    if not movers.all_fall:
+        fall = np.where(movers.falls, fall, 0.0)
     active = state.active[:, bodies, None]
     if not active.all():
         ease, fall = ease * active, fall * active
-    damping = params.linear_drag[bodies]
-    if params.quadratic_drag[bodies].any():
-        damping = damping + params.quadratic_drag[bodies] * _speeds(velocity)
+    damping = movers.linear_drag
+    if movers.fast_drag:
+        damping = damping + movers.quadratic_drag * _speeds(velocity)
     velocity += state.force[:, bodies] * ease
     velocity[..., :2] += fall
-    if damping.any():
+    if movers.any_drag:
         velocity /= 1.0 + damping * ease
-    state.velocity[:, bodies] = velocity
+    if not isinstance(bodies, slice):  # which had them copied
+        state.velocity[:, bodies] = velocity
 
 
 def integrate_position(state: BodyState, bodies: Span, dt: float) -> None:

@@ -8,10 +8,10 @@ import numpy as np
 
 from engine.body import Body
 from engine.detect import Detector
-from engine.integrate import integrate_position, integrate_velocity
+from engine.integrate import Movers, integrate_position, integrate_velocity
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Contacts, Solver
-from engine.state import BodyParams, BodyState, ShapeTable, Span, span
+from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools
 
 DT = 1.0 / 60.0
@@ -46,7 +46,7 @@ class World:
         self.contacts: Contacts | None = None
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
-        self._moving: Span | None = None
+        self._movers: Movers | None = None
 
     def add(
         self,
@@ -116,7 +116,7 @@ class World:
         self.shapes += shapes
         self._shape_bodies += [len(self.bodies)] * len(shapes)
         self.bodies.append(Body(self, len(self.bodies)))
-        self._detector = self._moving = None
+        self._detector = self._movers = None
         return self.bodies[-1]
 
     def step(self, touching: bool = True) -> None:
@@ -126,13 +126,13 @@ class World:
         """
         contacts = self.detector.find(self.state) if touching else None
         solver = Solver(self.state, self.params, contacts) if contacts else None
-        integrate_velocity(self.state, self.params, self.moving, self.gravity, DT)
+        integrate_velocity(self.state, self.movers, self.gravity, DT)
         if solver:
             solver.solve_velocities(self.state, self.iterations, self.restitution_threshold, DT)
-        integrate_position(self.state, self.moving, DT)
+        integrate_position(self.state, self.movers.bodies, DT)
         if solver:
             solver.solve_overlaps(self.state, max(2, self.iterations // 3), DT)
-        self.state.refresh_rotation(self.moving)
+        self.state.refresh_rotation(self.movers.bodies)
         self.detector.remember(contacts)
         self.state.force[:] = 0.0
         self.contacts = contacts
@@ -146,17 +146,17 @@ class World:
         return self._detector
 
     @property
-    def moving(self) -> Span:
+    def movers(self) -> Movers:
         """Bodies that a step may move: those that forces can move, and static ones that have a velocity."""
-        if self._moving is None:
-            self._moving = span(self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
-        return self._moving
+        if self._movers is None:
+            self._movers = Movers(self.params, self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
+        return self._movers
 
     def moved(self, body: Body, worlds: Bools | None) -> None:
         """A body was changed by hand, in these worlds or in all: bring up to date what is kept about it."""
         self.state.refresh_rotation(slice(body.index, body.index + 1))
         if body.static:
-            self._moving = None
+            self._movers = None
         if self._detector is not None:
             self._detector.forget(body.index, worlds)
             if body.static:

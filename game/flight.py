@@ -191,7 +191,8 @@ class Flight:
             self.poses.take()
             return
         action, by = self._choose(held)
-        self.observation = self.env.step(np.array([action])).observation
+        self.env.fly(np.array([action]))
+        self.observation = self.env.observe()
         self.recording.actions.append(action)
         self.recording.hands.append(by)
         self._yours += by is Hand.HUMAN
@@ -277,11 +278,13 @@ class Swarm:
         if len(due):
             self._actions[due] = self.flyer.act(self.observation[due], held=self._actions[due])
         self._step += 1
-        result = self.env.step(self._actions)
-        self.observation = result.observation
-        ended: Bools = result.ended & (self.since_end == 0)
-        self.since_end += result.ended
-        landed = int((result.outcome[ended] == Outcome.LANDED).sum())
+        self.env.fly(self._actions)
+        self.observation = self.env.observe()
+        outcome = self.env.outcome
+        over = outcome != Outcome.FLYING
+        ended: Bools = over & (self.since_end == 0)
+        self.since_end += over
+        landed = int((outcome[ended] == Outcome.LANDED).sum())
         self.landed += landed
         self.lost += int(ended.sum()) - landed
         self.poses.take(self.fresh)

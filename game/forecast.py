@@ -114,7 +114,7 @@ def drift(env: LanderEnv) -> Iterator[Doubles]:
         before = velocity.copy()
         if env.conditions.pushes:
             state.force[0, body, 0] = env.conditions.push(np.array(time + (stride + 0.5) * span))
-        integrate_velocity(state, world.params, world.moving, world.gravity, span)
+        integrate_velocity(state, world.movers, world.gravity, span)
         # As far as short steps would go, each at the speed it ends with, while that grows evenly.
         place += span / 2 * (before + velocity) + DT / 2 * (velocity - before)
         yield place.copy()
