@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import date
+from math import ceil
 
 from ai.lander import Outcome
 from ai.missions import Mission
@@ -25,6 +26,7 @@ class Course:
         night: whether nothing is seen but what shines.
         counts: whether a flight says something of the pilot's skill, from its first step to its last.
         title, line: what is being flown, for the corner.
+        goal: what is asked of the flight, for the corner as well.
         opening: what to say while the craft hangs and waits.
 
     """
@@ -33,7 +35,7 @@ class Course:
     fixed = True
     counts = True
     night = False
-    title = line = opening = ""
+    title = line = goal = opening = ""
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
         """Begin it; `network` is whom to hand over to."""
@@ -115,21 +117,25 @@ class FlyOn(Course):
 
 
 class Flown(Course):
-    """A mission of the campaign: the network's own flight is the ghost to beat."""
+    """A mission of the campaign. What flies beside it is a recorded flight, or, without one, the network."""
 
     title = texts.MISSION
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, rival: Record | None = None, rival_name: str = texts.MISSION_RIVAL) -> None:
         self.mission, self.name, self.night = mission, mission.name, mission.night
+        self._rival, self._rival_name = rival, rival_name
         self.line, self.opening = texts.MISSIONS[mission.name]
+        self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
         """Begin it."""
         return Flight(seed, network, mission=self.name)
 
     def ghost(self, seed: int, network: Flyer | None) -> Ghost | None:
-        """Let the network fly it too."""
-        return Ghost(Flight(seed, network, mission=self.name), texts.MISSION_RIVAL) if network else None
+        """Let the rival fly it too."""
+        if self._rival:
+            return Ghost(Rerun(self._rival.recording), self._rival_name)
+        return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
 
     def medal(self, flight: Flight) -> int:
         """Return what the flight has earned."""
@@ -138,8 +144,21 @@ class Flown(Course):
         return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
 
     def card(self, card: Card, flight: Flight) -> Card:
-        """Name the medal in place of points."""
-        return replace(card, score=texts.MEDALS[self.medal(flight)])
+        """Name the medal in place of points, and say what was missing for the next."""
+        medal = self.medal(flight)
+        if not card.good:
+            return replace(card, score="")
+        return replace(card, score=texts.MEDALS[medal], reason=self._missing(medal, flight))
+
+    def _missing(self, medal: int, flight: Flight) -> str:
+        if medal == 0:
+            return texts.MEDAL_BY_HAND
+        if medal == 3:
+            return texts.MEDAL_GOLD
+        fuel, seconds = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
+        words = [text.format(ceil(10 * much - 1e-9) / 10) for much, text in
+                 ((fuel, texts.MEDAL_LESS_FUEL), (seconds, texts.MEDAL_LESS_TIME)) if much > 0]  # fmt: skip
+        return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=texts.AND.join(words))
 
 
 class Daily(Course):

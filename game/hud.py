@@ -120,10 +120,11 @@ def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> 
     canvas.pill((middle - reach, 54, max(2.0, 2 * reach), 2), colour)
 
 
-def draw_corner(canvas: Canvas, small: str, large: str) -> None:
-    """Name, top left, what is being flown."""
+def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:
+    """Name, top left, what is being flown, and what is asked of the flight."""
     canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
     canvas.text(large, (MARGIN, 58), size=TEXT)
+    canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
 
 
 def draw_bars(canvas: Canvas, rows: list[tuple[str, float]], top: float, left: float, width: float, best: int) -> None:
