@@ -16,7 +16,8 @@ RIGHT: Direction = (1, 0)
 def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
     """Return the index of the nearest box in a direction; up and down go round at the ends.
 
-    A step aside counts double, so that a column is followed to its end before another is entered.
+    A step aside counts double, so that a column is followed to its end before another is entered; left and right
+    leave a row only where it ends.
     """
     here = boxes[current]
 
@@ -28,10 +29,14 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) 
             return max(box.top - here.bottom, here.top - box.bottom, 0)
         return max(box.left - here.right, here.left - box.right, 0)
 
+    def beyond(box: pygame.Rect) -> bool:
+        return box.left >= here.right if direction[0] > 0 else box.right <= here.left
+
     others = [index for index in range(len(boxes)) if index != current]
     forward = [index for index in others if ahead(boxes[index]) > 0]
     if direction[0]:
-        forward = [index for index in forward if aside(boxes[index]) == 0]
+        row = [index for index in forward if aside(boxes[index]) == 0]
+        forward = row or [index for index in forward if beyond(boxes[index])]
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))
     if direction[1] and others:

@@ -178,9 +178,10 @@ class Toggle(Widget):
         self._on_change(self.value)
 
     def shift(self, direction: int) -> bool:
-        """Left is off, right is on."""
-        if self.value != (direction > 0):
-            self.press()
+        """Left is off, right is on; what is so already leaves it to the arrow to lead on."""
+        if self.value == (direction > 0):
+            return False
+        self.press()
         return True
 
     def ease(self, at_once: bool) -> None:
@@ -321,9 +322,10 @@ class Choice(Widget):
         return None
 
     def shift(self, direction: int) -> bool:
-        """Take the option to the left or right."""
+        """Take the option to the left or right; at either end, leave it to the arrow to lead on."""
+        before = self.index
         self.choose(self.index + direction)
-        return True
+        return self.index != before
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the label and the options."""
