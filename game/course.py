@@ -23,7 +23,6 @@ class Course:
     Attributes:
         name: of a mission, as the logbook has it; empty for all else.
         fixed: whether there is but the one start.
-        night: whether nothing is seen but what shines.
         counts: whether a flight says something of the pilot's skill, from its first step to its last.
         title, line: what is being flown, for the corner.
         goal: what is asked of the flight, for the corner as well.
@@ -34,7 +33,6 @@ class Course:
     name = ""
     fixed = True
     counts = True
-    night = False
     title = line = goal = opening = ""
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
@@ -122,7 +120,7 @@ class Flown(Course):
     title = texts.MISSION
 
     def __init__(self, mission: Mission, rival: Record | None = None, rival_name: str = texts.MISSION_RIVAL) -> None:
-        self.mission, self.name, self.night = mission, mission.name, mission.night
+        self.mission, self.name = mission, mission.name
         self._rival, self._rival_name = rival, rival_name
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])

@@ -63,6 +63,8 @@ def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
     """What a pilot needs to know."""
     limits = env.limits
     across, up = env.velocity[slot].tolist()
+    if env.conditions.moves:  # what counts on a pad that moves is how one moves beside it
+        across -= float(env.pad_velocity[slot])
     tilt = float(env.tilt[slot])
     left = max(0.0, limits.time - float(env.time[slot]))
 

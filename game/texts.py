@@ -876,6 +876,7 @@ COURSE_FREE: Final = {1: "one pad", 3: "three pads"}
 
 # Replay
 REPLAY_TITLE: Final = "Replay"
+REPLAY_MISSION: Final = "Replay: {mission}"
 REPLAY_LINE: Final = "{end} after {seconds:.1f} s  ·  {when}"
 REPLAY_LANES: Final = ("main", "left", "right")
 REPLAY_TAKE_OVER: Final = "Fly on from here"
@@ -983,3 +984,12 @@ MISSION_NETWORK_FAILS: Final = {
     "earth": "It lands {landed} of 20 starts near this one: where it leans too far, the engine carries it away.",
     "outage": "It lands none of 20 starts near this one: it does not know that its engine will fail.",
 }
+
+# What surrounds a flight and can't be seen
+GRAVITY: Final = "Gravity {gravity:.1f} m/s², {times:.1f} times the moon's"
+WIND: Final = "Wind {push:.1f} m/s²"
+PAD_LEFT: Final = "The pad goes left, {speed:.1f} m/s"
+PAD_RIGHT: Final = "The pad goes right, {speed:.1f} m/s"
+ENGINE_FAILS: Final = "The main engine fails in {seconds:.1f} s"
+ENGINE_DEAD: Final = "No main engine for {seconds:.1f} s"
+TANK_EMPTY: Final = "The tank is empty"

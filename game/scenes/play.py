@@ -13,6 +13,7 @@ from game.clock import STEP
 from game.cockpit.cockpit import Cockpit
 from game.cockpit.hands import HANDS, OWN
 from game.cockpit.skill import Skill
+from game.cockpit.surroundings import draw_surroundings
 from game.context import Context
 from game.controls import Command, translate
 from game.course import Course, Duel
@@ -24,16 +25,16 @@ from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints, flight_hints
-from game.ui.tokens import HUMAN, MARGIN, NET, NIGHT0, VIEW_SIZE
+from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
 from game.ui.widgets import OnPress
 from game.world.backdrop import landscape
 from game.world.ground import draw_ground
+from game.world.looks import look_of
 from game.world.paths import draw_dotted
 from game.world.stage import Stage
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
-_DARK: Final = 0.9  # how much of the landscape a night hides
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
 _AWAY_STEPS: Final = 10
 
@@ -155,11 +156,9 @@ class Play:
         view = self._camera.view(canvas.scale, alpha)
         flight, env = self.flight, self.flight.env
         pose = flight.poses.at(alpha)[0]
-        landscape(canvas.surface.get_size(), self._settings.reduced_motion).draw(
+        landscape(canvas.surface.get_size(), self._settings.reduced_motion, look_of(flight.recording.mission)).draw(
             canvas, self._camera, self._time, alpha
         )
-        if self._course and self._course.night:
-            canvas.fill(canvas.surface.get_rect(), NIGHT0, _DARK)
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
         self._cockpit.draw_behind(canvas)
         if flight.over:
@@ -342,7 +341,8 @@ class Play:
     def _draw_hud(self, canvas: Canvas) -> None:
         self._cockpit.draw_top(canvas)
         if self._course:
-            hud.draw_corner(canvas, self._course.title, self._course.line)
+            hud.draw_corner(canvas, self._course.title, self._course.line, self._course.goal)
+            draw_surroundings(canvas, self.flight.env)
         else:
             network = self._network
             flown = texts.WITH_NETWORK.format(name=network.name) if self.flight.network else texts.ALONE

@@ -32,6 +32,7 @@ from game.ui.widgets import Choice, OnPress, Word
 from game.ui.words import GAP
 from game.world.backdrop import landscape
 from game.world.ground import draw_ground
+from game.world.looks import look_of
 from game.world.paths import draw_faint
 from game.world.stage import Stage
 
@@ -248,7 +249,7 @@ class Replay:
         between = 1.0 if self.stopped else min(1.0, self._due + alpha * SPEEDS[self._speed])
         view = self._camera.view(canvas.scale, between)
         flight, env = self.tape.flight, self.tape.flight.env
-        landscape(canvas.surface.get_size(), self._settings.reduced_motion).draw(
+        landscape(canvas.surface.get_size(), self._settings.reduced_motion, look_of(flight.recording.mission)).draw(
             canvas, self._camera, self._time, between, _EARTH
         )
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
@@ -262,7 +263,9 @@ class Replay:
         assert self._context is not None
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
-        hud.draw_corner(canvas, texts.REPLAY_TITLE, texts.REPLAY_LINE.format(
+        mission = texts.MISSIONS.get(self.record.recording.mission)
+        title = texts.REPLAY_MISSION.format(mission=mission[0]) if mission else texts.REPLAY_TITLE
+        hud.draw_corner(canvas, title, texts.REPLAY_LINE.format(
             end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when))  # fmt: skip
         flight = self.tape.flight
         seconds = f"{self.tape.at * STEP:.2f}"
@@ -308,7 +311,7 @@ def _draw_frame(canvas: Canvas, tape: Tape, stage: Stage, step: int) -> None:
         stage.follow(np.array([flight.flown_by is Hand.NETWORK]), np.array([flight.over and not was_over]))
     camera = Camera()
     view = camera.view(canvas.scale)
-    landscape(canvas.surface.get_size(), True).draw(canvas, camera, 0.0, 1.0)
+    landscape(canvas.surface.get_size(), True, look_of(flight.recording.mission)).draw(canvas, camera, 0.0, 1.0)
     draw_ground(canvas, view, env.ground, 0.0, float(env.pad_shift[0]))
     _draw_way(canvas, view, tape)
     stage.draw_lander(canvas, view, flight.poses.at(1.0)[0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from copy import deepcopy
+from copy import copy, deepcopy
 from functools import lru_cache
 from typing import Final
 
@@ -13,6 +13,7 @@ from game.render import POINTS_PER_METRE, Camera, View
 from game.ui.canvas import Canvas
 from game.ui.tokens import NIGHT0, VIEW_SIZE
 from game.world.earth import paint_earth
+from game.world.looks import LOOKS, MOON, Look
 from game.world.sheet import Sheet
 from game.world.sky import NearStars, paint_sky
 from game.world.terrain import HORIZON_HEIGHT, MARGIN, PLAIN_HORIZON, RIDGES, WIDE_MARGIN, paint_plain, paint_ridge
@@ -41,6 +42,15 @@ class Backdrop:
             (*paint_ridge(size, ridge, own), ridge.depth) for ridge, own in zip(RIDGES, ranges, strict=True)
         ]
         self._plains: dict[float, tuple[Sheet, tuple[float, float]]] = {}
+        self._look = MOON
+
+    def under(self, look: Look) -> Backdrop:
+        """Return the same land on another world, or in other light."""
+        other = copy(self)
+        other._look, other._plains = look, {}
+        other._sky = look.on_sky(self._sky)
+        other._ridges = [(look.on_land(sheet), top, depth) for sheet, top, depth in self._ridges]
+        return other
 
     def draw(
         self, canvas: Canvas, camera: Camera, time: float, alpha: float = 1.0, earth: tuple[float, float] = EARTH
@@ -71,8 +81,10 @@ class Backdrop:
             surface.blit(self._sky, (0, 0), (0, 0, self.size[0], down))
         elif down < 0:  # behind the plain, which may be the least bit translucent
             surface.fill(NIGHT0, (0, self.size[1] + down, self.size[0], -down))
-        self._stars.draw(surface, (across, down), time)
-        self._draw_earth(surface, earth, across, down)
+        if self._look.stars:
+            self._stars.draw(surface, (across, down), time)
+        if self._look.earth:
+            self._draw_earth(surface, earth, across, down)
         margin = MARGIN * self.size[0]
         for sheet, top, depth in self._ridges:
             surface.blit(sheet, (round(across * depth - margin), top + down))
@@ -87,6 +99,8 @@ class Backdrop:
             rest = View(height / 720)
             margin = WIDE_MARGIN if view.closest else MARGIN
             picture, top = paint_plain((width, height), deepcopy(self._plain_chance), margin)
+            if self._look is not MOON:
+                picture = self._look.on_land(picture)
             x, y = rest.metres((-margin * VIEW_SIZE[0], top / rest.scale)).tolist()
             self._plains[detail] = Sheet(picture, rest.pixels_per_metre), (x, y)
         return self._plains[detail]
@@ -99,7 +113,9 @@ class Backdrop:
             surface.blit(sprite, (x - sprite.get_width() // 2, y - sprite.get_height() // 2), special_flags=flags)
 
 
-@lru_cache(maxsize=2)
-def landscape(size: tuple[int, int], reduced_motion: bool) -> Backdrop:
-    """Return the game's own moon at that size, shared by every scene that shows it."""
+@lru_cache(maxsize=3)
+def landscape(size: tuple[int, int], reduced_motion: bool, look: str = "moon") -> Backdrop:
+    """Return the game's own moon at that size, or its look elsewhere, shared by every scene that shows it."""
+    if look != "moon":
+        return landscape(size, reduced_motion).under(LOOKS[look])
     return Backdrop(size, np.random.default_rng(_MOON), reduced_motion)

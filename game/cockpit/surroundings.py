@@ -1,0 +1,62 @@
+"""What surrounds a flight and can't be seen: wind, gravity, a pad that moves, an engine that fails."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from ai.lander import PARAMS, LanderEnv
+from game import texts
+from game.ui.canvas import Canvas
+from game.ui.tokens import INK, MARGIN, MUTE, SMALL
+
+_FIRST: Final = 98.0  # the first row, under what is asked of the flight
+_ROW: Final = 20.0
+_SOON: Final = 3.0  # seconds ahead that a failure is announced
+_ARROW: Final = 52.0  # points that the strongest wind is long
+_STRONGEST: Final = 0.6  # m/s²
+
+
+def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
+    """Draw a row for everything that makes this flight another than on the moon."""
+    for number, (text, wind, warns) in enumerate(_rows(env)):
+        y = _FIRST + number * _ROW
+        x = float(MARGIN)
+        if warns:
+            canvas.marker("triangle", (x + 5, y - 4), 9, canvas.palette.warn)
+            x += 18
+        words = canvas.text(text, (x, y), size=SMALL, colour=canvas.palette.warn if warns else MUTE, tabular=True)
+        if wind:
+            _draw_arrow(canvas, (words.right + 12, y - 4), wind)
+
+
+def _rows(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
+    """Yield words, the wind in m/s² to the right if that is what they are about, and whether they warn."""
+    conditions, params, time = env.conditions, env.params, float(env.time[0])
+    if params.gravity != PARAMS.gravity:
+        yield texts.GRAVITY.format(gravity=params.gravity, times=params.gravity / PARAMS.gravity), 0.0, False
+    if conditions.pushes:
+        push = float(conditions.push(env.time)[0]) / params.mass
+        yield texts.WIND.format(push=abs(push)), push, False
+    if conditions.moves:
+        speed = float(env.pad_velocity[0])
+        yield (texts.PAD_RIGHT if speed > 0 else texts.PAD_LEFT).format(speed=abs(speed)), 0.0, False
+    start, end = conditions.outage
+    if start <= time < end:
+        yield texts.ENGINE_DEAD.format(seconds=end - time), 0.0, True
+    elif time < start < math.inf:
+        yield texts.ENGINE_FAILS.format(seconds=start - time), 0.0, start - time < _SOON
+    if float(env.fuel[0]) >= conditions.tank:
+        yield texts.TANK_EMPTY, 0.0, True
+
+
+def _draw_arrow(canvas: Canvas, start: tuple[float, float], push: float) -> None:
+    """Draw which way the wind blows, as long as it is strong, around a middle that stays where it is."""
+    x, y = start
+    middle, reach = x + _ARROW / 2, _ARROW / 2 * min(1.0, abs(push) / _STRONGEST)
+    side = math.copysign(1.0, push)
+    tip = middle + side * reach
+    canvas.line((middle - side * reach, y), (tip, y), INK, 1.5)
+    for lean in (-3.5, 3.5):
+        canvas.line((tip, y), (tip - side * 5, y + lean), INK, 1.5)
