@@ -1,5 +1,6 @@
 """Every screen can be walked, seen and left by a gamepad alone and by the keyboard alone: real events, no window."""
 
+import json
 import time
 from collections.abc import Callable, Iterator
 
@@ -8,13 +9,14 @@ import pygame
 import pytest
 
 from ai.digits import DigitClassifier
+from ai.lander import Outcome
 from ai.pilots import ScriptedPilot
 from benchmarks.tour import scene_types
 from game import texts
 from game.assets import MODELS_DIR
 from game.cockpit.skill import Skill
 from game.context import Context
-from game.flight import Flight
+from game.flight import Flight, Hand
 from game.flight_file import Record
 from game.records import Records
 from game.scene import Push, Scene
@@ -35,19 +37,10 @@ from game.scenes.runs import Runs
 from game.scenes.settings import SettingsScene
 from game.scenes.train import Train
 from game.scenes.watch import Watch
-from game.ui.form import Form
-from game.ui.listing import Listing
 from game.ui.widgets import Widget
 from tests.game.driver import Driver
+from tests.game.player import DEVICES, Player
 
-KEYS = {"up": pygame.K_UP, "down": pygame.K_DOWN, "left": pygame.K_LEFT, "right": pygame.K_RIGHT,
-        "confirm": pygame.K_RETURN, "back": pygame.K_ESCAPE, "pause": pygame.K_ESCAPE, "stop": pygame.K_SPACE,
-        "take over": pygame.K_TAB}  # fmt: skip
-BUTTONS = {"up": pygame.CONTROLLER_BUTTON_DPAD_UP, "down": pygame.CONTROLLER_BUTTON_DPAD_DOWN,
-           "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT, "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
-           "confirm": pygame.CONTROLLER_BUTTON_A, "back": pygame.CONTROLLER_BUTTON_B,
-           "pause": pygame.CONTROLLER_BUTTON_START, "stop": pygame.CONTROLLER_BUTTON_RIGHTSTICK,
-           "take over": pygame.CONTROLLER_BUTTON_Y}  # fmt: skip
 SCREENS: dict[str, Callable[[Context], Scene]] = {
     "Menu": lambda _: Menu(),
     "Missions": lambda _: Missions(),
@@ -88,88 +81,7 @@ def flown(context: Context) -> Record:
     return records.read(records.keep(flight, time.time(), alone=True).file)
 
 
-class Player(Driver):
-    """Plays with one device alone."""
-
-    def __init__(self, driver: Driver, device: str) -> None:
-        super().__init__(driver.app)
-        self.device = device
-
-    def press(self, *names: str) -> None:
-        for name in names:
-            if self.device == "keys":
-                self.key(KEYS[name])
-            else:
-                self.button(BUTTONS[name])
-
-    def hold(self, frames: int, *names: str) -> None:
-        """Hold some down for so many frames."""
-        down, up = ((pygame.KEYDOWN, pygame.KEYUP) if self.device == "keys"
-                    else (pygame.CONTROLLERBUTTONDOWN, pygame.CONTROLLERBUTTONUP))  # fmt: skip
-        for event in (down, up):
-            for name in names:
-                code = (
-                    {"key": KEYS[name], "mod": 0}
-                    if self.device == "keys"
-                    else {"button": BUTTONS[name], "instance_id": 0}
-                )
-                self.post(event, **code)
-            if event == down:
-                self.frames(frames)
-
-    @property
-    def form(self) -> Form:
-        form = getattr(self.top, "_form", None)
-        assert isinstance(form, Form)
-        return form
-
-    def go_to(self, wanted: Widget) -> None:
-        """Move the focus to a widget by the arrows alone, whichever way leads there."""
-        way = ways(self)[self.form.widgets.index(wanted)]
-        for step in way:
-            lead_on(self, step)
-        assert self.form.focused is wanted
-
-    def choose(self, label: str) -> None:
-        """Go to the widget of that name, and press it."""
-        self.go_to(next(widget for widget in self.form.widgets if widget.label == label))
-        self.press("confirm")
-        self.frames(2)
-
-
-def lead_on(player: Player, direction: str) -> None:
-    """Press a direction until the focus moves, as often as a list has rows, or a choice options."""
-    before = player.form.focused
-    steps = len(before.rows) if isinstance(before, Listing) else len(getattr(before, "options", "  "))
-    for _ in range(steps + 1):
-        player.press(direction)
-        if player.form.focused is not before:
-            return
-
-
-def ways(player: Player) -> dict[int, list[str]]:
-    """Return how to get to each widget that the arrows lead to, from where the focus is; it stays there."""
-    form = player.form
-    assert form.focused is not None
-    start = form.widgets.index(form.focused)
-    found: dict[int, list[str]] = {start: []}
-    ahead = [start]
-    for index in ahead:
-        for direction in ("down", "up", "right", "left"):
-            if index >= len(form.widgets):
-                break
-            form.focus(form.widgets[index])
-            lead_on(player, direction)
-            form = player.form
-            reached = form.widgets.index(form.focused)
-            if reached not in found:
-                found[reached] = [*found[index], direction]
-                ahead.append(reached)
-    form.focus(form.widgets[min(start, len(form.widgets) - 1)])
-    return found
-
-
-@pytest.fixture(params=["keys", "pad"])
+@pytest.fixture(params=DEVICES)
 def open_screen(
     request: pytest.FixtureRequest, open_game: Callable[..., Driver], context: Context
 ) -> Iterator[Callable[..., Player]]:
@@ -191,7 +103,7 @@ def test_every_screen_there_is_will_be_walked():
 def test_every_widget_is_reached_and_seen_and_there_is_a_way_out(open_screen, name: str):
     player = open_screen(SCREENS[name])
     if name in ("Watch", "Physics", "Replay"):
-        player.press("stop")
+        player.press("step")
     walk(player)
     for _ in range(3):
         if player.app.scenes.running and player.top_name != "Pause":
@@ -215,7 +127,7 @@ def test_so_are_those_that_stand_over_another(open_screen, name: str):
 
 
 def walk(player: Player) -> None:
-    found = ways(player)
+    found = player.ways()
     player.app.context.settings.reduced_motion = True
     widgets = list(player.form.widgets)  # what is chosen on the way may have changed them
     assert not [widget.label for index, widget in enumerate(widgets) if index not in found]
@@ -234,3 +146,94 @@ def is_seen(player: Player, widget: Widget) -> bool:
         around = canvas.rect(*widget.box.inflate(28, 16)).clip(canvas.surface.get_rect())
         pictures.append(pygame.surfarray.array3d(canvas.surface.subsurface(around)).astype(int))
     return len(form.widgets) == 1 or int((np.abs(pictures[0] - pictures[1]).max(axis=2) > 40).sum()) >= 12
+
+
+def wait_for_card(player: Player) -> None:
+    player.frames(90)
+
+
+def saved(player: Player) -> dict[str, object]:
+    settings: dict[str, object] = json.loads((player.app.context.user_dir / "settings.json").read_text())
+    return settings
+
+
+def test_a_mission_is_found_flown_and_left(open_screen):
+    player = open_screen(SCREENS["Menu"])
+    player.choose(texts.MENU["missions"][0])
+    assert player.top_name == "Missions"
+    player.press("confirm")  # the list is where it begins
+    player.frames(2)
+    player.press("pause")  # nothing has begun: it leads back at once
+    assert player.top_name == "Missions"
+    player.press("confirm")
+    player.fly()
+    assert player.top.flight.outcome is Outcome.LANDED
+    wait_for_card(player)
+    player.press("confirm")
+    assert player.top_name == "Missions"
+    assert player.top._row("fall")[1] in texts.MEDALS[1:]
+    player.press("back")
+    assert player.top_name == "Menu"
+
+
+def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
+    player = open_screen(SCREENS["Menu"])
+    player.choose(texts.MENU["play"][0])
+    player.press("main", "hand over")
+    assert player.top.flight.hand is Hand.NETWORK
+    player.press("hand over", "pause")
+    assert player.top_name == "Pause"
+    player.choose(texts.PAUSE_LEAVE)
+    assert player.top_name == "Menu"
+
+
+def test_a_replay_is_watched_wound_and_flown_on(open_screen):
+    player = open_screen(lambda context: [flown(context), Menu()][1])
+    player.choose(texts.MENU["logbook"][0])
+    player.press("confirm")
+    replay = player.top
+    assert player.top_name == "Replay"
+    player.frames(60)
+    player.press("step")
+    assert replay.stopped
+    at = replay.tape.at
+    player.press("left")  # the strip of what was done is where it begins
+    assert replay.tape.at < at
+    player.press("hand over")
+    assert player.top_name == "Play"
+    player.press("main")
+    player.press("pause")
+    player.choose(texts.PAUSE_LEAVE)
+    assert player.top is replay
+    player.press("back", "back")
+    assert player.top_name == "Menu"
+
+
+def test_settings_are_changed_and_kept(open_screen):
+    player = open_screen(SCREENS["Menu"])
+    player.choose(texts.MENU["settings"][0])
+    player.press("down", "down", "confirm")
+    assert saved(player)["colour_safe"] is True
+    player.press("left")
+    assert saved(player)["colour_safe"] is False
+    while player.form.focused.label != texts.SOUND_GROUPS["effects"]:
+        player.press("down")
+    player.press("left", "left")
+    assert saved(player)["effects_volume"] == pytest.approx(0.7)
+    while player.form.focused.label != texts.BACK:
+        player.press("down")
+    player.press("right", "confirm")
+    assert player.top_name == "BindingsScene"
+    kind = "keys" if player.device == "keys" else "buttons"
+    while player.form.focused.label != texts.BINDINGS["PREVIOUS"]:
+        player.press("down")
+    if player.device == "pad":
+        player.press("right")
+    player.press("confirm", "another")
+    player.press("up")
+    player.press("confirm", "another")  # the one above takes it away again
+    assert saved(player)[kind].keys() == {"next", "previous"}
+    player.choose(texts.BINDINGS_ALL)
+    assert saved(player)[kind] == {}
+    player.press("back", "back")
+    assert player.top_name == "Menu"
