@@ -10,11 +10,11 @@ import numpy as np
 import pygame
 
 from ai.lander import Outcome
-from game import export, framing, hud, texts
+from game import framing, hud, texts
 from game.clock import STEP
 from game.context import Context
 from game.controls import Command, translate
-from game.export import Film
+from game.export import KINDS, Export
 from game.flight import Hand
 from game.flight_file import Record
 from game.library import exports_dir
@@ -56,7 +56,7 @@ class Replay:
         self._speed = SPEEDS.index(1.0)
         self._time = self._due = 0.0
         self._warned = False
-        self._film: Film | None = None
+        self._export: Export | None = None
 
     def enter(self, context: Context) -> None:
         """Begin with the first moment, or go on where it was left."""
@@ -75,7 +75,12 @@ class Replay:
         self._look()
 
     def exit(self) -> None:
-        """Nothing is held."""
+        """Keep everything for the way back."""
+
+    def close(self) -> None:
+        """Leave a moving picture that is not done."""
+        if self._export:
+            self._export.close()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Stop, wind, choose; take over."""
@@ -108,8 +113,8 @@ class Replay:
         assert self._context is not None
         self.tape.scout(_SCOUT)
         self._strip.reached = self.tape.reached
-        if self._film:
-            self._go_on_exporting(self._film)
+        if self._export:
+            self._follow_export(self._export)
         if self.tape.complete and not self.tape.faithful and not self._warned:
             self._warned = True
             self._context.note(texts.REPLAY_OTHER_RULES)
@@ -128,8 +133,7 @@ class Replay:
     def seek(self, step: int) -> None:
         """Show another moment."""
         self.tape.seek(step)
-        self._stage.flash[:] = 0
-        self._stage.particles.clear()
+        self._stage.forget()
         action = 0 if self.tape.flight.over else int(self.tape.flight.env.fired[0])
         self._stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
         self._stage.blue[:] = self.tape.flight.flown_by is Hand.NETWORK
@@ -187,7 +191,7 @@ class Replay:
                                              self._choose_speed, label_width=84, size=SMALL))  # fmt: skip
         rows: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over), (texts.LOGBOOK_RACE, self._race),
-            (texts.REPLAY_EXPORT, self._export), (texts.BACK, Pop),
+            (texts.REPLAY_EXPORT, self._begin_or_stop_export), (texts.BACK, Pop),
         ]  # fmt: skip
         x = VIEW_SIZE[0] - MARGIN - sum(typeface.width(word, SMALL, "regular") + 28 for word, _ in rows) + 28
         for word, press in rows:
@@ -213,39 +217,49 @@ class Replay:
 
         return Push(race(self.record))
 
-    def _export(self) -> None:
-        """Begin to draw the flight as a moving picture; `update` goes on with it."""
-        assert self._context is not None
-        if export.missing():
-            self._context.note(texts.EXPORT_MISSING)
-        elif not self.tape.complete:
-            self._context.note(texts.EXPORT_EARLY)
-        elif self._film is None:
-            own = Tape(self.record)
-            own.scout(own.length)
-            stage = Stage(own.flight.env, np.random.default_rng(self.record.recording.seed), reduced_motion=True)
-            self._film = Film(own.reached, lambda canvas, step: _draw_frame(canvas, own, stage, step))
+    def _begin_or_stop_export(self) -> Transition | None:
+        """Ask what kind of moving picture it shall be; or leave the one that is being made."""
+        from game.scenes.dialog import Picking
 
-    def _go_on_exporting(self, film: Film) -> None:
-        """Draw one more frame, or save them all."""
+        if self._export is None:
+            rows = [texts.EXPORT_KINDS[suffix] for suffix in KINDS]
+            return Push(Picking(self, texts.EXPORT_AS, rows, lambda number: self._begin_export([*KINDS][number])))
+        self._export.close()
+        self._end_export(texts.EXPORT_STOPPED)
+        return None
+
+    def _begin_export(self, suffix: str) -> None:
         assert self._context is not None
-        if not film.done:
-            film.step()
-            self._context.note(texts.EXPORT_GOES_ON.format(percent=round(100 * film.share)))
+        if KINDS[suffix].missing:
+            self._context.note(texts.EXPORT_MISSING.format(kind=suffix[1:].upper()))
             return
-        self._film = None
-        path = exports_dir() / f"{Path(self.record.entry.file).stem or texts.REPLAY_TITLE}.gif"
-        try:
-            film.save(path)
-        except OSError as error:
-            self._context.note(texts.EXPORT_FAILED.format(reason=error.strerror or error))
-        else:
-            self._context.note(texts.EXPORT_DONE.format(path=path))
+        path = exports_dir() / f"{Path(self.record.entry.file).stem or texts.REPLAY_TITLE}{suffix}"
+        self._export = Export(self.record, path, colour_safe=self._settings.colour_safe)
+
+    def _follow_export(self, export: Export) -> None:
+        """Say how far it has come, or what has become of it."""
+        export.poll()
+        self._export_word.label = texts.EXPORT_GOES_ON.format(percent=round(100 * export.share))
+        if export.over:
+            failed = texts.EXPORT_FAILED.format(reason=export.problem)
+            export.close()
+            self._end_export(failed if export.problem else texts.EXPORT_DONE.format(path=export.path))
+
+    def _end_export(self, note: str) -> None:
+        assert self._context is not None
+        self._export = None
+        self._export_word.label = texts.REPLAY_EXPORT
+        self._context.note(note)
 
     # The picture
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the world at the moment that is shown, the way there and on, and the strip of time."""
+        """Draw the moment that is shown, and the strip of time."""
+        self.draw_world(canvas, alpha)
+        self._draw_words(canvas)
+
+    def draw_world(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the moment that is shown, the way there and on, and its figures."""
         between = 1.0 if self.stopped else min(1.0, self._due + alpha * SPEEDS[self._speed])
         view = self._camera.view(canvas.scale, between)
         flight, env = self.tape.flight, self.tape.flight.env
@@ -257,7 +271,6 @@ class Replay:
         self._stage.draw_lander(canvas, view, flight.poses.at(between)[0])
         self._stage.draw_dust(canvas, view, between)
         hud.draw_readouts(canvas, self._readouts)
-        self._draw_words(canvas)
 
     def _draw_words(self, canvas: Canvas) -> None:
         assert self._context is not None
@@ -300,20 +313,3 @@ def _draw_way(canvas: Canvas, view: View, tape: Tape) -> None:
         if stop - start > 1:
             stretch = path[start : stop + 1 : 4] if stop - start > 8 else path[start : stop + 1]
             draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is Hand.HUMAN else NET, 0.6)
-
-
-def _draw_frame(canvas: Canvas, tape: Tape, stage: Stage, step: int) -> None:
-    """Draw a moment for a moving picture: the world, and the figures of the ground line."""
-    flight, env = tape.flight, tape.flight.env
-    while tape.at < step:
-        was_over = flight.over
-        tape.step()
-        stage.follow(np.array([flight.flown_by is Hand.NETWORK]), np.array([flight.over and not was_over]))
-    camera = Camera()
-    view = camera.view(canvas.scale)
-    landscape(canvas.surface.get_size(), True, look_of(flight.recording.mission)).draw(canvas, camera, 0.0, 1.0)
-    draw_ground(canvas, view, env.ground, 0.0, float(env.pad_shift[0]))
-    _draw_way(canvas, view, tape)
-    stage.draw_lander(canvas, view, flight.poses.at(1.0)[0])
-    stage.draw_dust(canvas, view, 1.0)
-    hud.draw_readouts(canvas, hud.flight_readouts(env))

@@ -1,4 +1,4 @@
-"""Dust, sparks and fragments. Decoration only: they touch nothing, and nothing depends on them."""
+"""Dust, sparks, fragments and the glow of exhaust. Decoration only: they touch nothing, nothing depends on them."""
 
 from __future__ import annotations
 
@@ -8,36 +8,49 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 import pygame
 
-from ai.lander import PARAMS
+from ai.env import Bools, Doubles, Ints
+from game.clock import STEP
 from game.render import View
 from game.ui.tokens import Colour
+from game.world.relief import Relief
 
-_STEP: Final = 1 / 60
 _LEVELS: Final = 8
 
 
 class Kind(IntEnum):
-    """What a particle is: how it fades, grows and is drawn."""
+    """What a particle is: how it moves, fades, grows and is drawn."""
 
-    DUST = 0
-    SPARK = 1
-    SHARD = 2
+    DUST = 0  # fine, in clouds that grow
+    GRAIN = 1  # coarse, in flat arcs
+    SPARK = 2
+    SHARD = 3
+    AMBER = 4  # exhaust of a person's engine
+    BLUE = 5  # of a network's
 
 
 _DUST: Final[Colour] = (150, 140, 150)
-_SPARK: Final[Colour] = (255, 176, 90)
+_GRAIN: Final[Colour] = (186, 174, 176)
+_GLOWS: Final[dict[int, Colour]] = {
+    Kind.SPARK: (255, 176, 90), Kind.AMBER: (255, 150, 70), Kind.BLUE: (96, 160, 255),
+}  # fmt: skip
 _SHARDS: Final[tuple[Colour, ...]] = ((214, 158, 74), (190, 198, 214), (92, 98, 118), (168, 112, 48))
-_GROWTH: Final = np.array([0.55, 0.0, 0.0])  # metres a second
+# By kind:
+_GROWTH: Final = np.array([0.55, 0.0, 0.0, 0.0, 0.16, 0.16])  # metres a second
+_WEIGHT: Final = np.array([0.35, 1.0, 1.0, 1.0, 0.0, 0.0])  # share of gravity that pulls
+_BOUNCE: Final = np.array([0.0, 0.1, 0.45, 0.42, 0.0, 0.0])
+_GRIP: Final = np.array([0.9, 0.5, 0.75, 0.7, 1.0, 1.0])  # share of the way along the ground that goes on
 
 
 class Particles:
-    """A fixed number of slots; the oldest are taken over when all are in use."""
+    """A fixed number of slots; the oldest are taken over when all are in use.
 
-    def __init__(self, rng: np.random.Generator, slots: int = 420) -> None:
-        self._rng = rng
+    `gravity` in m/s² and the ground are those of the flight they belong to.
+    """
+
+    def __init__(self, rng: np.random.Generator, relief: Relief, gravity: float, slots: int = 640) -> None:
+        self._rng, self._relief, self._gravity = rng, relief, gravity
         self._position = np.zeros((slots, 2))
         self._before = np.zeros((slots, 2))
         self._velocity = np.zeros((slots, 2))
@@ -48,46 +61,102 @@ class Particles:
         self._look = np.zeros(slots, np.intp)
         self._next = 0
 
+    @property
+    def alive(self) -> Bools:
+        """Which slots are in use."""
+        alive: Bools = self._age < self._life
+        return alive
+
     def clear(self) -> None:
         """Take every particle away."""
         self._age[:] = np.inf
 
     def update(self) -> None:
         """Let a step of 1/60 s pass."""
-        self._before[:] = self._position
-        self._velocity[:, 1] -= PARAMS.gravity * _STEP
-        self._position += self._velocity * _STEP
-        self._age += _STEP
-        self._size += _GROWTH[self._kind] * _STEP
-        low = self._position[:, 1] < PARAMS.ground
-        self._position[low, 1] = PARAMS.ground
-        self._velocity[low] *= (0.5, -0.35)
+        live = np.flatnonzero(self.alive)
+        if not len(live):
+            return
+        kind = self._kind[live]
+        before, velocity = self._position[live], self._velocity[live]
+        velocity[:, 1] -= _WEIGHT[kind] * self._gravity * STEP
+        position = before + velocity * STEP
+        self._bounce(position, velocity, kind)
+        self._before[live], self._position[live], self._velocity[live] = before, position, velocity
+        self._age[live] += STEP
+        self._size[live] += _GROWTH[kind] * STEP
 
-    def blow(self, x: float, ground: float, strength: float) -> None:
-        """Blow dust outwards along the ground from where a jet meets it; `strength` 0 to 1."""
-        count = int(self._rng.poisson(3.2 * strength))
+    def _bounce(self, position: Doubles, velocity: Doubles, kind: Ints) -> None:
+        """Throw back what has come into the ground; what is exhaust there spreads along it."""
+        x = position[:, 0]
+        floor = self._relief.height(x)
+        low = np.flatnonzero(position[:, 1] < floor)
+        if not len(low):
+            return
+        slope = (self._relief.height(x[low] + 0.15) - self._relief.height(x[low] - 0.15)) / 0.3
+        slope[np.abs(slope) > 1.5] = 0.0  # the edge of a pad
+        normal = np.stack([-slope, np.ones(len(low))], 1) / np.sqrt(1 + slope**2)[:, None]
+        into = (velocity[low] * normal).sum(axis=1)
+        along = velocity[low] - into[:, None] * normal
+        gas = kind[low] >= Kind.AMBER
+        spread = 0.75 * np.abs(into) * np.where(self._rng.random(len(low)) < 0.5, -1.0, 1.0) * gas
+        away = _GRIP[kind[low]][:, None] * along - (_BOUNCE[kind[low]] * np.minimum(into, 0))[:, None] * normal
+        velocity[low] = away + spread[:, None] * np.stack([normal[:, 1], -normal[:, 0]], 1)
+        position[low, 1] = floor[low]
+
+    def burn(self, nozzle: Doubles, direction: Doubles, carried: Doubles, thrust: float, blue: float) -> None:
+        """Let glowing gas leave a nozzle along a unit vector; `carried` is the velocity of the craft."""
+        count = int(self._rng.poisson(1.6 * thrust))
         if count:
+            kind = Kind.BLUE if blue > 0.5 else Kind.AMBER
+            aside = np.array([-direction[1], direction[0]])
+            speed = self._rng.uniform(6.5, 11.0, (count, 1))
+            push = carried + direction * speed + aside * self._rng.normal(0.0, 0.55, (count, 1))
+            start = nozzle + direction * self._rng.uniform(0.2, 0.9, (count, 1))
+            life = self._rng.uniform(0.16, 0.42, count)
+            self._add(kind, start, push, life, self._rng.uniform(0.05, 0.10, count))
+
+    def blow(self, x: float, strength: float) -> None:
+        """Blow dust outwards along the ground from where a jet meets it; `strength` 0 to 1.
+
+        A pad's deck is swept clean: there the jet raises dust beyond both edges.
+        """
+        edges = self._relief.deck(x)
+        count, grains = self._rng.poisson((4.5 * strength, 3.0 * strength))
+        if edges:
+            away = min(abs(x - edges[0]), abs(x - edges[1]))
+            strength *= max(0.25, 1 - 0.2 * away)
+            count, grains = round(0.6 * count), round(0.5 * grains)
+        for kind, number, fast, steep, life, size in (
+            (Kind.DUST, count, (1.6, 6.5), 0.14, (0.6, 1.7), (0.08, 0.24)),
+            (Kind.GRAIN, grains, (4.0, 11.0), 0.20, (0.4, 1.0), (0.010, 0.024)),
+        ):
+            side = self._rng.choice((-1.0, 1.0), number)
+            reach = self._rng.uniform(0.1, 0.8, number)
+            start = np.where(side < 0, edges[0] - reach, edges[1] + reach) if edges else x + side * reach
+            speed = self._rng.uniform(*fast, number) * (0.4 + 0.6 * strength)
+            rise = speed * steep * self._rng.uniform(0.2, 1.0, number)
+            place = np.stack([start, self._relief.height(start) + 0.05], 1)
+            self._add(kind, place, np.stack([side * speed, rise], 1), self._rng.uniform(*life, number),
+                      self._rng.uniform(*size, number))  # fmt: skip
+
+    def settle(self, foot: tuple[float, float], strength: float) -> None:
+        """Raise the little dust that a foot raises, and, where it comes down hard, sparks; `strength` 0 to 1."""
+        for kind, count, fast, rise, life, size in (
+            (Kind.DUST, int(4 + 9 * strength), (0.3, 1.8), (0.1, 0.8), (0.5, 1.2), (0.06, 0.14)),
+            (Kind.SPARK, int(22 * max(0.0, strength - 0.35)), (0.5, 4.5), (0.3, 2.4), (0.25, 0.8), (0.02, 0.045)),
+        ):
             side = self._rng.choice((-1.0, 1.0), count)
-            start = np.stack([x + side * self._rng.uniform(0.1, 0.7, count), np.full(count, ground + 0.06)], 1)
-            speed = side * self._rng.uniform(2.2, 7.5, count) * (0.5 + 0.5 * strength)
-            rise = self._rng.uniform(0.05, 1.1, count) * strength
-            life = self._rng.uniform(0.5, 1.3, count)
-            self._add(Kind.DUST, start, np.stack([speed, rise], 1), life, self._rng.uniform(0.10, 0.26, count))
+            start = np.stack([foot[0] + side * self._rng.uniform(0.0, 0.25, count), np.full(count, foot[1] + 0.04)], 1)
+            speed = np.stack([side * self._rng.uniform(*fast, count), self._rng.uniform(*rise, count)], 1)
+            self._add(kind, start, speed, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
 
-    def settle(self, x: float, ground: float, strength: float) -> None:
-        """Raise the little dust that two feet raise."""
-        count = int(8 + 14 * min(strength, 1.0))
-        side = self._rng.choice((-1.0, 1.0), count)
-        start = np.stack([x + side * self._rng.uniform(0.7, 1.1, count), np.full(count, ground + 0.04)], 1)
-        speed = np.stack([side * self._rng.uniform(0.3, 1.8, count), self._rng.uniform(0.1, 0.8, count)], 1)
-        self._add(Kind.DUST, start, speed, self._rng.uniform(0.5, 1.2, count), self._rng.uniform(0.06, 0.14, count))
-
-    def burst(self, position: npt.NDArray[np.float64], velocity: npt.NDArray[np.float64], share: float = 1.0) -> None:
+    def burst(self, position: Doubles, velocity: Doubles, share: float = 1.0) -> None:
         """Break something: sparks, fragments and a ring of dust, or a share of them."""
         for kind, most, speed, life, size in (
-            (Kind.SPARK, 46, 6.5, (0.4, 1.6), (0.03, 0.07)),
-            (Kind.SHARD, 20, 4.2, (1.6, 3.4), (0.10, 0.26)),
+            (Kind.SPARK, 52, 6.5, (0.4, 1.6), (0.02, 0.06)),
+            (Kind.SHARD, 22, 4.2, (2.2, 4.5), (0.06, 0.20)),
             (Kind.DUST, 46, 3.4, (0.7, 1.8), (0.14, 0.40)),
+            (Kind.GRAIN, 40, 7.0, (0.6, 1.8), (0.012, 0.03)),
         ):
             count = math.ceil(share * most)
             turn = self._rng.uniform(0.05 * np.pi, 0.95 * np.pi, count)
@@ -98,7 +167,7 @@ class Particles:
 
     def draw(self, surface: pygame.Surface, view: View, alpha: float) -> None:
         """Draw what lives, between the last two steps."""
-        live = np.flatnonzero(self._age < self._life)
+        live = np.flatnonzero(self.alive)
         if not len(live):
             return
         place = view.pixels(self._before[live] + alpha * (self._position[live] - self._before[live]))
@@ -110,27 +179,31 @@ class Particles:
             place.tolist(), self._kind[live].tolist(), left.tolist(), radius.tolist(),
             self._look[live].tolist(), self._age[live].tolist(), strict=True,
         ):  # fmt: skip
-            if kind == Kind.SPARK:
-                sprite = _spark(max(2, round(r * 3)), math.ceil(share * _LEVELS))
+            if kind in _GLOWS:
+                sprite = _glow(kind, max(2, round(r * 3)), math.ceil(share * _LEVELS))
             elif kind == Kind.SHARD:
                 sprite = _shard(
                     max(2, round(r)), look, int(age * (3 + look % 5) * 4) % 16, min(4, math.ceil(share * 8))
                 )
+            elif kind == Kind.GRAIN:
+                sprite = _grain(max(1, round(2 * r)), min(4, math.ceil(share * 6)))
             else:
                 sprite = _puff(max(2, round(r)), math.ceil(share * _LEVELS))
             corner = (round(x) - sprite.get_width() // 2, round(y) - sprite.get_height() // 2)
-            (added if kind == Kind.SPARK else plain).append((sprite, corner))
+            (added if kind in _GLOWS else plain).append((sprite, corner))
         surface.fblits(plain)
         surface.fblits(added, pygame.BLEND_RGB_ADD)
 
     def _add(
         self,
         kind: Kind,
-        position: npt.NDArray[np.float64],
-        velocity: npt.NDArray[np.float64],
-        life: npt.NDArray[np.float64],
-        size: npt.NDArray[np.float64],
+        position: Doubles,
+        velocity: Doubles,
+        life: Doubles,
+        size: Doubles,
     ) -> None:
+        if not len(position):
+            return
         slots = (self._next + np.arange(len(position))) % len(self._age)
         self._next = int(slots[-1] + 1) % len(self._age)
         self._position[slots] = self._before[slots] = position
@@ -150,14 +223,24 @@ def _puff(radius: int, level: int) -> pygame.Surface:
     return surface
 
 
-@lru_cache(maxsize=256)
-def _spark(radius: int, level: int) -> pygame.Surface:
+@lru_cache(maxsize=64)
+def _grain(side: int, level: int) -> pygame.Surface:
+    surface = pygame.Surface((side, side))
+    surface.fill(_GRAIN)
+    surface.set_alpha(round(200 * level / 4))
+    return surface
+
+
+@lru_cache(maxsize=512)
+def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
+    """Return a spark, small and hot, or a whiff of glowing gas, large and faint; to be added."""
     axis = np.arange(-radius, radius + 1) / radius
     away = np.hypot(axis[:, None], axis[None, :])[..., None]
-    strength = level / _LEVELS
-    glow = np.exp(-((away / 0.24) ** 2)) * 255 * strength
-    halo = np.clip(1 - away, 0, 1) ** 2 * 0.6 * strength * np.array(_SPARK)
-    return pygame.surfarray.make_surface(np.minimum(glow * np.array((1.0, 0.86, 0.62)) + halo, 255).astype(np.uint8))
+    strength, colour = level / _LEVELS, np.array(_GLOWS[kind])
+    heart, halo = (1.0, 0.6) if kind == Kind.SPARK else (0.16, 0.34)
+    hot = 0.35 * colour + 0.65 * 255
+    picture = heart * np.exp(-((away / 0.24) ** 2)) * hot + halo * np.clip(1 - away, 0, 1) ** 2 * colour
+    return pygame.surfarray.make_surface(np.minimum(strength * picture, 255).astype(np.uint8))
 
 
 @lru_cache(maxsize=512)

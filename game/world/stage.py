@@ -10,38 +10,49 @@ import numpy as np
 import pygame
 
 from ai.env import Bools, Doubles
-from ai.lander import FOOT_CENTRE, PARAMS, LanderEnv, Outcome
+from ai.lander import LanderEnv, Outcome
 from game.flight import surface_height
 from game.render import View
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, NET
 from game.world import lander as art
-from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume, plumes
+from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, stand
 from game.world.paint import light, mix
 from game.world.particles import Particles
+from game.world.relief import Relief
+from game.world.wreck import Wreck
 
 _IGNITE: Final = 0.34  # share of the way to full thrust, and to none, in a step
 _DIE: Final = 0.22
 _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
 _FLASH_STEPS: Final = 34
-STAND: Final = PARAMS.stand
+_JOLT: Final = 11.0  # points, of the hardest blow
 
 
 class Stage:
-    """The fire, dust and light around the landers of one environment; `follow` once after every step."""
+    """The fire, dust and light around the landers of one environment; `follow` once after every step.
+
+    Attributes:
+        jolt: how hard the last step shook what is near, in points.
+
+    """
 
     def __init__(self, env: LanderEnv, rng: np.random.Generator, reduced_motion: bool = False) -> None:
         self._env = env
         self._rng = rng
         self._calm = reduced_motion
-        self.particles = Particles(rng)
+        self._relief = Relief(env)
+        self.particles = Particles(rng, self._relief, env.params.gravity)
         count = env.num_envs
         self.thrust = np.zeros((count, 3))  # main engine, left-hand jet, right-hand jet
         self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between in passing
         self.flash = np.zeros(count, np.intp)
+        self.jolt = 0.0
+        self._wreck: Wreck | None = None
         self._flicker = 0
-        self._was_down = np.zeros(count, bool)
+        self._down = np.zeros(2, bool)
+        self._fall = 0.0
 
     def follow(self, networks: Bools, ended: Bools) -> None:
         """Ease everything towards what the environment now says; `networks` (n,) fly, `ended` ended just now."""
@@ -54,47 +65,86 @@ class Stage:
         self.blue += (1.0 if self._calm else 0.14) * (networks - self.blue)
         self._flicker += 1
         self.flash = np.maximum(self.flash - 1, 0)
+        self.jolt = 0.0
         for slot in np.flatnonzero(ended & (env.outcome == Outcome.CRASHED)):
             self.flash[slot] = _FLASH_STEPS
             self.particles.burst(env.position[slot], env.velocity[slot], 1.0 if env.num_envs == 1 else 0.2)
         if env.num_envs == 1:
-            self._raise_dust()
+            self._follow_one(bool(ended[0]))
         self.particles.update()
 
-    def _raise_dust(self) -> None:
+    def forget(self) -> None:
+        """Take away what the last steps have left: another moment is shown."""
+        self.flash[:] = 0
+        self.particles.clear()
+        self._wreck = None
+        self._down, self._fall = self._env.contacts[0].copy(), 0.0
+
+    def _follow_one(self, ended: bool) -> None:
+        """Let a single lander burn, raise dust, touch and break as it should be seen from near."""
+        env = self._env
+        if ended and env.outcome[0] == Outcome.CRASHED:
+            speed = float(env.impact[0, :2].max())
+            self.jolt = min(_JOLT, 4.0 + 1.4 * speed)
+            if not self._calm:
+                self._wreck = Wreck(env, 0, self._rng)
+        if self._wreck is not None:
+            self._wreck.step()
+        elif env.outcome[0] != Outcome.CRASHED:
+            self._burn()
+            self._touch()
+
+    def _burn(self) -> None:
         env = self._env
         x, y = env.position[0].tolist()
         angle, thrust = float(env.angle[0]), float(self.thrust[0, 0])
+        if thrust < 0.05:
+            return
+        down = np.array([math.sin(angle), -math.cos(angle)])
+        self.particles.burn(env.position[0] - art.NOZZLE[1] * down, down, env.velocity[0], thrust, float(self.blue[0]))
         reach = y - surface_height(env, x)
-        if thrust > 0.05 and reach < _DUST_HEIGHT and abs(angle) < 1.2:
+        if reach < _DUST_HEIGHT and abs(angle) < 1.2:
             aim = x + math.tan(angle) * reach
-            self.particles.blow(aim, surface_height(env, aim), thrust * (1 - reach / _DUST_HEIGHT) ** 1.5)
-        down = bool(env.contacts[0].any())
-        if down and not self._was_down[0] and env.outcome[0] != Outcome.CRASHED:
-            self.particles.settle(x, surface_height(env, x), float(env.impact[0, 0]))
-        self._was_down[0] = down
+            self.particles.blow(aim, thrust * (1 - reach / _DUST_HEIGHT) ** 1.5)
+
+    def _touch(self) -> None:
+        """Let each foot that comes down raise dust, and more, the harder it does."""
+        env = self._env
+        down = env.contacts[0]
+        (x, y), angle = env.position[0].tolist(), float(env.angle[0])
+        strength = min(1.0, max(0.0, self._fall) / env.limits.touch_speed)
+        for foot in np.flatnonzero(down & ~self._down):
+            self.particles.settle(foot_place(x, y, angle, 2 * int(foot) - 1), strength)
+            self.jolt = max(self.jolt, _JOLT * 0.55 * strength**1.5)
+        self._down, self._fall = down.copy(), -float(env.velocity[0, 1])
 
     # One lander in full
 
-    def draw_lander(self, canvas: Canvas, view: View, pose: Doubles, slot: int = 0, size: float = 1.0) -> None:
+    def draw_lander(
+        self, canvas: Canvas, view: View, pose: Doubles, slot: int = 0, size: float = 1.0, alpha: float = 1.0
+    ) -> None:
         """Draw one lander with everything around it but dust; `size` 1 is true to scale."""
+        wrecked = self._env.outcome[slot] == Outcome.CRASHED
+        if self._wreck is not None:
+            pose = self._wreck.pose(alpha)
         x, y, angle = pose.tolist()
         self._draw_shadow(canvas, view, x, y, angle)
         self._draw_ground_light(canvas, view, x, y, angle, slot)
         floor = float(view.pixels((x, surface_height(self._env, x)))[1]) + 2
-        if self._env.outcome[slot] == Outcome.CRASHED:
+        if wrecked:
             self._draw_wreck(canvas, view, pose, slot, size)
         else:
             draw_craft(canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor)
         self._draw_flash(canvas, view, x, y, slot)
 
     def _draw_wreck(self, canvas: Canvas, view: View, pose: Doubles, slot: int, size: float) -> None:
-        """Draw what a crash has left: dark, and sagging to the side it leans to."""
+        """Draw what a crash has left, dark; where it does not tumble, it sags to the side it leans to."""
         x, y, angle = pose.tolist()
-        sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
-        angle += 0.16 * sag * (1 if angle >= 0 else -1)
-        middle = view.pixels(stand(x, y - 0.16 * sag, angle, size)).tolist()
-        craft = art.sprite(view.painted_per_metre * size, angle, (middle[0], middle[1]), _ratio(view), wreck=True)
+        if self._wreck is None:
+            sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
+            y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
+        middle = view.pixels(stand(x, y, angle, size)).tolist()
+        craft = art.sprite(view.painted_per_metre * size, angle, (middle[0], middle[1]), scaling(view), wreck=True)
         canvas.surface.blit(*craft)
 
     # A swarm, small and in one go, each standing on its feet; `shown` is a mask (n,)
@@ -121,8 +171,7 @@ class Stage:
             shadow = pygame.transform.smoothscale(_shade(level), (2 * round(across), 2 * round(0.15 * metre)))
             _blit_middle(canvas, shadow, view, (x, ground + 0.03))
         for side in (-1, 1):
-            foot_x = x + side * FOOT_CENTRE[0] * math.cos(angle) - FOOT_CENTRE[1] * math.sin(angle)
-            foot_y = y + side * FOOT_CENTRE[0] * math.sin(angle) + FOOT_CENTRE[1] * math.cos(angle) - 0.06
+            foot_x, foot_y = foot_place(x, y, angle, side)
             under = surface_height(self._env, foot_x)
             near = round(8 * max(0.0, 1 - max(0.0, foot_y - under) / 0.6))
             if near:
@@ -153,98 +202,6 @@ class Stage:
             canvas.glow(view.points((x, y)).tolist(), 2.0 * metre, (255, 236, 210), 1.5 * left**3)
 
 
-def draw_craft(
-    canvas: Canvas,
-    view: View,
-    pose: Doubles,
-    thrust: Doubles,
-    blue: float,
-    flicker: int,
-    size: float = 1.0,
-    floor: float = math.inf,
-) -> None:
-    """Draw a lander and its fire, which ends at the pixel row `floor`.
-
-    A lander drawn smaller than it is still stands on its feet.
-    """
-    surface = canvas.surface
-    x, y, angle = pose.tolist()
-    metre = view.pixels_per_metre * size
-    middle_x, middle_y = view.pixels(stand(x, y, angle, size)).tolist()
-    cos, sin = math.cos(angle), math.sin(angle)
-
-    def place(right: float, up: float) -> tuple[float, float]:
-        return middle_x + metre * (right * cos - up * sin), middle_y - metre * (right * sin + up * cos)
-
-    main, *jets = thrust.tolist()
-    fire = mix(HUMAN, NET, round(blue * 4) / 4)
-    if main > 0.06:
-        nozzle = place(*art.NOZZLE)
-        heart = place(art.NOZZLE[0], art.NOZZLE[1] - 0.35)
-        scale = canvas.scale
-        spot = (heart[0] / scale, heart[1] / scale)
-        canvas.glow(spot, 2.3 * metre / scale, fire, 0.42 * main)
-        fire_kind = NET_PLUME if blue > 0.5 else HUMAN_PLUME
-        _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
-    surface.blit(*art.sprite(view.painted_per_metre * size, angle, (middle_x, middle_y), _ratio(view)))
-    for side, force in enumerate(jets):
-        if force > 0.06:
-            outward = angle + (math.pi / 2 if side else -math.pi / 2)
-            _burn(surface, JET, metre, outward, force, flicker // 2 + side, place(*art.JETS[side]), floor)
-    tip_x, tip_y = place(*art.ANTENNA_TIP)
-    tip = (tip_x / canvas.scale, tip_y / canvas.scale)
-    owner = mix(HUMAN, NET, round(blue * 8) / 8)
-    canvas.glow(tip, 0.45 * metre / canvas.scale, owner, 1.0)
-    canvas.dot(tip, max(1.0, 0.07 * metre / canvas.scale), mix(owner, (255, 255, 255), 0.35))
-
-
-def draw_fires(canvas: Canvas, view: View, poses: Doubles, flicker: int, size: float) -> None:
-    """Draw the main engines' fire of landers at poses (n, 3), small and in one go."""
-    angle = poses[:, 2]
-    nozzles = _middles(poses, size)
-    nozzles += size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-    fires = plumes(NET_PLUME, view.pixels_per_metre * size, angle, view.pixels(nozzles), flicker // 2)
-    canvas.surface.fblits(fires, pygame.BLEND_RGB_ADD)
-
-
-def draw_crowd(canvas: Canvas, view: View, poses: Doubles, size: float) -> None:
-    """Draw landers at poses (n, 3), small and in one go, each standing on its feet."""
-    middles = view.pixels(_middles(poses, size))
-    canvas.surface.fblits(art.sprites(view.pixels_per_metre * size, poses[:, 2], middles))
-
-
-def stand(x: float, y: float, angle: float, size: float) -> tuple[float, float]:
-    """Return where the middle of a lander drawn at that size goes for its feet to stay where they are."""
-    lower = STAND * (1 - size)
-    return x + lower * math.sin(angle), y - lower * math.cos(angle)
-
-
-def _middles(poses: Doubles, size: float) -> Doubles:
-    """Return what `stand` does, for poses (n, 3): (n, 2)."""
-    lower = STAND * (1 - size)
-    angle = poses[:, 2]
-    middles: Doubles = poses[:, :2] + lower * np.stack([np.sin(angle), -np.cos(angle)], axis=1)
-    return middles
-
-
-def _burn(
-    surface: pygame.Surface,
-    kind: Plume,
-    metre: float,
-    angle: float,
-    thrust: float,
-    flicker: int,
-    nozzle: tuple[float, float],
-    floor: float,
-) -> None:
-    fire = plume(kind, metre, angle, thrust, flicker)
-    if fire:
-        sheet, (x, y) = fire
-        left, top = round(nozzle[0] - x), round(nozzle[1] - y)
-        height = min(sheet.get_height(), max(0.0, floor - top))
-        surface.blit(sheet, (left, top), (0, 0, sheet.get_width(), height), pygame.BLEND_RGB_ADD)
-
-
 def _blit_middle(
     canvas: Canvas, sprite: pygame.Surface, view: View, position: tuple[float, float], flags: int = 0
 ) -> None:
@@ -271,8 +228,3 @@ def _pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
     away = np.clip(1 - np.hypot(axis[None, :], axis[:, None]), 0, 1)
     shine = (0.34 * away**2 + 0.42 * away**6) * level / 12
     return light(shine[..., None] * np.array(colour, np.float32))
-
-
-def _ratio(view: View) -> float:
-    """By what to scale a picture that was painted for the closest view."""
-    return view.pixels_per_metre / view.painted_per_metre

@@ -16,9 +16,9 @@ from game.render import HOME, POINTS_PER_METRE, View
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
 from game.world.backdrop import Backdrop
+from game.world.craft import draw_craft, draw_crowd, draw_fires
 from game.world.pad import draw_pad
 from game.world.paths import Trails
-from game.world.stage import draw_craft, draw_crowd, draw_fires
 
 _SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # landers up to, how large they are drawn
 _KEEP: Final = 16  # flights whose way stays to be seen

@@ -11,7 +11,9 @@ from game.world.flame import HUMAN_PLUME, LEVELS, plume
 from game.world.pad import draw_pad
 from game.world.particles import Particles
 from game.world.paths import Trails, draw_dotted
-from game.world.stage import Stage, stand
+from game.world.relief import Relief
+from game.world.stage import Stage
+from game.world.craft import stand
 
 SIZES = [(1280, 720), (640, 360), (1000, 800)]
 
@@ -91,9 +93,9 @@ def test_fire_grows_with_thrust_and_none_is_no_fire():
 
 def test_particles_move_in_update_and_never_in_draw(canvas: Canvas):
     view = Camera().view(canvas.scale)
-    particles = Particles(np.random.default_rng(1))
+    particles = Particles(np.random.default_rng(1), Relief(LanderEnv()), PARAMS.gravity)
     for _ in range(30):
-        particles.blow(0.0, 1.0, 1.0)
+        particles.blow(0.0, 1.0)
     particles.burst(np.array([0.0, 3.0]), np.array([1.0, -4.0]))
     pictures = []
     for _ in range(2):
@@ -101,7 +103,7 @@ def test_particles_move_in_update_and_never_in_draw(canvas: Canvas):
         particles.draw(canvas.surface, view, 0.5)
         pictures.append(pixels(canvas.surface))
     assert np.array_equal(*pictures)
-    for _ in range(240):
+    for _ in range(300):
         particles.update()
     canvas.surface.fill((30, 30, 40))
     particles.draw(canvas.surface, view, 1.0)

@@ -1,0 +1,124 @@
+"""Landers as they are drawn: one in full with its fire, or a crowd in one go."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.env import Doubles
+from ai.lander import FOOT_CENTRE, FOOT_SIZE, PARAMS
+from game.render import View
+from game.ui.canvas import Canvas
+from game.ui.tokens import HUMAN, NET
+from game.world import lander as art
+from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume, plumes
+from game.world.paint import mix
+
+STAND: Final = PARAMS.stand
+
+
+def draw_craft(
+    canvas: Canvas,
+    view: View,
+    pose: Doubles,
+    thrust: Doubles,
+    blue: float,
+    flicker: int,
+    size: float = 1.0,
+    floor: float = math.inf,
+) -> None:
+    """Draw a lander and its fire, which ends at the pixel row `floor`.
+
+    A lander drawn smaller than it is still stands on its feet.
+    """
+    surface = canvas.surface
+    x, y, angle = pose.tolist()
+    metre = view.pixels_per_metre * size
+    middle_x, middle_y = view.pixels(stand(x, y, angle, size)).tolist()
+    cos, sin = math.cos(angle), math.sin(angle)
+
+    def place(right: float, up: float) -> tuple[float, float]:
+        return middle_x + metre * (right * cos - up * sin), middle_y - metre * (right * sin + up * cos)
+
+    main, *jets = thrust.tolist()
+    fire = mix(HUMAN, NET, round(blue * 4) / 4)
+    if main > 0.06:
+        nozzle = place(*art.NOZZLE)
+        heart = place(art.NOZZLE[0], art.NOZZLE[1] - 0.35)
+        scale = canvas.scale
+        spot = (heart[0] / scale, heart[1] / scale)
+        canvas.glow(spot, 2.3 * metre / scale, fire, 0.42 * main)
+        fire_kind = NET_PLUME if blue > 0.5 else HUMAN_PLUME
+        _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
+    surface.blit(*art.sprite(view.painted_per_metre * size, angle, (middle_x, middle_y), scaling(view)))
+    for side, force in enumerate(jets):
+        if force > 0.06:
+            outward = angle + (math.pi / 2 if side else -math.pi / 2)
+            _burn(surface, JET, metre, outward, force, flicker // 2 + side, place(*art.JETS[side]), floor)
+    tip_x, tip_y = place(*art.ANTENNA_TIP)
+    tip = (tip_x / canvas.scale, tip_y / canvas.scale)
+    owner = mix(HUMAN, NET, round(blue * 8) / 8)
+    canvas.glow(tip, 0.45 * metre / canvas.scale, owner, 1.0)
+    canvas.dot(tip, max(1.0, 0.07 * metre / canvas.scale), mix(owner, (255, 255, 255), 0.35))
+
+
+def draw_fires(canvas: Canvas, view: View, poses: Doubles, flicker: int, size: float) -> None:
+    """Draw the main engines' fire of landers at poses (n, 3), small and in one go."""
+    angle = poses[:, 2]
+    nozzles = _middles(poses, size)
+    nozzles += size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+    fires = plumes(NET_PLUME, view.pixels_per_metre * size, angle, view.pixels(nozzles), flicker // 2)
+    canvas.surface.fblits(fires, pygame.BLEND_RGB_ADD)
+
+
+def draw_crowd(canvas: Canvas, view: View, poses: Doubles, size: float) -> None:
+    """Draw landers at poses (n, 3), small and in one go, each standing on its feet."""
+    middles = view.pixels(_middles(poses, size))
+    canvas.surface.fblits(art.sprites(view.pixels_per_metre * size, poses[:, 2], middles))
+
+
+def stand(x: float, y: float, angle: float, size: float) -> tuple[float, float]:
+    """Return where the middle of a lander drawn at that size goes for its feet to stay where they are."""
+    lower = STAND * (1 - size)
+    return x + lower * math.sin(angle), y - lower * math.cos(angle)
+
+
+def foot_place(x: float, y: float, angle: float, side: int) -> tuple[float, float]:
+    """Return where the sole of a foot is, -1 the left one and 1 the right one."""
+    aside, down = side * FOOT_CENTRE[0], FOOT_CENTRE[1] - FOOT_SIZE[1] / 2
+    cos, sin = math.cos(angle), math.sin(angle)
+    return x + aside * cos - down * sin, y + aside * sin + down * cos
+
+
+def _middles(poses: Doubles, size: float) -> Doubles:
+    """Return what `stand` does, for poses (n, 3): (n, 2)."""
+    lower = STAND * (1 - size)
+    angle = poses[:, 2]
+    middles: Doubles = poses[:, :2] + lower * np.stack([np.sin(angle), -np.cos(angle)], axis=1)
+    return middles
+
+
+def _burn(
+    surface: pygame.Surface,
+    kind: Plume,
+    metre: float,
+    angle: float,
+    thrust: float,
+    flicker: int,
+    nozzle: tuple[float, float],
+    floor: float,
+) -> None:
+    fire = plume(kind, metre, angle, thrust, flicker)
+    if fire:
+        sheet, (x, y) = fire
+        left, top = round(nozzle[0] - x), round(nozzle[1] - y)
+        height = min(sheet.get_height(), max(0.0, floor - top))
+        surface.blit(sheet, (left, top), (0, 0, sheet.get_width(), height), pygame.BLEND_RGB_ADD)
+
+
+def scaling(view: View) -> float:
+    """By what to scale a picture that was painted for the closest view."""
+    return view.pixels_per_metre / view.painted_per_metre

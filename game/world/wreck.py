@@ -1,0 +1,63 @@
+"""What a crash leaves, tumbling on by the same laws as all else; decoration, in a world of its own."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ai.env import Doubles
+from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
+from engine import Polygon, World
+
+_STEPS: Final = 420  # after which it lies still, whatever it does
+_STILL: Final = 0.05  # m/s and rad/s
+_SPIN: Final = 0.35  # rad/s for every m/s of the blow, at most
+
+
+class Wreck:
+    """The craft of one slot from the moment it crashed; `step` once for every step of 1/60 s.
+
+    Gravity, hills and pads are the flight's own, the pads where they were in that moment.
+    """
+
+    def __init__(self, env: LanderEnv, slot: int, rng: np.random.Generator) -> None:
+        params = env.params
+        self._world = World(gravity=(0.0, -params.gravity), batch=1, iterations=5)
+        x, y = FOOT_CENTRE
+        shapes = [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-x, y)), Polygon.box(*FOOT_SIZE, (x, y))]
+        blow = float(env.impact[slot, :2].max())
+        self._body = self._world.add(
+            shapes, env.position[slot], float(env.angle[slot]), mass=params.mass, inertia=params.inertia,
+            centre_of_mass=(0.0, 0.0), restitution=0.25, friction=0.7, angular_drag=0.3,
+        )  # fmt: skip
+        for pad in env.ground.build(self._world, restitution=0.25, friction=0.7):
+            pad.position = pad.position + np.array([float(env.pad_shift[slot]), 0.0])
+        self._body.velocity = env.velocity[slot]
+        self._body.angular_velocity = env.angular_velocity[slot] + _SPIN * blow * rng.uniform(-1.0, 1.0)
+        self._steps = self._rest = 0
+        self._now = self._before = self._pose()
+
+    @property
+    def moves(self) -> bool:
+        """Whether it has not come to rest."""
+        return self._steps < _STEPS and self._rest < 20
+
+    def step(self) -> None:
+        """Let 1/60 s pass."""
+        self._before = self._now
+        if not self.moves:
+            return
+        self._world.step()
+        self._now = self._pose()
+        self._steps += 1
+        slow = np.abs(self._body.velocity).max() < _STILL and abs(float(self._body.angular_velocity[0])) < _STILL
+        self._rest = self._rest + 1 if slow else 0
+
+    def pose(self, alpha: float) -> Doubles:
+        """Return x, y and angle, `alpha` of the way from the last step to this one."""
+        pose: Doubles = self._before + alpha * (self._now - self._before)
+        return pose
+
+    def _pose(self) -> Doubles:
+        return np.append(self._body.position[0], self._body.angle[0])
