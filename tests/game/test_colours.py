@@ -1,0 +1,109 @@
+"""Colours that mean something stay apart for every eye, and a shape always says the same."""
+
+from itertools import combinations
+
+import numpy as np
+import pygame
+import pytest
+
+from game import hud
+from game.ui.canvas import Canvas
+from game.ui.tokens import (
+    COLOUR_SAFE,
+    EMBER,
+    HUMAN,
+    INK,
+    MUTE,
+    NET,
+    NIGHT0,
+    NIGHT1,
+    PALETTE,
+    PANEL,
+    Colour,
+    Palette,
+)
+
+# How eyes without one kind of cone see linear RGB: Machado, Oliveira and Fernandes, "A Physiologically-based Model for
+# Simulation of Color Vision Deficiency", IEEE Transactions on Visualization and Computer Graphics 15(6), 2009,
+# table 1, severity 1.0.
+EYES = {
+    "all cones": np.eye(3),
+    "protanopia": np.array([
+        [0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998],
+    ]),
+    "deuteranopia": np.array([
+        [0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881],
+    ]),
+    "tritanopia": np.array([
+        [1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900],
+    ]),
+}  # fmt: skip
+# sRGB to CIE XYZ, D65 (IEC 61966-2-1).
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+APART = 25.0  # CIE76; some 2.3 are just noticed
+
+
+def linear(colour: Colour) -> np.ndarray:
+    value = np.array(colour) / 255
+    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+
+
+def lab(light: np.ndarray) -> np.ndarray:
+    ratio = TO_XYZ @ light / TO_XYZ.sum(axis=1)
+    f = np.where(ratio > (6 / 29) ** 3, np.cbrt(ratio), ratio / (3 * (6 / 29) ** 2) + 4 / 29)
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+def apart(a: Colour, b: Colour, eye: str) -> float:
+    seen = [lab(np.clip(EYES[eye] @ linear(colour), 0, 1)) for colour in (a, b)]
+    return float(np.linalg.norm(seen[0] - seen[1]))
+
+
+def contrast(a: Colour, b: Colour) -> float:
+    """As the Web Content Accessibility Guidelines 2.1 define it, 1 to 21."""
+    bright, dark = sorted((float(TO_XYZ[1] @ linear(colour)) for colour in (a, b)), reverse=True)
+    return (bright + 0.05) / (dark + 0.05)
+
+
+@pytest.mark.parametrize("eye", EYES)
+def test_person_and_network_stay_apart(eye: str):
+    assert apart(HUMAN, NET, eye) > APART
+
+
+@pytest.mark.parametrize("eye", EYES)
+def test_good_and_beyond_limits_stay_apart_in_the_safe_palette(eye: str):
+    assert apart(COLOUR_SAFE.good, COLOUR_SAFE.warn, eye) > APART
+
+
+@pytest.mark.parametrize("eye", ["protanopia", "deuteranopia"])
+def test_the_safe_palette_is_the_better_one_without_red_or_green(eye: str):
+    usual, safe = (apart(palette.good, palette.warn, eye) for palette in (PALETTE, COLOUR_SAFE))
+    assert safe > usual
+
+
+@pytest.mark.parametrize("ground", [NIGHT0, NIGHT1, PANEL])
+@pytest.mark.parametrize("palette", [PALETTE, COLOUR_SAFE])
+def test_what_is_written_can_be_read(ground: Colour, palette: Palette):
+    for colour in (INK, MUTE, HUMAN, NET, palette.good, palette.warn):
+        assert contrast(colour, ground) >= 4.5
+
+
+def test_the_model_of_the_eyes_does_what_it_says():
+    """Red and green of equal lightness: far apart for most, near for those without one of their cones."""
+    red, green = (200, 80, 60), (100, 130, 50)
+    for eye in ("protanopia", "deuteranopia"):
+        assert apart(red, green, eye) < 0.5 * apart(red, green, "all cones")
+    assert apart(EMBER, EMBER, "tritanopia") == 0
+
+
+def test_within_and_beyond_differ_in_shape():
+    grey = Palette(good=(200, 200, 200), warn=(200, 200, 200))
+    canvas = Canvas(pygame.Surface((1280, 720)), grey)
+    masks = []
+    for within in (True, False):
+        canvas.surface.fill((0, 0, 0))
+        hud._draw_mark(canvas, (100, 100), within)
+        masks.append(pygame.surfarray.array3d(canvas.surface)[..., 0] > 100)
+    assert all(mask.any() for mask in masks)
+    for a, b in combinations(masks, 2):
+        assert (a != b).sum() > 0.5 * min(a.sum(), b.sum())
