@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from game.scene import Lasting, Pop, Push, Quit, Replace, Scene, Transition
 
@@ -13,15 +13,22 @@ if TYPE_CHECKING:
     from game.ui.canvas import Canvas
 
 
+_FADE_STEPS: Final = 11  # in which the picture of a scene gives way to that of the next
+
+
 class SceneManager:
     """Passes events and steps to the scene on top and applies what it returns.
 
-    `running` turns false when a scene asks to quit or to pop the last one.
+    The next scene is in charge at once; only the picture of the last one lingers for a moment, unless motion is to
+    be reduced. `running` turns false when a scene asks to quit or to pop the last one.
     """
 
     def __init__(self, context: Context, first: Scene) -> None:
         self._context = context
         self._stack: list[Scene] = []
+        self._drawn: Scene | None = None
+        self._lingering: pygame.Surface | None = None
+        self._fade = 0
         self.running = True
         self.apply(Push(first))
 
@@ -37,12 +44,22 @@ class SceneManager:
 
     def update(self) -> None:
         """Advance the top scene by one step."""
+        self._fade = max(0, self._fade - 1)
         if self.running:
             self.apply(self.top.update())
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the top scene."""
+        """Draw the top scene, and what is still to be seen of the one before."""
+        if self.top is not self._drawn:
+            moves = self._drawn is not None and not self._context.settings.reduced_motion
+            self._lingering = canvas.surface.copy() if moves else None
+            self._drawn, self._fade = self.top, _FADE_STEPS
         self.top.draw(canvas, alpha)
+        if self._fade == 0:
+            self._lingering = None
+        elif self._lingering and self._lingering.get_size() == canvas.surface.get_size():
+            self._lingering.set_alpha(round(255 * (self._fade / (_FADE_STEPS + 1)) ** 2))
+            canvas.surface.blit(self._lingering, (0, 0))
 
     def apply(self, transition: Transition | None) -> None:
         """Do what a scene asked for, and let it be heard."""

@@ -6,7 +6,7 @@ import pytest
 
 from game.app import LOG_NAME, App, log_to
 from game.context import Context
-from game.scene import Pop, Push, Quit
+from game.scene import Pop, Push, Quit, Replace
 from game.scenes.menu import Menu
 from game.scenes.pause import Pause
 from game.scenes.settings import SettingsScene
@@ -278,3 +278,29 @@ def test_interrupt_reaches_the_caller(game: Driver, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         game.app.run()
     assert not pygame.display.get_init()
+
+
+def test_the_picture_of_a_scene_gives_way_to_the_next_and_not_where_motion_is_reduced(game: Driver, context: Context):
+    def corner() -> tuple[int, ...]:
+        return tuple(game.app.canvas.surface.get_at((0, 0)))
+
+    class Plain(Probe):
+        def __init__(self, colour: tuple[int, int, int]) -> None:
+            super().__init__()
+            self.colour = colour
+
+        def draw(self, canvas, alpha: float) -> None:
+            canvas.surface.fill(self.colour)
+
+    for still in (False, True):
+        context.settings.reduced_motion = still
+        game.app.scenes.apply(Replace(Plain((200, 0, 0))))
+        game.frames(30)
+        game.app.scenes.apply(Replace(Plain((0, 0, 200))))
+        reds = []
+        for _ in range(20):
+            game.frames(1)
+            reds.append(corner()[0])
+        assert reds[-1] == 0
+        assert reds == sorted(reds, reverse=True)
+        assert (100 < reds[0] < 200) is not still
