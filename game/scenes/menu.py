@@ -95,7 +95,7 @@ class Menu:
 
     def enter(self, context: Context) -> None:
         """Build the column once; the focus stays where it was when coming back."""
-        self._vista.still = context.settings.reduced_motion
+        self._vista.enter(context)
         if self._form is not None:
             return
         self._controls = context.controls
