@@ -35,11 +35,16 @@ class Player(Driver):
 
     def hold(self, name: str, *, down: bool) -> None:
         """Press something, or let go of it."""
+        self._tell(name, down=down)
+        self.frames(1)
+
+    def _tell(self, name: str, *, down: bool) -> None:
         if self.device == "keys":
-            self.post(pygame.KEYDOWN if down else pygame.KEYUP, key=KEYS[name], mod=0)
+            event = pygame.Event(pygame.KEYDOWN if down else pygame.KEYUP, key=KEYS[name], mod=0)
         else:
             kind = pygame.CONTROLLERBUTTONDOWN if down else pygame.CONTROLLERBUTTONUP
-            self.post(kind, button=BUTTONS[name], instance_id=0)
+            event = pygame.Event(kind, button=BUTTONS[name], instance_id=0)
+        pygame.event.post(event)
 
     @property
     def form(self) -> Form:
@@ -101,9 +106,8 @@ class Player(Driver):
             wanted = {"main"} if action >= 3 else set[str]()
             wanted |= {("", "left", "right")[action % 3]} - {""}
             for name in held ^ wanted:
-                self.hold(name, down=name in wanted)
+                self._tell(name, down=name in wanted)
             held = wanted
-            if not wanted:
-                self.frames(1)
+            self.frames(1)
         for name in held:
             self.hold(name, down=False)
