@@ -88,3 +88,8 @@ _ROWS: Final = (
             landed=0),
 )  # fmt: skip
 MISSIONS: Final[dict[str, Mission]] = {mission.name: mission for mission in _ROWS}
+# Where a first flight is taught: on the moon as it is, with time enough.
+FIRST: Final = Mission(
+    "first", (0.0, 17.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0), (0.0, 0.0), limits=replace(LIMITS, time=600.0)
+)
+STARTS: Final[dict[str, Mission]] = {**MISSIONS, FIRST.name: FIRST}

@@ -9,12 +9,15 @@ from math import ceil
 from ai.lander import Outcome
 from ai.missions import Mission
 from game import texts
+from game.controls import Controls
 from game.flight import Flight
 from game.flight_file import Record
 from game.ghost import Ghost
 from game.hud import Card
 from game.networks import Flyer
+from game.render import View
 from game.tape import Rerun, Tape
+from game.ui.canvas import Canvas
 
 
 class Course:
@@ -23,16 +26,22 @@ class Course:
     Attributes:
         name: of a mission, as the logbook has it; empty for all else.
         fixed: whether there is but the one start.
+        kept: whether its flights are written down.
         counts: whether a flight says something of the pilot's skill, from its first step to its last.
+        next_hint: what the key for what comes next does; empty where nothing does.
         title, line: what is being flown, for the corner.
         goal: what is asked of the flight, for the corner as well.
-        opening: what to say while the craft hangs and waits.
+        opening: what to say while the craft hangs and waits; empty to leave the middle free.
+        through: whether it makes way for free flights.
 
     """
 
     name = ""
     fixed = True
+    kept = True
     counts = True
+    through = False
+    next_hint = ""
     title = line = goal = opening = ""
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
@@ -46,6 +55,19 @@ class Course:
     def card(self, card: Card, flight: Flight) -> Card:  # noqa: ARG002
         """Add to the card of a flight that is over."""
         return card
+
+    def follow(self, flight: Flight) -> None:
+        """See what a step of the flight has brought."""
+
+    def again(self) -> bool:
+        """Whether a flight that is over begins again by itself, without a card."""
+        return False
+
+    def skip(self) -> None:
+        """Go on with what comes next, if anything does."""
+
+    def draw(self, canvas: Canvas, view: View, flight: Flight, alpha: float, controls: Controls) -> None:
+        """Draw what belongs to it over the world, `alpha` of the way between two steps."""
 
     def medal(self, flight: Flight) -> int:  # noqa: ARG002
         """What a flight that is over has earned: 3 for gold, 2, 1, 0 for none."""

@@ -12,7 +12,7 @@ import numpy as np
 from ai.env import Bools, Doubles, Floats, Ints
 from ai.ground import Ground, hilly
 from ai.lander import LanderEnv, Outcome
-from ai.missions import MISSIONS
+from ai.missions import STARTS
 from ai.pilots import COAST
 from game.cockpit.hands import OWN, Hands
 from game.networks import Flyer, Thinker
@@ -82,7 +82,7 @@ class Flight:
         spawn: where it begins.
         pads: 1 on a plain, or 3 among hills.
         hands: what the keys pass through, a name of `game.cockpit.hands.HANDS`.
-        mission: name of one of `ai.missions`, which then says where and under what it is flown; empty for none.
+        mission: name of one of `ai.missions.STARTS`, which then says where and under what it is flown; empty for none.
 
     Attributes:
         copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
@@ -103,7 +103,7 @@ class Flight:
         mission: str = "",
     ) -> None:
         if mission:
-            self.env = MISSIONS[mission].begin()
+            self.env = STARTS[mission].begin()
         else:
             self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
             self.env.reset()

@@ -37,6 +37,7 @@ class Settings:
     buttons: dict[str, Any] = field(default_factory=dict)  # of the pads
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
 
+    tutored: bool = False  # whether the first flight has been offered
     def to_dict(self) -> dict[str, Any]:
         """Return what the file holds."""
         values = asdict(self)

@@ -993,3 +993,54 @@ PAD_RIGHT: Final = "The pad goes right, {speed:.1f} m/s"
 ENGINE_FAILS: Final = "The main engine fails in {seconds:.1f} s"
 ENGINE_DEAD: Final = "No main engine for {seconds:.1f} s"
 TANK_EMPTY: Final = "The tank is empty"
+
+# The first flight. For each step: what to do, and what to say after several crashes where that is something else.
+TUTORIAL_TITLE: Final = "First flight"
+TUTORIAL_STEP: Final = "{number} of {count}"
+TUTORIAL: Final = {
+    "fire": ("{main}  fires the main engine. Hold it a moment.", ""),
+    "fall": ("Let go of everything, and feel the moon pull.", ""),
+    "lean": ("{left} or {right}  turns the craft. A short tap, and it goes on turning.", ""),
+    "upright": (
+        "{other}  turns it back. Stop it upright.",
+        "{other}  in short taps, until it stands still and upright.",
+    ),
+    "brake": ("{main}  in bursts: sink slower than 1 m/s.", "{main}  long enough to slow down, then in short bursts."),
+    "hand_over": ("{hand_over}  hands over: watch the network fly.", ""),
+    "take_back": ("{hand_over}  again, and the stick is yours.", ""),
+    "land": ("Now land: upright, on the pad, slower than 2 m/s.", "Land: {main}  in short bursts, all the way down."),
+}
+TUTORIAL_GOOD: Final = {
+    "fire": "It pushes where the craft points",
+    "fall": "Slowly at first, and then faster",
+    "lean": "It leans, and drifts that way once it fires",
+    "upright": "Upright",
+    "brake": "That is how to come down",
+    "hand_over": "It flies by itself now",
+    "take_back": "Yours again",
+    "land": "Landed",
+}
+TUTORIAL_AGAIN: Final = "Once more, from up here."
+TUTORIAL_TOO_FAST: Final = "{main}  now: too fast, so near the ground."
+TUTORIAL_TOO_TILTED: Final = "{other}  to stand upright before you touch."
+TUTORIAL_AWAY: Final = "The pad is far: lean towards it, and fire."
+TUTORIAL_DONE: Final = "You can fly"
+TUTORIAL_DONE_REASON: Final = "That was all there is to it. The rest is practice."
+TUTORIAL_SKIP: Final = "skip this"
+TUTORIAL_AGAIN_ROW: Final = "Learn to fly, one thing at a time. Leave it whenever you like."
+
+# Said on the spot, in the moment in which it happens
+CONTACT_LIGHT: Final = "Contact light"
+
+# Difficulty
+FLIGHT_GRAVITY: Final = "its gravity makes no sense"
+CHOICES_GRAVITY: Final = "Gravity"
+CHOICES_GRAVITY_HELP: Final = "At once, and in free flights. Other than 100 % is practice: it is not among your best."
+CHOICES_PACE: Final = "Speed of time"
+CHOICES_PACE_HELP: Final = (
+    "How fast time passes while you fly. Other than 100 % is practice: it is not among your best."
+)
+PAUSE_PACE: Final = "Speed of time"
+PRACTICE: Final = "practice"
+PRACTICE_GRAVITY: Final = "gravity {percent} %"
+PRACTICE_PACE: Final = "speed {percent} %"

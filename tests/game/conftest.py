@@ -29,8 +29,9 @@ def context(tmp_path: Path) -> Context:
 def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
     opened: list[Driver] = []
 
-    def open_it(first: Scene | None = None) -> Driver:
+    def open_it(first: Scene | None = None, *, tutored: bool = True) -> Driver:
         context.settings = SettingsFile(context.user_dir).load()
+        context.settings.tutored |= tutored  # or a first flight would teach
         frames = count()
         opened.append(Driver(App(context, first, now=lambda: next(frames) / 60, capped=False)))
         return opened[-1]
