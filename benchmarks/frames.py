@@ -99,10 +99,10 @@ def rows() -> dict[str, Row]:
         **{f"watch, {number}": Row(lambda _, n=number: Watch(n, seed=4)) for number in COUNTS},
         **{f"physics, {name}": Row(lambda _, n=name: Physics(n)) for name in EXHIBITS},
         "physics, contacts": Row(heap, (pygame.K_c,)),
-        **{name.lower().removesuffix("scene"): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN)) for name in sorted(others)},
+        **{name.lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN)) for name in sorted(others)},
         "menu": Row(lambda _: Menu()),
         "train": Row(of_tour("Train"), (pygame.K_RETURN,)),
-        "digittraining": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
+        "digittrainingscene": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
     }
 
 
