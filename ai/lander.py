@@ -126,6 +126,15 @@ class LanderEnv:
         self._pair_on_pad = self._pair_pad < len(pads)
 
     @property
+    def gravity(self) -> float:
+        """Metres a second squared; can be changed at any time, for all landers."""
+        return -float(self.world.gravity[1])
+
+    @gravity.setter
+    def gravity(self, gravity: float) -> None:
+        self.world.gravity = np.array([0.0, -gravity])
+
+    @property
     def position(self) -> Doubles:
         """Centre of mass, metres, (n, 2)."""
         return self.lander.position

@@ -101,9 +101,11 @@ class Race(Course):
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
-        """Begin where that flight began."""
+        """Begin where that flight began, under its gravity."""
         recording = self._record.recording
-        return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+        flight = Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+        flight.set_gravity(recording.gravity_at(0))
+        return flight
 
     def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
         """Let the recorded flight begin again."""

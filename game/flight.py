@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 # A network decides every so many physics steps, in training and here.
 DECISION_STEPS: Final = 4
+# What share of its gravity a flight can be given.
+GRAVITY_SHARES: Final = (0.6, 1.4)
 # Steps that an ended flight of a swarm stays to be seen.
 _REST_STEPS: Final = 75
 _PROFILE_REACH: Final = 30.0  # metres to both sides of which the ground's height is kept
@@ -62,7 +64,8 @@ class Poses:
 class Recording:
     """All it takes to fly a flight again, bit for bit: where it began, and what was done in every step.
 
-    `hands` says who did it: of a shared stick, the person where they got what they asked for.
+    `hands` says who did it: of a shared stick, the person where they got what they asked for. `gravity` lists each
+    change of it: from which step on, and to what share of what it is there.
     """
 
     seed: int
@@ -71,6 +74,11 @@ class Recording:
     actions: list[int] = field(default_factory=list)
     hands: list[Hand] = field(default_factory=list)
     mission: str = ""
+    gravity: list[tuple[int, float]] = field(default_factory=list)
+
+    def gravity_at(self, step: int) -> float:
+        """Return the share of gravity under which a step is flown."""
+        return next((share for begin, share in reversed(self.gravity) if begin <= step), 1.0)
 
 
 class Flight:
@@ -152,7 +160,23 @@ class Flight:
         self.recording.actions[:] = source.actions[:step]
         self.recording.hands[:] = source.hands[:step]
         self._yours = self.recording.hands.count(Hand.HUMAN)
+        self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
+        self._pull(self.recording.gravity_at(step))
         self.rest()
+
+    def set_gravity(self, share: float) -> None:
+        """Let things weigh another share of what they do there, from the next step on."""
+        step, gravity = len(self.recording.actions), self.recording.gravity
+        if share == self.recording.gravity_at(step):
+            return
+        if gravity and gravity[-1][0] == step:  # changed twice between two steps
+            gravity.pop()
+        if share != self.recording.gravity_at(step):
+            gravity.append((step, share))
+        self._pull(share)
+
+    def _pull(self, share: float) -> None:
+        self.env.gravity = share * self.env.params.gravity
 
     def rest(self) -> None:
         """Be drawn where it is, and not on the way there."""

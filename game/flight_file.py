@@ -19,10 +19,11 @@ from ai.lander import NUM_ACTIONS, Outcome
 from ai.missions import MISSIONS
 from ai.spawns import SPAWNS
 from game import texts
-from game.flight import Hand, Recording
+from game.flight import GRAVITY_SHARES, Hand, Recording
 
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 1
+VERSION: Final = 2
+_READS: Final = (1, 2)  # the first knew no change of gravity
 _LONGEST: Final = 120 * 60  # physics steps of a flight
 _LARGEST: Final = 1_000_000  # bytes
 
@@ -41,6 +42,8 @@ class Entry:
         network: who flew the rest, or might have.
         pads: how many there were.
         score: points for the landing.
+        gravity: the share of what it is there that was farthest from all of it.
+        pace: how fast time passed at the slowest, as the player chose it; 1 is its own pace.
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of what it can be flown again from.
@@ -60,9 +63,11 @@ class Entry:
     course: str = ""
     medal: int = 0
     file: str = ""
+    gravity: float = 1.0
+    pace: float = 1.0
 
     def __post_init__(self) -> None:
-        figures = (self.when, self.seconds, self.fuel, self.touchdown, self.human)
+        figures = (self.when, self.seconds, self.fuel, self.touchdown, self.human, self.gravity, self.pace)
         if not all(isinstance(figure, (int, float)) and math.isfinite(figure) and figure >= 0 for figure in figures):
             raise ValueError("a figure is no positive number")
         if self.outcome not in Outcome.__members__ or self.human > 1:
@@ -73,6 +78,11 @@ class Entry:
             raise ValueError("a count is no whole number")
         if Path(self.file).name != self.file:
             raise ValueError("a file has no plain name")
+
+    @property
+    def practice(self) -> bool:
+        """Whether it was made easier, or harder, than flights are: then it is not among the best."""
+        return self.gravity != 1 or self.pace != 1
 
     @property
     def landed(self) -> bool:
@@ -121,14 +131,15 @@ def to_text(record: Record) -> str:
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
         "pads": recording.pads, "mission": recording.mission, "actions": _packed(recording.actions),
-        "hands": _packed(hand.value for hand in recording.hands), "end": record.end, "entry": asdict(record.entry),
+        "hands": _packed(hand.value for hand in recording.hands), "gravity": recording.gravity,
+        "end": record.end, "entry": asdict(record.entry),
     }, indent=1) + "\n"  # fmt: skip
 
 
 def from_text(text: str) -> Record:
     """Read what `to_text` wrote; raises ValueError, KeyError or TypeError for anything else."""
     values = json.loads(text)
-    if values["format"] != FORMAT or values["version"] != VERSION:
+    if values["format"] != FORMAT or values["version"] not in _READS:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION))
     seed, spawn, pads, mission = values["seed"], values["spawn"], values["pads"], values["mission"]
     if not (isinstance(seed, int) and isinstance(pads, int) and seed >= 0 and pads in (1, 3) and spawn in SPAWNS):
@@ -142,7 +153,18 @@ def from_text(text: str) -> Record:
     x, y, angle = (float(number) for number in values["end"])
     if not all(map(math.isfinite, (x, y, angle))):
         raise ValueError(texts.FLIGHT_ACTIONS)
-    return Record(Recording(seed, spawn, pads, actions, hands, mission), Entry(**values["entry"]), (x, y, angle))
+    recording = Recording(seed, spawn, pads, actions, hands, mission, _changes(values.get("gravity", [])))
+    return Record(recording, Entry(**values["entry"]), (x, y, angle))
+
+
+def _changes(values: list[Any]) -> list[tuple[int, float]]:
+    """Read when gravity was changed, and to what; raises ValueError or TypeError."""
+    changes = [(int(step), float(share)) for step, share in values]
+    low, high = GRAVITY_SHARES
+    steps = [step for step, _ in changes]
+    if steps != sorted(set(steps)) or not all(step >= 0 and low <= share <= high for step, share in changes):
+        raise ValueError(texts.FLIGHT_GRAVITY)
+    return changes
 
 
 def _packed(words: Iterable[Any]) -> str:

@@ -39,6 +39,7 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
         human=round(flight.share, 4),
         pads=len(env.ground.pads),
         score=landing_score(env),
+        gravity=max((share for _, share in flight.recording.gravity), key=lambda share: abs(share - 1), default=1.0),
         **more,
     )
 
@@ -153,7 +154,8 @@ def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
     def course(entry: Entry) -> tuple[str, int]:
         return entry.course, entry.pads
 
-    landings = sorted((entry for entry in entries if entry.landed and entry.alone and entry.file), key=course)
+    own = (entry for entry in entries if entry.landed and entry.alone and not entry.practice)
+    landings = sorted((entry for entry in own if entry.file), key=course)
     return [entry for _, group in groupby(landings, course) for entry in sorted(group, key=rank)[:most]]
 
 

@@ -21,7 +21,7 @@ class Settings:
     reduced_motion: bool = False
     colour_safe: bool = False
     show_hints: bool = True
-    effects_volume: float = 0.9  # every number is a share, 0 to 1
+    effects_volume: float = 0.9  # every number is a share, 0 to 1 unless limits say otherwise
     interface_volume: float = 0.7
     ambience_volume: float = 0.7
     altitude_volume: float = 0.0  # of the tone that lets one hear height and speed; 0 is off
@@ -33,11 +33,13 @@ class Settings:
     check_flights: bool = False  # every fifth flight without help
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether a panel says what the co-pilot thinks
+    gravity: float = field(default=1.0, metadata={"limits": (0.6, 1.4)})  # share of it in free flights
+    pace: float = field(default=1.0, metadata={"limits": (0.5, 1.0)})  # how fast time passes in a flight
     keys: dict[str, Any] = field(default_factory=dict)  # what was changed, as game.bindings writes it
     buttons: dict[str, Any] = field(default_factory=dict)  # of the pads
+    tutored: bool = False  # whether the first flight has been offered
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
 
-    tutored: bool = False  # whether the first flight has been offered
     def to_dict(self) -> dict[str, Any]:
         """Return what the file holds."""
         values = asdict(self)
@@ -47,17 +49,17 @@ class Settings:
     def from_dict(cls, values: dict[str, Any]) -> Settings:
         """Take every value of the right kind; the others keep their defaults."""
         settings = cls()
-        known = {each.name for each in fields(cls)} - {"unknown"}
-        for name in known & values.keys():
-            if _fits(values[name], getattr(settings, name)):
+        known = {each.name: each.metadata.get("limits", (0.0, 1.0)) for each in fields(cls) if each.name != "unknown"}
+        for name in known.keys() & values.keys():
+            if _fits(values[name], getattr(settings, name), known[name]):
                 setattr(settings, name, values[name])
         settings.unknown = {name: value for name, value in values.items() if name not in known}
         return settings
 
 
-def _fits(value: object, default: object) -> bool:
-    """Whether a value is of its default's type; a number must be a share as well, which NaN is not."""
-    return type(value) is type(default) and (not isinstance(value, float) or 0.0 <= value <= 1.0)
+def _fits(value: object, default: object, limits: tuple[float, float]) -> bool:
+    """Whether a value is of its default's type; a number must be within limits as well, which NaN is not."""
+    return type(value) is type(default) and (not isinstance(value, float) or limits[0] <= value <= limits[1])
 
 
 class SettingsFile:

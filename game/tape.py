@@ -32,6 +32,7 @@ class Rerun(Flight):
         if self.at >= len(self._source.actions):
             return COAST, self.flown_by
         self.hand = self._source.hands[self.at]
+        self.set_gravity(self._source.gravity_at(self.at))
         return self._source.actions[self.at], self.hand
 
 

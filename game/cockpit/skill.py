@@ -15,11 +15,11 @@ class Skill:
     """What a player's free flights say of them, oldest first; missions have figures of their own."""
 
     def __init__(self, entries: Iterable[Entry]) -> None:
-        self.entries = [entry for entry in entries if not entry.course]
+        self.entries = [entry for entry in entries if _counts(entry)]
 
     def add(self, entry: Entry) -> None:
         """Count a flight that has just ended, too."""
-        self.entries += [entry] * (not entry.course)
+        self.entries += [entry] * _counts(entry)
 
     @property
     def check_due(self) -> bool:
@@ -41,3 +41,7 @@ class Skill:
     def curve(self) -> list[float]:
         """Share of landings, 0 to 1, among the last few flights without help, after each of them."""
         return skill(self.entries, RECENT_OWN)
+
+
+def _counts(entry: Entry) -> bool:
+    return not (entry.course or entry.practice)

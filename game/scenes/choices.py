@@ -14,6 +14,7 @@ from game.cockpit.lesson import lessons
 from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command, translate
+from game.flight import GRAVITY_SHARES
 from game.records import RECENT_OWN
 from game.scene import Pop, Scene, Transition
 from game.scenes.pause import blurred
@@ -27,18 +28,21 @@ MODES: Final = ("tolerance", "guardian")
 _WIDTH: Final = 560
 _LABELS: Final = 142
 _FIRST: Final = 136
-_ROW: Final = 48
-_TOGGLES: Final = _FIRST + 4 * _ROW + 56
-_TOGGLE_ROW: Final = 62
-_HELP: Final = _FIRST + 4 * _ROW + 16
+_ROW: Final = 40
+_HELP: Final = 18  # from the last row to the sentence on the one in focus
+_TOGGLES: Final = 40
+_TOGGLE_ROW: Final = 58
 _CHART: Final = pygame.Rect(800, 152, 372, 176)
 
 
 class ChoicesScene:
-    """Stands over a flight. Each choice is kept the moment it is made; Escape, or Fly, goes back."""
+    """Stands over a flight. Each choice is kept the moment it is made; Escape, or Fly, goes back.
 
-    def __init__(self, below: Scene, skill: Skill, *, begun: bool) -> None:
-        self._below, self._skill, self._begun = below, skill, begun
+    In a course, most is as it is: there is less to choose.
+    """
+
+    def __init__(self, below: Scene, skill: Skill, *, begun: bool, course: bool = False) -> None:
+        self._below, self._skill, self._begun, self._course = below, skill, begun, course
         self._picture: pygame.Surface | None = None
 
     def enter(self, context: Context) -> None:
@@ -47,24 +51,40 @@ class ChoicesScene:
         self._picture = None
         self._taught = lessons(context.user_dir)
         self._form = form = Form(context, on_back=Pop)
-        settings = context.settings
-        hands = list(HANDS)
-        help_ = Slider(form.manager, self._box(0), texts.CHOICES_ASSIST, settings.assist, (0.0, 1.0),
-                       self._changes("assist"), step=0.1, figure=_percent)  # fmt: skip
-        form.add(help_)
-        self._choice(1, texts.CHOICES_MODE, texts.CHOICES_MODES, _index(MODES, settings.copilot),
-                     lambda index: self._changes("copilot")(MODES[index]))  # fmt: skip
-        self._choice(2, texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
-                     lambda index: self._changes("three_pads")(bool(index)))  # fmt: skip
-        words = [texts.CHOICES_HANDS_WORDS[name] for name in hands]
-        self._choice(3, texts.CHOICES_HANDS, words, _index(hands, settings.hands),
-                     lambda index: self._changes("hands")(hands[index]))  # fmt: skip
-        for row, (name, (label, hint)) in enumerate((
-            ("check_flights", texts.CHOICES_CHECK), ("teach", texts.CHOICES_TEACH), ("explain", texts.CHOICES_EXPLAIN)
-        )):  # fmt: skip
-            box = (MARGIN, _TOGGLES + row * _TOGGLE_ROW, _WIDTH, 52)
-            form.add(Toggle(form.manager, box, label, getattr(settings, name), self._changes(name), hint=hint))
+        self._rows: dict[Widget, Callable[[], str]] = {}
+        if not self._course:
+            self._add_help()
+            self._add_starts()
+            self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, texts.CHOICES_GRAVITY_HELP)
+        self._add_slider("pace", (0.5, 1.0), texts.CHOICES_PACE, texts.CHOICES_PACE_HELP)
+        toggles = {"check_flights": texts.CHOICES_CHECK, "teach": texts.CHOICES_TEACH, "explain": texts.CHOICES_EXPLAIN}
+        if self._course:
+            toggles = {"explain": texts.CHOICES_EXPLAIN}
+        top = _FIRST + len(self._rows) * _ROW + _TOGGLES
+        for row, (name, (label, hint)) in enumerate(toggles.items()):
+            box = (MARGIN, top + row * _TOGGLE_ROW, _WIDTH, 52)
+            value = getattr(context.settings, name)
+            form.add(Toggle(form.manager, box, label, value, self._changes(name), hint=hint))
         form.add(Word(form.manager, (MARGIN, 624, 96, 32), texts.CHOICES_FLY, Pop, size=18))
+
+    def _add_help(self) -> None:
+        """Add how much the network helps, and when."""
+        settings = self._context.settings
+        self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST, texts.CHOICES_ASSIST_HELP)
+        self._choice(texts.CHOICES_MODE, texts.CHOICES_MODES, _index(MODES, settings.copilot),
+                     lambda index: self._changes("copilot")(MODES[index]),
+                     lambda: texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)])  # fmt: skip
+
+    def _add_starts(self) -> None:
+        """Add where the next flight begins, and what its keys pass through."""
+        settings, hands = self._context.settings, list(HANDS)
+        self._choice(texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
+                     lambda index: self._changes("three_pads")(bool(index)),
+                     lambda: texts.CHOICES_PADS_HELP[settings.three_pads])  # fmt: skip
+        words = [texts.CHOICES_HANDS_WORDS[name] for name in hands]
+        self._choice(texts.CHOICES_HANDS, words, _index(hands, settings.hands),
+                     lambda index: self._changes("hands")(hands[index]),
+                     lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))  # fmt: skip
 
     def exit(self) -> None:
         """Nothing is held: every change was saved as it was made."""
@@ -86,22 +106,31 @@ class ChoicesScene:
         canvas.surface.blit(self._picture, (0, 0))
         canvas.text(texts.CHOICES_TITLE, (MARGIN, 96), size=34, weight="light")
         self._form.draw(canvas)
-        canvas.text(self._help(), (MARGIN, _HELP), size=SMALL, colour=MUTE)
-        if self._begun:
+        if self._form.focused in self._rows:
+            y = _FIRST + len(self._rows) * _ROW + _HELP
+            canvas.text(self._rows[self._form.focused](), (MARGIN, y), size=SMALL, colour=MUTE)
+        if self._begun and not self._course:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
         self._draw_skill(canvas)
         word = self._context.controls.word
         hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
-    @staticmethod
-    def _box(row: int) -> tuple[int, int, int, int]:
-        return MARGIN, _FIRST + row * _ROW, _WIDTH, 40
+    @property
+    def _box(self) -> tuple[int, int, int, int]:
+        """Where the next row goes."""
+        return MARGIN, _FIRST + len(self._rows) * _ROW, _WIDTH, _ROW - 6
 
-    def _choice(self, row: int, label: str, words: tuple[str, ...] | list[str], index: int,
-                change: Callable[[int], None]) -> None:  # fmt: skip
+    def _add_slider(self, name: str, limits: tuple[float, float], label: str, help_: str) -> None:
+        form, value = self._form, getattr(self._context.settings, name)
+        slider = Slider(form.manager, self._box, label, value, limits, self._changes(name), step=0.1, figure=_percent)
+        self._rows[form.add(slider)] = lambda: help_
+
+    def _choice(self, label: str, words: tuple[str, ...] | list[str], index: int,
+                change: Callable[[int], None], help_: Callable[[], str]) -> None:  # fmt: skip
         form = self._form
-        form.add(Choice(form.manager, self._box(row), label, words, index, change, label_width=_LABELS, size=14))
+        choice = Choice(form.manager, self._box, label, words, index, change, label_width=_LABELS, size=14)
+        self._rows[form.add(choice)] = help_
 
     def _changes(self, name: str) -> Callable[[object], None]:
         def change(value: object) -> None:
@@ -109,15 +138,6 @@ class ChoicesScene:
             self._context.apply_settings()
 
         return change
-
-    def _help(self) -> str:
-        """Return a sentence on the row in focus."""
-        settings, widgets = self._context.settings, self._form.widgets
-        rows: dict[Widget, str] = dict(zip(widgets, (
-            texts.CHOICES_ASSIST_HELP, texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)],
-            texts.CHOICES_PADS_HELP[settings.three_pads], texts.CHOICES_HANDS_HELP.get(settings.hands, ""),
-        ), strict=False))  # fmt: skip
-        return rows.get(self._form.focused, "") if self._form.focused else ""
 
     def _draw_skill(self, canvas: Canvas) -> None:
         """Draw the share of landings among the last ten flights without help, after each of them."""

@@ -231,7 +231,10 @@ def _row(entry: Entry) -> tuple[str, ...]:
 
 
 def _course(entry: Entry) -> str:
-    """Name where a flight was flown."""
+    """Name where a flight was flown, and say if it was practice."""
     if entry.course == "daily":
-        return texts.DAILY
-    return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")
+        name = texts.DAILY
+    else:
+        mission = texts.MISSIONS.get(entry.course)
+        name = mission[0] if mission else texts.COURSE_FREE.get(entry.pads, "")
+    return f"{name}, {texts.PRACTICE}" if entry.practice else name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -17,6 +18,7 @@ from game.cockpit.surroundings import draw_surroundings
 from game.context import Context
 from game.controls import Command, translate
 from game.course import Course, Duel
+from game.difficulty import Difficulty
 from game.flight import Flight, Hand
 from game.forecast import Drift, Forecast
 from game.records import Records
@@ -78,6 +80,10 @@ class Play:
         self._context = context
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
+        if self._course is None and self._seed is None and not context.settings.tutored:
+            from game.tutorial import Tutorial
+
+            self._course, context.settings.tutored = Tutorial(), True
         self._records = Records(context.user_dir)
         self._skill = Skill(self._records.entries())
         if self._records.problem:
@@ -133,6 +139,7 @@ class Play:
         if not was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = hud.flight_readouts(flight.env)
         self._cockpit.help()
+        self._difficulty.heed()
         flight.step(self._controls.action)
         if self._ghost:
             self._ghost.step()
@@ -145,9 +152,14 @@ class Play:
         if not self._settings.reduced_motion:
             framing.follow(self._camera, flight.env)
         self._steps += 1
+        if self._course:
+            self._course.follow(flight)
         if flight.over:
             self._since_end += 1
-            if self._card is None:
+            if self._course and self._course.again():
+                if self._since_end > _CARD_AFTER:
+                    self.retry()
+            elif self._card is None:
                 self._finish()
         return None
 
@@ -172,6 +184,8 @@ class Play:
         self._stage.draw_lander(canvas, view, pose)
         self._stage.draw_dust(canvas, view, alpha)
         self._cockpit.draw_beside(canvas, view, pose)
+        if self._course:
+            self._course.draw(canvas, view, flight, alpha, self._controls)
         self._draw_hud(canvas)
         if self._card is not None and self._card_shown > 0:
             rival = self._ghost.row(env) if self._ghost else None
@@ -211,6 +225,7 @@ class Play:
             self._hands = OWN
         network = None if check else self._network.flyer
         self.flight = course.flight(seed, network) if course else Flight(seed, network, pads=pads, hands=self._hands)
+        self._difficulty = Difficulty(self._settings, self.flight, free=not course)
         self._cockpit = Cockpit(self.flight, self._settings, alone=check)
         self._ghost = course.ghost(seed, network) if course else None
         reduced = self._settings.reduced_motion
@@ -229,20 +244,26 @@ class Play:
     def _finish(self) -> None:
         """Write a flight down that has just ended, and make its card."""
         assert self._context is not None
-        self._card = self._cockpit.card(self._skill.best, self._camera.view(1.0))
-        course, alone = self._course, self._cockpit.alone(self._hands)
-        told = "" if course else self._cockpit.keep_lesson(self._context.user_dir, self._hands)
+        practice = self._difficulty.practice
+        self._card = self._cockpit.card(0 if practice else self._skill.best, self._camera.view(1.0))
+        course, alone = self._course, self._cockpit.alone(self._hands) and not practice
+        if course:
+            self._card = course.card(self._card, self.flight)
+            if not course.kept:
+                return
+        if practice:
+            self._card = replace(self._card, score=self._difficulty.words)
+        told = "" if course or practice else self._cockpit.keep_lesson(self._context.user_dir, self._hands)
         entry = self._records.keep(
             self.flight,
             time.time(),
             alone=alone and (course is None or course.counts),
             network=self._network.name if self._network.flyer else "",
             course=course.name if course else "",
-            medal=course.medal(self.flight) if course else 0,
+            medal=course.medal(self.flight) if course and not practice else 0,
+            pace=self._difficulty.slowest,
         )
         self._skill.add(entry)
-        if course:
-            self._card = course.card(self._card, self.flight)
         if told or self._records.problem:
             self._context.note(told or self._records.problem)
 
@@ -291,6 +312,10 @@ class Play:
         return None
 
     def _begin_elsewhere(self) -> None:
+        if self._course:
+            self._course.skip()
+            if self._course.through:
+                self._course = None
         self._begin(self.flight.recording.seed if self._course and self._course.fixed else self._new_seed())
 
     @property
@@ -306,13 +331,13 @@ class Play:
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
-        return words if self._course else [*words, (texts.PAUSE_CHOICES, self._choose)]
+        return [*words, (texts.PAUSE_CHOICES if self._course is None else texts.PAUSE_PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
-        """Let the player choose how the next flights are flown; a duel is flown as it is."""
+        """Let the player choose how the next flights are flown; a course is flown as it is, but for its pace."""
         from game.scenes.choices import ChoicesScene
 
-        return None if self._course else Push(ChoicesScene(self, self._skill, begun=not self.waiting))
+        return Push(ChoicesScene(self, self._skill, begun=not self.waiting, course=self._course is not None))
 
     def _open_networks(self) -> Transition:
         from game.scenes.runs import Runs
@@ -341,16 +366,18 @@ class Play:
     def _draw_hud(self, canvas: Canvas) -> None:
         self._cockpit.draw_top(canvas)
         if self._course:
-            hud.draw_corner(canvas, self._course.title, self._course.line, self._course.goal)
+            goal = self._difficulty.words or self._course.goal
+            hud.draw_corner(canvas, self._course.title, self._course.line, goal)
             draw_surroundings(canvas, self.flight.env)
         else:
             network = self._network
             flown = texts.WITH_NETWORK.format(name=network.name) if self.flight.network else texts.ALONE
             if self._hands != OWN:
                 flown = texts.OTHER_HANDS.format(hands=texts.CHOICES_HANDS_WORDS[self._hands])
-            hud.draw_corner(canvas, texts.THREE_PADS if self.flight.recording.pads > 1 else texts.FREE_FLIGHT, flown)
+            title = texts.THREE_PADS if self.flight.recording.pads > 1 else texts.FREE_FLIGHT
+            hud.draw_corner(canvas, title, flown, self._difficulty.words)
         hud.draw_readouts(canvas, self._readouts)
-        if self.waiting:
+        if self.waiting and not (self._course and not self._course.opening):
             self._draw_opening(canvas)
         if self._settings.show_hints:
             self._draw_hints(canvas)
@@ -368,6 +395,8 @@ class Play:
         hints = [(word(Command.PAUSE), texts.HINT_LEAVE if self._leaves else texts.HINT_PAUSE)]
         if not self._course:
             hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
+        elif self._course.next_hint:
+            hints.insert(0, (word(Command.NEXT), self._course.next_hint))
         if self.flight.network:
             taken = self.flight.hand is Hand.NETWORK
             hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))

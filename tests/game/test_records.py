@@ -77,7 +77,7 @@ def test_flights_that_end_at_one_moment_keep_a_file_each(kept: Records):
         lambda text: "",
         lambda text: text[: len(text) // 2],
         lambda text: "[]",
-        lambda text: text.replace('"version": 1', '"version": 9'),
+        lambda text: text.replace('"version": 2', '"version": 9'),
         lambda text: text.replace('"seed": 3', '"seed": -3'),
         lambda text: text.replace('"random"', '"nowhere"'),
         lambda text: text.replace('"actions": "', '"actions": "9*1 '),
@@ -183,4 +183,4 @@ def test_any_recording_survives_its_file(actions: list[int], seed: int):
     recording = Recording(seed, "hard", 3, actions, hands)
     record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
     assert from_text(to_text(record)) == record
-    assert json.loads(to_text(record))["version"] == 1
+    assert json.loads(to_text(record))["version"] == 2
