@@ -53,6 +53,7 @@ from game.scenes.menu import Menu
 from game.settings import SettingsFile
 from game.sound import Sound
 from game.sounds.instruments import INSTRUMENTS, Instrument
+from game.ui import shapes, typeface
 
 LOOKS = 10  # times that it is looked whether anything is left behind
 GROWTH = 80.0  # megabytes from the third look to the last that are no leak: surfaces in caches of a fixed length
@@ -200,8 +201,8 @@ class Monkey:
 
     def _open(self) -> None:
         """Open the game, as it is opened from outside, on what the last one has left."""
+        gc.unfreeze()
         gc.collect()
-        gc.unfreeze()  # what a game that is over has kept from the collector
         models, user = self._folder / "models", self._folder / "user"
         rmtree(models, ignore_errors=True)
         copytree(MODELS_DIR, models)
@@ -225,6 +226,9 @@ class Monkey:
     def left_behind(self) -> list[str]:
         """Say what lives on although the game is closed."""
         wait_for(lambda: not active_children() and threading.active_count() == 1, 10.0)
+        typeface.forget()  # it keeps its files open
+        shapes.forget()
+        gc.unfreeze()  # what a game has kept from the collector
         gc.collect()
         kinds = tuple(scene_types())
         alive = Counter(type(each).__name__ for each in gc.get_objects() if isinstance(each, kinds))
@@ -282,7 +286,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
     problems: list[str] = []
-    memory, files = [], []
+    memory, files, told = [], [], 0
     with playground() as folder:
         monkey = Monkey(folder, arguments.seed)
         for look in range(1, LOOKS + 1):
@@ -293,7 +297,11 @@ def main() -> int:
             files.append(open_files())
             print(f"{monkey.events:7d} events, {monkey.games:3d} games, {memory[-1]:4.0f} MB, {files[-1]} open files, "
                   f"{len(monkey.faults.found)} faults, {len(left)} left behind", flush=True)  # fmt: skip
-    problems += monkey.faults.found
+            for fault in monkey.faults.found[told:]:
+                print(f"\n{fault}\n", flush=True)
+            told = len(monkey.faults.found)
+    if monkey.faults.found:
+        problems.append(f"{len(monkey.faults.found)} faults")
     if memory[-1] - memory[2] > GROWTH:
         problems.append("memory grew: " + " ".join(f"{each:.0f}" for each in memory) + " MB")
     if files[-1] > files[2]:
@@ -302,7 +310,7 @@ def main() -> int:
         print(f"{name:20s}{monkey.entered[name]:6d} times{monkey.visits[name]:8d} frames")
         if not monkey.visits[name] and name not in _NO_SCREENS:
             problems.append(f"{name} was never seen")
-    print("\n\n".join(problems) or "nothing broke, and nothing was left behind")
+    print("\n".join(problems) or "nothing broke, and nothing was left behind")
     return int(bool(problems))
 
 

@@ -28,7 +28,7 @@ from game.scenes.race import race
 from game.scenes.replay import Replay
 from game.scenes.watch import COUNTS, Watch
 
-FLIGHTS = 3
+FLIGHTS = 2
 
 
 def scene_types() -> list[type]:

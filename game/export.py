@@ -1,69 +1,83 @@
-"""A replay as a moving picture: frames are drawn off the screen, a few in every update, and saved at the end.
+"""Saving a flight as a moving picture, in a process of its own: the window neither waits for it nor feels it.
 
-Needs Pillow, the extra `export`; `missing()` says whether it lacks.
+The extra `export` brings what packs the pictures.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-import pygame
-
-from game.ui.canvas import Canvas
-
-if TYPE_CHECKING:
-    from PIL.Image import Image
-
-SIZE: Final = (640, 360)
-EVERY: Final = 3  # physics steps from frame to frame
-_LINGER: Final = 1500  # milliseconds that the last frame stays
-_COLOURS: Final = 255
+from game.flight_file import Record
+from game.worker import State, Worker
 
 
-def missing() -> bool:
-    """Whether Pillow is not installed."""
-    return find_spec("PIL") is None
+@dataclass(frozen=True)
+class Kind:
+    """One kind of moving picture.
 
+    Attributes:
+        needs: the module without which it can't be made.
+        size: width and height in pixels.
+        every: physics steps from frame to frame.
+        still: whether the camera rests, which a picture needs that stores only what changes.
 
-class Film:
-    """Frames drawn by `draw`, which is given a canvas and a step; `step` once an update, `save` once `done`."""
+    """
 
-    def __init__(self, length: int, draw: Callable[[Canvas, int], None]) -> None:
-        self._steps = [*range(0, length, EVERY), length]
-        self._draw = draw
-        self._canvas = Canvas(pygame.Surface(SIZE))
-        self._frames: list[Image] = []
+    needs: str
+    size: tuple[int, int]
+    every: int
+    still: bool
 
     @property
-    def share(self) -> float:
-        """How much of it is drawn, 0 to 1."""
-        return len(self._frames) / len(self._steps)
+    def missing(self) -> bool:
+        """Whether what it needs is not installed."""
+        return find_spec(self.needs) is None
+
+
+KINDS: Final = {".gif": Kind("PIL", (640, 360), 3, True), ".mp4": Kind("av", (1280, 720), 1, False)}
+
+
+class Export:
+    """A flight on its way into a file; `poll` once a frame.
+
+    Attributes:
+        path: of the file, which is there once this is `over` without a `problem`.
+        share: how much of it is drawn, 0 to 1.
+
+    """
+
+    def __init__(self, record: Record, path: Path, *, colour_safe: bool = False) -> None:
+        from game.film import film
+
+        self.path, self.share = path, 0.0
+        self._worker = Worker(film, record, path, colour_safe)
+
+    def poll(self) -> None:
+        """Hear how far it has come."""
+        for drawn in self._worker.poll():
+            self.share = drawn.share
 
     @property
-    def done(self) -> bool:
-        """Whether every frame is drawn."""
-        return len(self._frames) == len(self._steps)
+    def over(self) -> bool:
+        """Whether it has come to an end, well or not."""
+        return self._worker.state in (State.ENDED, State.FAILED)
 
-    def step(self) -> None:
-        """Draw the next frame."""
-        from PIL import Image
+    @property
+    def problem(self) -> str:
+        """Why there is no file; empty while it goes on, after it was stopped, and if all went well."""
+        return self._worker.problem
 
-        self._draw(self._canvas, self._steps[len(self._frames)])
-        picture = Image.frombytes("RGB", SIZE, pygame.image.tobytes(self._canvas.surface, "RGB"))
-        self._frames.append(picture.quantize(_COLOURS, Image.Quantize.MAXCOVERAGE))
+    def close(self) -> None:
+        """Let it be; what was drawn so far is thrown away."""
+        self._worker.close()
+        with suppress(OSError):  # the process has most often done so itself
+            unfinished(self.path).unlink()
 
-    def save(self, path: Path) -> None:
-        """Write the GIF whole or not at all. Raises OSError."""
-        path.parent.mkdir(parents=True, exist_ok=True)
-        first, *others = self._frames
-        pause = round(1000 * EVERY / 60)
-        temporary = path.with_name(f".{path.name}.part")
-        try:
-            first.save(temporary, "GIF", save_all=True, append_images=others, loop=0,
-                       duration=[*[pause] * len(others), _LINGER])  # fmt: skip
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+
+def unfinished(path: Path) -> Path:
+    """Return where a file is written until it is complete."""
+    return path.with_name(f".{path.name}.part")

@@ -880,7 +880,7 @@ REPLAY_MISSION: Final = "Replay: {mission}"
 REPLAY_LINE: Final = "{end} after {seconds:.1f} s  ·  {when}"
 REPLAY_LANES: Final = ("main", "left", "right")
 REPLAY_TAKE_OVER: Final = "Fly on from here"
-REPLAY_EXPORT: Final = "Save as GIF"
+REPLAY_EXPORT: Final = "Save as film"
 REPLAY_FROM_START: Final = "from the start"
 REPLAY_HINT_TAKE: Final = "fly on"
 REPLAY_OVER: Final = "This is the end: go back a little, and fly on from there."
@@ -922,11 +922,17 @@ MISSION_FLY: Final = "Fly it"
 MISSION_LIMIT: Final = "{fuel:.1f} s of fuel and {seconds:.0f} s at most"
 MISSION_ANY: Final = "any landing"
 MISSION_BEST: Final = "Your best: {fuel:.1f} s of fuel, {seconds:.1f} s, {points} points"
-EXPORT_MISSING: Final = "Moving pictures need Pillow: install the extra, as in pip install 'tranquility[export]'."
-EXPORT_EARLY: Final = "One moment: the flight is still being looked through."
-EXPORT_GOES_ON: Final = "Drawing the moving picture: {percent} %"
+EXPORT_AS: Final = "Save this flight as a moving picture"
+# Of each kind: its name and what it is like
+EXPORT_KINDS: Final = {
+    ".gif": ("GIF", "640 × 360, shows anywhere"),
+    ".mp4": ("MP4", "1280 × 720, 60 pictures a second"),
+}
+EXPORT_MISSING: Final = "{kind} needs one more package: install the extra, as in pip install 'tranquility[export]'."
+EXPORT_GOES_ON: Final = "Stop at {percent} %"
+EXPORT_STOPPED: Final = "No moving picture was saved."
 EXPORT_DONE: Final = "Saved: {path}"
-EXPORT_FAILED: Final = "The moving picture could not be saved: {reason}"
+EXPORT_FAILED: Final = "The moving picture could not be saved. {reason}"
 
 # Keys and buttons
 BINDINGS_TITLE: Final = "Keys and buttons"

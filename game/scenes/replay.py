@@ -12,13 +12,13 @@ import pygame
 from ai.lander import Outcome
 from game import framing, hud, texts
 from game.clock import STEP
+from game.collection import exports_dir
 from game.context import Context
 from game.controls import Command, translate
 from game.export import KINDS, Export
 from game.flight import Hand
 from game.flight_file import Record
-from game.library import exports_dir
-from game.render import Camera, View
+from game.render import Camera, Clear, View
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.tape import Tape
@@ -42,7 +42,7 @@ _EARTH: Final = (208.0, 268.0)  # points; clear of the words
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 54.0)
 _VERBS: Final = 144.0
-_HEAD: Final = 190.0  # points: below the verbs
+_CLEAR: Final = Clear(head=190.0)  # below the verbs
 _VERB: Final = 20.0
 
 
@@ -156,13 +156,13 @@ class Replay:
         ended = np.array([flight.over and not was_over])
         self._stage.follow(np.array([flight.flown_by is Hand.NETWORK]), ended)
         if not self._settings.reduced_motion:
-            framing.follow(self._camera, flight.env, head=_HEAD)
+            framing.follow(self._camera, flight.env, clear=_CLEAR)
         self._look()
 
     def _frame(self) -> None:
         """Turn the camera to the moment at once."""
         if not self._settings.reduced_motion:
-            self._camera.cut(framing.framed(self.tape.flight.env, head=_HEAD))
+            self._camera.cut(framing.framed(self.tape.flight.env, clear=_CLEAR))
 
     def _look(self) -> None:
         """Read the figures; at the end they stay those of the last moment before."""
@@ -194,10 +194,13 @@ class Replay:
             (texts.REPLAY_EXPORT, self._begin_or_stop_export), (texts.BACK, Pop),
         ]  # fmt: skip
         x = VIEW_SIZE[0] - MARGIN - sum(typeface.width(word, SMALL, "regular") + 28 for word, _ in rows) + 28
+        words = []
         for word, press in rows:
             wide = typeface.width(word, SMALL, "regular")
-            self._form.add(Word(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
+            words.append(Word(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
+            self._form.add(words[-1])
             x += wide + 28
+        self._export_word = words[2]
 
     def _choose_speed(self, index: int) -> None:
         self._speed = index

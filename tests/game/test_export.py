@@ -1,67 +1,209 @@
+"""Moving pictures: what they show, how they are written, and what becomes of them on a bad day."""
+
 import importlib.util
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pygame
 import pytest
 
 from ai.pilots import ScriptedPilot
-from game import export
 from game.context import Context
+from game.export import KINDS, Kind
+from game.film import film, frames
 from game.flight import Flight
+from game.flight_file import Record
 from game.records import Records
 from game.scenes import replay as module
 from game.scenes.replay import Replay
+from tests.game.driver import Driver
+
+SMALL = {".gif": Kind("PIL", (160, 90), 60, True), ".mp4": Kind("av", (160, 90), 60, False)}
 
 
 @pytest.fixture
-def scene(context: Context) -> Replay:
+def record(context: Context) -> Record:
     flight = Flight(3, ScriptedPilot())
     flight.hand_over()
     while not flight.over:
         flight.step(0)
     records = Records(context.user_dir)
-    return Replay(records.read(records.keep(flight, 1_700_000_000.0).file))
+    return records.read(records.keep(flight, 1_700_000_000.0).file)
 
 
-def test_without_pillow_a_message_says_what_to_install(open_game, scene: Replay, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(export, "missing", lambda: True)
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    for suffix, kind in SMALL.items():
+        monkeypatch.setitem(KINDS, suffix, kind)
+
+
+def test_missing_is_whether_it_can_be_imported():
+    assert KINDS[".gif"].missing is (importlib.util.find_spec("PIL") is None)
+    assert Kind("no_such_module", (1, 1), 1, True).missing
+
+
+def test_the_frames_show_the_flight_and_a_still_camera_shows_little_else(record: Record):
+    length = len(record.recording.actions)
+    before, after, end = frames(record, SMALL[".gif"], [0, 20, length])
+    assert before.shape == after.shape == (90, 160, 3)
+    changed = (before != after).any(axis=2)
+    assert 0 < changed.mean() < 0.1
+    assert (after != end).any()
+
+
+@pytest.mark.parametrize("suffix", KINDS)
+def test_a_film_is_written_whole_and_told_of(suffix: str, record: Record, small: None, tmp_path: Path):
+    pytest.importorskip(SMALL[suffix].needs)
+    path = tmp_path / "new folder" / f"flight{suffix}"
+    shares = [drawn.share for (drawn,) in film(record, path)]
+    assert shares == sorted(shares)
+    assert shares[0] == 0
+    assert shares[-1] < 1
+    assert [each.name for each in path.parent.iterdir()] == [path.name]
+    assert path.stat().st_size > 1000
+
+
+def test_a_gif_shows_what_was_put_in(tmp_path: Path):
+    image = pytest.importorskip("PIL.Image")
+    from game.gif import GifWriter
+
+    ramp = np.linspace(0, 60, 160).astype(np.uint8)  # a dark sky, in which every step of a palette would be seen
+    first = np.zeros((90, 160, 3), np.uint8) + ramp[:, None]
+    second, third = first.copy(), first.copy()
+    second[20:30, 40:50] = (250, 200, 90)  # a flame: a hundredth of the picture
+    third[60:64, 100:120] = (40, 220, 120)
+    with GifWriter(tmp_path / "a.gif", (160, 90), [first, second, third], 0.05) as gif:
+        for frame in (first, second, second, third):
+            gif.add(frame)
+    with image.open(tmp_path / "a.gif") as picture:
+        assert picture.n_frames == 4
+        for number, frame in enumerate((first, second, second, third)):
+            picture.seek(number)
+            assert picture.info["duration"] == 50
+            seen = np.asarray(picture.convert("RGB"), int)
+            assert np.abs(seen - frame).max() < 16
+            assert abs((seen - frame).mean()) < 0.5  # the dither mixes what the palette lacks
+
+
+def test_what_does_not_change_takes_no_room_in_a_gif(tmp_path: Path):
+    pytest.importorskip("PIL")
+    from game.gif import GifWriter
+
+    frame = np.random.default_rng(1).integers(0, 255, (90, 160, 3), np.uint8)
+    with GifWriter(tmp_path / "a.gif", (160, 90), [frame], 0.05) as gif:
+        gif.add(frame)
+        gif._file.flush()
+        before = (tmp_path / "a.gif").stat().st_size
+        for _ in range(10):
+            gif.add(frame)
+    assert (tmp_path / "a.gif").stat().st_size - before < 400
+
+
+def test_an_mp4_has_every_frame_in_its_colours(tmp_path: Path):
+    av = pytest.importorskip("av")
+    from game.mp4 import Mp4Writer
+
+    frame = np.full((90, 160, 3), (200, 120, 40), np.uint8)
+    with Mp4Writer(tmp_path / "a.mp4", (160, 90), 60) as mp4:
+        for _ in range(30):
+            mp4.add(frame)
+    with av.open(str(tmp_path / "a.mp4")) as container:
+        pictures = [each.to_ndarray(format="rgb24") for each in container.decode(video=0)]
+        assert container.streams.video[0].average_rate == 60
+    assert len(pictures) == 30
+    assert np.abs(pictures[10].astype(int) - frame).mean() < 4
+
+
+@pytest.mark.parametrize("suffix", KINDS)
+def test_a_full_disk_is_an_error_and_leaves_what_was_there(suffix: str, record: Record, small: None, tmp_path: Path):
+    pytest.importorskip(SMALL[suffix].needs)
+    resource = pytest.importorskip("resource")
+    path = tmp_path / f"flight{suffix}"
+    path.write_bytes(b"the one before")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (900, limits[1]))
+    try:
+        with pytest.raises(OSError):  # noqa: PT011 - each system and library has words of its own
+            for _ in film(record, path):
+                pass
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert path.read_bytes() == b"the one before"
+    assert [each.name for each in tmp_path.iterdir() if each.is_file()] == [path.name]
+
+
+def test_a_film_that_is_stopped_leaves_nothing(record: Record, small: None, tmp_path: Path):
+    pytest.importorskip("PIL")
+    turns = film(record, tmp_path / "pictures" / "flight.gif")
+    for _ in range(3):
+        next(turns)
+    turns.close()
+    assert not list((tmp_path / "pictures").iterdir())
+
+
+# In the game
+
+
+def _pick(driver: Driver, number: int) -> None:
+    """Choose a kind of film in the dialog."""
+    assert driver.top_name == "Picking"
+    driver.keys(*[pygame.K_DOWN] * number, pygame.K_RETURN)
+
+
+@pytest.fixture
+def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_path: Path) -> tuple[Driver, Replay]:
+    monkeypatch.setattr(module, "exports_dir", lambda: tmp_path / "pictures")
+    scene = Replay(record)
     driver = open_game(scene)
     driver.frames(2)
-    scene._export()
+    driver.app.scenes.apply(scene._begin_or_stop_export())
+    return driver, scene
+
+
+def test_without_the_extra_a_message_says_what_to_install(replay: tuple[Driver, Replay], monkeypatch):
+    driver, _ = replay
+    monkeypatch.setitem(KINDS, ".gif", Kind("no_such_module", (1, 1), 1, True))
+    _pick(driver, 0)
+    assert driver.top_name == "Replay"
     assert "tranquility[export]" in driver.app._notes._text
     assert driver.frames(2)
 
 
-def test_missing_is_whether_it_can_be_imported():
-    assert export.missing() is (importlib.util.find_spec("PIL") is None)
-
-
-def test_a_replay_is_saved_as_a_moving_picture(open_game, scene: Replay, monkeypatch, tmp_path: Path):
-    image = pytest.importorskip("PIL.Image")
-    monkeypatch.setattr(module, "exports_dir", lambda: tmp_path / "pictures")
-    monkeypatch.setattr(export, "EVERY", 60)
-    driver = open_game(scene)
-    driver.frames(2)
-    scene.tape.scout(10_000)
-    scene._export()
-    at = scene.tape.at
-    driver.frames(60)
-    assert scene.tape.at > at  # it goes on playing meanwhile
-    (path,) = (tmp_path / "pictures").iterdir()
-    with image.open(path) as picture:
-        assert picture.size == export.SIZE
-        assert picture.n_frames > 5
-
-
-def test_a_full_disk_is_told_of_and_nothing_is_left(open_game, scene: Replay, monkeypatch, tmp_path: Path):
+def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay], tmp_path: Path):
     pytest.importorskip("PIL")
+    driver, scene = replay
+    _pick(driver, 0)
+    scene.stopped = False
+    at = scene.tape.at
+    driver.frames(5)
+    assert scene.tape.at > at
+    scene._export.close()  # a film of full size takes its time: the process itself is tested elsewhere
+    driver.wait(lambda: scene._export is None)
+
+
+def test_a_film_can_be_stopped_and_leaving_ends_its_process(replay: tuple[Driver, Replay], tmp_path: Path):
+    import multiprocessing
+
+    pytest.importorskip("PIL")
+    driver, scene = replay
+    for _ in range(2):
+        _pick(driver, 0)
+        driver.frames(3)
+        assert multiprocessing.active_children()
+        scene._begin_or_stop_export()
+        assert not multiprocessing.active_children()
+        driver.app.scenes.apply(scene._begin_or_stop_export())
+    _pick(driver, 0)
+    driver.app.close()
+    assert not multiprocessing.active_children()
+
+
+def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, Replay], tmp_path: Path):
+    pytest.importorskip("PIL")
+    driver, scene = replay
     (tmp_path / "pictures").write_text("in the way")
-    monkeypatch.setattr(module, "exports_dir", lambda: tmp_path / "pictures")
-    monkeypatch.setattr(export, "EVERY", 200)
-    driver = open_game(scene)
-    driver.frames(2)
-    scene.tape.scout(10_000)
-    scene._export()
-    driver.frames(20)
+    _pick(driver, 0)
+    driver.wait(lambda: scene._export is None)
     assert "could not be saved" in driver.app._notes._text
-    assert pygame.display.get_init()
+    assert driver.frames(2)

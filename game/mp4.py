@@ -1,0 +1,57 @@
+"""Moving pictures as MP4, written frame by frame. Needs PyAV, which brings an encoder of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+import av
+import numpy as np
+from av.video.reformatter import Colorspace
+from numpy.typing import NDArray
+
+_ENCODERS: Final = ("libx264", "libopenh264", "mpeg4")  # what PyAV has depends on who built it
+_QUALITY: Final = {"crf": "18", "preset": "fast", "tune": "animation"}
+_BT709: Final = 1  # how the file says that its colours are those of a screen in high definition
+
+
+class Mp4Writer:
+    """Writes an MP4; a context, at whose end the file is complete.
+
+    Args:
+        path: of the file.
+        size: width and height in pixels, both even.
+        rate: frames a second.
+
+    Raises:
+        OSError: the file can't be written, then or later.
+
+    """
+
+    def __init__(self, path: Path, size: tuple[int, int], rate: int) -> None:
+        name = next(each for each in _ENCODERS if each in av.codecs_available)
+        self._container = av.open(str(path), "w", format="mp4", options={"movflags": "+faststart"})
+        self._stream: Any = self._container.add_stream(name, rate=rate, options=_QUALITY if name == "libx264" else {})
+        self._stream.width, self._stream.height = size
+        self._stream.pix_fmt = "yuv420p"  # what every player takes
+        context = self._stream.codec_context
+        context.colorspace = context.color_primaries = context.color_trc = _BT709
+        context.color_range = 1
+        if name != "libx264":
+            self._stream.bit_rate = 8_000_000
+
+    def __enter__(self) -> Mp4Writer:
+        return self
+
+    def __exit__(self, kind: object, *error: object) -> None:
+        try:
+            if kind is None:
+                self._container.mux(self._stream.encode(None))
+        finally:
+            self._container.close()
+
+    def add(self, frame: NDArray[np.uint8]) -> None:
+        """Add a frame (height, width, 3)."""
+        picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
+        picture = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709)
+        self._container.mux(self._stream.encode(picture))

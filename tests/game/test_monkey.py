@@ -1,0 +1,55 @@
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from benchmarks.monkey import Monkey, playground
+from benchmarks.tour import makers, scene_types
+from game.context import Context
+from game.scenes.menu import Menu
+from game.settings import Settings
+
+
+@pytest.fixture
+def folder() -> Iterator[Path]:
+    with playground() as place:
+        yield place
+
+
+def test_a_monkey_finds_no_fault_and_leaves_nothing_behind(folder: Path):
+    monkey = Monkey(folder, seed=7, open_sound=False)
+    monkey.play(1000)
+    assert not monkey.faults.found
+    assert not monkey.left_behind()
+    assert len(monkey.visits) > 8  # scenes
+
+
+def test_it_does_find_faults(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError("a fault on purpose")
+
+    monkeypatch.setattr(Menu, "draw", fail)
+    monkey = Monkey(folder, open_sound=False)
+    monkey.play(10)
+    assert "a fault on purpose" in monkey.faults.found[0]
+
+
+def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    kept: list[Menu] = []
+    leave = Menu.exit
+
+    def keep(menu: Menu) -> None:
+        kept.append(menu)
+        leave(menu)
+
+    monkeypatch.setattr(Menu, "exit", keep)
+    monkey = Monkey(folder, open_sound=False)
+    monkey.play(10)
+    assert "1 × Menu still in memory" in monkey.left_behind()
+
+
+def test_every_scene_can_be_entered_or_is_reached_from_another(folder: Path):
+    context = Context(folder / "user", Settings())
+    made = {type(make()).__name__ for make in makers(context).values()} - {"NoneType"}
+    inner = {"Asking", "ChoicesScene", "Dialog", "Fault", "Naming", "Pause", "Picking"}
+    assert {each.__name__ for each in scene_types()} - made - inner <= {"Replay"}  # there is no flight yet
