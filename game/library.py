@@ -1,39 +1,22 @@
-"""The networks a player has kept: one folder a run, to be listed, named, thrown away, brought back and copied."""
+"""The networks a player has kept: one folder a run, and what is known of each without reading it."""
 
 from __future__ import annotations
 
 import json
-import shutil
-import time
-import unicodedata
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
-
-import platformdirs
 
 from ai.config import LANDER
 from ai.nn.folder import recover_folder
 from ai.runs import LAST, TRAINING_FILE
 from game import texts
+from game.collection import OLD, UNSAVED, Collection, LibraryError, reason
 from game.lock import Lock, take
 from game.networks import PARTS, PLAYERS
 
-UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself; a second game's has a number behind it
-TRASH: Final = ".trash"
-LONGEST_NAME: Final = 40
-_TRASH_KEPT: Final = 8
 _GAMES: Final = 16  # that may train at the same time
-_OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
-_NEW: Final = ".new"  # and one that it has not finished
-_STALE: Final = 3600.0  # seconds after which nobody will finish it any more
-_DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
-
-
-class LibraryError(Exception):
-    """What could not be done, and why, in a sentence for the player."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +66,7 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
         last = (folder / LAST).is_dir()
         return SavedRun(name, folder, saved, flyable=True, resumable=last, **_figures(described))
     except OSError as error:
-        problem = _reason(error)
+        problem = reason(error)
     except (ValueError, KeyError, TypeError, ArithmeticError, RecursionError):
         problem = texts.RUN_UNREADABLE.format(file=TRAINING_FILE)
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
@@ -98,47 +81,17 @@ def _figures(described: dict[str, Any]) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def fitting(text: str) -> str:
-    """Keep what may stand in a name."""
-    return "".join(letter for letter in unicodedata.normalize("NFC", text) if letter.isalnum() or letter in " -_.")
-
-
-def name_problem(text: str) -> str:
-    """Say why a text is no name for a folder on every system, in a sentence; empty if it is one."""
-    if not text.strip():
-        return texts.NAME_EMPTY
-    if len(text) > LONGEST_NAME:
-        return texts.NAME_LONG.format(most=LONGEST_NAME)
-    if fitting(text) != unicodedata.normalize("NFC", text):
-        return texts.NAME_LETTERS
-    if text[0] == "." or text[-1] == "." or text != text.strip():
-        return texts.NAME_ENDS
-    if text.partition(".")[0].strip().casefold() in _DEVICES:
-        return texts.NAME_DEVICE.format(name=text)
-    return ""
-
-
-def is_valid_name(text: str) -> bool:
-    """Whether a run can be called so."""
-    return not name_problem(text)
-
-
-def exports_dir() -> Path:
-    """Return where a player finds what is exported: among their documents."""
-    return Path(platformdirs.user_documents_dir()) / texts.GAME
-
-
-class Library:
+class Library(Collection):
     """The runs in a player's folder. Whatever cannot be done raises LibraryError and changes nothing.
 
     Attributes:
         problem: why `runs` could not look; empty if it could.
-        unsaved: where a run keeps itself until it is given a name.
+        unsaved: where a run keeps itself until it is given a name; a second game's has a number behind it.
 
     """
 
     def __init__(self, user_dir: Path) -> None:
-        self.folder = user_dir / PLAYERS
+        super().__init__(user_dir / PLAYERS)
         self.problem = ""
         self.unsaved = self.folder / UNSAVED
         self._lock: Lock | None = None
@@ -147,92 +100,24 @@ class Library:
         """Describe every run, the latest first, damaged ones too."""
         self.problem = ""
         try:
-            self._recover()
+            self.recover()
             found = [read_run(path) for path in self.folder.iterdir() if _claims(path)]
         except FileNotFoundError:
             return []
         except OSError as error:
-            self.problem = texts.LIBRARY_UNREADABLE.format(folder=self.folder, reason=_reason(error))
+            self.problem = texts.LIBRARY_UNREADABLE.format(folder=self.folder, reason=reason(error))
             return []
         return sorted(found, key=lambda run: (-run.saved, run.name))
 
-    def free_name(self, suggestion: str) -> str:
-        """Return the suggestion as a valid name that no run has yet, with a number behind it if need be."""
-        base = " ".join(fitting(suggestion).split())[:LONGEST_NAME].strip(" .")
-        if name_problem(base):
-            base = texts.RUN_UNNAMED
-        name, number = base, 1
-        while self._holder(name):
-            number += 1
-            name = f"{base[: LONGEST_NAME - 1 - len(str(number))].rstrip(' .')} {number}"
-        return name
-
-    def new_folder(self, name: str) -> Path:
-        """Return the folder to save a new run of that name in; LibraryError if it cannot be called so."""
-        if problem := name_problem(name):
-            raise LibraryError(problem)
-        if holder := self._holder(name):
-            raise LibraryError(texts.NAME_TAKEN.format(name=holder))
-        return self.folder / unicodedata.normalize("NFC", name)
-
-    def rename(self, old: str, new: str) -> SavedRun:
-        """Give a run another name, which no other has."""
-        source = self._existing(old)
-        target = self.folder / unicodedata.normalize("NFC", new)
-        if not (is_valid_name(new) and self._holder(new) == old):  # a change of case alone is no clash
-            target = self.new_folder(new)
-        with _told(texts.LIBRARY_NOT_RENAMED, old):
-            source.rename(target)
-        return read_run(target)
-
     def delete(self, name: str) -> None:
         """Throw a run away; `undo_delete` brings it back."""
-        self._throw_away(self._existing(name), name)
+        self.throw_away(self.existing(name), name)
 
-    @property
-    def last_deleted(self) -> str:
-        """What `undo_delete` would bring back; empty for nothing."""
-        thrown = self._thrown()
-        return thrown[-1].name.partition(" ")[2] if thrown else ""
-
-    def undo_delete(self) -> SavedRun | None:
-        """Bring back what was thrown away last, under another name if its own is taken; None if nothing was."""
-        thrown = self._thrown()
-        if not thrown:
-            return None
-        name = thrown[-1].name.partition(" ")[2]
-        if not is_valid_name(name) or self._holder(name):
-            name = self.free_name(name)
-        with _told(texts.LIBRARY_NOT_RESTORED, name):
-            thrown[-1].rename(self.folder / name)
-        return read_run(self.folder / name)
-
-    def export(self, name: str, folder: Path | None = None) -> Path:
-        """Copy a run into a folder, `exports_dir` if none is named, and return where the copy is.
-
-        Nothing that lies there is touched: a copy whose name is taken gets a number.
-        """
-        source = self._existing(name)
-        folder = folder or exports_dir()
-        with _told(texts.LIBRARY_NOT_EXPORTED, name):
-            folder.mkdir(parents=True, exist_ok=True)
-            target, number = folder / name, 1
-            while target.exists():
-                number += 1
-                target = folder / f"{name} {number}"
-            _copy(source, target)
-        return target
-
-    def import_folder(self, path: Path) -> SavedRun:
-        """Copy a run from anywhere into the library, under its own name or one near it."""
-        name = path.name
+    def import_folder(self, path: Path) -> Path:
+        """Copy a run from anywhere into the library, under its own name or one near it; return where the copy is."""
         if not path.is_dir() or not _claims(path, hidden=True):
-            raise LibraryError(texts.LIBRARY_NO_RUN.format(name=name))
-        target = self.folder / self.free_name(name)
-        with _told(texts.LIBRARY_NOT_IMPORTED, name):
-            self.folder.mkdir(parents=True, exist_ok=True)
-            _copy(path, target)
-        return read_run(target)
+            raise LibraryError(texts.LIBRARY_NO_RUN.format(name=path.name))
+        return super().import_folder(path)
 
     # What has no name yet, and what a game that ended too early left behind
 
@@ -267,54 +152,12 @@ class Library:
 
     def keep_rescued(self, name: str) -> SavedRun:
         """Give that run a name."""
-        target = self.new_folder(name)
-        with _told(texts.LIBRARY_NOT_KEPT, name):
-            self.unsaved.rename(target)
-        return read_run(target)
+        return read_run(self.name(self.unsaved, name))
 
     def discard_rescued(self) -> None:
         """Throw that run away, if there is one; `undo_delete` brings it back."""
         if rescued := self.rescued():
-            self._throw_away(self.unsaved, rescued.name)
-
-    # Folders
-
-    def _existing(self, name: str) -> Path:
-        """Return a run's folder; a name must not lead out of the library, whatever it is."""
-        folder = self.folder / name
-        if name.startswith(".") or Path(name).name != name or not folder.is_dir():
-            raise LibraryError(texts.LIBRARY_GONE.format(name=name))
-        return folder
-
-    def _holder(self, name: str) -> str:
-        """Return what already lies there under a name that some systems take for the same; empty if nothing does."""
-        with suppress(OSError):
-            return next((path.name for path in self.folder.iterdir() if _same(path.name) == _same(name)), "")
-        return ""
-
-    def _throw_away(self, folder: Path, name: str) -> None:
-        trash = self.folder / TRASH
-        with _told(texts.LIBRARY_NOT_DELETED, name):
-            trash.mkdir(exist_ok=True)
-            folder.rename(trash / f"{time.time_ns()} {name}")
-        for old in self._thrown()[:-_TRASH_KEPT]:
-            with suppress(OSError):
-                old.unlink() if old.is_symlink() else shutil.rmtree(old)
-
-    def _thrown(self) -> list[Path]:
-        """Return what was thrown away, the latest last: a name is when, and what it was called."""
-        with suppress(OSError):
-            dated = [path for path in (self.folder / TRASH).iterdir() if path.name.split(" ")[0].isdecimal()]
-            return sorted(dated, key=lambda path: int(path.name.split(" ")[0]))
-        return []
-
-    def _recover(self) -> None:
-        """Put back runs whose replacement was interrupted, and clear away what was never finished."""
-        for path in list(self.folder.iterdir()):
-            if path.name.endswith(_OLD) and path.name[0] == "." and path.name[1] != ".":
-                recover_folder(self.folder / path.name[1 : -len(_OLD)])
-            elif path.name.endswith(_NEW) and path.name[0] == "." and time.time() - path.stat().st_mtime > _STALE:
-                shutil.rmtree(path, ignore_errors=True)
+            self.throw_away(self.unsaved, rescued.name)
 
 
 def _claims(path: Path, hidden: bool = False) -> bool:
@@ -325,36 +168,4 @@ def _claims(path: Path, hidden: bool = False) -> bool:
 
 
 def _was_used(place: Path) -> bool:
-    return place.exists() or place.with_name(f".{place.name}{_OLD}").exists()
-
-
-def _same(name: str) -> str:
-    return unicodedata.normalize("NFC", name).casefold()
-
-
-def _copy(source: Path, target: Path) -> None:
-    """Copy a folder whole or not at all."""
-    partial = target.with_name(f".{target.name}.new")
-    shutil.rmtree(partial, ignore_errors=True)
-    try:
-        shutil.copytree(source, partial)
-        partial.rename(target)
-    except BaseException:
-        shutil.rmtree(partial, ignore_errors=True)
-        raise
-
-
-@contextmanager
-def _told(sentence: str, name: str) -> Iterator[None]:
-    """Turn what the system says into a sentence for the player."""
-    try:
-        yield
-    except OSError as error:
-        raise LibraryError(sentence.format(name=name, reason=_reason(error))) from error
-
-
-def _reason(error: OSError) -> str:
-    """Say in a few words what went wrong; a copy of many files names the first that failed."""
-    if isinstance(error, shutil.Error) and error.args and isinstance(error.args[0], list):
-        return str(error.args[0][0][-1])
-    return error.strerror or str(error)
+    return place.exists() or place.with_name(f".{place.name}{OLD}").exists()

@@ -10,8 +10,9 @@ from ai.history import Alteration, Checkpoint, History, Point, Validation
 from ai.live import TAUGHT, Begun, Insight, Refused, Revert, Save, Saved, Sight, Teach, live, turned
 from ai.nn import ModelFormatError
 from game import texts
+from game.collection import LibraryError
 from game.learner import EARLIER, Learner
-from game.library import Library, LibraryError
+from game.library import Library
 from game.worker import Worker
 
 # Decisions of all landers a second: one lasts 1/15 s of their own time. None is as fast as it can.

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-import unicodedata
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,13 +14,11 @@ from ai.digit_runs import LAST_FILE, TRAINING_FILE
 from ai.messages import Refused, Save
 from ai.nn.folder import CONFIG, recover_folder
 from game import texts
+from game.collection import UNSAVED, Collection, LibraryError
 from game.digits import PATIENCE
 from game.learner import EARLIER, Learner
-from game.library import name_problem
 from game.worker import Worker
 
-UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
-_BEFORE: Final = ".before"  # and the one that was discarded last, in case somebody wants it back
 _MOST_POINTS: Final = 4000
 
 
@@ -67,7 +63,7 @@ class Pupil(Learner):
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
-        self._folder = folder
+        self.collection = Collection(folder)
         self.config, self.seed, self.steps = DigitConfig(), 0, 0
         self.begun = False
         self.curves = Curves()
@@ -81,7 +77,7 @@ class Pupil(Learner):
     @property
     def unsaved(self) -> Path:
         """Where a run keeps itself until it has a name."""
-        return self._folder / UNSAVED
+        return self.collection.folder / UNSAVED
 
     @property
     def unfinished(self) -> bool:
@@ -112,14 +108,6 @@ class Pupil(Learner):
             part = part if known is None else float(known)
         return preset, seconds, part
 
-    def free_name(self, name: str) -> str:
-        """Return that name, or one with a number if it is taken."""
-        number, free = 1, name
-        while (self._folder / free).exists():
-            number += 1
-            free = texts.PUPIL_NUMBERED.format(name=name, number=number)
-        return free
-
     def begin(self, config: DigitConfig, seed: int, *, resume: bool = False) -> str:
         """Start a run, or go on with the unfinished one. Returns what the player should know, if anything."""
         self.close()
@@ -146,23 +134,15 @@ class Pupil(Learner):
 
     def save(self, name: str) -> str:
         """Give the run a name; returns why that can't be, and later news come from `poll`."""
-        if problem := name_problem(name):
-            return problem
-        folder = self._folder / unicodedata.normalize("NFC", name)
-        if folder.exists():
-            return texts.NAME_TAKEN.format(name=name)
-        if self._worker and self.alive:
-            self._saving.append(folder)
-            self._worker.send(Save(folder))
-            return ""
-        return self._name(folder)
-
-    def _name(self, folder: Path) -> str:
-        """Give the run that has ended its folder; returns why that can't be."""
         try:
-            self.unsaved.rename(folder)
-        except OSError as error:
-            return texts.TRAIN_NOT_SAVED.format(problem=error.strerror or error)
+            if self._worker and self.alive:
+                folder = self.collection.new_folder(name)
+                self._saving.append(folder)
+                self._worker.send(Save(folder))
+            else:
+                self.collection.name(self.unsaved, name)
+        except LibraryError as error:
+            return str(error)
         return ""
 
     def poll(self) -> list[str]:
@@ -189,18 +169,15 @@ class Pupil(Learner):
         if not self.alive:
             self.stopping = False
             while self._saving:  # it ended before it heard of that
-                folder = self._saving.pop()
-                notes.append(self._name(folder) or texts.PUPIL_SAVED.format(name=folder.name))
+                name = self._saving.pop().name
+                notes.append(self.save(name) or texts.PUPIL_SAVED.format(name=name))
         return notes
 
     def _put_aside(self) -> str:
-        """Move a nameless run out of the way of a new one; it can be had back by hand until the next."""
-        if not self.kept:
-            return ""
-        before = self._folder / _BEFORE
-        try:
-            shutil.rmtree(before, ignore_errors=True)
-            self.unsaved.rename(before)
-        except OSError as error:
-            return texts.TRAIN_NOT_SAVED.format(problem=error.strerror or error)
+        """Move a nameless run out of the way of a new one, to where the last few can be had back from by hand."""
+        if self.kept:
+            try:
+                self.collection.throw_away(self.unsaved, texts.RUN_UNNAMED)
+            except LibraryError as error:
+                return str(error)
         return ""

@@ -8,9 +8,9 @@ from typing import Final
 import pygame
 
 from game import texts
+from game.collection import LONGEST_NAME, fitting
 from game.context import Context
 from game.controls import Command
-from game.library import LONGEST_NAME, fitting
 from game.scene import Pop, Scene, Transition
 from game.ui import typeface
 from game.ui.canvas import Canvas

@@ -167,7 +167,7 @@ class DigitTrainingScene:
             return
         preset, seconds, part = self.pupil.described()
         named = (preset, "") if preset in DIGIT_PRESETS else FAMILY.nearest(self.pupil.config)
-        name = self.pupil.free_name(texts.PUPIL_NAME.format(preset=FAMILY.word(named)))
+        name = self.pupil.collection.free_name(texts.PUPIL_NAME.format(preset=FAMILY.word(named)))
 
         def keep() -> None:
             self.pupil.close()
@@ -213,7 +213,7 @@ class DigitTrainingScene:
         if not (self.pupil.kept or self.pupil.alive):
             self._say(texts.PUPIL_NOTHING)
             return None
-        suggestion = self.pupil.free_name(texts.PUPIL_NAME.format(preset=self.knobs.name))
+        suggestion = self.pupil.collection.free_name(texts.PUPIL_NAME.format(preset=self.knobs.name))
         return Push(Naming(self, texts.PUPIL_NAMING, suggestion, self._save_as))
 
     def _save_as(self, name: str) -> str:

@@ -10,9 +10,10 @@ from typing import Final
 import pygame
 
 from game import networks, texts
+from game.collection import LONGEST_NAME, LibraryError, fitting
 from game.context import Context
 from game.controls import Command
-from game.library import LONGEST_NAME, Library, LibraryError, SavedRun, fitting, read_run
+from game.library import Library, SavedRun, read_run
 from game.scene import Pop, Push, Transition
 from game.ui.canvas import Canvas
 from game.ui.entry import Entry
@@ -230,7 +231,7 @@ class Runs:
                 self._entry.begin()
             return
         flies = context.settings.model == self._names[run.folder]
-        self._reload(renamed.folder)
+        self._reload(renamed)
         self._form.focus(self._list)
         if flies:
             self._make_pilot()
@@ -258,7 +259,7 @@ class Runs:
     def _restore(self) -> None:
         def restore(_: str) -> str:
             run = self._library.undo_delete()
-            self._reload(run.folder if run else None)
+            self._reload(run)
             return texts.RUN_RESTORED.format(name=run.name) if run else ""
 
         self._attempt(restore, "")
@@ -267,7 +268,7 @@ class Runs:
     def _import(self, path: Path) -> None:
         def copy(_: str) -> str:
             run = self._library.import_folder(path if path.is_dir() else path.parent)
-            self._reload(run.folder)
+            self._reload(run)
             return texts.RUN_IMPORTED.format(name=run.name)
 
         self._attempt(copy, "")

@@ -12,9 +12,10 @@ from ai.config import PRESETS, Config
 from ai.live import agent_of
 from game import texts
 from game.cockpit.lesson import FILE_NAME, lessons
+from game.collection import LibraryError
 from game.context import Context
 from game.controls import Command, translate
-from game.library import Library, LibraryError, SavedRun
+from game.library import Library, SavedRun
 from game.scene import Pop, Push, Transition
 from game.student import PACES, Student
 from game.ui.advice import Advice

@@ -15,8 +15,9 @@ from game.networks import Flyer
 from game.render import Camera, Shot
 from game.ui.canvas import Canvas
 from game.world.backdrop import landscape
+from game.world.craft import STAND
 from game.world.ground import draw_ground
-from game.world.stage import STAND, Stage
+from game.world.stage import Stage
 
 _ASIDE: Final = Shot(-8.0)  # the words are on the left, so the pad is on the right
 _EARTH: Final = (824.0, 168.0)

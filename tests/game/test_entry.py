@@ -3,8 +3,8 @@ from collections.abc import Callable
 import pygame
 import pytest
 
+from game.collection import fitting
 from game.context import Context
-from game.library import fitting
 from game.scene import Pop, Transition
 from game.ui import entry
 from game.ui.canvas import Canvas

@@ -10,9 +10,10 @@ from ai.agent import DeepQAgent
 from ai.config import Config
 from ai.runs import resume_run, save_run
 from ai.training import Training
-from game import library as module
+from game import collection as module
 from game import networks
-from game.library import UNSAVED, Library, LibraryError, is_valid_name, read_run
+from game.collection import UNSAVED, LibraryError, is_valid_name
+from game.library import Library, read_run
 
 SMALL = Config(hidden=(8,), num_envs=4, warm_up=16, replay_size=100, batch_size=16)
 DESCRIBED = {
@@ -140,7 +141,7 @@ def test_bad_names_are_refused_in_words(library: Library, name: str):
 
 def test_rename(library: Library):
     add(library, "old")
-    assert library.rename("old", "new").folder == library.folder / "new"
+    assert library.rename("old", "new") == library.folder / "new"
     assert library.rename("new", "NEW").name == "NEW"
     assert library.rename("NEW", "NEW").name == "NEW"
     assert names(library) == ["NEW"]
@@ -209,7 +210,7 @@ def test_the_trash_does_not_grow_for_ever(library: Library):
         library.delete("run")
     back = []
     while restored := library.undo_delete():
-        back.append(restored.seed)
+        back.append(read_run(restored).seed)
     assert back == [11, 10, 9, 8, 7, 6, 5, 4]
 
 
@@ -300,7 +301,7 @@ def test_what_had_no_name_can_be_let_go_and_brought_back(library: Library):
     assert library.rescued() is None
     restored = library.undo_delete()
     assert restored is not None
-    assert restored.seed == 9
+    assert read_run(restored).seed == 9
 
 
 def test_two_games_at_once_keep_their_runs_apart(library: Library):

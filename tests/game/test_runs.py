@@ -10,7 +10,7 @@ import pytest
 
 from ai.agent import DeepQAgent
 from ai.config import Config
-from game import library as library_module
+from game import collection as collection_module
 from game import texts
 from game.context import Context
 from game.library import Library
@@ -32,7 +32,7 @@ UP, DOWN, LEFT, RIGHT, ENTER, ESCAPE = (
 @pytest.fixture
 def library(context: Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Library:
     context.models_dir = tmp_path / "shipped"
-    monkeypatch.setattr(library_module.platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
+    monkeypatch.setattr(collection_module.platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
     write(context.models_dir / "lander" / "modern")
     return Library(context.user_dir)
 

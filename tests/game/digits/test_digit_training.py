@@ -140,7 +140,7 @@ def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path:
     scene.pupil.close()
     assert (scene.pupil.runs == 1) == bool(answer)
     assert (runs / "Classic reader" / "config.json").exists() == answer.startswith("Keep")
-    assert (runs / ".before" / "config.json").exists() == (answer == texts.TRAIN_LEFT_DISCARD)
+    assert len(list(runs.glob(".trash/*/config.json"))) == (answer == texts.TRAIN_LEFT_DISCARD)
     assert answer or (runs / ".training" / "config.json").exists()
 
 
@@ -174,7 +174,8 @@ def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
     (pupil.unsaved / "config.json").write_text("old")
     pupil.begin(SMALL, 0)
     pupil.close()
-    assert (tmp_path / ".before" / "config.json").read_text() == "old"
+    (aside,) = tmp_path.glob(".trash/*/config.json")
+    assert aside.read_text() == "old"
 
 
 @pytest.mark.parametrize("name", ["..", "a/b", "", "con", "taken"])

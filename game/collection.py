@@ -1,0 +1,217 @@
+"""A folder of named folders, which a player's networks are kept in: named, thrown away, brought back, copied."""
+
+from __future__ import annotations
+
+import shutil
+import time
+import unicodedata
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Final
+
+import platformdirs
+
+from ai.nn.folder import recover_folder
+from game import texts
+
+UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
+TRASH: Final = ".trash"
+LONGEST_NAME: Final = 40
+OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
+_NEW: Final = ".new"  # and one that it has not finished
+_TRASH_KEPT: Final = 8
+_STALE: Final = 3600.0  # seconds after which nobody will finish it any more
+_DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
+
+
+class LibraryError(Exception):
+    """What could not be done, and why, in a sentence for the player."""
+
+
+def fitting(text: str) -> str:
+    """Keep what may stand in a name."""
+    return "".join(letter for letter in unicodedata.normalize("NFC", text) if letter.isalnum() or letter in " -_.")
+
+
+def name_problem(text: str) -> str:
+    """Say why a text is no name for a folder on every system, in a sentence; empty if it is one."""
+    if not text.strip():
+        return texts.NAME_EMPTY
+    if len(text) > LONGEST_NAME:
+        return texts.NAME_LONG.format(most=LONGEST_NAME)
+    if fitting(text) != unicodedata.normalize("NFC", text):
+        return texts.NAME_LETTERS
+    if text[0] == "." or text[-1] == "." or text != text.strip():
+        return texts.NAME_ENDS
+    if text.partition(".")[0].strip().casefold() in _DEVICES:
+        return texts.NAME_DEVICE.format(name=text)
+    return ""
+
+
+def is_valid_name(text: str) -> bool:
+    """Whether a folder can be called so."""
+    return not name_problem(text)
+
+
+def exports_dir() -> Path:
+    """Return where a player finds what is exported: among their documents."""
+    return Path(platformdirs.user_documents_dir()) / texts.GAME
+
+
+class Collection:
+    """What lies in `folder`. Whatever cannot be done raises LibraryError and changes nothing."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def free_name(self, suggestion: str) -> str:
+        """Return the suggestion as a valid name that nothing has yet, with a number behind it if need be."""
+        base = " ".join(fitting(suggestion).split())[:LONGEST_NAME].strip(" .")
+        if name_problem(base):
+            base = texts.RUN_UNNAMED
+        name, number = base, 1
+        while self.holder(name):
+            number += 1
+            name = f"{base[: LONGEST_NAME - 1 - len(str(number))].rstrip(' .')} {number}"
+        return name
+
+    def new_folder(self, name: str) -> Path:
+        """Return where something new of that name goes; LibraryError if it cannot be called so."""
+        if problem := name_problem(name):
+            raise LibraryError(problem)
+        if holder := self.holder(name):
+            raise LibraryError(texts.NAME_TAKEN.format(name=holder))
+        return self.folder / unicodedata.normalize("NFC", name)
+
+    def existing(self, name: str) -> Path:
+        """Return where it lies; a name must not lead out of it, whatever it is."""
+        folder = self.folder / name
+        if name.startswith(".") or Path(name).name != name or not folder.is_dir():
+            raise LibraryError(texts.LIBRARY_GONE.format(name=name))
+        return folder
+
+    def holder(self, name: str) -> str:
+        """Return what already lies there under a name that some systems take for the same; empty if nothing does."""
+        with suppress(OSError):
+            return next((path.name for path in self.folder.iterdir() if _same(path.name) == _same(name)), "")
+        return ""
+
+    def rename(self, old: str, new: str) -> Path:
+        """Give something another name, which nothing else has; return where it is."""
+        source = self.existing(old)
+        target = self.folder / unicodedata.normalize("NFC", new)
+        if not (is_valid_name(new) and self.holder(new) == old):  # a change of case alone is no clash
+            target = self.new_folder(new)
+        with told(texts.LIBRARY_NOT_RENAMED, old):
+            source.rename(target)
+        return target
+
+    def name(self, folder: Path, name: str) -> Path:
+        """Give a folder that has none yet a name; return where it is."""
+        target = self.new_folder(name)
+        with told(texts.LIBRARY_NOT_KEPT, name):
+            folder.rename(target)
+        return target
+
+    def export(self, name: str, folder: Path | None = None) -> Path:
+        """Copy something into a folder, `exports_dir` if none is named, and return where the copy is.
+
+        Nothing that lies there is touched: a copy whose name is taken gets a number.
+        """
+        source = self.existing(name)
+        folder = folder or exports_dir()
+        with told(texts.LIBRARY_NOT_EXPORTED, name):
+            folder.mkdir(parents=True, exist_ok=True)
+            target, number = folder / name, 1
+            while target.exists():
+                number += 1
+                target = folder / f"{name} {number}"
+            _copy(source, target)
+        return target
+
+    def import_folder(self, path: Path) -> Path:
+        """Copy a folder from anywhere, under its own name or one near it; return where the copy is."""
+        target = self.folder / self.free_name(path.name)
+        with told(texts.LIBRARY_NOT_IMPORTED, path.name):
+            self.folder.mkdir(parents=True, exist_ok=True)
+            _copy(path, target)
+        return target
+
+    # What was thrown away
+
+    def throw_away(self, folder: Path, name: str) -> None:
+        """Put a folder aside, from where `undo_delete` can have it back by that name; very old ones are deleted."""
+        trash = self.folder / TRASH
+        with told(texts.LIBRARY_NOT_DELETED, name):
+            trash.mkdir(exist_ok=True)
+            folder.rename(trash / f"{time.time_ns()} {name}")
+        for old in self._thrown()[:-_TRASH_KEPT]:
+            with suppress(OSError):
+                old.unlink() if old.is_symlink() else shutil.rmtree(old)
+
+    @property
+    def last_deleted(self) -> str:
+        """What `undo_delete` would bring back; empty for nothing."""
+        thrown = self._thrown()
+        return thrown[-1].name.partition(" ")[2] if thrown else ""
+
+    def undo_delete(self) -> Path | None:
+        """Bring back what was thrown away last, under another name if its own is taken; None if nothing was."""
+        name = self.last_deleted
+        if not name:
+            return None
+        if not is_valid_name(name) or self.holder(name):
+            name = self.free_name(name)
+        with told(texts.LIBRARY_NOT_RESTORED, name):
+            return self._thrown()[-1].rename(self.folder / name)
+
+    def recover(self) -> None:
+        """Put back what was being replaced when that was interrupted, and clear away what was never finished.
+
+        Raises OSError if the folder can't be looked into.
+        """
+        for path in list(self.folder.iterdir()):
+            if path.name.endswith(OLD) and path.name[0] == "." and path.name[1] != ".":
+                recover_folder(self.folder / path.name[1 : -len(OLD)])
+            elif path.name.endswith(_NEW) and path.name[0] == "." and time.time() - path.stat().st_mtime > _STALE:
+                shutil.rmtree(path, ignore_errors=True)
+
+    def _thrown(self) -> list[Path]:
+        """Return what was thrown away, the latest last: a name is when, and what it was called."""
+        with suppress(OSError):
+            dated = [path for path in (self.folder / TRASH).iterdir() if path.name.split(" ")[0].isdecimal()]
+            return sorted(dated, key=lambda path: int(path.name.split(" ")[0]))
+        return []
+
+
+@contextmanager
+def told(sentence: str, name: str) -> Iterator[None]:
+    """Turn what the system says into a sentence for the player."""
+    try:
+        yield
+    except OSError as error:
+        raise LibraryError(sentence.format(name=name, reason=reason(error))) from error
+
+
+def reason(error: OSError) -> str:
+    """Say in a few words what went wrong; a copy of many files names the first that failed."""
+    if isinstance(error, shutil.Error) and error.args and isinstance(error.args[0], list):
+        return str(error.args[0][0][-1])
+    return error.strerror or str(error)
+
+
+def _same(name: str) -> str:
+    return unicodedata.normalize("NFC", name).casefold()
+
+
+def _copy(source: Path, target: Path) -> None:
+    """Copy a folder whole or not at all."""
+    partial = target.with_name(f".{target.name}{_NEW}")
+    shutil.rmtree(partial, ignore_errors=True)
+    try:
+        shutil.copytree(source, partial)
+        partial.rename(target)
+    except BaseException:
+        shutil.rmtree(partial, ignore_errors=True)
+        raise
