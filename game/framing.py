@@ -6,10 +6,11 @@ from typing import Final
 
 import numpy as np
 
+from ai.env import Doubles
 from ai.lander import LanderEnv
-from game.render import GROUND_LINE, Camera, Shot
+from game.render import GROUND_LINE, Camera, Clear, Shot
 
-HEAD: Final = 104.0  # points: the row below which a craft is seen whole, clear of the words at the top
+ALL: Final = Clear()
 _AROUND: Final = 2.2  # metres beside a craft, and above it
 _BESIDE: Final = 1.6  # metres beside a pad
 _LEAD: Final = 0.6  # seconds: how far ahead of a craft the camera looks
@@ -18,21 +19,28 @@ _REACH: Final = (6.5, 1.1)  # metres to the side at the height of the ground, an
 _FADE: Final = 3.0  # metres over which a pad out of reach stops to count
 
 
-def framed(env: LanderEnv, slot: int = 0, head: float = HEAD) -> Shot:
-    """Return the closest shot with the craft, what lies ahead of it, and its pads, clear of the rows above `head`."""
+def framed(env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> Shot:
+    """Return the closest shot with the craft, what lies ahead of it, and its pads, where the screen is clear."""
     x, y = env.position[slot].tolist()
     ahead_x, ahead_y = (env.position[slot] + _LEAD * env.velocity[slot]).tolist()
     left, right = min(x, ahead_x) - _AROUND, max(x, ahead_x) + _AROUND
     for edges, weight in _pads(env, slot, x, y):
         left += weight * (min(left, edges[0] - _BESIDE) - left)
         right += weight * (max(right, edges[1] + _BESIDE) - right)
-    return Shot.around(left, right, max(y, ahead_y) + _AROUND, head)
+    return Shot.around(left, right, max(y, ahead_y) + _AROUND, clear)
 
 
-def follow(camera: Camera, env: LanderEnv, slot: int = 0, head: float = HEAD) -> None:
+def whole(path: Doubles, clear: Clear = ALL) -> Shot:
+    """Return a shot of all of a flight that is over, (k, 2), no closer than the camera is at rest."""
+    (left, _), (right, top) = path.min(axis=0).tolist(), path.max(axis=0).tolist()
+    shot = Shot.around(left - _AROUND, right + _AROUND, top + _AROUND, clear)
+    return Shot(shot.across, min(shot.zoom, 1.0)).on_land()
+
+
+def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> None:
     """Let a camera follow a flight for a step."""
     x, y = env.position[slot].tolist()
-    camera.follow(framed(env, slot, head), (x, y))
+    camera.follow(framed(env, slot, clear), (x, y))
 
 
 def _pads(env: LanderEnv, slot: int, x: float, y: float) -> list[tuple[tuple[float, float], float]]:

@@ -75,6 +75,15 @@ class View:
 
 
 @dataclass(frozen=True)
+class Clear:
+    """The part of the screen in which a flight is to be seen, in points: what is beside it belongs to words."""
+
+    left: float = 0.0
+    right: float = float(VIEW_SIZE[0])
+    head: float = 104.0
+
+
+@dataclass(frozen=True)
 class Shot:
     """What a camera is to show: `across` in metres is the middle of the view."""
 
@@ -82,17 +91,22 @@ class Shot:
     zoom: float = 1.0
 
     @classmethod
-    def around(cls, left: float, right: float, top: float, head: float) -> Shot:
-        """Return the closest one that shows from `left` to `right`, and up to `top` below row `head`, in points."""
-        wide = VIEW_SIZE[0] / (POINTS_PER_METRE * max(right - left, 1.0))
-        high = (GROUND_ROW - head) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
-        return cls((left + right) / 2, min(wide, high, CLOSEST)).on_land()
+    def around(cls, left: float, right: float, top: float, clear: Clear) -> Shot:
+        """Return the closest one that shows from `left` to `right`, and up to `top`, in metres, where it is clear."""
+        wide = (clear.right - clear.left) / (POINTS_PER_METRE * max(right - left, 1.0))
+        high = (GROUND_ROW - clear.head) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
+        zoom = max(min(wide, high, CLOSEST), WIDEST)
+        aside = ((clear.left + clear.right) - VIEW_SIZE[0]) / (2 * POINTS_PER_METRE * zoom)
+        return cls((left + right) / 2 - aside, zoom).on_land()
 
     def on_land(self) -> Shot:
         """The same, but for what would show where the land ends."""
-        zoom = max(self.zoom, WIDEST)
-        reach = LAND_REACH - VIEW_SIZE[0] / (2 * POINTS_PER_METRE * zoom)
-        return Shot(min(max(self.across, -reach), reach), zoom)
+        reach = LAND_REACH - VIEW_SIZE[0] / (2 * POINTS_PER_METRE * self.zoom)
+        return Shot(min(max(self.across, -reach), reach), self.zoom)
+
+    def view(self, scale: float) -> View:
+        """Return the view that shows it."""
+        return View(scale, (self.across, centre_height(self.zoom)), self.zoom, CLOSEST)
 
 
 class Camera:

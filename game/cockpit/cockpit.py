@@ -13,7 +13,7 @@ from ai.lander import Outcome
 from game import texts
 from game.cockpit.dial import Dial, draw_title
 from game.cockpit.hands import OWN
-from game.cockpit.insight import Insight
+from game.cockpit.insight import PANEL, Insight
 from game.cockpit.lesson import keep_lesson
 from game.cockpit.overrides import Overrides
 from game.cockpit.track import Track
@@ -21,7 +21,7 @@ from game.controls import Command, translate
 from game.flight import Flight, Hand
 from game.hud import CARD, Card
 from game.outcomes import landing_score, outcome_card
-from game.render import View
+from game.render import Clear, View
 from game.settings import Settings
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, MARGIN, VIEW_SIZE
@@ -96,9 +96,18 @@ class Cockpit:
         """Let 1/60 s pass, whether or not anything flies."""
         self._dial.follow(self._flight.hand)
 
+    @property
+    def clear(self) -> Clear:
+        """Where on the screen the flight is to be seen, beside the panel that explains it."""
+        return Clear(right=PANEL.left - 16.0) if self._explains else Clear()
+
+    @property
+    def _explains(self) -> bool:
+        return self._settings.explain and self._insight.shown and not self._flight.over
+
     def draw_behind(self, canvas: Canvas) -> None:
         """Draw what the craft flies in front of."""
-        if self._settings.explain and self._insight.shown and not self._flight.over:
+        if self._explains:
             self._insight.draw(canvas, self._flight.share)
 
     def draw_beside(self, canvas: Canvas, view: View, pose: Doubles) -> None:

@@ -37,9 +37,14 @@ class Track:
             self._points.append(here.copy())
             self._hands.append(flight.flown_by)
 
+    @property
+    def path(self) -> Doubles:
+        """Where the flight went so far, positions (k, 2)."""
+        return np.array(self._points)
+
     def beside(self, lefts: Sequence[float], area: pygame.Rect, view: View) -> float:
         """Return which of these an area of that size should begin at, to hide the least of the path."""
-        places = view.points(np.array(self._points))
+        places = view.points(self.path)
 
         def hidden(left: float) -> int:
             inside = (places >= (left, area.top)) & (places <= (left + area.width, area.bottom))
@@ -49,7 +54,7 @@ class Track:
 
     def draw(self, canvas: Canvas, view: View, shown: float = 1.0) -> None:
         """Draw the path, `shown` 0 to 1 of it from the start, and a diamond for every moment."""
-        pixels = view.pixels(np.array(self._points)).tolist()
+        pixels = view.pixels(self.path).tolist()
         last = round(shown * len(self._hands))
         ends = [0]
         for _, run in groupby(self._hands[:last]):

@@ -6,37 +6,31 @@ import time
 from dataclasses import replace
 from typing import Final
 
-import numpy as np
 import pygame
 
-from game import framing, hud, networks, texts
-from game.clock import STEP
+from ai.lander import Outcome
+from game import flight_words, hud, networks, texts
 from game.cockpit.cockpit import Cockpit
 from game.cockpit.hands import HANDS, OWN
 from game.cockpit.skill import Skill
-from game.cockpit.surroundings import draw_surroundings
 from game.context import Context
 from game.controls import Command, translate
 from game.course import Course, Duel
 from game.difficulty import Difficulty
 from game.flight import Flight, Hand
-from game.forecast import Drift, Forecast
+from game.outlook import Outlook
+from game.pace import Pace
 from game.records import Records
-from game.render import Camera
+from game.render import Shot
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.ui.canvas import Canvas
-from game.ui.hints import draw_hints, flight_hints
-from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
 from game.ui.widgets import OnPress
-from game.world.backdrop import landscape
-from game.world.ground import draw_ground
-from game.world.looks import look_of
-from game.world.paths import draw_dotted
-from game.world.stage import Stage
+from game.world.scenery import Scenery
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
+_CRASH_SEEN: Final = 6  # steps of a crash's slow motion before it can be cut short: a thrust may still be held
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
 _AWAY_STEPS: Final = 10
 
@@ -66,10 +60,10 @@ class Play:
         self.flight: Flight
         self.waiting, self._let_go = True, False
         self._hands = OWN
-        self._time = 0.0
         self._away = 0  # steps since the window was left; 0 while it is in use
-        self._steps = self._since_end = 0
+        self._since_end = 0  # steps of time since the flight was over
         self._card: hud.Card | None = None
+        self._whole: Shot | None = None  # what the camera shows of a flight that is over
 
     def enter(self, context: Context) -> None:
         """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
@@ -121,19 +115,53 @@ class Play:
                 self._begin_elsewhere()
             case Command.CONFIRM if self._card_shown > 0:
                 return self._go_on()
+            case Command.CONFIRM if self._pace.slow and self._since_end > _CRASH_SEEN:
+                self._pace.hurry()
+                self._since_end = _CARD_AFTER
             case _ if self._card_shown >= 1 and _is_space(event):
                 return self._go_on()
         return None
 
     def update(self) -> Transition | None:
-        """Fly one step of 1/60 s."""
-        self._let_pass()
+        """Let 1/60 s pass: fly a step, unless the craft waits, or time is slow and none is due."""
+        self._scenery.breathe()
+        self._away += self._away > 0
         self._cockpit.ease()
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
+        self._pace.usual = self._settings.pace
         if self._waits():
-            self._look_ahead()
-            return None
+            self._outlook.follow(waiting=True)
+        elif self._pace.due():
+            self._fly()
+        self._heard.follow(self._scenery.stage.thrust[0])
+        return None
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the world, the craft, the read-outs and, at the end, the card."""
+        alpha = self._pace.between(alpha)
+        view, flight = self._scenery.view(canvas.scale, alpha), self.flight
+        self._scenery.draw_land(canvas, alpha)
+        self._cockpit.draw_behind(canvas)
+        if flight.over:
+            self._cockpit.track.draw(canvas, view)
+        self._outlook.draw(canvas, view)
+        if self._ghost:
+            self._ghost.draw(canvas, view, alpha)
+        self._scenery.draw_craft(canvas, alpha, reason=self._card_shown == 0)
+        self._cockpit.draw_beside(canvas, view, flight.poses.at(alpha)[0])
+        if self._course:
+            self._course.draw(canvas, view, flight, alpha, self._controls)
+        self._draw_words(canvas)
+        if self._card is not None and self._card_shown > 0:
+            rival = self._ghost.row(flight.env) if self._ghost else None
+            keys = flight_words.card_keys(self._controls, self._card.good, self._course)
+            hud.draw_card(canvas, self._card, keys, self._card_shown, self._settings.show_hints, rival)
+
+    # The flight
+
+    def _fly(self) -> None:
+        """Fly a step; after the end, let one pass for all that still moves."""
         flight = self.flight
         was_over = flight.over
         if not was_over:  # at the end, the figures stay those of the last moment before
@@ -143,70 +171,26 @@ class Play:
         flight.step(self._controls.action)
         if self._ghost:
             self._ghost.step()
-        self._look_ahead()
-        ended = np.array([flight.over and not was_over])
+        self._outlook.follow(waiting=False)
         if not was_over:
             self._cockpit.follow()
-        self._stage.follow(np.array([flight.flown_by is Hand.NETWORK]), ended)
-        self._heard.follow(self._stage.thrust[0])
-        if not self._settings.reduced_motion:
-            framing.follow(self._camera, flight.env)
-        self._steps += 1
+        self._scenery.clear = self._cockpit.clear
+        self._scenery.follow(flight.over and not was_over, self._whole if self._since_end > _CARD_AFTER else None)
         if self._course:
             self._course.follow(flight)
         if flight.over:
-            self._since_end += 1
-            if self._course and self._course.again():
-                if self._since_end > _CARD_AFTER:
-                    self.retry()
-            elif self._card is None:
-                self._finish()
-        return None
+            self._end(was_over)
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the world, the craft, the read-outs and, at the end, the card."""
-        view = self._camera.view(canvas.scale, alpha)
-        flight, env = self.flight, self.flight.env
-        pose = flight.poses.at(alpha)[0]
-        landscape(canvas.surface.get_size(), self._settings.reduced_motion, look_of(flight.recording.mission)).draw(
-            canvas, self._camera, self._time, alpha
-        )
-        draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
-        self._cockpit.draw_behind(canvas)
-        if flight.over:
-            self._cockpit.track.draw(canvas, view)
-        if not flight.over:
-            draw_dotted(canvas, view, self._drift.path, HUMAN)
-        if self._forecast and not flight.over:
-            draw_dotted(canvas, view, self._forecast.path, NET)
-        if self._ghost:
-            self._ghost.draw(canvas, view, alpha)
-        self._stage.draw_lander(canvas, view, pose)
-        self._stage.draw_dust(canvas, view, alpha)
-        self._cockpit.draw_beside(canvas, view, pose)
-        if self._course:
-            self._course.draw(canvas, view, flight, alpha, self._controls)
-        self._draw_hud(canvas)
-        if self._card is not None and self._card_shown > 0:
-            rival = self._ghost.row(env) if self._ghost else None
-            hud.draw_card(canvas, self._card, self._card_keys(), self._card_shown, self._settings.show_hints, rival)
-
-    # The flight
-
-    def _let_pass(self) -> None:
-        """Let 1/60 s pass for what moves whether or not anything flies."""
-        if not self._settings.reduced_motion:
-            self._time += STEP
-        self._away += self._away > 0
-
-    def _look_ahead(self) -> None:
-        """Predict where the craft goes if nobody touches anything, and where the network would take it."""
-        if self.flight.over:
-            return
-        if not self.waiting:
-            self._drift.follow()
-        if self._forecast:
-            self._forecast.follow(self.flight.env)
+    def _end(self, was_over: bool) -> None:
+        """Let a step pass after the flight: to its card, or at once to the next try."""
+        self._since_end += 1
+        if not was_over and self.flight.outcome is Outcome.CRASHED and not self._settings.reduced_motion:
+            self._pace.slow_down()
+        if self._course and self._course.again():
+            if self._since_end > _CARD_AFTER:
+                self.retry()
+        elif self._card is None:
+            self._finish()
 
     def _waits(self) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
@@ -228,24 +212,19 @@ class Play:
         self._difficulty = Difficulty(self._settings, self.flight, free=not course)
         self._cockpit = Cockpit(self.flight, self._settings, alone=check)
         self._ghost = course.ghost(seed, network) if course else None
-        reduced = self._settings.reduced_motion
-        # Decoration has a chance of its own: what flies must not depend on what is drawn.
-        self._stage = Stage(self.flight.env, np.random.default_rng(seed), reduced)
+        self._scenery = Scenery(self.flight, self._settings.reduced_motion)
         self._heard = FlightSound(self._sound, self.flight.env)
-        self._camera = Camera()
-        if not reduced:
-            self._camera.cut(framing.framed(self.flight.env))
+        self._pace, self._since_end, self._whole = Pace(), 0, None
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None
-        self._drift = Drift(self.flight.env)
-        self._forecast = None if check else self._new_forecast()
-        self._steps = self._since_end = 0
+        self._outlook = Outlook(self.flight, None if check else self._guide)
 
     def _finish(self) -> None:
         """Write a flight down that has just ended, and make its card."""
         assert self._context is not None
         practice = self._difficulty.practice
-        self._card = self._cockpit.card(0 if practice else self._skill.best, self._camera.view(1.0))
+        self._whole = self._scenery.shot_of(self._cockpit.track.path)
+        self._card = self._cockpit.card(0 if practice else self._skill.best, self._whole.view(1.0))
         course, alone = self._course, self._cockpit.alone(self._hands) and not practice
         if course:
             self._card = course.card(self._card, self.flight)
@@ -267,9 +246,10 @@ class Play:
         if told or self._records.problem:
             self._context.note(told or self._records.problem)
 
-    def _new_forecast(self) -> Forecast | None:
-        ahead = None if self._course else self._network.flyer  # beside a ghost, one blue path is enough
-        return Forecast(ahead, self.flight.env.ground) if ahead else None
+    @property
+    def _guide(self) -> networks.Flyer | None:
+        """The network whose way ahead is shown: beside a ghost, one blue path is enough."""
+        return None if self._course else self._network.flyer
 
     def _chosen(self) -> tuple[int, str]:
         """Return how many pads there are, and what hands fly, as the player wants it."""
@@ -351,7 +331,7 @@ class Play:
         self._context.apply_settings()
         self._load_network()
         self.flight.change_network(self._network.flyer)
-        self._forecast = self._new_forecast()
+        self._outlook.ask(self._guide)
 
     # The picture
 
@@ -363,55 +343,15 @@ class Play:
             return 0.0
         return 1.0 if self._settings.reduced_motion else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
 
-    def _draw_hud(self, canvas: Canvas) -> None:
+    def _draw_words(self, canvas: Canvas) -> None:
+        course = self._course
         self._cockpit.draw_top(canvas)
-        if self._course:
-            goal = self._difficulty.words or self._course.goal
-            hud.draw_corner(canvas, self._course.title, self._course.line, goal)
-            draw_surroundings(canvas, self.flight.env)
-        else:
-            network = self._network
-            flown = texts.WITH_NETWORK.format(name=network.name) if self.flight.network else texts.ALONE
-            if self._hands != OWN:
-                flown = texts.OTHER_HANDS.format(hands=texts.CHOICES_HANDS_WORDS[self._hands])
-            title = texts.THREE_PADS if self.flight.recording.pads > 1 else texts.FREE_FLIGHT
-            hud.draw_corner(canvas, title, flown, self._difficulty.words)
+        flight_words.draw_title(canvas, self.flight, course, self._network, self._hands, self._difficulty.words)
         hud.draw_readouts(canvas, self._readouts)
-        if self.waiting and not (self._course and not self._course.opening):
-            self._draw_opening(canvas)
+        if self.waiting and not (course and not course.opening):
+            flight_words.draw_opening(canvas, self._controls, course, self._outlook.asks)
         if self._settings.show_hints:
-            self._draw_hints(canvas)
-
-    def _draw_opening(self, canvas: Canvas) -> None:
-        line, paths = texts.BEGIN, [(texts.PATH_YOURS, HUMAN)]
-        if self._course:
-            line = self._course.opening
-        if self._forecast:
-            paths.append((texts.PATH_NETWORK, NET))
-        hud.draw_opening(canvas, flight_hints(self._controls), line, paths)
-
-    def _draw_hints(self, canvas: Canvas) -> None:
-        word = self._controls.word
-        hints = [(word(Command.PAUSE), texts.HINT_LEAVE if self._leaves else texts.HINT_PAUSE)]
-        if not self._course:
-            hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
-        elif self._course.next_hint:
-            hints.insert(0, (word(Command.NEXT), self._course.next_hint))
-        if self.flight.network:
-            taken = self.flight.hand is Hand.NETWORK
-            hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
-        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
-
-    def _card_keys(self) -> list[tuple[str, str]]:
-        assert self._card is not None
-        good, word = self._card.good, self._controls.word
-        if self._course and self._course.fixed:
-            first = texts.CARD_FIRST_FIXED[good]
-            other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.PAUSE, texts.HINT_LEAVE)
-        else:
-            first = texts.CARD_FIRST[good]
-            other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
-        return [(word(Command.CONFIRM), first), (word(other[0]), other[1])]
+            flight_words.draw_keys(canvas, self._controls, self.flight, course, self._leaves)
 
 
 def _is_space(event: pygame.event.Event) -> bool:

@@ -17,7 +17,7 @@ from game.context import Context
 from game.controls import Command, translate
 from game.flight import Swarm
 from game.mind import PANEL, Mind
-from game.render import Camera, View
+from game.render import Camera, Clear, View
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.ui import typeface
@@ -41,6 +41,7 @@ _ROW: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices,
 _ROW_HEIGHT: Final = 17.0
 _LABEL_WIDTH: Final = 84.0
 _WIDEST: Final = 452.0  # of a row: the pad begins there
+_CLEAR: Final = Clear(right=PANEL.left - 16.0)
 _LONGEST_NAME: Final = 24
 _LONGEST_PROBLEM: Final = 110
 _CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
@@ -156,7 +157,7 @@ class Watch:
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._camera = Camera()
         if count == 1 and not self._settings.reduced_motion:
-            self._camera.cut(framing.framed(self.swarm.env))
+            self._camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
         self._mind = Mind()
         self._due = 0.0
         self.shown = min(self.shown, count - 1)
@@ -173,7 +174,7 @@ class Watch:
         self._trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
         self._mind.follow(swarm.flyer, swarm.observation[self.shown], int(swarm.env.actions[self.shown]))
         if swarm.env.num_envs == 1 and not self._settings.reduced_motion:
-            framing.follow(self._camera, swarm.env)
+            framing.follow(self._camera, swarm.env, clear=_CLEAR)
 
     def _show(self, slot: int) -> None:
         self.shown = slot

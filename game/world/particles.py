@@ -46,11 +46,11 @@ _GRIP: Final = np.array([0.9, 0.5, 0.75, 0.7, 1.0, 1.0])  # share of the way alo
 class Particles:
     """A fixed number of slots; the oldest are taken over when all are in use.
 
-    `gravity` in m/s² and the ground are those of the flight they belong to.
+    The ground and `gravity`, in m/s², are those of the flight they belong to; gravity may change.
     """
 
     def __init__(self, rng: np.random.Generator, relief: Relief, gravity: float, slots: int = 640) -> None:
-        self._rng, self._relief, self._gravity = rng, relief, gravity
+        self._rng, self._relief, self.gravity = rng, relief, gravity
         self._position = np.zeros((slots, 2))
         self._before = np.zeros((slots, 2))
         self._velocity = np.zeros((slots, 2))
@@ -78,7 +78,7 @@ class Particles:
             return
         kind = self._kind[live]
         before, velocity = self._position[live], self._velocity[live]
-        velocity[:, 1] -= _WEIGHT[kind] * self._gravity * STEP
+        velocity[:, 1] -= _WEIGHT[kind] * self.gravity * STEP
         position = before + velocity * STEP
         self._bounce(position, velocity, kind)
         self._before[live], self._position[live], self._velocity[live] = before, position, velocity

@@ -43,7 +43,7 @@ class Stage:
         self._rng = rng
         self._calm = reduced_motion
         self._relief = Relief(env)
-        self.particles = Particles(rng, self._relief, env.params.gravity)
+        self.particles = Particles(rng, self._relief, env.gravity)
         count = env.num_envs
         self.thrust = np.zeros((count, 3))  # main engine, left-hand jet, right-hand jet
         self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between in passing
@@ -71,6 +71,7 @@ class Stage:
             self.particles.burst(env.position[slot], env.velocity[slot], 1.0 if env.num_envs == 1 else 0.2)
         if env.num_envs == 1:
             self._follow_one(bool(ended[0]))
+        self.particles.gravity = env.gravity
         self.particles.update()
 
     def forget(self) -> None:
@@ -79,6 +80,10 @@ class Stage:
         self.particles.clear()
         self._wreck = None
         self._down, self._fall = self._env.contacts[0].copy(), 0.0
+
+    def wreck_pose(self, alpha: float) -> Doubles | None:
+        """Where what a crash left is now, x, y and angle; None where nothing tumbles."""
+        return None if self._wreck is None else self._wreck.pose(alpha)
 
     def _follow_one(self, ended: bool) -> None:
         """Let a single lander burn, raise dust, touch and break as it should be seen from near."""
@@ -191,7 +196,7 @@ class Stage:
             colour = mix(HUMAN, NET, round(float(self.blue[slot]) * 4) / 4)
             metre = view.pixels_per_metre
             size = (2 * round((2.0 + 0.25 * reach) * metre), 2 * round(0.42 * metre))
-            pool = pygame.transform.smoothscale(_pool(level, colour), size)
+            pool = pygame.transform.smoothscale(light_pool(level, colour), size)
             _blit_middle(canvas, pool, view, (aim, surface_height(self._env, aim) - 0.02), pygame.BLEND_RGB_ADD)
 
     def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
@@ -222,7 +227,7 @@ def _shade(level: int) -> pygame.Surface:
 
 
 @lru_cache(maxsize=128)
-def _pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
+def light_pool(level: int, colour: tuple[int, int, int]) -> pygame.Surface:
     """Return a disc of light, to be squeezed flat and added; `level` is in 1/12."""
     axis = np.linspace(-1, 1, 97)
     away = np.clip(1 - np.hypot(axis[None, :], axis[:, None]), 0, 1)

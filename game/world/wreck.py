@@ -23,7 +23,7 @@ class Wreck:
 
     def __init__(self, env: LanderEnv, slot: int, rng: np.random.Generator) -> None:
         params = env.params
-        self._world = World(gravity=(0.0, -params.gravity), batch=1, iterations=5)
+        self._world = World(gravity=(0.0, -env.gravity), batch=1, iterations=5)
         x, y = FOOT_CENTRE
         shapes = [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-x, y)), Polygon.box(*FOOT_SIZE, (x, y))]
         blow = float(env.impact[slot, :2].max())

@@ -311,8 +311,8 @@ def test_the_networks_way_is_drawn_in_its_colour_if_there_is_one(open_game: Open
     flown_by(ScriptedPilot())
     driver = open_game(Play(seed=4))
     driver.frames(200)
-    assert len(scene(driver)._forecast.path) > 5
+    assert len(scene(driver)._outlook._forecast.path) > 5
     flown_by(None)
     driver = open_game(Play(seed=4))
     driver.frames(2)
-    assert scene(driver)._forecast is None
+    assert not scene(driver)._outlook.asks

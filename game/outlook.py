@@ -1,0 +1,46 @@
+"""The dotted paths ahead of a flight: where it goes by itself, and where a network would take it."""
+
+from __future__ import annotations
+
+from game.flight import Flight
+from game.forecast import Drift, Forecast
+from game.networks import Flyer
+from game.render import View
+from game.ui.canvas import Canvas
+from game.ui.tokens import HUMAN, NET
+from game.world.paths import draw_dotted
+
+
+class Outlook:
+    """Of one flight; `follow` once after every step, and while it waits."""
+
+    def __init__(self, flight: Flight, network: Flyer | None) -> None:
+        self._flight = flight
+        self._drift = Drift(flight.env)
+        self.ask(network)
+
+    @property
+    def asks(self) -> bool:
+        """Whether there is a network to ask for its way."""
+        return self._forecast is not None
+
+    def ask(self, network: Flyer | None) -> None:
+        """Show where this network would go from here on, or, without one, only where the flight goes by itself."""
+        self._forecast = Forecast(network, self._flight.env.ground) if network else None
+
+    def follow(self, waiting: bool) -> None:
+        """Look a little further ahead; the way by itself stays the same while the craft hangs and waits."""
+        if self._flight.over:
+            return
+        if not waiting:
+            self._drift.follow()
+        if self._forecast:
+            self._forecast.follow(self._flight.env)
+
+    def draw(self, canvas: Canvas, view: View) -> None:
+        """Draw both ways, until the flight is over."""
+        if self._flight.over:
+            return
+        draw_dotted(canvas, view, self._drift.path, HUMAN)
+        if self._forecast:
+            draw_dotted(canvas, view, self._forecast.path, NET)

@@ -1,0 +1,96 @@
+"""All that is seen of one flight in the world, and how: land, craft, fire and dust, before a camera."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ai.env import Doubles
+from ai.lander import Outcome
+from game import framing
+from game.clock import STEP
+from game.flight import Flight, Hand
+from game.render import Camera, Clear, Shot, View
+from game.ui.canvas import Canvas
+from game.world.backdrop import EARTH, landscape
+from game.world.ground import draw_ground
+from game.world.looks import look_of
+from game.world.moments import Moments
+from game.world.stage import Stage
+
+
+class Scenery:
+    """The world around a flight; `follow` once after every step of it.
+
+    With reduced motion the camera rests, nothing shakes, and stars and lamps are still. Decoration has a chance of
+    its own: what flies never depends on what is drawn.
+
+    Attributes:
+        clear: where on the screen the flight is to be seen from now on.
+        stage: the craft's fire, its dust and what a crash leaves.
+
+    """
+
+    def __init__(self, flight: Flight, reduced_motion: bool, clear: Clear = framing.ALL) -> None:
+        self._flight, self._calm, self.clear = flight, reduced_motion, clear
+        self.stage = Stage(flight.env, np.random.default_rng(flight.recording.seed), reduced_motion)
+        self._moments = Moments(flight.env, reduced_motion)
+        self._camera = Camera()
+        self._time = 0.0
+        self.cut()
+
+    def cut(self) -> None:
+        """Turn to the flight as it stands, at once."""
+        if not self._calm:
+            self._camera.cut(framing.framed(self._flight.env, clear=self.clear))
+
+    def wind_to(self) -> None:
+        """Show the flight at another moment: what the steps before it left is gone."""
+        flight = self._flight
+        self.stage.forget()
+        self._moments.forget()
+        action = 0 if flight.over else int(flight.env.fired[0])
+        self.stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
+        self.stage.blue[:] = flight.flown_by is Hand.NETWORK
+        self.cut()
+
+    def breathe(self) -> None:
+        """Let 1/60 s pass for what moves whether or not anything flies."""
+        if not self._calm:
+            self._time += STEP
+
+    def follow(self, ended: bool, shot: Shot | None = None) -> None:
+        """Follow a step, with which the flight `ended` or not; a `shot` is shown instead of the flight."""
+        flight = self._flight
+        self.stage.follow(np.array([flight.flown_by is Hand.NETWORK]), np.array([ended]))
+        self._moments.follow()
+        if self._calm:
+            return
+        self._camera.shake(self.stage.jolt)
+        if shot is None:
+            framing.follow(self._camera, flight.env, clear=self.clear)
+        else:
+            self._camera.follow(shot)
+
+    def view(self, scale: float, alpha: float = 1.0) -> View:
+        """Return what the camera shows, `alpha` of the way from the last step to this one."""
+        return self._camera.view(scale, alpha)
+
+    def shot_of(self, path: Doubles) -> Shot:
+        """Return a shot of the whole of a path (k, 2); with reduced motion, of what is always shown."""
+        return Shot() if self._calm else framing.whole(path)
+
+    def draw_land(self, canvas: Canvas, alpha: float, earth: tuple[float, float] = EARTH) -> None:
+        """Fill the view with sky and land; `earth` is where the Earth stands, in points."""
+        env = self._flight.env
+        look = look_of(self._flight.recording.mission)
+        landscape(canvas.surface.get_size(), self._calm, look).draw(canvas, self._camera, self._time, alpha, earth)
+        draw_ground(canvas, self.view(canvas.scale, alpha), env.ground, self._time, float(env.pad_shift[0]))
+
+    def draw_craft(self, canvas: Canvas, alpha: float, reason: bool = True) -> None:
+        """Draw the craft with all that it raises; `reason` is whether that of a crash is told on the spot."""
+        view, pose = self.view(canvas.scale, alpha), self._flight.poses.at(alpha)[0]
+        self._moments.draw_light(canvas, view, pose)
+        self.stage.draw_lander(canvas, view, pose, alpha=alpha)
+        self.stage.draw_dust(canvas, view, alpha)
+        shown = self.stage.wreck_pose(alpha) if self._flight.outcome is Outcome.CRASHED else None
+        self._moments.draw_words(canvas, view, pose if shown is None else shown, reason)
