@@ -7,7 +7,7 @@ it, it is flown again, with the rewards of whoever learns.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -16,7 +16,7 @@ import numpy as np
 
 from ai.agent import DeepQAgent
 from ai.config import Config
-from ai.env import Floats, StepResult
+from ai.env import Bools, Floats
 from ai.ground import hilly
 from ai.lander import NUM_ACTIONS, LanderEnv, Outcome
 from ai.memory import NStep
@@ -82,35 +82,21 @@ def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") 
     return found
 
 
-def relive(demonstration: Demonstration, config: Config) -> MemoryCell | None:
-    """Fly a demonstration again, and return its transitions as `config` would have remembered them.
+def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[MemoryCell | None]:
+    """Fly demonstrations again, and return the transitions of each as `config` would have remembered them.
 
-    None if it doesn't land, as one made under other rules may not. A transition is a decision of
+    None for one that doesn't land, as one made under other rules may not. A transition is a decision of
     `config.frame_skip` physics steps with the action that was held longest in it.
     """
-    ground = None if demonstration.ground is None else hilly(np.random.default_rng(demonstration.ground))
-    env = LanderEnv(1, 0, demonstration.spawn, frame_skip=1, ground=ground, weights=config.weights)
-    if demonstration.pad >= len(env.ground.pads):
-        return None
-    env.target[:] = demonstration.pad
-    env.draw_from(0, _stream(demonstration.seed))
-    observation, steps = env.reset(), NStep(config.n_step, config.discount)
-    parts: list[MemoryCell] = []
-    skip = config.frame_skip
-    for first in range(0, len(demonstration.actions), skip):
-        actions = demonstration.actions[first : first + skip]
-        result, reward = _decide(env, actions)
-        if first >= demonstration.begins:
-            longest = np.bincount(actions).argmax()
-            cells, _ = steps.add(
-                observation, np.array([longest]), reward * np.float32(config.reward_scale), result.observation,
-                result.terminated, result.ended,
-            )  # fmt: skip
-            parts.append(cells)
-        observation = result.observation
-    if env.landed_on[0] != demonstration.pad or not parts:
-        return None
-    return MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    found: list[MemoryCell | None] = [None] * len(demonstrations)
+    places: dict[tuple[str, int | None], list[int]] = {}
+    for number, demonstration in enumerate(demonstrations):
+        places.setdefault((demonstration.spawn, demonstration.ground), []).append(number)
+    for (spawn, ground), numbers in places.items():
+        flown = _fly_together([demonstrations[number] for number in numbers], spawn, ground, config)
+        for number, cells in zip(numbers, flown, strict=True):
+            found[number] = cells
+    return found
 
 
 def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
@@ -118,14 +104,11 @@ def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
 
     The agent learns from the list in a second pass of its own, if `config.success_pass` is on, as `taught` has it.
     """
-    used = 0
-    for demonstration in demonstrations:
-        cells = relive(demonstration, agent.config)
-        if cells is not None:
-            agent.replay.add(cells)
-            agent.successes.add(cells)
-            used += 1
-    return used
+    landings = [cells for cells in relive(demonstrations, agent.config) if cells is not None]
+    for cells in landings:
+        agent.replay.add(cells)
+        agent.successes.add(cells)
+    return len(landings)
 
 
 def taught(config: Config) -> Config:
@@ -163,10 +146,44 @@ def _stream(seed: int) -> np.random.Generator:
     return np.random.default_rng(seed).spawn(1)[0]
 
 
-def _decide(env: LanderEnv, actions: Sequence[int]) -> tuple[StepResult, Floats]:
-    """Fly one physics step for each action; return the last result, and the reward of them all, (1,)."""
-    reward: Any = np.zeros(1, dtype=np.float32)
-    for action in actions:
-        result = env.step(np.array([action]))
-        reward = reward + result.reward
-    return result, reward
+def _fly_together(
+    demonstrations: Sequence[Demonstration], spawn: str, ground: int | None, config: Config
+) -> Iterator[MemoryCell | None]:
+    """Fly demonstrations over the same ground side by side; give the transitions of each, or None."""
+    count, skip = len(demonstrations), config.frame_skip
+    hills = None if ground is None else hilly(np.random.default_rng(ground))
+    env = LanderEnv(count, 0, spawn, frame_skip=1, ground=hills, weights=config.weights)
+    lengths = np.array([len(demonstration.actions) for demonstration in demonstrations])
+    actions = np.zeros((-(-lengths.max() // skip) * skip, count), np.intp)
+    for slot, demonstration in enumerate(demonstrations):
+        env.draw_from(slot, _stream(demonstration.seed))
+        actions[: lengths[slot], slot] = demonstration.actions
+    pads = np.array([demonstration.pad for demonstration in demonstrations])
+    env.target[:] = np.minimum(pads, len(env.ground.pads) - 1)
+    observation = env.reset()
+    decisions: list[tuple[Floats, Floats, Floats, Bools, Bools]] = []
+    for first in range(0, len(actions), skip):
+        before, reward = observation, np.zeros(count, np.float32)
+        terminated, ended = np.zeros((2, count), bool)
+        for held in actions[first : first + skip]:
+            result = env.step(held)
+            reward += result.reward
+            terminated |= result.terminated
+            ended |= result.ended
+        observation = result.observation
+        decisions.append((before, reward * np.float32(config.reward_scale), observation, terminated, ended))
+    landed = (env.landed_on == pads) & (env.steps <= lengths)
+    for slot, demonstration in enumerate(demonstrations):
+        yield _transitions(demonstration, decisions, slot, config) if landed[slot] else None
+
+
+def _transitions(
+    demonstration: Demonstration, decisions: Sequence[tuple[Any, ...]], slot: int, config: Config
+) -> MemoryCell | None:
+    """Return what one of the flights is remembered as; None if nothing of it is an example."""
+    steps, parts, skip = NStep(config.n_step, config.discount), list[MemoryCell](), config.frame_skip
+    for number in range(-(-demonstration.begins // skip), -(-len(demonstration.actions) // skip)):
+        longest = np.bincount(demonstration.actions[number * skip : (number + 1) * skip]).argmax()
+        before, *after = (part[slot : slot + 1] for part in decisions[number])
+        parts.append(steps.add(before, np.array([longest]), *after)[0])
+    return MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True))) if parts else None

@@ -21,7 +21,7 @@ def landings():
 
 def test_a_landing_is_remembered_as_if_the_agent_had_flown_it(landings):
     config = MODERN.changed(n_step=1)
-    cells = relive(landings[0], config)
+    (cells,) = relive(landings[:1], config)
     env = LanderEnv(1, landings[0].seed, "near", frame_skip=4, weights=config.weights)
     observation, pilot, total = env.reset(), ScriptedPilot(), 0.0
     for row in range(len(cells.action)):
@@ -41,7 +41,7 @@ def test_only_what_follows_a_takeover_is_an_example(landings):
     begins = 4 * (len(whole.actions) // 8)
     part = Demonstration(whole.seed, whole.actions, "near", begins)
     config = MODERN.changed(n_step=1)
-    all_, some = relive(whole, config), relive(part, config)
+    all_, some = relive([whole, part], config)
     assert len(some.action) == len(all_.action) - begins // 4
     assert np.array_equal(some.state, all_.state[begins // 4 :])
     assert takeover([True, False, True, True]) == 2
@@ -59,25 +59,36 @@ def test_a_flight_among_hills_is_about_the_pad_it_landed_on():
         actions += [int(action[0])] * 4
     assert env.landed_on[0] == 1
     flown = tuple(actions[: env.steps[0]])
-    assert relive(Demonstration(3, flown, ground=8, pad=1), MODERN) is not None
-    assert relive(Demonstration(3, flown, ground=8, pad=0), MODERN) is None
-    assert relive(Demonstration(3, flown, ground=8, pad=9), MODERN) is None
+    assert relive([Demonstration(3, flown, ground=8, pad=1)], MODERN)[0] is not None
+    assert relive([Demonstration(3, flown, ground=8, pad=0)], MODERN)[0] is None
+    assert relive([Demonstration(3, flown, ground=8, pad=9)], MODERN)[0] is None
 
 
 def test_what_does_not_land_is_not_taught(landings):
     agent = DeepQAgent(config=taught(MODERN))
     fall = Demonstration(0, (0,) * 600)
-    assert relive(fall, MODERN) is None
+    assert relive([fall], MODERN) == [None]
     assert teach(agent, [*landings, fall]) == 3
     flown = sum(-(-len(landing.actions) // 4) for landing in landings)
     assert len(agent.replay) == len(agent.successes) == flown
+
+
+def test_flights_are_relived_together_as_alone(landings):
+    mixed = [landings[0], Demonstration(0, (0,) * 600), *landings[1:], Demonstration(7, (0, 3) * 90, ground=8)]
+    mixed[2] = replace(mixed[2], begins=41)
+    together = relive(mixed, MODERN)
+    alone = [relive([each], MODERN)[0] for each in mixed]
+    assert [cells is None for cells in together] == [False, True, False, False, True]
+    for one, other in zip(together, alone, strict=True):
+        for column, same in zip(one or (), other or (), strict=True):
+            assert np.array_equal(column, same)
 
 
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_an_agent_learns_from_demonstrations_alone(landings, preset):
     agent = DeepQAgent(config=taught(PRESETS[preset]).changed(warm_up=64), rng=np.random.default_rng(0))
     teach(agent, landings)
-    cells = relive(landings[0], agent.config)
+    (cells,) = relive(landings[:1], agent.config)
 
     def agreement():
         return (agent.act(cells.state) == cells.action).mean()
