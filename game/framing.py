@@ -8,7 +8,8 @@ import numpy as np
 
 from ai.env import Doubles
 from ai.lander import LanderEnv
-from game.render import GROUND_LINE, Camera, Clear, Shot
+from game.render import GROUND_LINE, POINTS_PER_METRE, Camera, Clear, Shot
+from game.ui.tokens import VIEW_SIZE
 
 ALL: Final = Clear()
 _AROUND: Final = 2.2  # metres beside a craft, and above it
@@ -30,11 +31,12 @@ def framed(env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> Shot:
     return Shot.around(left, right, max(y, ahead_y) + _AROUND, clear)
 
 
-def whole(path: Doubles, clear: Clear = ALL) -> Shot:
-    """Return a shot of all of a flight that is over, (k, 2), no closer than the camera is at rest."""
-    (left, _), (right, top) = path.min(axis=0).tolist(), path.max(axis=0).tolist()
-    shot = Shot.around(left - _AROUND, right + _AROUND, top + _AROUND, clear)
-    return Shot(shot.across, min(shot.zoom, 1.0)).on_land()
+def whole(path: Doubles) -> Shot:
+    """Return a shot of all of a flight that is over, (k, 2): the view at rest, but for what that takes."""
+    (left, _), (right, top) = (path.min(axis=0) - _AROUND).tolist(), (path.max(axis=0) + _AROUND).tolist()
+    zoom = min(1.0, Shot.around(left, right, top, ALL).zoom)
+    half = VIEW_SIZE[0] / (2 * POINTS_PER_METRE * zoom)
+    return Shot(min(max(0.0, right - half), left + half), zoom).on_land()
 
 
 def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> None:

@@ -26,7 +26,7 @@ _IGNITE: Final = 0.34  # share of the way to full thrust, and to none, in a step
 _DIE: Final = 0.22
 _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
-_FLASH_STEPS: Final = 34
+_FLASH_STEPS: Final = 24
 _JOLT: Final = 11.0  # points, of the hardest blow
 
 
@@ -203,8 +203,8 @@ class Stage:
         left = math.ceil(12 * self.flash[slot] / _FLASH_STEPS) / 12  # in steps, so that few glows are ever made
         if left > 0 and not self._calm:
             metre = view.pixels_per_metre / view.scale
-            canvas.glow(view.points((x, y)).tolist(), 5.5 * metre, (255, 190, 120), 1.1 * left**2)
-            canvas.glow(view.points((x, y)).tolist(), 2.0 * metre, (255, 236, 210), 1.5 * left**3)
+            canvas.glow(view.points((x, y)).tolist(), 4.6 * metre, (255, 176, 104), 0.8 * left**2)
+            canvas.glow(view.points((x, y)).tolist(), 1.7 * metre, (255, 226, 190), 1.0 * left**3)
 
 
 def _blit_middle(

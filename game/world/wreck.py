@@ -12,7 +12,8 @@ from engine import Polygon, World
 
 _STEPS: Final = 420  # after which it lies still, whatever it does
 _STILL: Final = 0.05  # m/s and rad/s
-_SPIN: Final = 0.35  # rad/s for every m/s of the blow, at most
+_SPIN: Final = 0.6  # rad/s for every m/s of the blow, at most
+_HOP: Final = 0.12  # share of the blow that throws it up again
 
 
 class Wreck:
@@ -33,7 +34,7 @@ class Wreck:
         )  # fmt: skip
         for pad in env.ground.build(self._world, restitution=0.25, friction=0.7):
             pad.position = pad.position + np.array([float(env.pad_shift[slot]), 0.0])
-        self._body.velocity = env.velocity[slot]
+        self._body.velocity = env.velocity[slot] + np.array([0.0, _HOP * blow])
         self._body.angular_velocity = env.angular_velocity[slot] + _SPIN * blow * rng.uniform(-1.0, 1.0)
         self._steps = self._rest = 0
         self._now = self._before = self._pose()
