@@ -59,7 +59,7 @@ LOOKS = 10  # times that it is looked whether anything is left behind
 GROWTH = 80.0  # megabytes from the third look to the last that are no leak: surfaces in caches of a fixed length
 _DEEPEST = 7  # scenes one above the other
 _JUMP, _JUMP_HOME = 0.015, 0.15  # how often it is put somewhere else, and from the menu, where it soon would quit
-_NO_SCREENS = ("Fault", "Dialog", "Vista")  # what is not to be seen, and what is only a part of others
+_NO_SCREENS = ("Fault", "Dialog")  # what is not to be seen, and what is only a part of others
 _TOLD = 25  # deeds before a fault that are told
 # What a training may say when its files are spoilt or its disk is full. It is shown to the player.
 _SAID = (OSError, ValueError, EOFError, MemoryError)
@@ -165,7 +165,7 @@ class Monkey:
             else:
                 deed = list(DEEDS)[self.rng.choice(len(self._weights), p=self._weights)]
                 self.deeds.append(deed(self.hands))
-            all(self.hands.pass_frame() for _ in range(int(self.rng.choice([0, 1, 1, 2]))))
+            all(self.hands.pass_frame() for _ in range(int(self.rng.choice([0, 0, 1, 1]))))
             goes_on = self.hands.goes_on
         except Exception:
             self.faults.add("out of the game's own hands: " + traceback.format_exc())

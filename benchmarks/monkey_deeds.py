@@ -324,7 +324,7 @@ Deed = Callable[[Hands], str]
 # What is done, and how often beside the others.
 DEEDS: dict[Deed, float] = {
     Hands.bound_key: 24, Hands.other_key: 3, Hands.let_go: 8, Hands.type_text: 2, Hands.click: 12, Hands.drag: 3,
-    Hands.wheel: 3, Hands.hover: 6, Hands.wait: 0.8, Hands.pad_button: 8, Hands.pad_axis: 6,
+    Hands.wheel: 3, Hands.hover: 6, Hands.wait: 0.5, Hands.pad_button: 8, Hands.pad_axis: 6,
     Hands.pad_comes_or_goes: 0.3, Hands.window: 0.6, Hands.come_back: 0.6, Hands.strange: 0.3, Hands.device: 0.1,
     Hands.resize: 0.05, Hands.full_screen: 0.03, Hands.screenshot: 0.03, Hands.close_window: 0.02,
     Hands.damage: 0.15, Hands.fill_disk: 0.05, Hands.kill_child: 0.05,

@@ -29,6 +29,7 @@ from game.scenes.replay import Replay
 from game.scenes.watch import COUNTS, Watch
 
 FLIGHTS = 2
+_PARTS = ("enter", "exit", "handle_event", "update", "draw")
 
 
 def scene_types() -> list[type]:
@@ -37,7 +38,7 @@ def scene_types() -> list[type]:
     for module in pkgutil.iter_modules(game.scenes.__path__):
         for each in vars(importlib.import_module(f"game.scenes.{module.name}")).values():
             here = isclass(each) and each.__module__ == f"game.scenes.{module.name}"
-            if here and not each.__name__.startswith("_") and all(hasattr(each, name) for name in ("enter", "draw")):
+            if here and not each.__name__.startswith("_") and all(hasattr(each, name) for name in _PARTS):
                 found.append(each)
     return found
 
