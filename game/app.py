@@ -17,9 +17,10 @@ from game import texts
 from game.clock import FixedStep
 from game.controls import Command, translate
 from game.scene_manager import SceneManager
+from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.notes import Notes
-from game.ui.tokens import COLOUR_SAFE, PALETTE
+from game.ui.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
 from game.window import GameWindow
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ class App:
         context.note = self._notes.show
         context.apply_settings = self.apply_settings
         context.in_window = self.canvas.in_window
-        self._palette()
+        self._look()
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)
         self._start_pads()
@@ -129,15 +130,17 @@ class App:
         self._attached_size = self.window.size
         self._frame_rate = self.window.frame_rate
 
-    def _palette(self) -> None:
+    def _look(self) -> None:
+        """Draw in the colours and with the size of text that the player chose."""
         self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
+        typeface.grow(TEXT_SIZES.get(self.context.settings.text_size, 1.0))
 
     def apply_settings(self) -> None:
         """Make the window and the sound follow the settings, and save them."""
         if self.window.full_screen != self.context.settings.full_screen:
             self.window.full_screen = self.context.settings.full_screen
             self._follow_window()
-        self._palette()
+        self._look()
         self.context.sound.follow(self.context.settings)
         self._save_settings()
 

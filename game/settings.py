@@ -21,6 +21,7 @@ class Settings:
     reduced_motion: bool = False
     colour_safe: bool = False
     show_hints: bool = True
+    text_size: str = "normal"  # a name of game.ui.tokens.TEXT_SIZES
     effects_volume: float = 0.9  # every number is a share, 0 to 1 unless limits say otherwise
     interface_volume: float = 0.7
     ambience_volume: float = 0.7

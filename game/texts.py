@@ -1049,3 +1049,7 @@ PAUSE_PACE: Final = "Speed of time"
 PRACTICE: Final = "practice"
 PRACTICE_GRAVITY: Final = "gravity {percent} %"
 PRACTICE_PACE: Final = "speed {percent} %"
+
+# Size of text, by the setting's words
+TEXT_SIZE: Final = "Text"
+TEXT_SIZES: Final = {"normal": "normal", "large": "large", "largest": "largest"}

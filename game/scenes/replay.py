@@ -41,6 +41,7 @@ _SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2")
 _EARTH: Final = (208.0, 268.0)  # points; clear of the words
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 54.0)
+_FIGURE: Final = 88.0  # half of what the seconds take, and who flies
 _VERBS: Final = 144.0
 _CLEAR: Final = Clear(head=190.0)  # below the verbs
 _VERB: Final = 20.0
@@ -300,10 +301,11 @@ class Replay:
                 canvas.line((x, 45), (x, 57), INK, 2)
         self._form.draw(canvas)
         word, pad = self._context.controls.word, self._context.controls.pad_in_use
-        hints = [("A" if pad else "Space", texts.HINT_GO if self.stopped or self.ended else texts.HINT_STOP),
+        go = texts.HINT_GO if self.stopped or self.ended else texts.HINT_STOP
+        hints = [(word(Command.CONFIRM) if pad else "Space", go),
                  (word(Command.STEP), texts.HINT_STEP), (word(Command.RETRY), texts.REPLAY_FROM_START),
                  (word(Command.HANDOVER), texts.REPLAY_HINT_TAKE), (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
-        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=middle - MARGIN - _FIGURE)
 
 
 def _draw_way(canvas: Canvas, view: View, tape: Tape) -> None:

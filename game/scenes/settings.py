@@ -16,14 +16,15 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.sky import NightSky
-from game.ui.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
-from game.ui.widgets import Slider, Toggle, Word
+from game.ui.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
+from game.ui.widgets import Choice, Slider, Toggle, Word
 
 ROWS: Final = ("full_screen", "reduced_motion", "colour_safe", "show_hints")
 _WIDTH: Final = 416
-_FIRST_ROW: Final = 152
-_ROW: Final = 64
-_SOUND: Final = 448  # top of the first volume
+_FIRST_ROW: Final = 124
+_ROW: Final = 60
+_TEXT: Final = _FIRST_ROW + len(ROWS) * _ROW + 8
+_SOUND: Final = 452  # top of the first volume
 _SOUND_ROW: Final = 36
 _BACK: Final = 624
 # What is heard when a volume is changed, beside the click of the slider itself and what goes on anyway.
@@ -49,6 +50,13 @@ class SettingsScene:
             label, hint = texts.SETTINGS[name]
             value = getattr(context.settings, name)
             self._form.add(Toggle(self._form.manager, box, label, value, self._changes(name), hint=hint))
+        sizes, size = list(TEXT_SIZES), context.settings.text_size
+        words = [texts.TEXT_SIZES[name] for name in sizes]
+        self._form.add(Choice(
+            self._form.manager, (MARGIN, _TEXT, _WIDTH, 36), texts.TEXT_SIZE, words,
+            sizes.index(size) if size in sizes else 0, lambda index: self._set("text_size", sizes[index]),
+            label_width=142,
+        ))  # fmt: skip
         for number, group in enumerate(GROUPS):
             self._form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
         self._form.add(Word(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
@@ -82,18 +90,17 @@ class SettingsScene:
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
     def _changes(self, name: str) -> Callable[[bool], None]:
-        def change(value: bool) -> None:
-            setattr(self._context.settings, name, value)
-            self._context.apply_settings()
+        return lambda value: self._set(name, value)
 
-        return change
+    def _set(self, name: str, value: object) -> None:
+        setattr(self._context.settings, name, value)
+        self._context.apply_settings()
 
     def _volume(self, group: str, box: pygame.typing.RectLike) -> Slider:
         context, name = self._context, f"{group}_volume"
 
         def change(value: float) -> None:
-            setattr(context.settings, name, value)
-            context.apply_settings()
+            self._set(name, value)
             if group in _SAMPLES:
                 context.sound.play(_SAMPLES[group])
 
@@ -106,7 +113,7 @@ class SettingsScene:
             canvas.marker("triangle", (title.right + 18, _SOUND - 16), 9, canvas.palette.warn)
             canvas.text(texts.SOUND_PROBLEM, (title.right + 30, _SOUND - 12), size=SMALL, colour=canvas.palette.warn)
         below = _SOUND + len(GROUPS) * _SOUND_ROW + 12
-        canvas.text(texts.SOUND_ALTITUDE, (MARGIN, below), size=SMALL, colour=MUTE)
+        canvas.text(texts.SOUND_ALTITUDE, (MARGIN, below), size=SMALL, colour=MUTE, room=_WIDTH)
 
     def _draw_swatches(self, canvas: Canvas, middle: float) -> None:
         left = MARGIN + _WIDTH + 40

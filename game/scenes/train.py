@@ -346,11 +346,11 @@ class Train:
         canvas.text(texts.TRAIN_TITLE, (_LEFT, 46), size=TITLE)
         history, sight = self.student.history, self.student.sight
         if not len(history) or sight is None:
-            canvas.text(texts.TRAIN_LINE, (_LEFT, 68), size=SMALL, colour=MUTE)
+            canvas.text(texts.TRAIN_LINE, (_LEFT, 68), size=SMALL, colour=MUTE, room=_TITLE.width - 32)
             return
         last = history.points[-1]
         line = texts.TRAIN_FIGURES.format(count=len(sight.outcome), seconds=last[0], decisions=int(sight.decisions))
-        canvas.text(line, (_LEFT, 68), size=SMALL, colour=MUTE, tabular=True)
+        canvas.text(line, (_LEFT, 68), size=SMALL, colour=MUTE, tabular=True, room=_TITLE.width - 32)
         share = f"{100 * history['success'][-1]:.0f}"
         figure = canvas.text(share, (_LEFT - 1, 122), size=FIGURE, weight="light", tabular=True,
                              colour=canvas.palette.good)  # fmt: skip

@@ -103,14 +103,16 @@ class Canvas:
         align: Align = "left",
         tabular: bool = False,
         alpha: float = 1.0,
+        room: float = math.inf,
     ) -> pygame.FRect:
         """Write a string on one line and return its box, ascent to descent.
 
         `position` is on the *baseline*: its left end, middle or right end as `align` says, so that texts
         of different sizes stand on one line when given the same y. `tabular` gives every digit the same
-        width and takes digits from a cache one by one: use it for every figure that changes.
+        width and takes digits from a cache one by one: use it for every figure that changes. Text that is
+        made larger for those who want it grows no further than `room`, in points.
         """
-        pixels = round(size * self.scale, 2)
+        pixels = self._pixels(string, size, weight, tabular, room)
         width = self._width(string, pixels, weight, tabular)
         shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[align]
         x, y = position[0] * self.scale - shift * width, self.px(position[1])
@@ -126,13 +128,22 @@ class Canvas:
         self, string: str, *, size: float = TEXT, weight: Weight = "regular", tabular: bool = False
     ) -> float:
         """Width in points that `text` with the same arguments would take."""
-        return self._width(string, round(size * self.scale, 2), weight, tabular) / self.scale
+        return self._width(string, self._pixels(string, size, weight, tabular), weight, tabular) / self.scale
+
+    def _pixels(self, string: str, size: float, weight: Weight, tabular: bool, room: float = math.inf) -> float:
+        """Return the size in pixels at which a text is written."""
+        pixels = round(typeface.grown(size) * self.scale, 2)
+        if room < math.inf and pixels > size * self.scale:
+            too_wide = self._width(string, pixels, weight, tabular) / max(room * self.scale, 1.0)
+            if too_wide > 1:
+                pixels = round(max(pixels / too_wide, size * self.scale), 2)
+        return pixels
 
     def _width(self, string: str, pixels: float, weight: Weight, tabular: bool) -> float:
         if not tabular:
-            return typeface.width(string, pixels, weight)
+            return typeface.reach(string, pixels, weight)
         digit = typeface.digit_width(pixels, weight)
-        return sum(digit if c.isdigit() else typeface.width(c, pixels, weight) for c in string)
+        return sum(digit if c.isdigit() else typeface.reach(c, pixels, weight) for c in string)
 
     def _write_digits(
         self, string: str, start: Point, pixels: float, weight: Weight, colour: Colour, alpha: float
@@ -140,7 +151,7 @@ class Canvas:
         x, y = start
         digit = typeface.digit_width(pixels, weight)
         for character in string:
-            own = typeface.width(character, pixels, weight)
+            own = typeface.reach(character, pixels, weight)
             cell = digit if character.isdigit() else own
             self._stamp(character, (round(x + (cell - own) / 2), round(y)), pixels, weight, colour, alpha)
             x += cell

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Final
 
@@ -20,10 +21,12 @@ def draw_hints(
     *,
     from_right: bool = False,
     size: float = SMALL,
+    room: float = math.inf,
 ) -> None:
-    """Write pairs of a key and its meaning on one baseline, starting (or ending) at the position."""
+    """Write pairs of a key and its meaning on one baseline, starting (or ending) at the position, in that room."""
     pairs = list(hints)
     x, y = position
+    size *= min(1.0, room / max(hints_width(canvas, pairs, size), 1.0))
     if from_right:
         x -= hints_width(canvas, pairs, size)
     for key, meaning in pairs:

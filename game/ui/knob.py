@@ -115,7 +115,7 @@ class Knob(Widget):
         """Write a figure at the right end."""
         canvas.text(
             written, (self.box.right, self.box.centery + 4.5),
-            size=SMALL, colour=self.colour, align="right", tabular=True,
+            size=SMALL, colour=self.colour, align="right", tabular=True, room=_TRACK[1] - 8,
         )  # fmt: skip
 
 
@@ -305,4 +305,5 @@ def draw_row(canvas: Canvas, widget: Widget, *, changed: bool) -> None:
     if changed:
         canvas.dot((box.left + 5, box.centery), 2.5, HUMAN)
     colour = mix(mix(MUTE, INK, 0.7), INK, widget.warmth)
-    canvas.text(widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour)
+    canvas.text(widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour,
+                room=_TRACK[0] - MARGIN - 6)  # fmt: skip

@@ -30,6 +30,11 @@ TEXT: Final = 15.0
 SMALL: Final = 12.5
 LABEL: Final = 11.5
 
+# How much larger small text is made for those who want it, by the setting's words. Between these two sizes less and
+# less is added: what is large can be read as it is, and has no room to grow.
+TEXT_SIZES: Final = {"normal": 1.0, "large": 1.12, "largest": 1.25}
+GROWS: Final = (15.0, 34.0)
+
 STEP: Final = 8
 MARGIN: Final = 64
 

@@ -14,7 +14,7 @@ import pygame
 from font_manrope import font_files
 
 from game.ui.glyphs import SIGN, draw_sign, sign_width
-from game.ui.tokens import Colour
+from game.ui.tokens import GROWS, Colour
 
 Weight = Literal["extralight", "light", "regular", "medium", "semibold"]
 
@@ -29,6 +29,12 @@ _FILES: Final[dict[Weight, str]] = {
 _COVERAGE: Final = np.round(255 * (np.arange(256) / 255) ** 0.82).astype(np.uint8)
 
 
+class _Growth:
+    """How much larger small text is than it was laid out for."""
+
+    factor = 1.0
+
+
 def _oversampling(pixels: float) -> int:
     return 4 if pixels < 40 else 2
 
@@ -38,9 +44,33 @@ def _font(pixels: float, weight: Weight) -> pygame.font.Font:
     return pygame.font.Font(font_files[_FILES[weight]], max(1, round(pixels * _oversampling(pixels))))
 
 
+def grow(factor: float) -> None:
+    """Make all text larger from now on, the small most of all; what is large enough stays as it is."""
+    if factor != _Growth.factor:
+        _Growth.factor = factor
+        forget()
+
+
+def growth() -> float:
+    """Return what `grow` was told last."""
+    return _Growth.factor
+
+
+@lru_cache(maxsize=64)
+def grown(size: float) -> float:
+    """Return the size at which a text of this size is written."""
+    small, large = GROWS
+    return size + (_Growth.factor - 1) * min(size, small) * min(max((large - size) / (large - small), 0.0), 1.0)
+
+
+def width(string: str, size: float, weight: Weight) -> float:
+    """How far a string of this size reaches, both in points: to lay out what is to be written."""
+    return reach(string, grown(size), weight)
+
+
 @lru_cache(maxsize=2048)
-def width(string: str, pixels: float, weight: Weight) -> float:
-    """How far the string reaches, in pixels and their fractions."""
+def reach(string: str, pixels: float, weight: Weight) -> float:
+    """How far the string reaches as it is written, in pixels and their fractions."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
     if not SIGN.search(string):
         return font.size(string)[0] / factor
@@ -59,7 +89,7 @@ def extent(pixels: float, weight: Weight) -> tuple[float, float]:
 @lru_cache(maxsize=64)
 def digit_width(pixels: float, weight: Weight) -> float:
     """Width of the widest digit, which every tabular digit is given."""
-    return max(width(digit, pixels, weight) for digit in "0123456789")
+    return max(reach(digit, pixels, weight) for digit in "0123456789")
 
 
 @lru_cache(maxsize=1024)
@@ -84,7 +114,7 @@ def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[
 def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame.Surface:
     """Return a string with signs in it, before it is scaled down."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
-    surface = pygame.Surface((-(-width(string, pixels, weight) * factor // 1), font.get_height()), pygame.SRCALPHA)
+    surface = pygame.Surface((-(-reach(string, pixels, weight) * factor // 1), font.get_height()), pygame.SRCALPHA)
     surface.fill((*colour, 0))
     x = 0.0
     for number, part in enumerate(SIGN.split(string)):
@@ -102,5 +132,5 @@ def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame
 
 def forget() -> None:
     """Drop every rendered string: the window's size has changed."""
-    for cache in (_font, width, extent, digit_width, render):
+    for cache in (_font, grown, reach, extent, digit_width, render):
         cache.cache_clear()

@@ -23,6 +23,7 @@ from game.ui.words import WordRow
 
 OnPress = Callable[[], Transition | None]
 _EASE: Final = 0.22
+_SWITCH: Final = 46  # what a switch takes of the box it is in
 
 
 class PointsManager(UIManager):
@@ -148,8 +149,9 @@ class Word(Widget):
     def paint(self, canvas: Canvas) -> None:
         """Draw the word, and the line under it as far as it has grown."""
         left, baseline = self.box.left, self.baseline
-        canvas.text(self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint())
-        length = canvas.text_width(self.label, size=self._size, weight=self._weight) * self.warmth
+        box = canvas.text(self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint(),
+                          room=self.box.width)  # fmt: skip
+        length = box.width * self.warmth
         if length > 1:
             y = baseline + 0.42 * self._size
             canvas.line((left, y), (left + length, y), NET, 2, self.warmth)
@@ -198,7 +200,7 @@ class Toggle(Widget):
         baseline = middle + 5 if not self._hint else middle - 4
         canvas.text(self.label, (box.left, baseline), colour=mix(mix(MUTE, INK, 0.6), INK, self.warmth))
         if self._hint:
-            canvas.text(self._hint, (box.left, baseline + 21), size=SMALL, colour=MUTE)
+            canvas.text(self._hint, (box.left, baseline + 21), size=SMALL, colour=MUTE, room=box.width - _SWITCH)
         draw_switch(canvas, (box.right - 32, middle - 8, 32, 16), self._slid)
 
 
@@ -269,13 +271,13 @@ class Slider(Widget):
         super().paint(canvas)
         box, (left, right) = self.box, self._track
         baseline, middle = box.centery + 5, box.centery
-        canvas.text(self.label, (box.left, baseline), size=SMALL + 1, colour=self.tint())
+        canvas.text(self.label, (box.left, baseline), size=SMALL + 1, colour=self.tint(), room=left - box.left - 12)
         canvas.bar((left, middle - 1, right - left, 2), self.fraction, self._colour)
         handle = (left + self.fraction * (right - left), middle)
         canvas.dot(handle, 5 + self.warmth, INK)
         canvas.text(
             self._figure(self.value), (box.right, baseline),
-            size=SMALL + 1, colour=self._colour, align="right", tabular=True,
+            size=SMALL + 1, colour=self._colour, align="right", tabular=True, room=box.right - right - 10,
         )  # fmt: skip
 
 
@@ -300,6 +302,7 @@ class Choice(Widget):
     ) -> None:
         super().__init__(manager, box, label)
         self.options, self.index, self._on_change, self._size = options, index, on_change, size
+        self._label_room = max(label_width - 10, 0)
         self.row = WordRow(options, self.box.left + label_width, self.box.right, size, gap)
 
     def choose(self, index: int) -> None:
@@ -331,7 +334,7 @@ class Choice(Widget):
         """Draw the label and the options."""
         super().paint(canvas)
         baseline = self.box.centery + 0.36 * self._size
-        canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint())
+        canvas.text(self.label, (self.box.left, baseline), size=self._size, colour=self.tint(), room=self._label_room)
         self.row.paint(canvas, baseline, self.index)
 
 

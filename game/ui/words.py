@@ -24,9 +24,18 @@ class WordRow:
     """
 
     def __init__(self, words: Sequence[str], left: float, right: float, size: float, gap: float = GAP) -> None:
-        self.words, self._size, self._gap, self._right = words, size, gap, right
-        widths = [typeface.width(word, size, "regular") for word in words]
-        room = right - left
+        self.words, self._size, self._gap, self._left, self._right = words, size, gap, left, right
+        self._growth = 0.0
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        """Lay the words out for the size of text that is wanted now."""
+        if self._growth == typeface.growth():
+            return
+        self._growth = typeface.growth()
+        left, gap = self._left, self._gap
+        widths = [typeface.width(word, self._size, "regular") for word in self.words]
+        room = self._right - left
         if sum(widths) + gap * (len(widths) - 1) > room + 1:
             room -= 2 * _ARROW
         self.pages = _pages(widths, room, gap)
@@ -35,6 +44,7 @@ class WordRow:
         )]  # fmt: skip
 
     def _page(self, chosen: int) -> range:
+        self._lay_out()
         return next(page for page in self.pages if chosen in page)
 
     def at(self, x: float, chosen: int) -> int:

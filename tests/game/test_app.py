@@ -94,9 +94,9 @@ def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context
 def test_colours_change_with_the_setting(open_game):
     game = open_game(SettingsScene())
     usual = game.app.canvas.palette
-    game.click((460, 152 + 2 * 72 + 28))
+    game.click((460, 124 + 2 * 60 + 28))
     assert game.app.canvas.palette != usual
-    game.click((460, 152 + 2 * 72 + 28))
+    game.click((460, 124 + 2 * 60 + 28))
     assert game.app.canvas.palette == usual
 
 

@@ -39,7 +39,7 @@ def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_
         window.resize(900, 760)
         scale, top = 900 / 1280, (760 - 900 * 9 / 16) / 2
         window.click(round(90 * scale), round(578 * scale + top))  # Settings
-        window.click(round(464 * scale), round((152 + 72 + 28) * scale + top))
+        window.click(round(464 * scale), round((124 + 60 + 28) * scale + top))
         window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
         assert window.close() == 0
 

@@ -1,0 +1,127 @@
+"""At the largest size of text, nothing leaves the view and no two texts meet, in any screen."""
+
+from collections.abc import Callable
+
+import pygame
+import pytest
+
+from ai.missions import MISSIONS
+from game import texts
+from game.context import Context
+from game.course import Flown
+from game.scene import Push, Scene
+from game.scenes.menu import Menu
+from game.scenes.play import Play
+from game.scenes.settings import SettingsScene
+from game.ui import typeface
+from game.ui.canvas import Canvas
+from game.ui.tokens import LABEL, SMALL, TEXT, TEXT_SIZES, TITLE, VIEW_SIZE
+from tests.game.driver import Driver
+from tests.game.test_walks import OVER_OTHERS, SCREENS
+
+FLOWN: dict[str, Callable[[Context], Scene]] = {
+    "Play": lambda _: Play(3),
+    "mission": lambda _: Play(0, course=Flown(MISSIONS["wind"])),
+}
+# A capital's height and what hangs below the line, in sizes of the type: where ink is.
+ABOVE, BELOW = 0.72, 0.2
+Written = list[tuple[str, pygame.FRect]]
+
+
+def write_down(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> Written:
+    """Draw a frame, and return every text in it, with the box of its ink."""
+    written: Written = []
+    text, view = Canvas.text, driver.app.canvas
+
+    def noted(canvas: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
+        box = text(canvas, string, position, **more)
+        if canvas is view and string.strip() and more.get("alpha", 1.0) > 0.05:
+            size = typeface.grown(more.get("size", TEXT))
+            height = ABOVE * size + BELOW * min(size, TITLE)  # large texts are figures: nothing hangs below
+            written.append((string, pygame.FRect(box.x, position[1] - ABOVE * size, box.width, height)))
+        return box
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Canvas, "text", noted)
+        driver.app._draw()
+    return written
+
+
+def wrong(written: Written) -> set[tuple[str, str]]:
+    found = set()
+    view = pygame.FRect((0, 0), VIEW_SIZE)
+    for number, (string, box) in enumerate(written):
+        if not view.contains(box):
+            found.add((string, "leaves the view"))
+        for other, its_box in written[number + 1 :]:
+            if other != string and box.inflate(-2, -2).colliderect(its_box.inflate(-2, -2)):
+                found.add((string, other))
+    return found
+
+
+def opened(open_game, context: Context, name: str, size: str) -> Driver:
+    context.settings.reduced_motion, context.settings.text_size, context.settings.tutored = True, size, True
+    context.settings_file.save(context.settings)
+    if name in OVER_OTHERS:
+        driver = open_game(Menu())
+        driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
+    else:
+        driver = open_game({**SCREENS, **FLOWN}[name](context))
+    driver.frames(10)
+    return driver
+
+
+@pytest.mark.parametrize("name", [*SCREENS, *FLOWN, *OVER_OTHERS])
+@pytest.mark.parametrize("window", [(1280, 720), (960, 540)])
+def test_nothing_meets_or_leaves_at_the_largest(open_game, context: Context, monkeypatch, name: str, window):
+    driver = opened(open_game, context, name, "largest")
+    if window != (1280, 720):
+        driver.resize(window)
+    large = wrong(write_down(driver, monkeypatch))
+    if large:  # a figure over another on purpose does so at the usual size as well
+        driver.app.context.settings.text_size = "normal"
+        driver.app.apply_settings()
+        large -= wrong(write_down(driver, monkeypatch))
+    assert not large
+
+
+def test_small_text_grows_most_and_order_is_kept():
+    for factor in TEXT_SIZES.values():
+        typeface.grow(factor)
+        assert typeface.grown(LABEL) / LABEL == pytest.approx(factor)
+        assert typeface.grown(88.0) == 88.0
+        sizes = [typeface.grown(size / 2) for size in range(20, 100)]
+        assert sizes == sorted(sizes)
+    typeface.grow(1.0)
+
+
+def test_text_grows_no_further_than_its_room_and_never_shrinks(monkeypatch):
+    canvas = Canvas(pygame.Surface(VIEW_SIZE))
+    usual = canvas.text("Within its room", (0, 100), size=SMALL).width
+    typeface.grow(1.25)
+    try:
+        free = canvas.text("Within its room", (0, 100), size=SMALL).width
+        assert free == pytest.approx(1.25 * usual, rel=0.05)
+        assert canvas.text("Within its room", (0, 100), size=SMALL, room=1.1 * usual).width <= 1.12 * usual
+        for room in (0.0, 0.5 * usual):
+            assert canvas.text("Within its room", (0, 100), size=SMALL, room=room).width == pytest.approx(
+                usual, rel=0.03
+            )
+    finally:
+        typeface.grow(1.0)
+
+
+def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
+    driver = open_game(SettingsScene())
+    while driver.top._form.focused.label != texts.TEXT_SIZE:
+        driver.key(pygame.K_DOWN)
+    before = driver.app.canvas.text_width("Text", size=SMALL)
+    driver.keys(pygame.K_RIGHT, pygame.K_RIGHT)
+    assert driver.app.canvas.text_width("Text", size=SMALL) > 1.2 * before
+    assert context.settings_file.load().text_size == "largest"
+
+
+def test_a_size_nobody_knows_is_the_usual_one(open_game, context: Context, monkeypatch):
+    driver = opened(open_game, context, "SettingsScene", "enormous")
+    assert typeface.growth() == 1.0
+    assert write_down(driver, monkeypatch)
