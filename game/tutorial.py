@@ -162,7 +162,7 @@ class Tutorial(Course):
         if self._praise:
             self._praise -= 1
             if not self._praise:
-                self._go_on()
+                self._begin_lesson(self._number + 1)
             return
         done = flight.hand is self.lesson.by and self.lesson.done(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
@@ -171,11 +171,11 @@ class Tutorial(Course):
             self.through = self._number == len(self._lessons) - 1
 
     def skip(self) -> None:
-        """Leave out the lesson."""
-        if self._number == len(self._lessons) - 1:
-            self.through = True
-        else:
-            self._go_on()
+        """Leave out the lesson, and those that begin with it."""
+        left = self._lessons[self._number + 1 :]
+        beyond = next((number for number, lesson in enumerate(left, 1) if not lesson.back), 0)
+        self.through = not beyond
+        self._begin_lesson(self._number + beyond)
 
     def again(self) -> bool:
         """Whether a flight that is over begins again: unless it was the landing that is asked for."""
@@ -185,8 +185,8 @@ class Tutorial(Course):
         """Say that this was all."""
         return replace(card, title=texts.TUTORIAL_DONE, reason=texts.TUTORIAL_DONE_REASON, score="")
 
-    def _go_on(self) -> None:
-        self._number += 1
+    def _begin_lesson(self, number: int) -> None:
+        self._number = number
         self._done_for = self._praise = self._begun = 0
 
     # The picture

@@ -1,0 +1,184 @@
+import json
+from collections.abc import Callable, Iterator
+
+import pygame
+import pytest
+
+from ai.lander import Outcome
+from ai.pilots import ScriptedPilot
+from game import networks, texts
+from game.bindings import Held
+from game.context import Context
+from game.flight import Hand
+from game.records import Records
+from game.scenes.menu import Menu
+from game.scenes.play import Play
+from game.settings import FILE_NAME
+from game.tutorial import LESSONS, Tutorial
+from tests.game.driver import Driver
+from tests.game.player import DEVICES, Player
+
+Open = Callable[..., Driver]
+PILOT = ScriptedPilot()
+KEYS = ("main", "left", "right")
+NAMES = [lesson.name for lesson in LESSONS]
+
+
+@pytest.fixture(autouse=True)
+def _stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", ScriptedPilot()))
+
+
+def play(driver: Driver) -> Play:
+    assert isinstance(driver.top, Play)
+    return driver.top
+
+
+def tutorial(driver: Driver) -> Tutorial:
+    course = play(driver)._course
+    assert isinstance(course, Tutorial)
+    return course
+
+
+def obey(scene: Play, name: str) -> int:
+    """The action that does what a lesson asks; nothing while a new flight waits for the keys to be let go."""
+    if scene.waiting and not scene._let_go:
+        return 0
+    fall = -scene.flight.env.velocity[0, 1]
+    simple = {"fire": 3, "fall": 0, "brake": 3 * (fall > 0.7), "lean": 1, "hand_over": 0, "take_back": 0}
+    return int(simple[name]) if name in simple else int(PILOT.act(scene.flight.env.observe())[0])
+
+
+def learn(pupil: Player) -> Iterator[str]:
+    """Do as told until all is done; the lessons, as they come."""
+    last, held = "", set[str]()
+    for step in range(2500):
+        pupil.app.window.minimised = step % 10 > 0  # drawing is most of the work
+        course, env = tutorial(pupil), play(pupil).flight.env
+        if course.through:
+            break
+        if (name := course.lesson.name) != last:
+            yield name
+            last = name
+        action = 3 * (env.velocity[0, 1] < -1) if course._praise else obey(play(pupil), name)
+        wanted = {key for key, on in zip(KEYS, (action >= 3, action % 3 == 1, action % 3 == 2), strict=True) if on}
+        for key in held ^ wanted:
+            pupil.hold(key, down=key in wanted)
+        held = wanted
+        if name in ("hand_over", "take_back") and not course._praise:
+            pupil.press("hand over")
+        pupil.frames(1)
+    assert tutorial(pupil).through, last
+    pupil.app.window.minimised = False
+    for key in held:
+        pupil.hold(key, down=False)
+
+
+def wait_for_another(driver: Driver) -> None:
+    """Let what flies come to its end, and the next flight begin."""
+    first = play(driver).flight
+    driver.app.window.minimised = True
+    for _ in range(1500):
+        if play(driver).flight is not first:
+            driver.app.window.minimised = False
+            return
+        driver.frames(1)
+    raise AssertionError("nothing begins again")
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
+    open_game: Open, context: Context, device: str
+):
+    driver = pupil = Player(open_game(tutored=False), device)
+    pupil.press("confirm")
+    assert list(learn(pupil)) == NAMES
+    scene = play(driver)
+    assert scene.flight.outcome is Outcome.LANDED
+    driver.frames(90)
+    assert scene._card is not None
+    assert scene._card.title == texts.TUTORIAL_DONE
+    assert not Records(context.user_dir).entries()
+    pupil.press("confirm")
+    assert play(driver)._course is None
+    assert play(driver).waiting
+    driver.app.close()
+    assert json.loads((context.user_dir / FILE_NAME).read_text())["tutored"]
+
+
+def test_only_the_very_first_flight_teaches(open_game: Open):
+    driver = open_game()
+    driver.key(pygame.K_RETURN)
+    assert play(driver)._course is None
+
+
+def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, context: Context):
+    driver = pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    lessons = learn(pupil)
+    assert [next(lessons) for _ in range(4)] == NAMES[:4]  # which is now to lean
+    first = play(driver).flight
+    for key in KEYS:
+        pupil.hold(key, down=False)
+    wait_for_another(driver)
+    assert first.outcome is Outcome.CRASHED
+    assert play(driver).waiting
+    assert tutorial(driver).lesson.name == "lean"
+    assert play(driver).flight.env.altitude[0] > 10
+    assert not Records(context.user_dir).entries()
+    driver.frames(120)
+    assert play(driver).flight.env.steps[0] == 0
+
+
+def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
+    driver = pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    for name in learn(pupil):
+        if name == "take_back":
+            break
+    first = play(driver).flight
+    wait_for_another(driver)  # the network goes on to land
+    assert first.outcome is Outcome.LANDED
+    assert tutorial(driver).lesson.name == "hand_over"
+    assert play(driver).flight.hand is Hand.HUMAN
+
+
+def test_each_lesson_can_be_skipped_and_the_whole_be_left(open_game: Open):
+    driver = open_game(Menu(), tutored=False)
+    driver.key(pygame.K_RETURN)
+    for name in NAMES:
+        if name == "take_back":
+            continue  # who does not hand over has nothing to take back
+        assert tutorial(driver).lesson.name == name
+        driver.key(pygame.K_n)
+    assert play(driver)._course is None
+    driver = open_game(Menu(), tutored=False)
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_ESCAPE)
+    assert driver.top_name == "Menu"
+    driver.key(pygame.K_RETURN)
+    assert play(driver)._course is None
+
+
+def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "it is gone"))
+    pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    assert list(learn(pupil)) == [name for name in NAMES if name not in ("hand_over", "take_back")]
+
+
+def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game: Open):
+    driver = open_game(Play(0, course=Tutorial()))
+    controls, course = driver.app.context.controls, tutorial(driver)
+
+    def words() -> str:
+        return course.words(play(driver).flight, controls)
+
+    assert words().startswith(controls.word(Held.MAIN))
+    by_key = words()
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_UP)
+    assert words().startswith(controls.word(Held.MAIN))
+    assert words() != by_key
+    driver.key(pygame.K_UP)
+    for _ in range(600):
+        if words() != by_key:
+            break
+        driver.frames(1)
+    assert words() == texts.TUTORIAL_TOO_FAST.format(main=controls.word(Held.MAIN))
