@@ -915,10 +915,10 @@ MISSIONS: Final = {
     "outage": ("Engine failure", "No main engine from second 2 to 4. You have been told."),
 }
 MISSIONS_TITLE: Final = "Missions"
-MISSIONS_LINE: Final = "Each teaches one thing, and the network flies beside you. Gold: {gold} of {count}."
+MISSIONS_LINE: Final = "Each teaches one thing, and another flies beside you. Gold: {gold} of {count}."
 MISSIONS_COLUMNS: Final = ("MISSION", "MEDAL", "BEST FUEL")
 MISSION_FLY: Final = "Fly it"
-MISSION_LIMIT: Final = "{fuel:.1f} s of fuel and {seconds:.0f} s at most"
+MISSION_LIMIT: Final = "{fuel:.1f} s of fuel and {seconds:.1f} s at most"
 MISSION_ANY: Final = "any landing"
 MISSION_BEST: Final = "Your best: {fuel:.1f} s of fuel, {seconds:.1f} s, {points} points"
 EXPORT_AS: Final = "Save this flight as a moving picture"
@@ -983,11 +983,12 @@ MEDAL_GOLD: Final = "Both feet down, within gold's fuel and time."
 MEDAL_BY_HAND: Final = "Landed. Medals are for flights by your own hand, all the way."
 MISSION_GOAL: Final = "Gold: {fuel:.1f} s of fuel, {seconds:.1f} s of time"
 MISSION_RIVAL_LABEL: Final = "Beside you"
-MISSION_RIVALS: Final = {"network": "the network", "recorded": "a recorded flight", "own": "your best"}
-MISSION_NETWORK: Final = "The network that comes with the game lands {landed} of 20 starts near this one."
+MISSION_GHOSTS: Final = {"recorded": "the recorded flight", "own": "your best"}
+MISSION_RIVALS: Final = {"network": "network", "recorded": "recorded flight", "own": "your best"}
+MISSION_NETWORK: Final = "The network lands {landed} of 20 starts near this one."
 MISSION_NETWORK_FAILS: Final = {
-    "earth": "It lands {landed} of 20 starts near this one: where it leans too far, the engine carries it away.",
-    "outage": "It lands none of 20 starts near this one: it does not know that its engine will fail.",
+    "earth": "The network lands {landed} of 20 starts near this one: where it leans too far, the engine carries it away.",
+    "outage": "The network lands none of 20 starts near this one: it does not know that its engine will fail.",
 }
 
 # What surrounds a flight and can't be seen
@@ -1032,7 +1033,7 @@ TUTORIAL_AWAY: Final = "The pad is far: lean towards it, and fire."
 TUTORIAL_DONE: Final = "You can fly"
 TUTORIAL_DONE_REASON: Final = "That was all there is to it. The rest is practice."
 TUTORIAL_SKIP: Final = "skip this"
-TUTORIAL_AGAIN_ROW: Final = "Learn to fly, one thing at a time. Leave it whenever you like."
+TUTORIAL_ASKS: Final = "Learn to fly, one thing at a time. Leave it whenever you like."
 
 # Said on the spot, in the moment in which it happens
 CONTACT_LIGHT: Final = "Contact light"

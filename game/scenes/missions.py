@@ -3,34 +3,41 @@
 from __future__ import annotations
 
 import datetime
+from collections.abc import Callable
 from typing import Final
 
 import pygame
 
-from ai.missions import MISSIONS
-from game import texts
+from ai.missions import FIRST, MISSIONS
+from game import flight_file, texts
 from game.context import Context
 from game.controls import Command
 from game.course import Course, Daily, Flown
-from game.flight_file import Entry
+from game.flight_file import Entry, Record
 from game.records import Records, rank
 from game.scene import Pop, Push, Transition
+from game.tutorial import Tutorial
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.listing import Listing, shortened
+from game.ui.listing import Listing
+from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE, Colour
-from game.ui.widgets import Word
+from game.ui.widgets import Choice, Word
 
-_LIST: Final = pygame.Rect(MARGIN, 168, 560, 408)
-_PITCH: Final = 34
+_LIST: Final = pygame.Rect(MARGIN, 164, 560, 416)
+_PITCH: Final = 32
 _COLUMNS: Final = (112.0, 0.0)
 _LEFT: Final = 720
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
-_VERB: Final = (_LEFT, 420.0, 200.0, 36.0)
+_RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
+_RIVAL_LABEL: Final = 112.0
+_NETWORK: Final = 468.0  # baseline of how the network does there
+_VERB: Final = (_LEFT, 524.0, 200.0, 36.0)
 _FOOT: Final = 608
 _DAILY: Final = "daily"
+_FLIGHTS: Final = "flights"  # in the game's own data
 # A medal is told by its word and by how many lamps are lit, not by its colour alone.
 _MEDALS: Final[tuple[Colour, ...]] = (MUTE, (205, 140, 96), (196, 206, 224), (255, 208, 110))
 
@@ -40,24 +47,29 @@ class Missions:
 
     def __init__(self) -> None:
         self._context: Context | None = None
+        self._rival = ""  # what the player wants to fly beside; empty for what is best in each mission
 
     def enter(self, context: Context) -> None:
         """Build the screen, or look again at what was flown."""
-        if self._context is None:
+        first = self._context is None
+        if first:
             self._context = context
             self._sky = NightSky(context.rng, ember=0.5, stars=70)
             self._form = Form(context, on_back=Pop)
             manager = self._form.manager
-            self._names = [*MISSIONS, _DAILY]
+            self._names = [FIRST.name, *MISSIONS, _DAILY]
             self._list = self._form.add(Listing(manager, _LIST, [], on_press=lambda _: self._fly(), columns=_COLUMNS,
-                                                pitch=_PITCH))  # fmt: skip
-            self._form.add(Word(manager, _VERB, texts.MISSION_FLY, self._fly, size=18))
+                                                on_choose=lambda _: self._offer_rivals(), pitch=_PITCH))  # fmt: skip
+            self._rivals: list[Choice] = []
+            self._verb = self._form.add(Word(manager, _VERB, texts.MISSION_FLY, self._fly, size=18))
             self._form.add(Word(manager, (MARGIN, _FOOT, 72, 36), texts.BACK, Pop, size=18))
-        records = Records(context.user_dir)
-        self._best = _best_by_course(records.entries())
-        if records.problem:
-            context.note(records.problem)
-        self._list.set_rows([self._row(name) for name in self._names], self._list.index)
+        self._records = Records(context.user_dir)
+        self._best = _best_by_course(self._records.entries())
+        if self._records.problem:
+            context.note(self._records.problem)
+        self._kept = self._records.kept()
+        self._list.set_rows([self._row(name) for name in self._names], 1 if first else self._list.index)
+        self._offer_rivals()
 
     def exit(self) -> None:
         """Nothing is held."""
@@ -76,7 +88,12 @@ class Missions:
         return self._names[self._list.index]
 
     def _course(self) -> Course:
-        return Daily(datetime.date.today()) if self.chosen == _DAILY else Flown(MISSIONS[self.chosen])
+        if self.chosen == FIRST.name:
+            return Tutorial()
+        if self.chosen == _DAILY:
+            return Daily(datetime.date.today())
+        mission, record = MISSIONS[self.chosen], self._rival_record()
+        return Flown(mission, record, texts.MISSION_GHOSTS[self._chosen_rival]) if record else Flown(mission)
 
     def _fly(self) -> Transition:
         from game.scenes.play import Play
@@ -84,8 +101,56 @@ class Missions:
         course = self._course()
         return Push(Play(course.seed if isinstance(course, Daily) else 0, course=course))
 
+    # What flies beside
+
+    @property
+    def _offered(self) -> list[str]:
+        """What can fly beside the player in the chosen mission."""
+        if self.chosen not in MISSIONS:
+            return []
+        best = self._best.get(self.chosen)
+        return ["network", "recorded", *(["own"] if best and best.file in self._kept else [])]
+
+    @property
+    def _chosen_rival(self) -> str:
+        """The player's wish, if it can be had; else the network where it lands, or a recorded flight that does."""
+        if self._rival in self._offered:
+            return self._rival
+        return "network" if MISSIONS[self.chosen].network_lands else "recorded"
+
+    def _offer_rivals(self) -> None:
+        """Let the player choose among what there is to fly beside in the chosen mission."""
+        old, offered = self._rivals, self._offered
+        self._rivals = []
+        if offered:
+            words = [texts.MISSION_RIVALS[name] for name in offered]
+            index = offered.index(self._chosen_rival)
+            self._rivals = [Choice(self._form.manager, _RIVAL, texts.MISSION_RIVAL_LABEL, words, index,
+                                   self._choose_rival(offered), label_width=_RIVAL_LABEL)]  # fmt: skip
+        self._form.replace(old or [self._verb], [*self._rivals, *([] if old else [self._verb])])
+
+    def _choose_rival(self, offered: list[str]) -> Callable[[int], None]:
+        def choose(index: int) -> None:
+            self._rival = offered[index]
+
+        return choose
+
+    def _rival_record(self) -> Record | None:
+        """Return the flight to race, unless that is the network's; one that can't be read is told of."""
+        assert self._context is not None
+        try:
+            if self._chosen_rival == "own":
+                return self._records.read(self._best[self.chosen].file)
+            if self._chosen_rival == "recorded":
+                return flight_file.read(self._context.assets_dir / _FLIGHTS / f"{self.chosen}.json")
+        except ValueError as error:
+            self._context.note(str(error))
+        return None
+
     def _row(self, name: str) -> tuple[str, str, str]:
         best = self._best.get(name)
+        if name == FIRST.name:
+            return texts.TUTORIAL_TITLE, "", ""
         if name == _DAILY:
             return texts.DAILY, "", f"{best.score}" if best else "–"
         return texts.MISSIONS[name][0], texts.MEDALS[best.medal] if best else "–", f"{best.fuel:.1f} s" if best else ""
@@ -113,22 +178,41 @@ class Missions:
                             (controls.word(Command.BACK), texts.HINT_BACK)], (MARGIN, VIEW_SIZE[1] - 40))  # fmt: skip
 
     def _draw_mission(self, canvas: Canvas, name: str) -> None:
-        title, asked = (texts.DAILY, texts.DAILY_BEGIN) if name == _DAILY else texts.MISSIONS[name]
+        title, asked = _TOLD.get(name) or texts.MISSIONS[name]
         canvas.text(title, (_LEFT, 190), size=TITLE + 6, weight="light")
-        canvas.text(shortened(canvas, asked, TEXT, _WIDTH), (_LEFT, 224), size=TEXT, colour=INK)
+        for row, line in enumerate(wrapped(canvas, asked, TEXT, _WIDTH)):
+            canvas.text(line, (_LEFT, 224 + 22 * row), size=TEXT, colour=INK)
         best = self._best.get(name)
-        if name != _DAILY:
-            mission = MISSIONS[name]
-            for row, (medal, limit) in enumerate(((3, mission.gold), (2, mission.silver), (1, None))):
-                y = 272 + 30 * row
-                for lamp in range(medal):
-                    canvas.dot((_LEFT + 5 + 13 * lamp, y - 4), 4, _MEDALS[medal])
-                canvas.text(texts.MEDALS[medal], (_LEFT + 52, y), size=SMALL + 1, colour=INK)
-                words = texts.MISSION_LIMIT.format(fuel=limit[0], seconds=limit[1]) if limit else texts.MISSION_ANY
-                canvas.text(words, (_LEFT + 124, y), size=SMALL, colour=MUTE, tabular=True)
+        if name in MISSIONS:
+            self._draw_medals(canvas, name)
+            for row, line in enumerate(wrapped(canvas, _network_words(name), SMALL, _WIDTH)):
+                canvas.text(line, (_LEFT, _NETWORK + 19 * row), size=SMALL, colour=MUTE)
         if best:
             words = texts.MISSION_BEST.format(fuel=best.fuel, seconds=best.seconds, points=best.score)
-            canvas.text(words, (_LEFT, 384), size=SMALL, colour=HUMAN, tabular=True)
+            canvas.text(words, (_LEFT, 384), size=SMALL, colour=HUMAN)
+
+    def _draw_medals(self, canvas: Canvas, name: str) -> None:
+        mission, best = MISSIONS[name], self._best.get(name)
+        for row, (medal, limit) in enumerate(((3, mission.gold), (2, mission.silver), (1, None))):
+            y = 276 + 30 * row
+            for lamp in range(medal):
+                canvas.dot((_LEFT + 5 + 13 * lamp, y - 4), 4, _MEDALS[medal])
+            canvas.text(texts.MEDALS[medal], (_LEFT + 52, y), size=SMALL + 1, colour=INK)
+            words = texts.MISSION_LIMIT.format(fuel=limit[0], seconds=limit[1]) if limit else texts.MISSION_ANY
+            canvas.text(words, (_LEFT + 124, y), size=SMALL, colour=MUTE)
+            if best and best.medal >= medal:
+                canvas.marker("check", (_LEFT + _WIDTH - 8, y - 4), 11, canvas.palette.good)
+
+
+_TOLD: Final = {
+    FIRST.name: (texts.TUTORIAL_TITLE, texts.TUTORIAL_ASKS),
+    _DAILY: (texts.DAILY, texts.DAILY_BEGIN),
+}
+
+
+def _network_words(name: str) -> str:
+    """Say how the network that comes with the game does in a mission."""
+    return texts.MISSION_NETWORK_FAILS.get(name, texts.MISSION_NETWORK).format(landed=MISSIONS[name].landed)
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:
