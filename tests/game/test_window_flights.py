@@ -32,6 +32,8 @@ def shows(window: Window, colour: Colour, area: pygame.Rect) -> bool:
 
 @needs_a_network
 def test_play_hand_over_take_back_hand_over_and_it_lands(display: str, tmp_path: Path):
+    (tmp_path / "user").mkdir()
+    (tmp_path / "user" / "settings.json").write_text('{"tutored": true}', encoding="utf-8")  # or a first flight teaches
     with start(display, tmp_path / "user") as window:
         window.key("Return")
         window.wait_for(lambda: shows(window, HUMAN, LAMP_AT_THE_TOP), "the lamp that says you fly")
