@@ -21,6 +21,7 @@ from game.scenes.play import Play
 from game.settings import Settings
 from game.tape import Rerun, Tape
 from tests.game.driver import Driver
+from tests.game.player import Player
 
 Open = Callable[..., Driver]
 CHANGES = {0: 0.8, 50: 1.2, 51: 1.0, 90: 0.6}
@@ -181,3 +182,28 @@ def test_nothing_but_the_pace_can_be_chosen_in_a_course(open_game: Open):
 def test_a_recording_says_what_a_step_was_flown_under():
     recording = Recording(1, "random", gravity=[(5, 0.8), (9, 1.0)])
     assert [recording.gravity_at(step) for step in (0, 4, 5, 8, 9, 99)] == [1.0, 1.0, 0.8, 0.8, 1.0, 1.0]
+
+
+def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_practice(open_game: Open, context: Context):
+    context.settings.pace = 0.5
+    context.settings_file.save(context.settings)
+    player = Player(open_game(Play(0, course=Flown(MISSIONS["fall"]))), "keys")
+    play = player.top
+    player.frames(2)
+    player.hold("main", down=True)
+    player.frames(99)
+    assert len(play.flight.recording.actions) == pytest.approx(50, abs=1)
+    player.hold("main", down=False)
+    play.retry()
+    player.frames(2)
+    player.fly(most=7200)
+    player.frames(150)
+    [entry] = Records(context.user_dir).entries()
+    assert entry.landed
+    assert (entry.pace, entry.practice, entry.alone, entry.medal) == (0.5, True, False, 0)
+    assert texts.PRACTICE in play._card.score
+    record = Records(context.user_dir).read(entry.file)
+    again = Rerun(record.recording)
+    while not again.over:
+        again.step(0)
+    assert np.array_equal(again.poses.now, play.flight.poses.now)
