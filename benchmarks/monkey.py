@@ -297,8 +297,8 @@ def main() -> int:
             files.append(open_files())
             print(f"{monkey.events:7d} events, {monkey.games:3d} games, {memory[-1]:4.0f} MB, {files[-1]} open files, "
                   f"{len(monkey.faults.found)} faults, {len(left)} left behind", flush=True)  # fmt: skip
-            for fault in monkey.faults.found[told:]:
-                print(f"\n{fault}\n", flush=True)
+            for each in (*left, *monkey.faults.found[told:]):
+                print(f"\n{each}\n", flush=True)
             told = len(monkey.faults.found)
     if monkey.faults.found:
         problems.append(f"{len(monkey.faults.found)} faults")

@@ -1,6 +1,8 @@
-"""Take the README's pictures from the real game, played by the script.
+"""Take the README's pictures, one of them moving, from the real game, played by the script.
 
-python -m docs.pictures
+    python -m docs.pictures [NAME ...]      # all of them, or those
+
+The moving one needs the extra `export`.
 """
 
 from __future__ import annotations
@@ -10,7 +12,9 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 
+import sys
 import time
+from collections.abc import Callable, Iterable
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +22,6 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pygame
 
-ROOT = Path(__file__).resolve().parents[1]
 from game.app import App
 from game.context import Context
 from game.scene import Scene
@@ -30,6 +33,7 @@ from game.scenes.train import Train
 from game.scenes.watch import Watch
 from game.settings import Settings
 
+IMAGES = Path(__file__).resolve().parent / "images"
 # Name, scene, and what is pressed at which frame until the picture is taken.
 PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("menu", Menu(), {}, 200),
@@ -40,31 +44,72 @@ PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("digits", Digits(), {}, 150),
     ("physics", Physics("heap"), {60: pygame.K_c}, 400),
 )
-
-
 HELD = 12  # frames that a key is held
 # What has been chosen where a picture needs it.
 CHOSEN = {"cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True)}
 
+MOVING = "flight"
+# A person falls, steers askew and is corrected on the way; then hands over, and the network lands. Key, from, until.
+FLOWN = (
+    (pygame.K_RIGHT, 5, 20),
+    (pygame.K_UP, 20, 60),
+    (pygame.K_LEFT, 90, 150),
+    (pygame.K_UP, 150, 200),
+    (pygame.K_TAB, 330, 340),
+)
+MOVING_FRAMES, MOVING_SIZE, EVERY, QUALITY = 720, (800, 450), 3, 70
+
 
 def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
     """Play `scene` for so many frames and save what is then on the screen."""
+    held = [(key, frame, frame + HELD) for frame, key in keys.items()]
+    last = play(scene, held, frames, CHOSEN.get(name, Settings()))
+    pygame.image.save(last, IMAGES / f"{name}.png")
+
+
+def film() -> None:
+    """Save the moving picture: WebP, for a camera that moves makes a GIF six times as large."""
+    from PIL import Image
+
+    pictures = []
+
+    def keep(seen: pygame.Surface) -> None:
+        picture = Image.frombytes("RGB", seen.get_size(), pygame.image.tobytes(seen, "RGB"))
+        pictures.append(picture.resize(MOVING_SIZE, Image.Resampling.LANCZOS))
+
+    play(Play(seed=12), FLOWN, MOVING_FRAMES, CHOSEN["cockpit"], keep)
+    first, *others = pictures[::EVERY]
+    first.save(IMAGES / f"{MOVING}.webp", save_all=True, append_images=others, duration=round(1000 * EVERY / 60),
+               loop=0, quality=QUALITY, method=4, kmax=60)  # fmt: skip
+
+
+def play(
+    scene: Scene,
+    held: Iterable[tuple[int, int, int]],
+    frames: int,
+    settings: Settings,
+    look: Callable[[pygame.Surface], None] = lambda _: None,
+) -> pygame.Surface:
+    """Play so many frames, with keys held from one frame until another; `look` at each, return the last."""
     with TemporaryDirectory() as folder:
         ticks = count()
-        context = Context(Path(folder), CHOSEN.get(name, Settings()), rng=np.random.default_rng(1))
+        context = Context(Path(folder), settings, rng=np.random.default_rng(1))
         app = App(context, scene, now=lambda: next(ticks) / 60, capped=False)
         for frame in range(frames):
-            for kind, at in ((pygame.KEYDOWN, frame), (pygame.KEYUP, frame - HELD)):
-                if at in keys:
-                    pygame.event.post(pygame.event.Event(kind, key=keys[at], mod=0))
+            for key, start, stop in held:
+                for kind, at in ((pygame.KEYDOWN, start), (pygame.KEYUP, stop)):
+                    if at == frame:
+                        pygame.event.post(pygame.event.Event(kind, key=key, mod=0))
             if isinstance(scene, Digits):
                 _move_pen(scene, frame)
             app.tick()
+            look(app.canvas.surface)
         while isinstance(scene, Train) and not _has_learnt(scene):  # it learns by a clock of its own
             app.tick()
             time.sleep(1 / 60)
-        pygame.image.save(app.canvas.surface, ROOT / "docs" / "images" / f"{name}.png")
+        last = app.canvas.surface.copy()
         app.close()
+    return last
 
 
 def _move_pen(scene: Digits, frame: int) -> None:
@@ -86,4 +131,7 @@ def _has_learnt(scene: Train) -> bool:
 
 if __name__ == "__main__":
     for picture in PICTURES:
-        take(*picture)
+        if picture[0] in (sys.argv[1:] or picture):
+            take(*picture)
+    if MOVING in (sys.argv[1:] or MOVING):
+        film()
