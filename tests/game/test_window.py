@@ -77,3 +77,22 @@ def test_no_screen_is_a_message_and_exit_code_2(tmp_path: Path):
     assert finished.returncode == 2
     assert "needs a screen" in finished.stderr
     assert "Traceback" not in finished.stderr
+
+
+def test_the_mouse_meets_what_it_sees_in_full_screen_and_back(tmp_path: Path):
+    skip_without_a_screen()
+    with screen("1366x768x24") as display, start(display, tmp_path / "user") as window:
+        for wide, high in ((1366, 768), (1280, 720)):  # the whole screen, and the window as it was before
+            if wide == 1366:
+                window.key("F11")
+                window.wait_for(lambda: window.picture().get_size() == (1366, 768), "the whole screen")
+                window.key(*["Down"] * 7, "Return")
+            else:
+                window.key("F11")
+                window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window")
+            scale = min(wide / 1280, high / 720)
+            left, top = (wide - 1280 * scale) / 2, (high - 720 * scale) / 2
+            window.click(round(464 * scale + left), round((124 + 60 + 28) * scale + top))
+            wanted = wide == 1366
+            window.wait_for(lambda: setting(window, "reduced_motion") is wanted, "the switch")  # noqa: B023
+        assert window.close() == 0
