@@ -21,7 +21,7 @@ from game.world.sheet import fitted
 
 Corner = tuple[float, float]
 
-REACH: Final = 1.28  # metres from the centre of mass to the tip of the antenna, and a little
+REACH: Final = 1.45  # metres from the centre of mass to the tips of the feet, and a little
 ANTENNA_TIP: Final = (0.16, 1.16)
 NOZZLE: Final = (0.0, -0.66)
 JETS: Final = ((-0.56, 0.60), (0.56, 0.60))  # the left-hand and the right-hand one
@@ -185,7 +185,7 @@ def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[
 @lru_cache(maxsize=1536)
 def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool = False) -> pygame.Surface:
     """Return the lander at a size and angle, its middle moved right and down by so many half pixels, 0 or 1."""
-    half = math.ceil(REACH * pixels_per_metre) + 1
+    half = math.ceil(REACH * pixels_per_metre) + 2
     side = 2 * half + 1
     factor = _FACTOR if pixels_per_metre < _LARGE else _FACTOR // 2
     sheet = pygame.Surface((side * factor, side * factor), pygame.SRCALPHA)

@@ -9,7 +9,7 @@ import numpy as np
 import pygame
 
 from ai.missions import MISSIONS
-from game.ui.tokens import NIGHT0
+from game.ui.tokens import NIGHT0, Colour
 from game.world.paint import Picture
 from game.world.sky import HORIZON
 
@@ -36,6 +36,14 @@ class Look:
     stars: bool = True
     earth: bool = True
 
+    def on_dust(self, colour: Colour) -> Colour:
+        """Return the colour of dust that flies up: the land's own, but never too dark to be seen."""
+        red, green, blue = (
+            round(min(255.0, value * max(share, _LEAST_DUST) + more))
+            for value, share, more in zip(colour, self.land, self.dust, strict=True)
+        )
+        return red, green, blue
+
     def on_sky(self, picture: pygame.Surface) -> pygame.Surface:
         """Return a sky in this light."""
         rows = np.clip(np.arange(picture.get_height()) / (HORIZON * picture.get_height()), 0.0, 1.0)
@@ -50,6 +58,7 @@ class Look:
 
 
 _DARK: Final = 0.1
+_LEAST_DUST: Final = 0.45  # the engine's own light falls on it
 _NIGHT: Final[Light] = (0.9 * NIGHT0[0], 0.9 * NIGHT0[1], 0.9 * NIGHT0[2])
 MOON: Final = Look()
 LOOKS: Final[dict[str, Look]] = {

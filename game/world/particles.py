@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from enum import IntEnum
 from functools import lru_cache
+from itertools import repeat
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,7 @@ from ai.env import Bools, Doubles, Ints
 from game.clock import STEP
 from game.render import View
 from game.ui.tokens import Colour
+from game.world.paint import mix
 from game.world.relief import Relief
 
 _LEVELS: Final = 8
@@ -24,14 +26,13 @@ class Kind(IntEnum):
 
     DUST = 0  # fine, in clouds that grow
     GRAIN = 1  # coarse, in flat arcs
-    SPARK = 2
-    SHARD = 3
+    SHARD = 2
+    SPARK = 3  # this and those that follow shine
     AMBER = 4  # exhaust of a person's engine
     BLUE = 5  # of a network's
 
 
-_DUST: Final[Colour] = (150, 140, 150)
-_GRAIN: Final[Colour] = (186, 174, 176)
+DUST: Final[Colour] = (150, 140, 150)  # of the moon
 _GLOWS: Final[dict[int, Colour]] = {
     Kind.SPARK: (255, 176, 90), Kind.AMBER: (255, 150, 70), Kind.BLUE: (96, 160, 255),
 }  # fmt: skip
@@ -39,18 +40,23 @@ _SHARDS: Final[tuple[Colour, ...]] = ((214, 158, 74), (190, 198, 214), (92, 98, 
 # By kind:
 _GROWTH: Final = np.array([0.55, 0.0, 0.0, 0.0, 0.16, 0.16])  # metres a second
 _WEIGHT: Final = np.array([0.35, 1.0, 1.0, 1.0, 0.0, 0.0])  # share of gravity that pulls
-_BOUNCE: Final = np.array([0.0, 0.1, 0.45, 0.42, 0.0, 0.0])
-_GRIP: Final = np.array([0.9, 0.5, 0.75, 0.7, 1.0, 1.0])  # share of the way along the ground that goes on
+_BOUNCE: Final = np.array([0.0, 0.1, 0.42, 0.45, 0.0, 0.0])
+_GRIP: Final = np.array([0.9, 0.5, 0.7, 0.75, 1.0, 1.0])  # share of the way along the ground that goes on
+_SPREAD: Final = np.array([1.0, 1.0, 1.0, 3.0, 3.0, 3.0])  # radius of the sprite, in radii of the particle
+_LEAST: Final = np.array([2, 1, 2, 2, 2, 2])  # pixels
+_MOST: Final = 80
 
 
 class Particles:
     """A fixed number of slots; the oldest are taken over when all are in use.
 
-    The ground and `gravity`, in m/s², are those of the flight they belong to; gravity may change.
+    The ground, `gravity` in m/s² and the colour of its dust are those of the flight; gravity may change.
     """
 
-    def __init__(self, rng: np.random.Generator, relief: Relief, gravity: float, slots: int = 640) -> None:
-        self._rng, self._relief, self.gravity = rng, relief, gravity
+    def __init__(
+        self, rng: np.random.Generator, relief: Relief, gravity: float, dust: Colour = DUST, slots: int = 640
+    ) -> None:
+        self._rng, self._relief, self.gravity, self._dust = rng, relief, gravity, dust
         self._position = np.zeros((slots, 2))
         self._before = np.zeros((slots, 2))
         self._velocity = np.zeros((slots, 2))
@@ -121,7 +127,7 @@ class Particles:
         A pad's deck is swept clean: there the jet raises dust beyond both edges.
         """
         edges = self._relief.deck(x)
-        count, grains = self._rng.poisson((4.5 * strength, 3.0 * strength))
+        count, grains = self._rng.poisson((4.0 * strength, 2.4 * strength))
         if edges:
             away = min(abs(x - edges[0]), abs(x - edges[1]))
             strength *= max(0.25, 1 - 0.2 * away)
@@ -170,29 +176,18 @@ class Particles:
         live = np.flatnonzero(self.alive)
         if not len(live):
             return
+        kind, look, age = self._kind[live], self._look[live], self._age[live]
         place = view.pixels(self._before[live] + alpha * (self._position[live] - self._before[live]))
-        left = np.clip(1 - self._age[live] / self._life[live], 0, 1)
-        radius = self._size[live] * view.pixels_per_metre
-        plain: list[tuple[pygame.Surface, tuple[int, int]]] = []
-        added: list[tuple[pygame.Surface, tuple[int, int]]] = []
-        for (x, y), kind, share, r, look, age in zip(
-            place.tolist(), self._kind[live].tolist(), left.tolist(), radius.tolist(),
-            self._look[live].tolist(), self._age[live].tolist(), strict=True,
-        ):  # fmt: skip
-            if kind in _GLOWS:
-                sprite = _glow(kind, max(2, round(r * 3)), math.ceil(share * _LEVELS))
-            elif kind == Kind.SHARD:
-                sprite = _shard(
-                    max(2, round(r)), look, int(age * (3 + look % 5) * 4) % 16, min(4, math.ceil(share * 8))
-                )
-            elif kind == Kind.GRAIN:
-                sprite = _grain(max(1, round(2 * r)), min(4, math.ceil(share * 6)))
-            else:
-                sprite = _puff(max(2, round(r)), math.ceil(share * _LEVELS))
-            corner = (round(x) - sprite.get_width() // 2, round(y) - sprite.get_height() // 2)
-            (added if kind in _GLOWS else plain).append((sprite, corner))
-        surface.fblits(plain)
-        surface.fblits(added, pygame.BLEND_RGB_ADD)
+        level = np.ceil(_LEVELS * (1 - age / self._life[live])).astype(np.intp)
+        radius = np.rint(self._size[live] * view.pixels_per_metre * _SPREAD[kind]).astype(np.intp)
+        radius = radius.clip(_LEAST[kind], _MOST)
+        corner = np.rint(place).astype(np.intp) - radius[:, None]
+        turn = np.where(kind == Kind.SHARD, (look % 7) * 16 + (age * (3 + look % 5) * 4).astype(np.intp) % 16, 0)
+        sprites = map(_sprite, kind.tolist(), radius.tolist(), level.tolist(), turn.tolist(), repeat(self._dust))
+        drawn = list(zip(sprites, corner.tolist(), strict=True))
+        shines = (kind >= Kind.SPARK).tolist()
+        surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if not shining])
+        surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if shining], pygame.BLEND_RGB_ADD)
 
     def _add(
         self,
@@ -212,26 +207,35 @@ class Particles:
         self._look[slots] = self._rng.integers(0, 1000, len(slots))
 
 
-@lru_cache(maxsize=512)
-def _puff(radius: int, level: int) -> pygame.Surface:
+@lru_cache(maxsize=4096)
+def _sprite(kind: int, radius: int, level: int, turn: int, dust: Colour) -> pygame.Surface:
+    """Return what a particle looks like, `radius` pixels to all sides of its middle one; `level` is in 1/8."""
+    if kind == Kind.DUST:
+        return _puff(radius, level, dust)
+    if kind == Kind.GRAIN:
+        return _grain(radius, level, dust)
+    if kind == Kind.SHARD:
+        return _shard(radius, turn // 16, turn % 16, level)
+    return _glow(kind, radius, level)
+
+
+def _puff(radius: int, level: int, colour: Colour) -> pygame.Surface:
     axis = np.arange(-radius, radius + 1) / radius
     away = np.hypot(axis[:, None], axis[None, :])
     cover = np.clip(1 - away, 0, 1) ** 1.5 * 82 * (level / _LEVELS) ** 1.4
     surface = pygame.Surface((2 * radius + 1, 2 * radius + 1), pygame.SRCALPHA)
-    surface.fill((*_DUST, 0))
+    surface.fill((*colour, 0))
     pygame.surfarray.pixels_alpha(surface)[:] = cover.astype(np.uint8)
     return surface
 
 
-@lru_cache(maxsize=64)
-def _grain(side: int, level: int) -> pygame.Surface:
-    surface = pygame.Surface((side, side))
-    surface.fill(_GRAIN)
-    surface.set_alpha(round(200 * level / 4))
+def _grain(radius: int, level: int, colour: Colour) -> pygame.Surface:
+    surface = pygame.Surface((2 * radius, 2 * radius))
+    surface.fill(mix(colour, (255, 246, 236), 0.34))
+    surface.set_alpha(round(170 * level / _LEVELS))
     return surface
 
 
-@lru_cache(maxsize=512)
 def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
     """Return a spark, small and hot, or a whiff of glowing gas, large and faint; to be added."""
     axis = np.arange(-radius, radius + 1) / radius
@@ -243,11 +247,9 @@ def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
     return pygame.surfarray.make_surface(np.minimum(strength * picture, 255).astype(np.uint8))
 
 
-@lru_cache(maxsize=512)
-def _shard(radius: int, look: int, turn: int, level: int) -> pygame.Surface:
-    """Return one of a few bits of foil and frame, tumbling in sixteenths of a turn."""
-    shape = look % 7
-    side = 2 * radius + 3
+def _shard(radius: int, shape: int, turn: int, level: int) -> pygame.Surface:
+    """Return one of seven bits of foil and frame, tumbling in sixteenths of a turn."""
+    side = 2 * radius + 1
     sheet = pygame.Surface((side * 4, side * 4), pygame.SRCALPHA)
     colour = _SHARDS[shape % len(_SHARDS)]
     sheet.fill((*colour, 0))
@@ -258,5 +260,5 @@ def _shard(radius: int, look: int, turn: int, level: int) -> pygame.Surface:
         corners.append((side * 2 + reach * math.cos(angle), side * 2 + reach * math.sin(angle) * 0.8))
     pygame.draw.polygon(sheet, colour, corners)
     surface = pygame.transform.smoothscale(sheet, (side, side))
-    surface.set_alpha(round(255 * level / 4))
+    surface.set_alpha(min(255, round(2 * 255 * level / _LEVELS)))
     return surface

@@ -13,8 +13,9 @@ from game.render import Camera, Clear, Shot, View
 from game.ui.canvas import Canvas
 from game.world.backdrop import EARTH, landscape
 from game.world.ground import draw_ground
-from game.world.looks import look_of
+from game.world.looks import LOOKS, look_of
 from game.world.moments import Moments
+from game.world.particles import DUST
 from game.world.stage import Stage
 
 
@@ -32,7 +33,9 @@ class Scenery:
 
     def __init__(self, flight: Flight, reduced_motion: bool, clear: Clear = framing.ALL) -> None:
         self._flight, self._calm, self.clear = flight, reduced_motion, clear
-        self.stage = Stage(flight.env, np.random.default_rng(flight.recording.seed), reduced_motion)
+        self._look = look_of(flight.recording.mission)
+        chance = np.random.default_rng(flight.recording.seed)
+        self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST))
         self._moments = Moments(flight.env, reduced_motion)
         self._camera = Camera()
         self._time = 0.0
@@ -82,8 +85,8 @@ class Scenery:
     def draw_land(self, canvas: Canvas, alpha: float, earth: tuple[float, float] = EARTH) -> None:
         """Fill the view with sky and land; `earth` is where the Earth stands, in points."""
         env = self._flight.env
-        look = look_of(self._flight.recording.mission)
-        landscape(canvas.surface.get_size(), self._calm, look).draw(canvas, self._camera, self._time, alpha, earth)
+        moon = landscape(canvas.surface.get_size(), self._calm, self._look)
+        moon.draw(canvas, self._camera, self._time, alpha, earth)
         draw_ground(canvas, self.view(canvas.scale, alpha), env.ground, self._time, float(env.pad_shift[0]))
 
     def draw_craft(self, canvas: Canvas, alpha: float, reason: bool = True) -> None:

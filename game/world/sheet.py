@@ -11,6 +11,7 @@ import pygame
 from game.render import View
 
 _STRIDE: Final = 192  # pixels of the picture: what is scaled begins and ends at a multiple of it
+_RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side: its middle moves the other way
 
 
 class Sheet:
@@ -53,20 +54,24 @@ def fitted(
 ) -> tuple[pygame.Surface, tuple[int, int]]:
     """Return a small square picture scaled by `ratio`, and the corner that brings its middle to a place in pixels.
 
-    `paint` gives it with its middle moved right and down by 0 or 1 half pixels, so that slow motion is smooth.
+    `paint` gives it with its middle moved right and down by 0 or 1 half pixels, and clear for two pixels around.
+    Between those, or, where it is scaled, between what to leave of its rim, is chosen what comes nearest to the
+    place, so that slow motion is smooth.
     """
-    side = paint((0, 0)).get_width()
-    length = max(1, round(side * ratio))
-    halves, corner = [], []
+    scaled = abs(ratio - 1) > 1e-6
+    side = paint((0, 0)).get_width() - 2 * scaled
+    length = max(1, round(side * ratio)) if scaled else side
+    choices = ((0, 0.0), (1, ratio), (2, -ratio)) if scaled else ((0, 0.0), (1, 0.5))  # and how far that moves it
+    picked, corner = [], []
     for place in middle:
         start = place - length / 2
-        half, whole = min(
-            ((half, round(start - ratio * half / 2)) for half in (0, 1)),
-            key=lambda choice: abs(choice[1] + ratio * choice[0] / 2 - start),
+        _, choice, whole = min(
+            (abs(round(start - moved) + moved - start), choice, round(start - moved)) for choice, moved in choices
         )
-        halves.append(half)
+        picked.append(choice)
         corner.append(whole)
-    picture = paint((halves[0], halves[1]))
-    if length != side:
-        picture = pygame.transform.smoothscale(picture, (length, length))
-    return picture, (corner[0], corner[1])
+    if not scaled:
+        return paint((picked[0], picked[1])), (corner[0], corner[1])
+    left, top = (_RIM_LEFT[choice] for choice in picked)
+    part = paint((0, 0)).subsurface((left, top, side, side))
+    return pygame.transform.smoothscale(part, (length, length)), (corner[0], corner[1])

@@ -14,11 +14,11 @@ from ai.lander import LanderEnv, Outcome
 from game.flight import surface_height
 from game.render import View
 from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN, NET
+from game.ui.tokens import HUMAN, NET, Colour
 from game.world import lander as art
 from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, stand
 from game.world.paint import light, mix
-from game.world.particles import Particles
+from game.world.particles import DUST, Particles
 from game.world.relief import Relief
 from game.world.wreck import Wreck
 
@@ -38,12 +38,14 @@ class Stage:
 
     """
 
-    def __init__(self, env: LanderEnv, rng: np.random.Generator, reduced_motion: bool = False) -> None:
+    def __init__(
+        self, env: LanderEnv, rng: np.random.Generator, reduced_motion: bool = False, dust: Colour = DUST
+    ) -> None:
         self._env = env
         self._rng = rng
         self._calm = reduced_motion
         self._relief = Relief(env)
-        self.particles = Particles(rng, self._relief, env.gravity)
+        self.particles = Particles(rng, self._relief, env.gravity, dust)
         count = env.num_envs
         self.thrust = np.zeros((count, 3))  # main engine, left-hand jet, right-hand jet
         self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between in passing
