@@ -8,6 +8,10 @@ from pathlib import Path
 import pygame
 import pytest
 
+from game import texts
+from game.controls import Command
+from game.scenes.play import Play
+from game.ui.glyphs import SIGN
 from tests.game.driver import Driver
 
 GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15
@@ -90,3 +94,40 @@ def test_two_games_one_after_the_other_hear_the_same_pad(open_game: Callable[...
     pads.press(pygame.CONTROLLER_BUTTON_A)
     again.frames(2)
     assert again.app.context.controls.main
+
+
+def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Callable[..., Driver], pads: VirtualPads):
+    play = Play(3)
+    game = open_game(play)
+    pads.plug_in()
+    game.frames(3)
+    pads.press(pygame.CONTROLLER_BUTTON_A)
+    pads.push(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 32000)
+    game.frames(10)
+    assert play.flight.recording.actions[-1] == 3
+    flown = len(play.flight.recording.actions)
+    pads.pull_out_all()
+    game.frames(3)
+    assert game.top_name == "Pause"
+    assert game.app._notes._text == texts.PAD_LOST
+    assert not SIGN.search(game.app.context.controls.word(Command.CONFIRM))
+    game.key(pygame.K_ESCAPE)
+    game.frames(10)
+    assert set(play.flight.recording.actions[flown + 2 :]) == {0}  # no engine sticks
+    pads.plug_in()
+    game.frames(3)
+    pads.press(pygame.CONTROLLER_BUTTON_A)
+    game.frames(3)
+    assert play.flight.recording.actions[-1] == 3
+    assert SIGN.search(game.app.context.controls.word(Command.CONFIRM))
+
+
+def test_a_pad_pulled_out_that_nobody_uses_disturbs_nobody(open_game: Callable[..., Driver], pads: VirtualPads):
+    game = open_game(Play(3))
+    pads.plug_in()
+    game.frames(3)
+    game.key(pygame.K_UP)
+    game.frames(5)
+    pads.pull_out_all()
+    game.frames(5)
+    assert game.top_name == "Play"
