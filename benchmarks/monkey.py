@@ -145,6 +145,7 @@ class Monkey:
         self._folder, self._open_sound = folder, open_sound
         self._frames = count()
         self._last = ""
+        self._forgotten: list[str] = []
         self._weights = np.array(list(DEEDS.values())) / sum(DEEDS.values())
         self.app: App
         self.hands: Hands
@@ -155,6 +156,10 @@ class Monkey:
             self._open()
             while self.events < events:
                 self._do_something()
+            self.go_home()
+            self.hands.come_back()
+            self.hands.pass_frame()  # until it is drawn, the game remembers what was drawn before
+            self._forgotten = stale_scenes(self.app.scenes._stack)
             self.close()
 
     def _do_something(self) -> None:
@@ -222,23 +227,29 @@ class Monkey:
             self.app.close()
         except Exception:
             self.faults.add("while closing: " + traceback.format_exc())
+        del self.app, self.hands
 
     def left_behind(self) -> list[str]:
         """Say what lives on although the game is closed."""
         wait_for(lambda: not active_children() and threading.active_count() == 1, 10.0)
-        typeface.forget()  # it keeps its files open
-        shapes.forget()
-        gc.unfreeze()  # what a game has kept from the collector
-        gc.collect()
-        kinds = tuple(scene_types())
-        alive = Counter(type(each).__name__ for each in gc.get_objects() if isinstance(each, kinds))
-        found = [f"{number} × {name} still in memory" for name, number in alive.items()]
+        found = [*self._forgotten, *stale_scenes([])]
         found += [f"process {child}" for child in active_children()]
         found += [f"thread {each.name}" for each in threading.enumerate() if each is not threading.main_thread()]
         # A process that was killed in the midst of a save leaves a file, which the next one clears away.
         children = {self._folder / "user" / name for name in ("models", "digits")}
         files = [path for path in (self._folder / "user").rglob(".*") if children.isdisjoint(path.parents)]
         return found + [f"file {path}" for path in (*files, *Path(tempfile.gettempdir()).iterdir())]
+
+
+def stale_scenes(stack: list[Scene]) -> list[str]:
+    """Say which scenes are in memory although they are not in use."""
+    typeface.forget()  # it keeps its files open
+    shapes.forget()
+    gc.unfreeze()  # what a game has kept from the collector
+    gc.collect()
+    kinds = tuple(scene_types())
+    alive = Counter(type(each).__name__ for each in gc.get_objects() if isinstance(each, kinds) and each not in stack)
+    return [f"{number} × {name} still in memory" for name, number in alive.items()]
 
 
 def wait_for(holds: Callable[[], object], seconds: float) -> bool:
