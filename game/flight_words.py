@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from game import hud, texts
 from game.cockpit.hands import OWN
 from game.cockpit.surroundings import draw_surroundings
@@ -9,9 +11,12 @@ from game.controls import Command, Controls
 from game.course import Course
 from game.flight import Flight, Hand
 from game.networks import Network
+from game.render import Clear
 from game.ui.canvas import Canvas
 from game.ui.hints import draw_hints, flight_hints
 from game.ui.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
+
+BELOW_OPENING: Final = Clear(head=196.0)  # where a craft hangs clear of the words that are said before it flies
 
 
 def draw_title(

@@ -26,9 +26,10 @@ def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
         if warns:
             canvas.marker("triangle", (x + 5, y - 4), 9, canvas.palette.warn)
             x += 18
-        words = canvas.text(text, (x, y), size=SMALL, colour=canvas.palette.warn if warns else MUTE, tabular=True)
         if wind:
-            _draw_arrow(canvas, (words.right + 12, y - 4), wind)
+            _draw_arrow(canvas, (x, y - 4), wind)
+            x += _ARROW + 12
+        canvas.text(text, (x, y), size=SMALL, colour=canvas.palette.warn if warns else MUTE)
 
 
 def _rows(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:

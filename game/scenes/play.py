@@ -212,7 +212,10 @@ class Play:
         self._difficulty = Difficulty(self._settings, self.flight, free=not course)
         self._cockpit = Cockpit(self.flight, self._settings, alone=check)
         self._ghost = course.ghost(seed, network) if course else None
-        self._scenery = Scenery(self.flight, self._settings.reduced_motion)
+        told = not course or bool(course.opening)
+        self._scenery = Scenery(
+            self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
+        )
         self._heard = FlightSound(self._sound, self.flight.env)
         self._pace, self._since_end, self._whole = Pace(), 0, None
         self._readouts = hud.flight_readouts(self.flight.env)
