@@ -20,6 +20,7 @@ _FACTOR: Final = 4
 _BACK: Final = 0.20  # how far the deck's far edge is seen above its near one, in metres
 _LAMP: Final = 0.20  # height of a lamp above the deck
 _MARGIN: Final = 0.6
+_SOFT: Final = 0.25  # as finely as light without edges is painted
 
 
 def draw_pad(
@@ -29,7 +30,7 @@ def draw_pad(
     colour = canvas.palette.good
     x, top = centre
     deck, corner = _paint(view.painted_per_metre, width, round(top - floor, 2), colour)
-    pool, reach = _pool(view.painted_per_metre, width, colour)
+    pool, reach = _pool(_SOFT * view.painted_per_metre, width, colour)
     pool.draw(canvas.surface, view, (x - reach[0], floor - 0.05 + reach[1]), pygame.BLEND_RGB_ADD)
     deck.draw(canvas.surface, view, (x + corner[0], top + corner[1]))
     breath = 0.86 + 0.14 * math.sin(1.7 * time)

@@ -38,13 +38,13 @@ _GLOWS: Final[dict[int, Colour]] = {
 }  # fmt: skip
 _SHARDS: Final[tuple[Colour, ...]] = ((214, 158, 74), (190, 198, 214), (92, 98, 118), (168, 112, 48))
 # By kind:
-_GROWTH: Final = np.array([0.55, 0.0, 0.0, 0.0, 0.16, 0.16])  # metres a second
+_GROWTH: Final = np.array([0.34, 0.0, 0.0, 0.0, 0.16, 0.16])  # metres a second
 _WEIGHT: Final = np.array([0.35, 1.0, 1.0, 1.0, 0.0, 0.0])  # share of gravity that pulls
 _BOUNCE: Final = np.array([0.0, 0.1, 0.42, 0.45, 0.0, 0.0])
 _GRIP: Final = np.array([0.9, 0.5, 0.7, 0.75, 1.0, 1.0])  # share of the way along the ground that goes on
 _SPREAD: Final = np.array([1.0, 1.0, 1.0, 3.0, 3.0, 3.0])  # radius of the sprite, in radii of the particle
 _LEAST: Final = np.array([2, 1, 2, 2, 2, 2])  # pixels
-_MOST: Final = 80
+_MOST: Final = 64
 
 
 class Particles:
@@ -127,13 +127,13 @@ class Particles:
         A pad's deck is swept clean: there the jet raises dust beyond both edges.
         """
         edges = self._relief.deck(x)
-        count, grains = self._rng.poisson((4.0 * strength, 2.4 * strength))
+        count, grains = self._rng.poisson((3.4 * strength, 2.4 * strength))
         if edges:
             away = min(abs(x - edges[0]), abs(x - edges[1]))
             strength *= max(0.25, 1 - 0.2 * away)
             count, grains = round(0.6 * count), round(0.5 * grains)
         for kind, number, fast, steep, life, size in (
-            (Kind.DUST, count, (1.6, 6.5), 0.14, (0.6, 1.7), (0.08, 0.24)),
+            (Kind.DUST, count, (1.6, 6.5), 0.14, (0.5, 1.4), (0.08, 0.24)),
             (Kind.GRAIN, grains, (4.0, 11.0), 0.20, (0.4, 1.0), (0.010, 0.024)),
         ):
             side = self._rng.choice((-1.0, 1.0), number)

@@ -83,32 +83,27 @@ class NearStars:
         width, height = size
         count = 130
         self._still = still
-        self._height = height
         self._place = rng.uniform((-0.03, -0.03), (1.03, HORIZON - 0.06), (count, 2)) * (width, height)
         size_of = rng.random(count) ** 2.6
         size_of *= np.clip((HORIZON - 0.05 - self._place[:, 1] / height) / 0.25, 0.15, 1)
-        self._depth = 0.05 + 0.13 * size_of
+        self._depth = 0.01 + 0.025 * size_of
         self._phase = rng.uniform(0, 2 * np.pi, count)
         self._rate = rng.uniform(0.5, 1.6, count)
         unit = height / 720
         kinds = np.round(size_of * 5).astype(int)
-        self._sprites = [
-            [_star(kind, level / self.LEVELS, unit) for level in range(1, self.LEVELS + 1)] for kind in range(6)
-        ]
-        self._kind = kinds
+        sprites = [[_star(kind, level / self.LEVELS, unit) for level in range(1, self.LEVELS + 1)] for kind in range(6)]
+        self._rows = [sprites[kind] for kind in kinds.tolist()]
+        self._half = np.array([row[0].get_width() // 2 for row in self._rows])
 
     def draw(self, surface: pygame.Surface, shift: tuple[float, float], time: float) -> None:
-        """Add the stars to the sky; `shift` is how far, in pixels, the foreground has moved."""
-        place = self._place + self._depth[:, None] * shift
+        """Add the stars to the sky; `shift` is how far, in pixels, the foreground has gone aside and the horizon up."""
+        place = self._place + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
+        corners = np.rint(place - self._half[:, None]).astype(np.intp).tolist()
         level = np.full(len(place), self.LEVELS - 2)
         if not self._still:
             level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
-        stars = []
-        for (x, y), kind, bright in zip(place.tolist(), self._kind.tolist(), level.tolist(), strict=True):
-            sprite = self._sprites[kind][bright]
-            half = sprite.get_width() // 2
-            stars.append((sprite, (round(x) - half, round(y) - half)))
-        surface.fblits(stars, pygame.BLEND_RGB_ADD)
+        sprites = [row[bright] for row, bright in zip(self._rows, level.tolist(), strict=True)]
+        surface.fblits(list(zip(sprites, corners, strict=True)), pygame.BLEND_RGB_ADD)
 
 
 def _star(kind: int, brightness: float, unit: float) -> pygame.Surface:
