@@ -6,11 +6,10 @@ import time
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import pygame
 
 from ai.lander import Outcome
-from game import framing, hud, texts
+from game import hud, texts
 from game.clock import STEP
 from game.collection import exports_dir
 from game.context import Context
@@ -18,7 +17,7 @@ from game.controls import Command, translate
 from game.export import KINDS, Export
 from game.flight import Hand
 from game.flight_file import Record
-from game.render import Camera, Clear, View
+from game.render import Clear, View
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.tape import Tape
@@ -30,11 +29,8 @@ from game.ui.timeline import Timeline, runs
 from game.ui.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.ui.widgets import Choice, OnPress, Word
 from game.ui.words import GAP
-from game.world.backdrop import landscape
-from game.world.ground import draw_ground
-from game.world.looks import look_of
 from game.world.paths import draw_faint
-from game.world.stage import Stage
+from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2")
@@ -55,7 +51,7 @@ class Replay:
         self._context: Context | None = None
         self.stopped = False
         self._speed = SPEEDS.index(1.0)
-        self._time = self._due = 0.0
+        self._due = 0.0
         self._warned = False
         self._export: Export | None = None
 
@@ -64,14 +60,11 @@ class Replay:
         if self._context is not None:
             self.stopped = True
             return
-        self._context, self._settings = context, context.settings
+        self._context = context
         self.tape = Tape(self.record)
         self.tape.scout(1)
-        env = self.tape.flight.env
-        self._stage = Stage(env, np.random.default_rng(self.record.recording.seed), self._settings.reduced_motion)
-        self._heard = FlightSound(context.sound, env, warns=False)
-        self._camera = Camera()
-        self._frame()
+        self._scenery = Scenery(self.tape.flight, context.settings.reduced_motion, _CLEAR)
+        self._heard = FlightSound(context.sound, self.tape.flight.env, warns=False)
         self._build(context)
         self._look()
 
@@ -124,9 +117,8 @@ class Replay:
             while self._due >= 1:
                 self._due -= 1
                 self._fly()
-            self._heard.follow(self._stage.thrust[0])
-        if not self._settings.reduced_motion:
-            self._time += STEP
+            self._heard.follow(self._scenery.stage.thrust[0])
+        self._scenery.breathe()
         return self._form.update()
 
     # Time
@@ -134,12 +126,8 @@ class Replay:
     def seek(self, step: int) -> None:
         """Show another moment."""
         self.tape.seek(step)
-        self._stage.forget()
-        action = 0 if self.tape.flight.over else int(self.tape.flight.env.fired[0])
-        self._stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
-        self._stage.blue[:] = self.tape.flight.flown_by is Hand.NETWORK
+        self._scenery.wind_to()
         self._due = 0.0
-        self._frame()
         self._look()
 
     @property
@@ -154,16 +142,8 @@ class Replay:
         flight = self.tape.flight
         was_over = flight.over
         self.tape.step()
-        ended = np.array([flight.over and not was_over])
-        self._stage.follow(np.array([flight.flown_by is Hand.NETWORK]), ended)
-        if not self._settings.reduced_motion:
-            framing.follow(self._camera, flight.env, clear=_CLEAR)
+        self._scenery.follow(flight.over and not was_over)
         self._look()
-
-    def _frame(self) -> None:
-        """Turn the camera to the moment at once."""
-        if not self._settings.reduced_motion:
-            self._camera.cut(framing.framed(self.tape.flight.env, clear=_CLEAR))
 
     def _look(self) -> None:
         """Read the figures; at the end they stay those of the last moment before."""
@@ -238,7 +218,7 @@ class Replay:
             self._context.note(texts.EXPORT_MISSING.format(kind=suffix[1:].upper()))
             return
         path = exports_dir() / f"{Path(self.record.entry.file).stem or texts.REPLAY_TITLE}{suffix}"
-        self._export = Export(self.record, path, colour_safe=self._settings.colour_safe)
+        self._export = Export(self.record, path, colour_safe=self._context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
         """Say how far it has come, or what has become of it."""
@@ -265,15 +245,9 @@ class Replay:
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, the way there and on, and its figures."""
         between = 1.0 if self.stopped else min(1.0, self._due + alpha * SPEEDS[self._speed])
-        view = self._camera.view(canvas.scale, between)
-        flight, env = self.tape.flight, self.tape.flight.env
-        landscape(canvas.surface.get_size(), self._settings.reduced_motion, look_of(flight.recording.mission)).draw(
-            canvas, self._camera, self._time, between, _EARTH
-        )
-        draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
-        _draw_way(canvas, view, self.tape)
-        self._stage.draw_lander(canvas, view, flight.poses.at(between)[0])
-        self._stage.draw_dust(canvas, view, between)
+        self._scenery.draw_land(canvas, between, _EARTH)
+        _draw_way(canvas, self._scenery.view(canvas.scale, between), self.tape)
+        self._scenery.draw_craft(canvas, between)
         hud.draw_readouts(canvas, self._readouts)
 
     def _draw_words(self, canvas: Canvas) -> None:
