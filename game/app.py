@@ -169,6 +169,7 @@ class App:
                     self._settled = self._last + _SETTLE
         if not self.scenes.running:
             return
+        event = self._clicked(self._in_points(event))
         match translate(event):
             case Command.FULLSCREEN:
                 self.context.settings.full_screen = not self.context.settings.full_screen
@@ -176,7 +177,7 @@ class App:
             case Command.SCREENSHOT:
                 self._save_screenshot()
             case _:
-                self._guarded(lambda: self.scenes.handle_event(self._in_points(event)))
+                self._guarded(lambda: self.scenes.handle_event(event))
 
     def _follow(self, event: pygame.event.Event) -> None:
         controls = self.context.controls
@@ -189,6 +190,16 @@ class App:
         if controls.mouse_in_use != used_mouse:
             pygame.mouse.set_visible(controls.mouse_in_use)
 
+    def _clicked(self, event: pygame.event.Event) -> pygame.event.Event:
+        """Return the press that a click on a hint means, and any other event as it is."""
+        if event.type in _MOUSE:
+            self.canvas.pointer = event.pos
+        elif not self.context.controls.mouse_in_use:
+            self.canvas.pointer = None
+        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
+            return event
+        return self.canvas.linked(event.pos) or event
+
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
         if event.type not in _MOUSE:
             return event
@@ -200,6 +211,7 @@ class App:
     # The picture
 
     def _draw(self) -> None:
+        self.canvas.links.clear()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
         self._notes.draw(self.canvas)
         self.window.flip()

@@ -13,7 +13,7 @@ from game.bindings import KEYBOARD, PAD, TRIGGERS, Bindings, Command, Held, Mean
 from game.settings import Settings
 from game.ui import glyphs
 
-__all__ = ["Command", "Controls", "Held", "presses_main", "translate"]
+__all__ = ["Command", "Controls", "Held", "KeyName", "presses_main", "translate"]
 
 # Axis, direction, how far out of 32767 it must be pushed.
 AXES: Final[dict[Held, tuple[int, int, int]]] = {
@@ -41,6 +41,23 @@ _STICK_SIGNS: Final[dict[Meaning, int]] = {
 }
 _KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
 _STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
+
+
+class KeyName(str):
+    """The name of a key, or the sign of a button, that a click of the mouse takes for a press of the key.
+
+    Attributes:
+        press: the event that the click becomes.
+
+    """
+
+    press: pygame.event.Event
+
+    def __new__(cls, text: str, key: int, command: Command | None = None) -> KeyName:
+        """Name a key by a text."""
+        name = super().__new__(cls, text)
+        name.press = pygame.Event(pygame.KEYDOWN, key=key, mod=0, unicode="", command=command)
+        return name
 
 
 def translate(event: pygame.event.Event) -> Command | None:
@@ -126,9 +143,20 @@ class Controls:
     # Names
 
     def word(self, meaning: Meaning) -> str:
-        """Name the key for a meaning, or show the button while a pad is in use; the key, if no button has it."""
+        """Name the key for a meaning, or show the button while a pad is in use; the key, if no button has it.
+
+        A command's name is a KeyName.
+        """
         signs = self.pad_signs(meaning) if self.pad_in_use else []
-        return next(iter(signs or self.key_names(meaning)), texts.BINDINGS_NONE)
+        text = next(iter(signs or self.key_names(meaning)), texts.BINDINGS_NONE)
+        if isinstance(meaning, Held):
+            return text
+        return KeyName(text, next(iter(self.keys.codes(meaning)), 0), meaning)
+
+    @staticmethod
+    def key(code: int) -> str:
+        """Name a key that means the same always, as a KeyName."""
+        return KeyName(key_name(code), code)
 
     @property
     def arrows(self) -> str:

@@ -967,6 +967,7 @@ HINT_AS_IT_WAS: Final = "as it was"
 HINT_LEAVE_KEY: Final = "leave it"
 MAIN_ENGINE: Final = "main engine"
 TURN: Final = "turn"
+TURN_TO_MOUSE: Final = "turn towards the pointer"
 TURN_LEFT: Final = "turn left"
 TURN_RIGHT: Final = "turn right"
 

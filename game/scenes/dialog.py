@@ -61,6 +61,7 @@ class Dialog:
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
         self._below.draw(canvas, 1.0)
+        canvas.links.clear()  # the hints of what stands still below
         canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.7)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)

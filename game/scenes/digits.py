@@ -352,7 +352,7 @@ class Digits:
             canvas.text(line, (LEFT, _PROBLEMS + 17 * number), size=SMALL, colour=canvas.palette.warn)
         controls = self._context.controls
         word = controls.word
-        keys = (word(Command.HANDOVER) if controls.pad_in_use else "Z", word(Command.CHOICES))
+        keys = (word(Command.HANDOVER) if controls.pad_in_use else controls.key(pygame.K_z), word(Command.CHOICES))
         for key, widget in zip(keys, self._under, strict=True):
             left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
             canvas.text(key, (left, widget.baseline), size=SMALL, weight="medium")

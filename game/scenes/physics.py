@@ -239,7 +239,7 @@ class Physics:
         controls = self._context.controls
         word = controls.word
         hints = [
-            (word(Command.HANDOVER) if controls.pad_in_use else "Space",
+            (word(Command.HANDOVER) if controls.pad_in_use else controls.key(pygame.K_SPACE),
              texts.HINT_GO if self.stopped else texts.HINT_STOP),
             (word(Command.STEP), texts.HINT_STEP),
             (word(Command.NEXT), texts.HINT_NEXT_EXHIBIT),

@@ -18,6 +18,7 @@ from game.controls import Command, translate
 from game.course import Course, Duel
 from game.difficulty import Difficulty
 from game.flight import Flight, Hand
+from game.mouse_stick import MouseStick
 from game.outlook import Outlook
 from game.pace import Pace
 from game.records import Records
@@ -60,6 +61,7 @@ class Play:
         self.flight: Flight
         self.waiting, self._let_go = True, False
         self._hands = OWN
+        self._mouse = MouseStick()
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._since_end = 0  # steps of time since the flight was over
         self._card: hud.Card | None = None
@@ -87,6 +89,7 @@ class Play:
     def exit(self) -> None:
         """Keep the flight for the way back, and what the dial was turned to."""
         assert self._context is not None
+        self._mouse.release()
         self._context.apply_settings()
 
     def retry(self) -> None:
@@ -100,6 +103,7 @@ class Play:
         if self._cockpit.take(event):
             self._name_what_lacks()
             return None
+        self._mouse.take(event)
         match translate(event):
             case Command.PAUSE:
                 return Pop() if self._leaves else self._pause()
@@ -168,7 +172,7 @@ class Play:
             self._readouts = hud.flight_readouts(flight.env)
         self._cockpit.help()
         self._difficulty.heed()
-        flight.step(self._controls.action)
+        flight.step(self._held)
         if self._ghost:
             self._ghost.step()
         self._outlook.follow(waiting=False)
@@ -192,9 +196,15 @@ class Play:
         elif self._card is None:
             self._finish()
 
+    @property
+    def _held(self) -> int:
+        """The action that keys, pads or the mouse ask for."""
+        mouse = self._mouse
+        return self._controls.action or (mouse.action(self._scenery.across) if mouse.holds else 0)
+
     def _waits(self) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
-        action = self._controls.action
+        action = self._held
         self._let_go = self._let_go or not action
         if self.flight.hand is Hand.NETWORK or (action and self._let_go):
             self.waiting = False
@@ -353,7 +363,7 @@ class Play:
         hud.draw_readouts(canvas, self._readouts)
         if self.waiting and not (course and not course.opening):
             flight_words.draw_opening(canvas, self._controls, course, self._outlook.asks)
-        if self._settings.show_hints:
+        if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
             flight_words.draw_keys(canvas, self._controls, self.flight, course, self._leaves)
 
 

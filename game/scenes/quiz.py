@@ -269,7 +269,7 @@ class Quiz:
         hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.BACK), texts.HINT_BACK)]
         if current and current.answer is None and current.kind == "draw":
             hints[:0] = [
-                (word(Command.HANDOVER) if pad else "Z", texts.DIGITS_UNDO.lower()),
+                (word(Command.HANDOVER) if pad else controls.key(pygame.K_z), texts.DIGITS_UNDO.lower()),
                 (word(Command.CHOICES), texts.DIGITS_CLEAR.lower()),
             ]
         elif current and current.answer is None and not pad:

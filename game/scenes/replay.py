@@ -276,7 +276,7 @@ class Replay:
         self._form.draw(canvas)
         word, pad = self._context.controls.word, self._context.controls.pad_in_use
         go = texts.HINT_GO if self.stopped or self.ended else texts.HINT_STOP
-        hints = [(word(Command.CONFIRM) if pad else "Space", go),
+        hints = [(word(Command.CONFIRM) if pad else self._context.controls.key(pygame.K_SPACE), go),
                  (word(Command.STEP), texts.HINT_STEP), (word(Command.RETRY), texts.REPLAY_FROM_START),
                  (word(Command.HANDOVER), texts.REPLAY_HINT_TAKE), (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
         draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=middle - MARGIN - _FIGURE)

@@ -22,6 +22,7 @@ from game.ui.advice import Advice
 from game.ui.board import Board
 from game.ui.canvas import Canvas
 from game.ui.form import Form
+from game.ui.hints import draw_hints
 from game.ui.inside import Inside
 from game.ui.knobs import Knobs
 from game.ui.prose import wrapped
@@ -344,6 +345,9 @@ class Train:
         for box in (_TITLE, _WORDS):  # landers fly behind
             canvas.panel(box)
         canvas.text(texts.TRAIN_TITLE, (_LEFT, 46), size=TITLE)
+        assert self._context is not None
+        back = (self._context.controls.word(Command.BACK), texts.HINT_BACK)
+        draw_hints(canvas, [back], (_TITLE.right - 16, 46), from_right=True)
         history, sight = self.student.history, self.student.sight
         if not len(history) or sight is None:
             canvas.text(texts.TRAIN_LINE, (_LEFT, 68), size=SMALL, colour=MUTE, room=_TITLE.width - 32)

@@ -293,7 +293,8 @@ class Watch:
             box = canvas.text(problem, (middle, 84), size=SMALL, colour=canvas.palette.warn, align="centre")
             canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
         self._form.draw(canvas)
-        if self._settings.show_hints:
+        assert self._context is not None
+        if self._settings.show_hints or self._context.controls.mouse_in_use:  # for the mouse, they are what it presses
             self._draw_hints(canvas)
 
     def _draw_hints(self, canvas: Canvas) -> None:
@@ -301,7 +302,10 @@ class Watch:
         word = self._context.controls.word
         pad = self._context.controls.pad_in_use
         hints = [
-            (word(Command.HANDOVER) if pad else "Space", texts.HINT_GO if self.stopped else texts.HINT_STOP),
+            (
+                word(Command.HANDOVER) if pad else self._context.controls.key(pygame.K_SPACE),
+                texts.HINT_GO if self.stopped else texts.HINT_STOP,
+            ),
             (word(Command.STEP), texts.HINT_STEP),
             (word(Command.RETRY), texts.HINT_RESTART),
             (word(Command.PAUSE), texts.HINT_PAUSE),

@@ -38,12 +38,16 @@ class Canvas:
         scale: pixels per point.
         size: the view's width and height in pixels.
         palette: the colours for good and warn that the player chose.
+        links: where a click means a press of a key, in points, and of which: as it was drawn last.
+        pointer: where the mouse is, in points; None while it is not in use.
 
     """
 
     def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
         self.palette = palette
         self.scale = 0.0
+        self.links: list[tuple[pygame.FRect, pygame.event.Event]] = []
+        self.pointer: Point | None = None
         self.attach(window)
 
     def attach(self, window: pygame.Surface) -> None:
@@ -89,6 +93,18 @@ class Canvas:
         """Turn a rectangle in points into one in the window's pixels."""
         box = pygame.FRect(rect)
         return self.rect(box.x, box.y, box.width, box.height).move(self.offset)
+
+    # The mouse
+
+    def link(self, rect: pygame.typing.RectLike, press: pygame.event.Event) -> bool:
+        """Let a click on this place be a press of a key; return whether the mouse is there."""
+        box = pygame.FRect(rect)
+        self.links.append((box, press))
+        return self.pointer is not None and box.collidepoint(self.pointer)
+
+    def linked(self, point: Point) -> pygame.event.Event | None:
+        """Return the press that a click there means, if any: of what was drawn last."""
+        return next((press for box, press in reversed(self.links) if box.collidepoint(point)), None)
 
     # Text
 

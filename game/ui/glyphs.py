@@ -1,4 +1,4 @@
-"""Signs for what a pad has under its thumbs, of our own drawing: letters of a script that every text can contain.
+"""Signs for a pad's buttons, and a mouse's, of our own drawing: letters of a script that every text can contain.
 
 Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence, and is
 measured, drawn and kept like any other letter.
@@ -17,7 +17,7 @@ from game.ui.tokens import Colour
 Family = Literal["xbox", "playstation", "nintendo"]
 FAMILIES: Final[tuple[Family, ...]] = ("xbox", "playstation", "nintendo")
 # Beside the buttons, which have SDL's numbers, and the triggers, 32 and 33 (see `game.bindings`).
-TURN, STICK_LEFT, STICK_RIGHT, CROSS = 40, 41, 42, 43
+TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT = 40, 41, 42, 43, 44, 45
 
 SIGN: Final = re.compile("([\ue000-\ue2ff])")
 _FIRST: Final = 0xE000
@@ -45,6 +45,8 @@ _XBOX: Final[dict[int, tuple[str, str]]] = {
     STICK_LEFT: ("stick", "left"),
     STICK_RIGHT: ("stick", "right"),
     CROSS: ("cross", "all"),
+    MOUSE_LEFT: ("mouse", "left"),
+    MOUSE_RIGHT: ("mouse", "right"),
 }
 _SIGNS: Final[dict[Family, dict[int, tuple[str, str]]]] = {
     "xbox": _XBOX,
@@ -115,6 +117,9 @@ def draw_sign(
     radius = _RADIUS * size
     if frame == "cross":
         _draw_cross(surface, middle, radius, colour, stroke, mark)
+        return
+    if frame == "mouse":
+        _draw_mouse(surface, middle, radius, colour, stroke, mark)
         return
     if frame == "wide":
         box = pygame.Rect(0, 0, round(_WIDE * size), round(1.75 * radius))
@@ -198,6 +203,23 @@ _MARKS: Final[dict[str, Mark]] = {
     "left": _arrow(-90),
     "right": _arrow(90),
 }
+
+
+def _draw_mouse(
+    surface: pygame.Surface, middle: pygame.Vector2, radius: float, colour: Colour, stroke: int, button: str
+) -> None:
+    """Draw a mouse, with the button that is meant filled."""
+    box = pygame.Rect(0, 0, round(1.4 * radius), round(2 * radius))
+    box.center = round(middle.x), round(middle.y)
+    round_ = round(0.6 * radius)
+    half = pygame.Rect(box.left, box.top, box.width // 2, box.height // 2)
+    corner = "border_top_left_radius"
+    if button == "right":
+        half.right, corner = box.right, "border_top_right_radius"
+    pygame.draw.rect(surface, colour, half, **{corner: round_})
+    pygame.draw.rect(surface, colour, box, stroke, border_radius=round_)
+
+
 _ARMS: Final = {"up": -90, "down": 90, "left": 180, "right": 0}
 
 

@@ -7,11 +7,13 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from game import texts
-from game.controls import Controls, Held
+from game.controls import Controls, Held, KeyName
 from game.ui.canvas import Canvas
+from game.ui.glyphs import MOUSE_LEFT, MOUSE_RIGHT
 from game.ui.tokens import INK, MUTE, SMALL
 
 _GAPS: Final = 8.0, 24.0  # from a key to its meaning, from there to the next key
+_LINE: Final = 18.0  # how far above its baseline a hint can be clicked
 
 
 def draw_hints(
@@ -23,15 +25,22 @@ def draw_hints(
     size: float = SMALL,
     room: float = math.inf,
 ) -> None:
-    """Write pairs of a key and its meaning on one baseline, starting (or ending) at the position, in that room."""
+    """Write pairs of a key and its meaning on one baseline, starting (or ending) at the position, in that room.
+
+    A click on one is a press of its key: what is told can be done with the mouse as well.
+    """
     pairs = list(hints)
     x, y = position
     size *= min(1.0, room / max(hints_width(canvas, pairs, size), 1.0))
     if from_right:
         x -= hints_width(canvas, pairs, size)
     for key, meaning in pairs:
+        left = x
+        width = hints_width(canvas, [(key, meaning)], size)
+        box = (left - 6, y - _LINE, width + 12, 1.6 * _LINE)
+        pointed = isinstance(key, KeyName) and canvas.link(box, key.press)
         x += canvas.text(key, (x, y), size=size, colour=INK, weight="medium").width + _GAPS[0]
-        x += canvas.text(meaning, (x, y), size=size, colour=MUTE).width + _GAPS[1]
+        x += canvas.text(meaning, (x, y), size=size, colour=INK if pointed else MUTE).width + _GAPS[1]
 
 
 def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = SMALL) -> float:
@@ -42,7 +51,10 @@ def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = 
 
 
 def flight_hints(controls: Controls) -> list[tuple[str, str]]:
-    """Return what flies, on the device in use; one word for both turns where one stick does both."""
+    """Return what flies, on the device in use; one word for both turns where one stick or button does both."""
+    if controls.mouse_in_use:
+        fire, turn = (controls.pad_sign(number) for number in (MOUSE_LEFT, MOUSE_RIGHT))
+        return [(fire, texts.MAIN_ENGINE), (turn, texts.TURN_TO_MOUSE)]
     left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
     turns = [(left, texts.TURN)] if left == right else [(left, texts.TURN_LEFT), (right, texts.TURN_RIGHT)]
     return [(controls.word(Held.MAIN), texts.MAIN_ENGINE), *turns]

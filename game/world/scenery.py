@@ -35,11 +35,17 @@ class Scenery:
         self._flight, self._calm, self.clear = flight, reduced_motion, clear
         self._look = look_of(flight.recording.mission)
         chance = np.random.default_rng(flight.recording.seed)
-        self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST))
+        self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
         self._moments = Moments(flight.env, reduced_motion)
         self._camera = Camera()
         self._time = 0.0
         self.cut()
+
+    @property
+    def across(self) -> float:
+        """How far across the screen the craft is drawn, in points."""
+        place = self._flight.poses.now[0, :2]
+        return float(self._camera.view(1.0).points(place)[0])
 
     def cut(self) -> None:
         """Turn to the flight as it stands, at once."""

@@ -16,6 +16,7 @@ from game import texts
 from game.assets import MODELS_DIR
 from game.cockpit.skill import Skill
 from game.context import Context
+from game.controls import Command
 from game.flight import Flight, Hand
 from game.flight_file import Record
 from game.records import Records
@@ -31,6 +32,7 @@ from game.scenes.menu import Menu
 from game.scenes.missions import Missions
 from game.scenes.pause import Pause
 from game.scenes.physics import Physics
+from game.scenes.play import Play
 from game.scenes.quiz import Quiz
 from game.scenes.replay import Replay
 from game.scenes.runs import Runs
@@ -237,3 +239,62 @@ def test_settings_are_changed_and_kept(open_screen):
     assert saved(player)[kind] == {}
     player.press("back", "back")
     assert player.top_name == "Menu"
+
+
+def hint(player: Driver, words: str) -> tuple[float, float]:
+    """Where a hint of these words can be clicked."""
+    presses = {KEY_OF.get(words, words)}
+    boxes = [box for box, press in player.app.canvas.links if press.command in presses or press.key in presses]
+    assert boxes, f"no hint can be clicked for {words}"
+    return boxes[-1].center
+
+
+KEY_OF = {"back": Command.BACK, "pause": Command.PAUSE, "hand over": Command.HANDOVER, "choices": Command.CHOICES,
+          "retry": Command.RETRY, "confirm": Command.CONFIRM, "stop": pygame.K_SPACE}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SCREENS)
+def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str):
+    game: Driver = open_game(SCREENS[name](context))
+    game.move((640, 700))
+    game.frames(3)
+    for _ in range(3):
+        if not game.app.scenes.running:
+            break
+        words = {word.label: word for word in game.top._form.widgets}
+        exits = [label for label in (texts.BACK, texts.PAUSE_LEAVE, texts.MENU["quit"][0]) if label in words]
+        if exits:
+            game.click(words[exits[0]].box.center)
+        else:
+            commands = {press.command for _, press in game.app.canvas.links}
+            game.click(hint(game, "back" if Command.BACK in commands else "pause"))
+        game.frames(3)
+    assert not game.app.scenes.running
+
+
+def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
+    context.settings.tutored, context.settings.show_hints = True, False
+    context.settings_file.save(context.settings)
+    game: Driver = open_game(Play(3))
+    play = game.top
+    game.move((640, 400))
+    game.frames(3)
+    left, right = 1, 3
+    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((20, 400)), button=left)
+    game.frames(5)
+    assert play.flight.recording.actions[-1] == 3
+    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((20, 400)), button=right)
+    game.frames(2)
+    assert play.flight.recording.actions[-1] == 4
+    game.move((1260, 400))
+    assert play.flight.recording.actions[-1] == 5
+    for button in (left, right):
+        game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1260, 400)), button=button)
+    assert play.flight.recording.actions[-1] == 0
+    game.click(hint(game, "hand over"))
+    assert play.flight.hand is Hand.NETWORK
+    game.click(hint(game, "pause"))
+    assert game.top_name == "Pause"
+    game.frames(2)
+    game.click(next(word for word in game.top._form.widgets if word.label == texts.PAUSE_LEAVE).box.center)
+    assert not game.app.scenes.running or game.top_name != "Play"

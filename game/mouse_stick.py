@@ -1,0 +1,44 @@
+"""Flying with the mouse alone: the left button fires, the right one turns the craft towards the pointer."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pygame
+
+_FIRE, _TURN = 1, 3
+_BUTTONS: Final = (_FIRE, _TURN)
+
+
+class MouseStick:
+    """What the mouse's buttons hold down."""
+
+    def __init__(self) -> None:
+        self._down: set[int] = set()
+        self._x = 0.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether anything is held down."""
+        return bool(self._down)
+
+    def take(self, event: pygame.event.Event) -> None:
+        """Follow one event, its position in points."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button in _BUTTONS:
+            self._down.add(event.button)
+            self._x = event.pos[0]
+        elif event.type == pygame.MOUSEBUTTONUP:
+            self._down.discard(event.button)
+        elif event.type == pygame.MOUSEMOTION:
+            self._x = event.pos[0]
+        elif event.type == pygame.WINDOWFOCUSLOST:
+            self.release()
+
+    def release(self) -> None:
+        """Let go: what happens to the buttons will not be heard."""
+        self._down.clear()
+
+    def action(self, craft: float) -> int:
+        """Return the lander's action, 3 · main + steer, for a craft that is drawn so far across, in points."""
+        steer = (1 if self._x < craft else 2) if _TURN in self._down else 0
+        return 3 * (_FIRE in self._down) + steer
