@@ -18,6 +18,7 @@ from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume, plumes
 from game.world.paint import mix
 
 STAND: Final = PARAMS.stand
+_FIRELIGHT: Final = 0.35  # what a craft's own fire adds by night
 
 
 def draw_craft(
@@ -29,8 +30,9 @@ def draw_craft(
     flicker: int,
     size: float = 1.0,
     floor: float = math.inf,
+    light: float = 1.0,
 ) -> None:
-    """Draw a lander and its fire, which ends at the pixel row `floor`.
+    """Draw a lander and its fire, which ends at the pixel row `floor`; `light` is what falls on it besides.
 
     A lander drawn smaller than it is still stands on its feet.
     """
@@ -53,7 +55,8 @@ def draw_craft(
         canvas.glow(spot, 2.3 * metre / scale, fire, 0.42 * main)
         fire_kind = NET_PLUME if blue > 0.5 else HUMAN_PLUME
         _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
-    surface.blit(*art.sprite(view.painted_per_metre * size, angle, (middle_x, middle_y), scaling(view)))
+    craft, corner = art.sprite(view.painted_per_metre * size, angle, (middle_x, middle_y), scaling(view))
+    surface.blit(shaded(craft, light + _FIRELIGHT * max(main, *jets)), corner)
     for side, force in enumerate(jets):
         if force > 0.06:
             outward = angle + (math.pi / 2 if side else -math.pi / 2)
@@ -117,6 +120,15 @@ def _burn(
         left, top = round(nozzle[0] - x), round(nozzle[1] - y)
         height = min(sheet.get_height(), max(0.0, floor - top))
         surface.blit(sheet, (left, top), (0, 0, sheet.get_width(), height), pygame.BLEND_RGB_ADD)
+
+
+def shaded(picture: pygame.Surface, light: float) -> pygame.Surface:
+    """Return a picture as it is seen in so much light, 0 to 1."""
+    if light >= 1:
+        return picture
+    dark = picture.copy()
+    dark.fill([round(255 * light)] * 3, special_flags=pygame.BLEND_RGB_MULT)
+    return dark
 
 
 def scaling(view: View) -> float:

@@ -24,6 +24,7 @@ class Look:
         sky, land: what each is multiplied by.
         air: what the sky has more of, 0 to 255, all of it at the horizon; `thick`, a share, of that at the top.
         dust: what the land has more of.
+        light: what falls on a craft, 0 to 1.
         stars, earth: whether they are seen.
 
     """
@@ -33,6 +34,7 @@ class Look:
     air: Light = (0.0, 0.0, 0.0)
     thick: float = 0.0
     dust: Light = (0.0, 0.0, 0.0)
+    light: float = 1.0
     stars: bool = True
     earth: bool = True
 
@@ -69,7 +71,7 @@ LOOKS: Final[dict[str, Look]] = {
     "earth": Look(
         (0.85, 0.95, 1.0), (0.75, 1.05, 0.95), (40.0, 74.0, 112.0), 0.18, (0.0, 4.0, 4.0), stars=False, earth=False
     ),
-    "night": Look((_DARK,) * 3, (_DARK,) * 3, _NIGHT, 1.0, _NIGHT, earth=False),
+    "night": Look((_DARK,) * 3, (_DARK,) * 3, _NIGHT, 1.0, _NIGHT, light=0.4, earth=False),
 }
 
 

@@ -16,7 +16,7 @@ from game.render import View
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, NET, Colour
 from game.world import lander as art
-from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, stand
+from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, shaded, stand
 from game.world.paint import light, mix
 from game.world.particles import DUST, Particles
 from game.world.relief import Relief
@@ -33,17 +33,24 @@ _JOLT: Final = 11.0  # points, of the hardest blow
 class Stage:
     """The fire, dust and light around the landers of one environment; `follow` once after every step.
 
+    `dust` is what colour flies up, `light` what falls on the craft, 0 to 1, besides that of their own fire.
+
     Attributes:
         jolt: how hard the last step shook what is near, in points.
 
     """
 
     def __init__(
-        self, env: LanderEnv, rng: np.random.Generator, reduced_motion: bool = False, dust: Colour = DUST
+        self,
+        env: LanderEnv,
+        rng: np.random.Generator,
+        reduced_motion: bool = False,
+        dust: Colour = DUST,
+        light: float = 1.0,
     ) -> None:
         self._env = env
         self._rng = rng
-        self._calm = reduced_motion
+        self._calm, self._light = reduced_motion, light
         self._relief = Relief(env)
         self.particles = Particles(rng, self._relief, env.gravity, dust)
         count = env.num_envs
@@ -141,7 +148,9 @@ class Stage:
         if wrecked:
             self._draw_wreck(canvas, view, pose, slot, size)
         else:
-            draw_craft(canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor)
+            draw_craft(
+                canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor, self._light
+            )
         self._draw_flash(canvas, view, x, y, slot)
 
     def _draw_wreck(self, canvas: Canvas, view: View, pose: Doubles, slot: int, size: float) -> None:
@@ -152,7 +161,7 @@ class Stage:
             y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
         middle = view.pixels(stand(x, y, angle, size)).tolist()
         craft = art.sprite(view.painted_per_metre * size, angle, (middle[0], middle[1]), scaling(view), wreck=True)
-        canvas.surface.blit(*craft)
+        canvas.surface.blit(shaded(craft[0], self._light), craft[1])
 
     # A swarm, small and in one go, each standing on its feet; `shown` is a mask (n,)
 
