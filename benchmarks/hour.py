@@ -104,7 +104,8 @@ class Player:
                     yield name
             if isinstance(self.app.scenes.top, Fault):
                 raise RuntimeError(f"a fault in {name}")
-            self.app.scenes.apply(Pop(len(self.app.scenes._stack) - 1))
+            if (depth := len(self.app.scenes._stack)) > 1:
+                self.app.scenes.apply(Pop(depth - 1))
 
     def _draw(self, frame: int, second: int) -> None:
         """Pull the pen across the middle of the screen, a stroke a second; every third second, away with it."""
