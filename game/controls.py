@@ -145,8 +145,10 @@ class Controls:
     def word(self, meaning: Meaning) -> str:
         """Name the key for a meaning, or show the button while a pad is in use; the key, if no button has it.
 
-        A command's name is a KeyName.
+        A command's name is a KeyName. While the mouse is in use, what flies is shown as its buttons.
         """
+        if isinstance(meaning, Held) and self.mouse_in_use:
+            return self.pad_sign(glyphs.MOUSE_LEFT if meaning is Held.MAIN else glyphs.MOUSE_RIGHT)
         signs = self.pad_signs(meaning) if self.pad_in_use else []
         text = next(iter(signs or self.key_names(meaning)), texts.BINDINGS_NONE)
         if isinstance(meaning, Held):

@@ -9,7 +9,6 @@ from typing import Final
 from game import texts
 from game.controls import Controls, Held, KeyName
 from game.ui.canvas import Canvas
-from game.ui.glyphs import MOUSE_LEFT, MOUSE_RIGHT
 from game.ui.tokens import INK, MUTE, SMALL
 
 _GAPS: Final = 8.0, 24.0  # from a key to its meaning, from there to the next key
@@ -52,9 +51,7 @@ def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = 
 
 def flight_hints(controls: Controls) -> list[tuple[str, str]]:
     """Return what flies, on the device in use; one word for both turns where one stick or button does both."""
-    if controls.mouse_in_use:
-        fire, turn = (controls.pad_sign(number) for number in (MOUSE_LEFT, MOUSE_RIGHT))
-        return [(fire, texts.MAIN_ENGINE), (turn, texts.TURN_TO_MOUSE)]
     left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
-    turns = [(left, texts.TURN)] if left == right else [(left, texts.TURN_LEFT), (right, texts.TURN_RIGHT)]
+    turn = texts.TURN_TO_MOUSE if controls.mouse_in_use else texts.TURN
+    turns = [(left, turn)] if left == right else [(left, texts.TURN_LEFT), (right, texts.TURN_RIGHT)]
     return [(controls.word(Held.MAIN), texts.MAIN_ENGINE), *turns]
