@@ -45,10 +45,10 @@ class Outlines:
         lengths = [len(outline) for outline in outlines]
         self._corners = np.concatenate([np.empty((0, 2)), *outlines])
         self._body = np.repeat([piece.body.index for piece in angular], lengths).astype(int)
-        ends = np.cumsum(lengths).tolist()
+        ends = np.cumsum(lengths, dtype=int)
         self._angular = [
             (piece, _colours(piece.colour, _FILL), start, end)
-            for piece, start, end in zip(angular, [0, *ends[:-1]], ends, strict=True)
+            for piece, start, end in zip(angular, (ends - lengths).tolist(), ends.tolist(), strict=True)
         ]
 
     def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool) -> None:
