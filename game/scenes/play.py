@@ -226,7 +226,7 @@ class Play:
         self._scenery = Scenery(
             self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
         )
-        self._heard = FlightSound(self._sound, self.flight.env)
+        self._heard = FlightSound(self._sound, self.flight.env, slows=not self._settings.reduced_motion)
         self._pace, self._since_end, self._whole = Pace(), 0, None
         self._readouts = hud.flight_readouts(self.flight.env)
         self._card = None

@@ -35,11 +35,12 @@ class FlightSound:
         sound: what plays.
         env: the landers.
         warns: whether it warns of what would be a crash.
+        slows: whether a crash is seen in slow motion, and heard so.
 
     """
 
-    def __init__(self, sound: Sound, env: LanderEnv, *, warns: bool = True) -> None:
-        self._sound, self._env, self._warns = sound, env, warns
+    def __init__(self, sound: Sound, env: LanderEnv, *, warns: bool = True, slows: bool = False) -> None:
+        self._sound, self._env, self._warns, self._slows = sound, env, warns, slows
         self._slot = -1
         self._time = 0.0
         self._outcome = Outcome.FLYING
@@ -56,7 +57,7 @@ class FlightSound:
         self._touch()
         outcome = Outcome(int(env.outcome[slot]))
         if outcome is not self._outcome and outcome in _ENDS:
-            self._sound.play(_ENDS[outcome])
+            self._sound.play("slow_crash" if self._slows and outcome is Outcome.CRASHED else _ENDS[outcome])
         self._outcome = outcome
         if outcome is Outcome.FLYING:
             self._sound_height()

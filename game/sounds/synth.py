@@ -153,6 +153,18 @@ def late(signal: Signal, delay: float) -> Signal:
     return np.concatenate([np.zeros((round(delay * RATE), *signal.shape[1:])), signal])
 
 
+def slowed(signal: Signal, rate: float, held: float, back: float) -> Signal:
+    """Play a signal (n,) or (n, 2) at a lower rate for `held` seconds, and at its own again `back` seconds later."""
+    longest = clock(len(signal) / RATE / rate)
+    pace = np.interp(longest, (held, held + back), (rate, 1.0))
+    place = np.cumsum(pace)
+    place = place[place < len(signal) - 1]
+    own = np.arange(len(signal))
+    if signal.ndim == 1:
+        return np.interp(place, own, signal)
+    return np.stack([np.interp(place, own, side) for side in signal.T], axis=1)
+
+
 def together(*signals: Signal) -> Signal:
     """Return the sum of signals of any lengths, all mono or all stereo."""
     whole = np.zeros((max(map(len, signals)), *signals[0].shape[1:]))
