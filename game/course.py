@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from datetime import date
 from math import ceil
+from typing import Final
 
-from ai.lander import Outcome
+from ai.lander import Cause, LanderEnv, Outcome
 from ai.missions import Mission
 from game import texts
 from game.controls import Controls
@@ -18,6 +19,8 @@ from game.networks import Flyer
 from game.render import View
 from game.tape import Rerun, Tape
 from game.ui.canvas import Canvas
+
+_AFTER_OUTAGE: Final = 2.0  # seconds in which the speed of a fall without an engine can't be braked
 
 
 class Course:
@@ -169,7 +172,7 @@ class Flown(Course):
         """Name the medal in place of points, and say what was missing for the next."""
         medal = self.medal(flight)
         if not card.good:
-            return replace(card, score="")
+            return replace(card, score="", advice=_advice(flight.env) or card.advice)
         return replace(card, score=texts.MEDALS[medal], reason=self._missing(medal, flight))
 
     def _missing(self, medal: int, flight: Flight) -> str:
@@ -181,6 +184,18 @@ class Flown(Course):
         words = [text.format(ceil(10 * much - 1e-9) / 10) for much, text in
                  ((fuel, texts.MEDAL_LESS_FUEL), (seconds, texts.MEDAL_LESS_TIME)) if much > 0]  # fmt: skip
         return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=texts.AND.join(words))
+
+
+def _advice(env: LanderEnv) -> str:
+    """Say what to do better about what is harder there than on the moon; nothing if that was not at fault."""
+    conditions, time = env.conditions, float(env.time[0])
+    if env.fuel[0] >= conditions.tank:
+        return texts.ADVICE_TANK
+    if conditions.outage[0] <= time < conditions.outage[1] + _AFTER_OUTAGE:
+        return texts.ADVICE_OUTAGE
+    if conditions.moves and env.cause[0] in (Cause.SLIDING, Cause.TERRAIN):
+        return texts.ADVICE_MOVING
+    return texts.ADVICE_WIND if conditions.pushes and env.cause[0] == Cause.TERRAIN else ""
 
 
 class Daily(Course):

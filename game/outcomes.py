@@ -37,7 +37,7 @@ def landing_score(env: LanderEnv, slot: int = 0) -> int:
         return 0
     pad = env.ground.pads[number]
     hard = min(1.0, float(env.impact[slot, 0]) / env.limits.touch_speed)
-    aside = min(1.0, abs(float(env.position[slot, 0]) - pad.x) / (pad.width / 2))
+    aside = min(1.0, abs(float(env.position[slot, 0] - env.pad_shift[slot]) - pad.x) / (pad.width / 2))
     return pad.factor * round(100 - 40 * hard - 30 * aside)
 
 

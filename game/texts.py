@@ -988,9 +988,15 @@ MISSION_GHOSTS: Final = {"recorded": "the recorded flight", "own": "your best"}
 MISSION_RIVALS: Final = {"network": "network", "recorded": "recorded flight", "own": "your best"}
 MISSION_NETWORK: Final = "The network lands {landed} of 20 starts near this one."
 MISSION_NETWORK_FAILS: Final = {
-    "earth": "The network lands {landed} of 20 starts near this one: where it leans too far, the engine carries it away.",
+    "earth": "The network lands {landed} of 20 starts near this one: where it leans too far, it is carried away.",
     "outage": "The network lands none of 20 starts near this one: it does not know that its engine will fail.",
 }
+
+# A word of advice on the card of a mission that was lost
+ADVICE_TANK: Final = "The tank was empty: fall longer, and brake once, late and hard."
+ADVICE_OUTAGE: Final = "Rise while the engine works: what you gain is what you fall through later."
+ADVICE_MOVING: Final = "Wait above the pad until you move as it does, and then go down."
+ADVICE_WIND: Final = "Lean into the wind to stay where you are: it takes a few degrees."
 
 # What surrounds a flight and can't be seen
 GRAVITY: Final = "Gravity {gravity:.1f} m/s², {times:.1f} times the moon's"

@@ -20,7 +20,7 @@ _STRONGEST: Final = 0.6  # m/s²
 
 def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
     """Draw a row for everything that makes this flight another than on the moon."""
-    for number, (text, wind, warns) in enumerate(_rows(env)):
+    for number, (text, wind, warns) in enumerate(surroundings(env)):
         y = _FIRST + number * _ROW
         x = float(MARGIN)
         if warns:
@@ -32,7 +32,7 @@ def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
         canvas.text(text, (x, y), size=SMALL, colour=canvas.palette.warn if warns else MUTE)
 
 
-def _rows(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
+def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
     """Yield words, the wind in m/s² to the right if that is what they are about, and whether they warn."""
     conditions, params, time = env.conditions, env.params, float(env.time[0])
     if params.gravity != PARAMS.gravity:

@@ -5,17 +5,19 @@ import pygame
 import pytest
 
 from ai.agent import DeepQAgent
-from ai.lander import PARAMS, Outcome
+from ai.lander import PARAMS, Cause, Outcome
 from ai.missions import MISSIONS
 from ai.pilots import ScriptedPilot
 from benchmarks.missions import near
 from game import flight_file, networks, texts
 from game.assets import ASSETS_DIR, MODELS_DIR
+from game.cockpit.surroundings import surroundings
 from game.context import Context
 from game.course import Flown
 from game.flight import Flight, Hand
 from game.flight_file import Record
-from game.hud import Card
+from game.hud import Card, flight_readouts
+from game.outcomes import landing_score
 from game.records import Records
 from game.scenes.logbook import Logbook
 from game.scenes.missions import Missions
@@ -150,6 +152,50 @@ def test_the_card_says_what_the_next_medal_asks():
     assert said(3.5, 7.0) == "Gold asks for 0.4 s less fuel."
     assert said(3.0, 8.02) == "Gold asks for 0.1 s less time."
     assert said(5.0, 13.5) == "Silver asks for 0.8 s less fuel and 1.5 s less time."
+
+
+def test_a_mission_that_is_lost_says_what_its_own_trouble_asks():
+    def said(name: str, cause: Cause, *, fuel: float = 0.0, seconds: float = 9.0) -> str:
+        flight = Flight(0, None, mission=name)
+        env = flight.env
+        env.outcome[:], env.cause[:] = Outcome.CRASHED, cause
+        env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
+        return Flown(MISSIONS[name]).card(Card(False, "", "", (), 1.0, advice="else"), flight).advice
+
+    assert said("tank", Cause.HARD, fuel=3.0) == texts.ADVICE_TANK
+    assert said("tank", Cause.HARD, fuel=2.0) == "else"
+    assert said("outage", Cause.HARD, seconds=4.5) == texts.ADVICE_OUTAGE
+    assert said("ferry", Cause.SLIDING) == texts.ADVICE_MOVING
+    assert said("wind", Cause.TERRAIN) == texts.ADVICE_WIND
+    assert said("fall", Cause.HARD) == "else"
+
+
+def test_on_a_pad_that_moves_its_own_middle_and_speed_count():
+    flight = Flight(0, None, mission="ferry")
+    env = flight.env
+    env.steps[:] = 60 * 4
+    shift, speed = float(env.pad_shift[0]), float(env.pad_velocity[0])
+    env.place(np.ones(1, bool), np.array([[shift, PARAMS.pad_top + PARAMS.stand, speed, 0, 0, 0]]))
+    env.steps[:] = 60 * 4
+    env.outcome[:] = Outcome.LANDED
+    assert landing_score(env) == 100
+    drift = next(readout for readout in flight_readouts(env) if readout.label == texts.DRIFT)
+    assert drift.figure == "0.0"
+
+
+def test_what_surrounds_a_flight_is_told():
+    def told(name: str, seconds: float = 0.0) -> list[str]:
+        flight = Flight(0, None, mission=name)
+        flight.env.steps[:] = round(60 * seconds)
+        return [words for words, _, _ in surroundings(flight.env)]
+
+    assert told("fall") == []
+    assert "3.7 m/s²" in told("mars")[0]
+    assert told("mars", 1.25)[1].startswith("Wind 0.1")
+    assert told("outage", 1.0) == ["The main engine fails in 1.0 s"]
+    assert told("outage", 3.0) == ["No main engine for 1.0 s"]
+    assert told("outage", 5.0) == []
+    assert told("ferry")[0].startswith("The pad goes right")
 
 
 def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open):
