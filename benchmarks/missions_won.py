@@ -1,11 +1,12 @@
 """Shows that every mission can be won: finds a flight there that earns gold, and writes it down for the game.
 
-    python -m benchmarks.missions_won [--missions outage earth] [--generations 8] [--hardest] [--write]
+    python -m benchmarks.missions_won [--missions outage earth] [--generations 8] [--hardest] [--slow] [--write]
 
 A hand-written pilot with ten numbers flies each mission a few hundred times at once, with other numbers in every
 slot; the numbers of the best tenth make those of the next generation (the cross-entropy method, Rubinstein 1999). It
 knows what the network does not: gravity, wind, and when an engine fails. Sought is a flight that stays a tenth below
 gold's limits and touches down softly, one to be raced; `--hardest` asks for the least fuel and time instead.
+`--slow` flies with a person's hands: five decisions a second, each from what was to be seen a fifth of a second ago.
 `--write` keeps the flights in assets/flights, where the game finds them.
 """
 
@@ -21,7 +22,7 @@ import numpy as np
 from ai.lander import OBSERVATION_SCALE, LanderEnv, Outcome
 from ai.missions import MISSIONS, Mission
 from game.assets import ASSETS_DIR
-from game.flight import Hand, Recording
+from game.flight import DECISION_STEPS, Hand, Recording
 from game.flight_file import Record, write
 from game.records import describe
 from game.tape import Rerun
@@ -29,6 +30,7 @@ from game.tape import Rerun
 SLOTS = 320
 BEST = 32
 ENOUGH = 0.9  # of gold's limits
+SLOW = 12  # physics steps of a decision
 #         drift   most   lean   most   turn   spin   brake  touch  aside  climb
 LOW = np.array([0.15, 1.0, 0.15, 0.20, 1.5, 0.8, 0.55, 0.3, 0.0, -4.0])
 HIGH = np.array([1.20, 6.0, 1.20, 0.90, 8.0, 4.5, 1.00, 1.6, 0.8, 4.0])
@@ -66,13 +68,14 @@ def act(numbers: np.ndarray, env: LanderEnv, observation: np.ndarray) -> np.ndar
     return np.where(rest, 0, 3 * main + steer).astype(np.intp)
 
 
-def fly(mission: Mission, numbers: np.ndarray, enough: float) -> tuple[np.ndarray, LanderEnv, np.ndarray]:
+def fly(mission: Mission, numbers: np.ndarray, enough: float, steps: int) -> tuple[np.ndarray, LanderEnv, np.ndarray]:
     """Cost (n,) of flights with `numbers` (n, 10), how they ended, and their actions (decisions, n)."""
-    env = mission.begin(len(numbers), frame_skip=4)
-    observation, actions = env.observe(), []
+    env = mission.begin(len(numbers), frame_skip=steps)
+    seen = [env.observe()]
+    actions: list[np.ndarray] = []
     while (env.outcome == Outcome.FLYING).any():
-        actions.append(act(numbers, env, observation))
-        observation = env.step(actions[-1]).observation
+        actions.append(act(numbers, env, seen[-2 if steps == SLOW else -1] if actions else seen[0]))
+        seen = [seen[-1], env.step(actions[-1]).observation]
     away = np.linalg.norm(env.position - env.pad, axis=1) + np.linalg.norm(env.velocity, axis=1)
     share = np.maximum(env.fuel / mission.gold[0], env.time / mission.gold[1])
     landed = np.abs(share - enough) + 0.05 * env.impact[:, 0]
@@ -80,17 +83,17 @@ def fly(mission: Mission, numbers: np.ndarray, enough: float) -> tuple[np.ndarra
     return cost, env, np.array(actions)
 
 
-def search(mission: Mission, generations: int, enough: float, rng: np.random.Generator) -> Found | None:
+def search(mission: Mission, generations: int, enough: float, steps: int, rng: np.random.Generator) -> Found | None:
     """Return the best flight found, which takes `enough` of gold's limits; None if none has landed."""
     middle, spread = (LOW + HIGH) / 2, (HIGH - LOW) / 2
     found = None
     for _ in range(generations):
         numbers = np.clip(middle + spread * rng.standard_normal((SLOTS, len(LOW))), LOW, HIGH)
-        cost, env, actions = fly(mission, numbers, enough)
+        cost, env, actions = fly(mission, numbers, enough, steps)
         order = np.argsort(cost)
         best = int(order[0])
         if env.outcome[best] == Outcome.LANDED and (found is None or cost[best] < found.cost):
-            decisions = -(-int(env.steps[best]) // 4)
+            decisions = -(-int(env.steps[best]) // steps)
             found = Found(float(cost[best]), float(env.fuel[best]), float(env.time[best]),
                           actions[:decisions, best].tolist())  # fmt: skip
         few = numbers[order[:BEST]]
@@ -98,9 +101,9 @@ def search(mission: Mission, generations: int, enough: float, rng: np.random.Gen
     return found
 
 
-def keep(name: str, found: Found) -> None:
-    """Write a flight down as the game does, a decision being four steps of the game."""
-    actions = [action for action in found.actions for _ in range(4)]
+def keep(name: str, found: Found, steps: int) -> None:
+    """Write a flight down as the game does, a decision being so many steps."""
+    actions = [action for action in found.actions for _ in range(steps)]
     flight = Rerun(Recording(0, "random", 1, actions, [Hand.NETWORK] * len(actions), name))
     while not flight.over:
         flight.step(0)
@@ -117,19 +120,21 @@ def main() -> None:
     parser.add_argument("--missions", nargs="*", default=list(MISSIONS), choices=MISSIONS)
     parser.add_argument("--generations", type=int, default=8)
     parser.add_argument("--hardest", action="store_true")
+    parser.add_argument("--slow", action="store_true")
     parser.add_argument("--write", action="store_true")
     arguments = parser.parse_args()
+    steps = SLOW if arguments.slow else DECISION_STEPS
     print("| mission | fuel | time | gold asks | silver asks | medal |")
     print("|---|---|---|---|---|---|")
     for name in arguments.missions:
         mission = MISSIONS[name]
         enough = 0.0 if arguments.hardest else ENOUGH
-        found = search(mission, arguments.generations, enough, np.random.default_rng(0))
+        found = search(mission, arguments.generations, enough, steps, np.random.default_rng(0))
         if found is None:
             print(f"| {name} | not landed | | | | |", flush=True)
             continue
         if arguments.write:
-            keep(name, found)
+            keep(name, found, steps)
         limits = (f"{fuel:.1f} s, {seconds:.1f} s" for fuel, seconds in (mission.gold, mission.silver))
         medal = mission.medal(found.fuel, found.seconds)
         print(f"| {name} | {found.fuel:.2f} s | {found.seconds:.1f} s | {' | '.join(limits)} | {medal} |", flush=True)

@@ -986,10 +986,10 @@ MISSION_GOAL: Final = "Gold: {fuel:.1f} s of fuel, {seconds:.1f} s of time"
 MISSION_RIVAL_LABEL: Final = "Beside you"
 MISSION_GHOSTS: Final = {"recorded": "the recorded flight", "own": "your best"}
 MISSION_RIVALS: Final = {"network": "network", "recorded": "recorded flight", "own": "your best"}
-MISSION_NETWORK: Final = "The network lands {landed} of 20 starts near this one."
+MISSION_NETWORK: Final = "The game's own network lands {landed} of 20 starts near this one."
 MISSION_NETWORK_FAILS: Final = {
-    "earth": "The network lands {landed} of 20 starts near this one: where it leans too far, it is carried away.",
-    "outage": "The network lands none of 20 starts near this one: it does not know that its engine will fail.",
+    "earth": "The game's own network lands {landed} of 20 starts near this one: it leans too far, and is carried away.",
+    "outage": "The game's own network lands none of 20 starts near this one: it can't know that its engine will fail.",
 }
 
 # A word of advice on the card of a mission that was lost

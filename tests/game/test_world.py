@@ -3,17 +3,19 @@ import pygame
 import pytest
 
 from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv
+from ai.missions import MISSIONS
 from game.render import Camera, View
 from game.ui.canvas import Canvas
 from game.world import lander as art
 from game.world.backdrop import Backdrop
+from game.world.craft import stand
 from game.world.flame import HUMAN_PLUME, LEVELS, plume
+from game.world.looks import LOOKS, look_of
 from game.world.pad import draw_pad
 from game.world.particles import Particles
 from game.world.paths import Trails, draw_dotted
 from game.world.relief import Relief
 from game.world.stage import Stage
-from game.world.craft import stand
 
 SIZES = [(1280, 720), (640, 360), (1000, 800)]
 
@@ -135,3 +137,22 @@ def test_everything_draws_and_draws_alike_twice(canvas: Canvas, count: int):
         stage.draw_dust(canvas, view, 0.5)
         pictures.append(pixels(canvas.surface))
     assert np.array_equal(*pictures)
+
+
+def test_every_mission_has_the_sky_and_the_ground_of_its_world():
+    canvas = Canvas(pygame.Surface((320, 180)))
+    moon = Backdrop(canvas.size, np.random.default_rng(7), reduced_motion=True)
+
+    def colours(look: str) -> np.ndarray:
+        """Mean colour above the horizon and below it, (2, 3)."""
+        moon.under(LOOKS[look]).paint(canvas.surface)
+        picture = pygame.surfarray.array3d(canvas.surface).astype(float)
+        return np.array([picture[:, 60:130].mean(axis=(0, 1)), picture[:, 160:].mean(axis=(0, 1))])
+
+    dawn, mars, earth, night = (colours(look_of(mission)) for mission in ("fall", "mars", "earth", "night"))
+    assert (mars[:, 0] > 1.4 * mars[:, 2]).all()  # red
+    assert earth[0, 2] > 1.3 * earth[0, 0]  # blue
+    assert earth[1, 1] > earth[1, 0]  # green rather than grey
+    assert (night.sum(axis=1) < 0.6 * dawn.sum(axis=1)).all()
+    assert np.array_equal(colours(look_of("")), dawn)
+    assert set(LOOKS) >= {look_of(mission) for mission in MISSIONS}
