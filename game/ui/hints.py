@@ -30,23 +30,28 @@ def draw_hints(
     """
     pairs = list(hints)
     x, y = position
-    size *= min(1.0, room / max(hints_width(canvas, pairs, size), 1.0))
+    if room < math.inf:
+        size *= min(1.0, room / max(hints_width(canvas, pairs, size), 1.0))
+    widths = [_width(canvas, pair, size) for pair in pairs]
     if from_right:
-        x -= hints_width(canvas, pairs, size)
-    for key, meaning in pairs:
-        left = x
-        width = hints_width(canvas, [(key, meaning)], size)
-        box = (left - 6, y - _LINE, width + 12, 1.6 * _LINE)
+        x -= sum(widths) + (len(widths) - 1) * _GAPS[1]
+    for (key, meaning), width in zip(pairs, widths, strict=True):
+        box = (x - 6, y - _LINE, width + 12, 1.6 * _LINE)
         pointed = isinstance(key, KeyName) and canvas.link(box, key.press)
-        x += canvas.text(key, (x, y), size=size, colour=INK, weight="medium").width + _GAPS[0]
-        x += canvas.text(meaning, (x, y), size=size, colour=INK if pointed else MUTE).width + _GAPS[1]
+        canvas.text(key, (x, y), size=size, colour=INK, weight="medium")
+        end = x + width
+        canvas.text(meaning, (end, y), size=size, colour=INK if pointed else MUTE, align="right")
+        x = end + _GAPS[1]
 
 
 def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = SMALL) -> float:
     """Return how wide `draw_hints` will be."""
-    keys = sum(canvas.text_width(key, size=size, weight="medium") for key, _ in hints)
-    meanings = sum(canvas.text_width(meaning, size=size) for _, meaning in hints)
-    return keys + meanings + len(hints) * sum(_GAPS) - _GAPS[1]
+    return sum(_width(canvas, pair, size) for pair in hints) + (len(hints) - 1) * _GAPS[1]
+
+
+def _width(canvas: Canvas, pair: tuple[str, str], size: float) -> float:
+    key, meaning = pair
+    return canvas.text_width(key, size=size, weight="medium") + _GAPS[0] + canvas.text_width(meaning, size=size)
 
 
 def flight_hints(controls: Controls) -> list[tuple[str, str]]:
