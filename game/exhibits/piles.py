@@ -49,6 +49,7 @@ class Heap(Exhibit):
 
     def build(self) -> None:
         """Hang them up in rows, each a little askew."""
+        self.world.iterations = 6  # it rests as well as with ten: no load is carried through more than a few of them
         rng = np.random.default_rng(_SEED)
         for number in range(self.count):
             row, column = divmod(number, self.columns)
