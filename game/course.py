@@ -173,7 +173,7 @@ class Flown(Course):
         medal = self.medal(flight)
         if not card.good:
             return replace(card, score="", advice=_advice(flight.env) or card.advice)
-        return replace(card, score=texts.MEDALS[medal], reason=self._missing(medal, flight))
+        return replace(card, score=texts.MEDALS[medal], medal=medal, reason=self._missing(medal, flight))
 
     def _missing(self, medal: int, flight: Flight) -> str:
         if medal == 0:

@@ -21,6 +21,7 @@ from game.ui.tokens import (
     LABEL,
     LINE,
     MARGIN,
+    MEDALS,
     MUTE,
     NET,
     SMALL,
@@ -178,7 +179,8 @@ def draw_share(
 class Card:
     """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better.
 
-    Of a shared flight, `stepped_in` is how often the co-pilot did. `left` is where the card stands.
+    Of a shared flight, `stepped_in` is how often the co-pilot did. `medal` is 3 for gold, 2, 1, and 0 for none. `left` is
+    where the card stands.
     """
 
     good: bool
@@ -188,6 +190,7 @@ class Card:
     human: float
     advice: str = ""
     score: str = ""
+    medal: int = 0
     stepped_in: int | None = None
     left: float = 400.0
 
@@ -223,7 +226,9 @@ def draw_card(
     canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
     canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
     canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
-    canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
+    score = canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
+    for lamp in range(card.medal):
+        canvas.dot((score.left - 14 - 13 * lamp, top + 47), 4, MEDALS[card.medal])
     canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK)
     if lower:
         canvas.text(card.advice, (left, top + 110), size=SMALL, colour=MUTE)

@@ -23,7 +23,7 @@ from game.ui.hints import draw_hints
 from game.ui.listing import Listing
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
-from game.ui.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE, Colour
+from game.ui.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MEDALS, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.ui.widgets import Choice, Word
 
 _LIST: Final = pygame.Rect(MARGIN, 164, 560, 416)
@@ -38,8 +38,6 @@ _VERB: Final = (_LEFT, 524.0, 200.0, 36.0)
 _FOOT: Final = 608
 _DAILY: Final = "daily"
 _FLIGHTS: Final = "flights"  # in the game's own data
-# A medal is told by its word and by how many lamps are lit, not by its colour alone.
-_MEDALS: Final[tuple[Colour, ...]] = (MUTE, (205, 140, 96), (196, 206, 224), (255, 208, 110))
 
 
 class Missions:
@@ -196,7 +194,7 @@ class Missions:
         for row, (medal, limit) in enumerate(((3, mission.gold), (2, mission.silver), (1, None))):
             y = 276 + 30 * row
             for lamp in range(medal):
-                canvas.dot((_LEFT + 5 + 13 * lamp, y - 4), 4, _MEDALS[medal])
+                canvas.dot((_LEFT + 5 + 13 * lamp, y - 4), 4, MEDALS[medal])
             canvas.text(texts.MEDALS[medal], (_LEFT + 52, y), size=SMALL + 1, colour=INK)
             words = texts.MISSION_LIMIT.format(fuel=limit[0], seconds=limit[1]) if limit else texts.MISSION_ANY
             canvas.text(words, (_LEFT + 124, y), size=SMALL, colour=MUTE)
