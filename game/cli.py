@@ -10,9 +10,9 @@ from game import texts
 
 def add_commands(commands: Any) -> None:
     """Add `physics` to a parser's sub-commands."""
-    physics = commands.add_parser("physics", help="open the gallery of physics")
+    physics = commands.add_parser("physics", help=texts.CLI_PHYSICS)
     names = list(texts.EXHIBITS)
-    physics.add_argument("--exhibit", choices=names, default=names[0], help=f"what to begin with (default: {names[0]})")
+    physics.add_argument("--exhibit", choices=names, default=names[0], help=texts.CLI_EXHIBIT.format(name=names[0]))
     physics.set_defaults(run=open_physics)
 
 

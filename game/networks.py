@@ -126,4 +126,4 @@ class Roster:
 
 
 def _missing(models_dir: Path) -> Network:
-    return Network(DEFAULT, problem=f"{models_dir / 'lander' / DEFAULT} is missing")
+    return Network(DEFAULT, problem=texts.NETWORK_MISSING.format(path=models_dir / "lander" / DEFAULT))

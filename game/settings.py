@@ -9,6 +9,8 @@ from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, Final
 
+from game import texts
+
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
 
@@ -85,7 +87,7 @@ class SettingsFile:
             self._set_aside()
             return Settings()
         except OSError as error:
-            self.problem = f"The settings could not be read: {error.strerror}. These are the defaults."
+            self.problem = texts.SETTINGS_UNREADABLE.format(reason=error.strerror)
             return Settings()
         return Settings.from_dict(values)
 
@@ -94,7 +96,7 @@ class SettingsFile:
         try:
             write_atomically(self.path, json.dumps(settings.to_dict(), indent=2) + "\n")
         except OSError as error:
-            self.problem = f"The settings could not be saved: {error.strerror}."
+            self.problem = texts.SETTINGS_NOT_SAVED.format(reason=error.strerror)
             return False
         return True
 
@@ -102,9 +104,9 @@ class SettingsFile:
         aside = self.path.with_name(DAMAGED_NAME)
         try:
             self.path.replace(aside)
-            self.problem = f"The settings file was damaged and is kept as {aside.name}. These are the defaults."
+            self.problem = texts.SETTINGS_DAMAGED.format(name=aside.name)
         except OSError:
-            self.problem = "The settings file is damaged. These are the defaults."
+            self.problem = texts.SETTINGS_DAMAGED_HERE
 
 
 def write_atomically(path: Path, text: str) -> None:

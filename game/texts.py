@@ -1061,3 +1061,14 @@ PRACTICE_PACE: Final = "speed {percent} %"
 # Size of text, by the setting's words
 TEXT_SIZE: Final = "Text"
 TEXT_SIZES: Final = {"normal": "normal", "large": "large", "largest": "largest"}
+
+# The command line
+CLI_PHYSICS: Final = "open the gallery of physics"
+CLI_EXHIBIT: Final = "what to begin with (default: {name})"
+NETWORK_MISSING: Final = "{path} is missing"
+
+# The settings file
+SETTINGS_UNREADABLE: Final = "The settings could not be read: {reason}. These are the defaults."
+SETTINGS_NOT_SAVED: Final = "The settings could not be saved: {reason}."
+SETTINGS_DAMAGED: Final = "The settings file was damaged and is kept as {name}. These are the defaults."
+SETTINGS_DAMAGED_HERE: Final = "The settings file is damaged. These are the defaults."
