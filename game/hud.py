@@ -179,8 +179,8 @@ def draw_share(
 class Card:
     """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better.
 
-    Of a shared flight, `stepped_in` is how often the co-pilot did. `medal` is 3 for gold, 2, 1, and 0 for none. `left` is
-    where the card stands.
+    Of a shared flight, `stepped_in` is how often the co-pilot did. `medal` is 3 for gold, 2, 1, and 0 for none.
+    `left` is where the card stands.
     """
 
     good: bool
