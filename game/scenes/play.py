@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
 from typing import Final
 
 import pygame
 
-from ai.lander import Outcome
 from game import flight_words, hud, networks, texts
 from game.cockpit.cockpit import Cockpit
 from game.cockpit.hands import HANDS, OWN
@@ -17,21 +14,18 @@ from game.context import Context
 from game.controls import Command, translate
 from game.course import Course, Duel
 from game.difficulty import Difficulty
+from game.ending import Ending, write_down
 from game.flight import Flight, Hand
 from game.mouse_stick import MouseStick
 from game.outlook import Outlook
 from game.pace import Pace
 from game.records import Records
-from game.render import Shot
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.ui.canvas import Canvas
 from game.ui.widgets import OnPress
 from game.world.scenery import Scenery
 
-_CARD_AFTER: Final = 45  # steps from the end of a flight to its card
-_CARD_RISE: Final = 16
-_CRASH_SEEN: Final = 6  # steps of a crash's slow motion before it can be cut short: a thrust may still be held
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
 _AWAY_STEPS: Final = 10
 
@@ -44,6 +38,7 @@ class Play:
 
     Attributes:
         flight: the flight on the screen.
+        ending: what follows its end.
         waiting: whether it still hangs in the sky for the pilot's first touch.
 
     """
@@ -63,9 +58,6 @@ class Play:
         self._hands = OWN
         self._mouse = MouseStick()
         self._away = 0  # steps since the window was left; 0 while it is in use
-        self._since_end = 0  # steps of time since the flight was over
-        self._card: hud.Card | None = None
-        self._whole: Shot | None = None  # what the camera shows of a flight that is over
 
     def enter(self, context: Context) -> None:
         """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
@@ -117,12 +109,11 @@ class Play:
                 self.retry()
             case Command.NEXT:
                 self._begin_elsewhere()
-            case Command.CONFIRM if self._card_shown > 0:
+            case Command.CONFIRM if self.ending.shown > 0:
                 return self._go_on()
-            case Command.CONFIRM if self._pace.slow and self._since_end > _CRASH_SEEN:
-                self._pace.hurry()
-                self._since_end = _CARD_AFTER
-            case _ if self._card_shown >= 1 and _is_space(event):
+            case Command.CONFIRM:
+                self.ending.hurry()
+            case _ if self.ending.shown >= 1 and _is_space(event):
                 return self._go_on()
         return None
 
@@ -152,15 +143,12 @@ class Play:
         self._outlook.draw(canvas, view)
         if self._ghost:
             self._ghost.draw(canvas, view, alpha)
-        self._scenery.draw_craft(canvas, alpha, reason=self._card_shown == 0)
+        self._scenery.draw_craft(canvas, alpha, reason=self.ending.shown == 0)
         self._cockpit.draw_beside(canvas, view, flight.poses.at(alpha)[0])
         if self._course:
             self._course.draw(canvas, view, flight, alpha, self._controls)
         self._draw_words(canvas)
-        if self._card is not None and self._card_shown > 0:
-            rival = self._ghost.row(flight.env) if self._ghost else None
-            keys = flight_words.card_keys(self._controls, self._card.good, self._course)
-            hud.draw_card(canvas, self._card, keys, self._card_shown, self._settings.show_hints, rival)
+        self.ending.draw(canvas, self._controls, self._course, self._ghost, self._settings.show_hints)
 
     # The flight
 
@@ -179,22 +167,25 @@ class Play:
         if not was_over:
             self._cockpit.follow()
         self._scenery.clear = self._cockpit.clear
-        self._scenery.follow(flight.over and not was_over, self._whole if self._since_end > _CARD_AFTER else None)
+        self._scenery.follow(flight.over and not was_over, self.ending.shot)
         if self._course:
             self._course.follow(flight)
         if flight.over:
-            self._end(was_over)
+            self._end()
 
-    def _end(self, was_over: bool) -> None:
+    def _end(self) -> None:
         """Let a step pass after the flight: to its card, or at once to the next try."""
-        self._since_end += 1
-        if not was_over and self.flight.outcome is Outcome.CRASHED and not self._settings.reduced_motion:
-            self._pace.slow_down()
-        if self._course and self._course.again():
-            if self._since_end > _CARD_AFTER:
+        ending, course = self.ending, self._course
+        ending.follow()
+        if course and course.again():
+            if ending.due:
                 self.retry()
-        elif self._card is None:
-            self._finish()
+        elif ending.card is None:
+            ending.make_card(self._cockpit, self._difficulty, course, self._skill, self._scenery)
+            if course is None or course.kept:
+                assert self._context is not None
+                write_down(self._context, self.flight, self._cockpit, self._difficulty, course, self._records,
+                           self._skill, self._network, self._hands)  # fmt: skip
 
     @property
     def _held(self) -> int:
@@ -227,37 +218,10 @@ class Play:
             self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
         )
         self._heard = FlightSound(self._sound, self.flight.env, slows=not self._settings.reduced_motion)
-        self._pace, self._since_end, self._whole = Pace(), 0, None
+        self._pace = Pace()
+        self.ending = Ending(self.flight, self._pace, self._settings.reduced_motion)
         self._readouts = hud.flight_readouts(self.flight.env)
-        self._card = None
         self._outlook = Outlook(self.flight, None if check else self._guide)
-
-    def _finish(self) -> None:
-        """Write a flight down that has just ended, and make its card."""
-        assert self._context is not None
-        practice = self._difficulty.practice
-        self._whole = self._scenery.shot_of(self._cockpit.track.path)
-        self._card = self._cockpit.card(0 if practice else self._skill.best, self._whole.view(1.0))
-        course, alone = self._course, self._cockpit.alone(self._hands) and not practice
-        if course:
-            self._card = course.card(self._card, self.flight)
-            if not course.kept:
-                return
-        if practice:
-            self._card = replace(self._card, score=self._difficulty.words)
-        told = "" if course or practice else self._cockpit.keep_lesson(self._context.user_dir, self._hands)
-        entry = self._records.keep(
-            self.flight,
-            time.time(),
-            alone=alone and (course is None or course.counts),
-            network=self._network.name if self._network.flyer else "",
-            course=course.name if course else "",
-            medal=course.medal(self.flight) if course and not practice else 0,
-            pace=self._difficulty.slowest,
-        )
-        self._skill.add(entry)
-        if told or self._records.problem:
-            self._context.note(told or self._records.problem)
 
     @property
     def _guide(self) -> networks.Flyer | None:
@@ -296,7 +260,7 @@ class Play:
 
     def _go_on(self) -> Transition | None:
         """After a landing to a new start, or back from a course that has no other; after a crash to the same one."""
-        if self._card is None or not self._card.good:
+        if self.ending.card is None or not self.ending.card.good:
             self.retry()
         elif self._course and self._course.fixed:
             return Pop()
@@ -347,14 +311,6 @@ class Play:
         self._outlook.ask(self._guide)
 
     # The picture
-
-    @property
-    def _card_shown(self) -> float:
-        """How far the card has come in, 0 to 1."""
-        since = self._since_end - _CARD_AFTER
-        if since <= 0:
-            return 0.0
-        return 1.0 if self._settings.reduced_motion else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
 
     def _draw_words(self, canvas: Canvas) -> None:
         course = self._course

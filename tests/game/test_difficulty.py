@@ -201,7 +201,7 @@ def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_practice(open
     [entry] = Records(context.user_dir).entries()
     assert entry.landed
     assert (entry.pace, entry.practice, entry.alone, entry.medal) == (0.5, True, False, 0)
-    assert texts.PRACTICE in play._card.score
+    assert texts.PRACTICE in play.ending.card.score
     record = Records(context.user_dir).read(entry.file)
     again = Rerun(record.recording)
     while not again.over:

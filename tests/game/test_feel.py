@@ -58,7 +58,7 @@ def crash(driver: Driver) -> None:
 
 def frames_to_card(driver: Driver) -> int:
     frames = 0
-    while scene(driver)._card_shown < 1:
+    while scene(driver).ending.shown < 1:
         driver.frames(1)
         frames += 1
         assert frames < 300
@@ -120,7 +120,7 @@ def test_the_reason_of_a_crash_is_told_on_the_spot_before_the_card(game: Driver,
     crash(game)
     written.clear()
     game.frames(3)
-    assert scene(game)._card_shown == 0
+    assert scene(game).ending.shown == 0
     assert texts.CAUSES["TERRAIN"] in written
 
 

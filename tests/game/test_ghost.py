@@ -61,7 +61,7 @@ def end(driver: Driver, *start: float) -> None:
     play = scene(driver)
     play.waiting = False
     play.flight.env.place(np.ones(1, bool), np.array([start]))
-    while play._card_shown < 1:
+    while play.ending.shown < 1:
         driver.frames(1)
 
 
@@ -175,7 +175,7 @@ def test_hand_over_still_works_and_the_card_tells_of_both(duel):
     assert scene(driver).flight.hand is Hand.NETWORK
     for _ in range(1500):
         driver.frames(1)
-        if scene(driver)._card_shown >= 1:
+        if scene(driver).ending.shown >= 1:
             break
     assert scene(driver).flight.outcome is Outcome.LANDED
     row = ghost(driver).row(scene(driver).flight.env)

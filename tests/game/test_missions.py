@@ -48,7 +48,7 @@ def land(driver: Driver) -> None:
     env = scene.flight.env
     x, y = env.pad[0].tolist()
     env.place(np.ones(1, bool), np.array([[x, y + PARAMS.stand + 0.002, 0, 0, 0, 0]]))
-    while scene._card_shown < 1:
+    while scene.ending.shown < 1:
         driver.frames(1)
 
 
@@ -118,7 +118,7 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     assert play(driver)._course.name == "brake"
     assert play(driver)._ghost is not None
     land(driver)
-    assert play(driver)._card.score == "gold"
+    assert play(driver).ending.card.score == "gold"
     driver.key(pygame.K_RETURN)
     assert driver.top_name == "Missions"
     assert driver.top._best["brake"].medal == 3
@@ -242,7 +242,7 @@ def test_no_medal_for_what_the_network_flew_or_for_a_crash(open_game: Open):
     driver.key(pygame.K_TAB)
     driver.frames(3)
     land(driver)
-    assert play(driver)._card.score == "no medal"
+    assert play(driver).ending.card.score == "no medal"
 
 
 def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):

@@ -127,8 +127,8 @@ def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_
     driver.frames(1400)
     play = scene(driver)
     assert play.flight.outcome is Outcome.LANDED
-    assert play._card is not None
-    assert 0 < play._card.human < 0.2
+    assert play.ending.card is not None
+    assert 0 < play.ending.card.human < 0.2
 
 
 @pytest.mark.parametrize("key", [pygame.K_RETURN, pygame.K_SPACE, pygame.K_r])

@@ -96,8 +96,8 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     scene = play(driver)
     assert scene.flight.outcome is Outcome.LANDED
     driver.frames(90)
-    assert scene._card is not None
-    assert scene._card.title == texts.TUTORIAL_DONE
+    assert scene.ending.card is not None
+    assert scene.ending.card.title == texts.TUTORIAL_DONE
     assert not Records(context.user_dir).entries()
     pupil.press("confirm")
     assert play(driver)._course is None

@@ -1,0 +1,117 @@
+"""How a flight ends: written down, then, after a moment, its card, while the camera draws back to all of it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import Final
+
+from ai.lander import Outcome
+from game import flight_words, hud
+from game.cockpit.cockpit import Cockpit
+from game.cockpit.skill import Skill
+from game.context import Context
+from game.controls import Controls
+from game.course import Course
+from game.difficulty import Difficulty
+from game.flight import Flight
+from game.ghost import Ghost
+from game.networks import Network
+from game.pace import Pace
+from game.records import Records
+from game.render import Shot
+from game.ui.canvas import Canvas
+from game.world.scenery import Scenery
+
+_CARD_AFTER: Final = 45  # steps from the end of a flight to its card
+_CARD_RISE: Final = 16
+_CRASH_SEEN: Final = 6  # steps of a crash's slow motion before it can be cut short: a thrust may still be held
+
+
+class Ending:
+    """Of one flight; `follow` once for every step of time since it is over.
+
+    Attributes:
+        card: how it ended; None before, and where it is tried again at once.
+
+    """
+
+    def __init__(self, flight: Flight, pace: Pace, reduced_motion: bool) -> None:
+        self._flight, self._pace, self._calm = flight, pace, reduced_motion
+        self._since = 0
+        self._whole: Shot | None = None
+        self.card: hud.Card | None = None
+
+    @property
+    def due(self) -> bool:
+        """Whether the moment between the end and what follows it is over."""
+        return self._since > _CARD_AFTER
+
+    @property
+    def shown(self) -> float:
+        """How far the card has come in, 0 to 1."""
+        since = self._since - _CARD_AFTER
+        if since <= 0:
+            return 0.0
+        return 1.0 if self._calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
+
+    @property
+    def shot(self) -> Shot | None:
+        """What the camera is to show instead of the craft, if anything."""
+        return self._whole if self.due else None
+
+    def follow(self) -> None:
+        """Let a step pass; with the first one a crash goes into slow motion."""
+        self._since += 1
+        if self._since == 1 and self._flight.outcome is Outcome.CRASHED and not self._calm:
+            self._pace.slow_down()
+
+    def hurry(self) -> bool:
+        """Cut the slow motion short, and show the card; whether there was any to cut."""
+        if not self._pace.slow or self._since <= _CRASH_SEEN:
+            return False
+        self._pace.hurry()
+        self._since = _CARD_AFTER
+        return True
+
+    def make_card(self, cockpit: Cockpit, difficulty: Difficulty, course: Course | None, skill: Skill,
+                  scenery: Scenery) -> None:  # fmt: skip
+        """Say how it ended."""
+        self._whole = scenery.shot_of(cockpit.track.path)
+        card = cockpit.card(0 if difficulty.practice else skill.best, self._whole.view(1.0))
+        if course:
+            card = course.card(card, self._flight)
+        if difficulty.practice and (course is None or course.kept):
+            card = replace(card, score=difficulty.words)
+        self.card = card
+
+    def draw(
+        self, canvas: Canvas, controls: Controls, course: Course | None, ghost: Ghost | None, advise: bool
+    ) -> None:
+        """Draw the card, once there is one."""
+        if self.card is None or self.shown == 0:
+            return
+        rival = ghost.row(self._flight.env) if ghost else None
+        keys = flight_words.card_keys(controls, self.card.good, course)
+        hud.draw_card(canvas, self.card, keys, self.shown, advise, rival)
+
+
+def write_down(
+    context: Context, flight: Flight, cockpit: Cockpit, difficulty: Difficulty, course: Course | None,
+    records: Records, skill: Skill, network: Network, hands: str,
+) -> None:  # fmt: skip
+    """Keep a flight that is over, as an example too if wished, and count it; tell the player what went wrong."""
+    practice = difficulty.practice
+    told = "" if course or practice else cockpit.keep_lesson(context.user_dir, hands)
+    entry = records.keep(
+        flight,
+        time.time(),
+        alone=cockpit.alone(hands) and not practice and (course is None or course.counts),
+        network=network.name if network.flyer else "",
+        course=course.name if course else "",
+        medal=course.medal(flight) if course and not practice else 0,
+        pace=difficulty.slowest,
+    )
+    skill.add(entry)
+    if told or records.problem:
+        context.note(told or records.problem)
