@@ -1013,7 +1013,7 @@ TUTORIAL_STEP: Final = "{number} of {count}"
 TUTORIAL: Final = {
     "fire": ("{main}  fires the main engine. Hold it a moment.", ""),
     "fall": ("Let go of everything, and feel the moon pull.", ""),
-    "lean": ("{left} or {right}  turns the craft. A short tap, and it goes on turning.", ""),
+    "lean": ("{turn}  turns the craft. A short tap, and it goes on turning.", ""),
     "upright": (
         "{other}  turns it back. Stop it upright.",
         "{other}  in short taps, until it stands still and upright.",
@@ -1023,6 +1023,7 @@ TUTORIAL: Final = {
     "take_back": ("{hand_over}  again, and the stick is yours.", ""),
     "land": ("Now land: upright, on the pad, slower than 2 m/s.", "Land: {main}  in short bursts, all the way down."),
 }
+TUTORIAL_EITHER: Final = "{left} or {right}"
 TUTORIAL_GOOD: Final = {
     "fire": "It pushes where the craft points",
     "fall": "Slowly at first, and then faster",

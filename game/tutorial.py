@@ -193,11 +193,11 @@ class Tutorial(Course):
 
     def words(self, flight: Flight, controls: Controls) -> str:
         """Return what to say now, in the words of the device in use."""
+        left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
         return self._line(flight.env, flight.hand).format(
             main=controls.word(Held.MAIN),
-            left=controls.word(Held.LEFT),
-            right=controls.word(Held.RIGHT),
-            other=controls.word(Held.RIGHT if flight.env.angle[0] > 0 else Held.LEFT),
+            turn=left if left == right else texts.TUTORIAL_EITHER.format(left=left, right=right),
+            other=right if flight.env.angle[0] > 0 else left,
             hand_over=controls.word(Command.HANDOVER),
         )
 

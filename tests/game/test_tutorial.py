@@ -182,3 +182,15 @@ def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game:
             break
         driver.frames(1)
     assert words() == texts.TUTORIAL_TOO_FAST.format(main=controls.word(Held.MAIN))
+
+
+def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
+    driver = open_game(Play(0, course=Tutorial()))
+    for _ in range(3):
+        driver.key(pygame.K_n)
+    course, controls = tutorial(driver), driver.app.context.controls
+    flight = play(driver).flight
+    assert course.lesson.name == "lean"
+    assert course.words(flight, controls).startswith(f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} ")
+    driver.move((640, 360))
+    assert " or " not in course.words(flight, controls).split(".")[0]
