@@ -229,14 +229,14 @@ def draw_card(
     score = canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
     for lamp in range(card.medal):
         canvas.dot((score.left - 14 - 13 * lamp, top + 47), 4, MEDALS[card.medal])
-    canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK)
+    canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK, room=width)
     if lower:
-        canvas.text(card.advice, (left, top + 110), size=SMALL, colour=MUTE)
+        canvas.text(card.advice, (left, top + 110), size=SMALL, colour=MUTE, room=width)
     top += lower
     column = width / len(card.figures)
     for number, (label, value, unit) in enumerate(card.figures):
         x = left + number * column
-        canvas.text(label, (x, top + 122), size=LABEL, colour=MUTE, weight="medium")
+        canvas.text(label, (x, top + 122), size=LABEL, colour=MUTE, weight="medium", room=column - 12)
         figure = canvas.text(value, (x, top + 149), size=TITLE, weight="light", tabular=True)
         canvas.text(unit, (figure.right + 4, top + 149), size=LABEL, colour=MUTE)
     if rival:
@@ -249,7 +249,7 @@ def draw_card(
                             size=SMALL, colour=MUTE, align="centre")  # fmt: skip
         canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
-    draw_hints(canvas, keys, (left, top + 244))
+    draw_hints(canvas, keys, (left, top + 244), room=width)
 
 
 def _draw_rival(canvas: Canvas, rival: Rival, labels: Sequence[str], corner: Point, width: float) -> None:

@@ -25,7 +25,7 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.pick import Pick
-from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
 from game.ui.widgets import Choice, OnPress
 from game.ui.words import GAP
 from game.world.backdrop import landscape
@@ -285,7 +285,8 @@ class Watch:
         hud.draw_corner(canvas, texts.WATCH_TITLE, crowd)
         scripted = self._network.name == networks.SCRIPTED
         flies = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=_shortened(self._network.name))
-        hud.draw_hand(canvas, texts.WATCH_STOPPED if self.stopped else flies, NET)
+        said = texts.WATCH_STOPPED if self.stopped else flies
+        hud.draw_hand(canvas, said, NET)
         self._draw_counts(canvas)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], (758, 880, 1002, 1124))
         if self.problem:
@@ -295,9 +296,9 @@ class Watch:
         self._form.draw(canvas)
         assert self._context is not None
         if self._settings.show_hints or self._context.controls.mouse_in_use:  # for the mouse, they are what it presses
-            self._draw_hints(canvas)
+            self._draw_hints(canvas, VIEW_SIZE[0] / 2 - 36 - canvas.text_width(said, size=TEXT) / 2 - 40)
 
-    def _draw_hints(self, canvas: Canvas) -> None:
+    def _draw_hints(self, canvas: Canvas, room: float) -> None:
         assert self._context is not None
         word = self._context.controls.word
         pad = self._context.controls.pad_in_use
@@ -312,7 +313,7 @@ class Watch:
         ]
         if COUNTS[self._count] > 1:
             hints.insert(2, (word(Command.NEXT), texts.HINT_NEXT_LANDER))
-        draw_hints(canvas, hints, (VIEW_SIZE[0] - 36, 42), from_right=True)
+        draw_hints(canvas, hints, (VIEW_SIZE[0] - 36, 42), from_right=True, room=room)
 
     def _draw_counts(self, canvas: Canvas) -> None:
         landed, lost = self.swarm.landed, self.swarm.lost

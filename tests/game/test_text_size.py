@@ -13,6 +13,7 @@ from game.scene import Push, Scene
 from game.scenes.menu import Menu
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
+from game.scenes.watch import Watch
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.tokens import LABEL, SMALL, TEXT, TEXT_SIZES, TITLE, VIEW_SIZE
@@ -21,6 +22,7 @@ from tests.game.test_walks import OVER_OTHERS, SCREENS
 
 FLOWN: dict[str, Callable[[Context], Scene]] = {
     "Play": lambda _: Play(3),
+    "swarm": lambda _: Watch(16, seed=2),
     "mission": lambda _: Play(0, course=Flown(MISSIONS["wind"])),
 }
 # A capital's height and what hangs below the line, in sizes of the type: where ink is.
@@ -59,6 +61,22 @@ def wrong(written: Written) -> set[tuple[str, str]]:
     return found
 
 
+def crashed(driver: Driver) -> None:
+    """Fall, and wait for the card."""
+    driver.frames(3)
+    driver.key(pygame.K_UP)
+    while not driver.top.flight.over:
+        driver.frames(10)
+    driver.frames(240)
+
+
+def shared(driver: Driver) -> None:
+    """Fly with the network's help among hills."""
+    driver.frames(3)
+    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0)
+    driver.frames(60)
+
+
 def opened(open_game, context: Context, name: str, size: str) -> Driver:
     context.settings.reduced_motion, context.settings.text_size, context.settings.tutored = True, size, True
     context.settings_file.save(context.settings)
@@ -83,6 +101,21 @@ def test_nothing_meets_or_leaves_at_the_largest(open_game, context: Context, mon
         driver.app.apply_settings()
         large -= wrong(write_down(driver, monkeypatch))
     assert not large
+
+
+@pytest.mark.parametrize(("name", "settings", "happens"), [
+    ("Play", {}, crashed),
+    ("mission", {}, crashed),
+    ("Play", {"assist": 0.6, "three_pads": True}, shared),
+    ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
+    ("swarm", {}, lambda driver: driver.frames(400)),
+])  # fmt: skip
+def test_nor_in_the_midst_of_things(open_game, context: Context, monkeypatch, name: str, settings, happens):
+    for setting, value in settings.items():
+        setattr(context.settings, setting, value)
+    driver = opened(open_game, context, name, "largest")
+    happens(driver)
+    assert not wrong(write_down(driver, monkeypatch))
 
 
 def test_small_text_grows_most_and_order_is_kept():
