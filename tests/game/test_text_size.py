@@ -1,14 +1,17 @@
 """At the largest size of text, nothing leaves the view and no two texts meet, in any screen."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pygame
 import pytest
 
 from ai.missions import MISSIONS
+from benchmarks.tour import stock
 from game import texts
 from game.context import Context
 from game.course import Flown
+from game.records import Records
 from game.scene import Push, Scene
 from game.scenes.menu import Menu
 from game.scenes.play import Play
@@ -115,6 +118,17 @@ def test_nor_in_the_midst_of_things(open_game, context: Context, monkeypatch, na
         setattr(context.settings, setting, value)
     driver = opened(open_game, context, name, "largest")
     happens(driver)
+    assert not wrong(write_down(driver, monkeypatch))
+
+
+@pytest.mark.parametrize("name", ["Logbook", "Missions", "Runs"])
+def test_nor_where_there_is_much_to_list(open_game, context: Context, monkeypatch, name: str):
+    stock(context)
+    records = Records(context.user_dir)
+    entry = replace(records.entries()[0], course="ferry", medal=3, gravity=0.8, outcome="OUT_OF_BOUNDS", human=0.5)
+    records._append(entry)
+    driver = opened(open_game, context, name, "largest")
+    driver.keys(pygame.K_DOWN)
     assert not wrong(write_down(driver, monkeypatch))
 
 
