@@ -19,6 +19,7 @@ from game.scene import Pop, Push, Transition
 from game.tutorial import Tutorial
 from game.ui.canvas import Canvas
 from game.ui.form import Form
+from game.ui.glyphs import icon
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing
 from game.ui.prose import wrapped
@@ -147,11 +148,12 @@ class Missions:
 
     def _row(self, name: str) -> tuple[str, str, str]:
         best = self._best.get(name)
+        title = f"{icon(name)}   {(_TOLD.get(name) or texts.MISSIONS[name])[0]}"
         if name == FIRST.name:
-            return texts.TUTORIAL_TITLE, "", ""
+            return title, "", ""
         if name == _DAILY:
-            return texts.DAILY, "", f"{best.score}" if best else "–"
-        return texts.MISSIONS[name][0], texts.MEDALS[best.medal] if best else "–", f"{best.fuel:.1f} s" if best else ""
+            return title, "", f"{best.score}" if best else "–"
+        return title, texts.MEDALS[best.medal] if best else "–", f"{best.fuel:.1f} s" if best else ""
 
     # The picture
 

@@ -1,4 +1,4 @@
-"""Signs for a pad's buttons, and a mouse's, of our own drawing: letters of a script that every text can contain.
+"""Signs for a pad's buttons, a mouse's, and missions: letters of a script of our own that every text can contain.
 
 Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence, and is
 measured, drawn and kept like any other letter.
@@ -12,6 +12,7 @@ from typing import Final, Literal
 
 import pygame
 
+from game.ui.marks import ICONS, MARKS
 from game.ui.tokens import Colour
 
 Family = Literal["xbox", "playstation", "nintendo"]
@@ -19,7 +20,7 @@ FAMILIES: Final[tuple[Family, ...]] = ("xbox", "playstation", "nintendo")
 # Beside the buttons, which have SDL's numbers, and the triggers, 32 and 33 (see `game.bindings`).
 TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT = 40, 41, 42, 43, 44, 45
 
-SIGN: Final = re.compile("([\ue000-\ue2ff])")
+SIGN: Final = re.compile("([\ue000-\ue3ff])")
 _FIRST: Final = 0xE000
 _FAMILY: Final = 0x100
 
@@ -81,6 +82,7 @@ _MIDDLE: Final = 0.36
 _BESIDE: Final = 0.07
 _STROKE: Final = 0.085
 _WIDE: Final = 1.9
+_ICON: Final = 0.5  # half an icon's height
 
 
 def family_of(name: str) -> Family:
@@ -94,6 +96,11 @@ def family_of(name: str) -> Family:
 def sign(family: Family, button: int) -> str:
     """Return the character that shows a pad's button, or one of the further signs above."""
     return chr(_FIRST + FAMILIES.index(family) * _FAMILY + button)
+
+
+def icon(name: str) -> str:
+    """Return the character that shows one of `game.ui.marks.ICONS`."""
+    return chr(_FIRST + len(FAMILIES) * _FAMILY + list(ICONS).index(name))
 
 
 def sign_width(character: str, size: float) -> float:
@@ -115,6 +122,9 @@ def draw_sign(
     middle = pygame.Vector2(start[0] + width / 2, start[1] - _MIDDLE * size)
     stroke = max(1, round(_STROKE * size))
     radius = _RADIUS * size
+    if frame == "icon":
+        ICONS[mark](surface, middle, _ICON * size, colour, stroke)
+        return
     if frame == "cross":
         _draw_cross(surface, middle, radius, colour, stroke, mark)
         return
@@ -129,9 +139,9 @@ def draw_sign(
         pygame.draw.circle(surface, colour, middle, radius, stroke)
     if frame == "stick":
         pygame.draw.circle(surface, colour, middle, 0.74 * radius, max(1, stroke // 2))
-    if mark in _MARKS:
+    if mark in MARKS:
         half = (0.62 if frame == "stick" else 0.5) * radius
-        _MARKS[mark](surface, middle, half, colour, round(1.3 * stroke))
+        MARKS[mark](surface, middle, half, colour, round(1.3 * stroke))
     else:
         letters = write(mark, (0.62 if frame == "stick" else 0.74) * size)
         ink = letters.get_bounding_rect()
@@ -140,69 +150,9 @@ def draw_sign(
 
 def _sign(character: str) -> tuple[str, str]:
     family, button = divmod(ord(character) - _FIRST, _FAMILY)
+    if family == len(FAMILIES):
+        return "icon", list(ICONS)[button]
     return _SIGNS[FAMILIES[family]].get(button, ("round", str(button)))
-
-
-Mark = Callable[[pygame.Surface, pygame.Vector2, float, Colour, int], object]
-
-
-def _lines(*strokes: tuple[tuple[float, float], tuple[float, float]]) -> Mark:
-    """Return a mark of straight strokes, in half widths from its middle."""
-
-    def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
-        for a, b in strokes:
-            pygame.draw.line(
-                surface, colour, middle + half * pygame.Vector2(a), middle + half * pygame.Vector2(b), stroke
-            )
-
-    return draw
-
-
-def _outline(*corners: tuple[float, float], filled: bool = False) -> Mark:
-    """Return a mark with these corners."""
-
-    def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
-        points = [middle + half * pygame.Vector2(corner) for corner in corners]
-        pygame.draw.polygon(surface, colour, points, 0 if filled else stroke)
-
-    return draw
-
-
-def _both(*marks: Mark) -> Mark:
-    def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
-        for mark in marks:
-            mark(surface, middle, half, colour, stroke)
-
-    return draw
-
-
-def _ring(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
-    pygame.draw.circle(surface, colour, middle, half, stroke)
-
-
-def _arrow(degrees: float, away: float = 0.0) -> Mark:
-    """Return a filled arrow head that points there, 0 being up, that far from the middle."""
-    corners = [pygame.Vector2(x, y - away).rotate(degrees) for x, y in ((-0.8, 0.5), (0.8, 0.5), (0.0, -0.6))]
-    return _outline(*((corner.x, corner.y) for corner in corners), filled=True)
-
-
-_SQUARE: Final = ((-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85))
-_MARKS: Final[dict[str, Mark]] = {
-    "saltire": _lines(((-0.9, -0.9), (0.9, 0.9)), ((-0.9, 0.9), (0.9, -0.9))),
-    "ring": _ring,
-    "square": _outline(*_SQUARE),
-    "triangle": _outline((0.0, -1.1), (1.0, 0.65), (-1.0, 0.65)),
-    "lines": _lines(*(((-1.0, y), (1.0, y)) for y in (-0.7, 0.0, 0.7))),
-    "windows": _both(
-        _outline((-1.0, -0.9), (0.4, -0.9), (0.4, 0.4), (-1.0, 0.4)),
-        _lines(((0.0, 1.0), (1.0, 1.0)), ((1.0, 1.0), (1.0, 0.0))),
-    ),
-    "minus": _lines(((-0.9, 0.0), (0.9, 0.0))),
-    "plus": _lines(((-0.9, 0.0), (0.9, 0.0)), ((0.0, -0.9), (0.0, 0.9))),
-    "turn": _both(_arrow(-90, 0.62), _arrow(90, 0.62)),
-    "left": _arrow(-90),
-    "right": _arrow(90),
-}
 
 
 def _draw_mouse(

@@ -5,7 +5,7 @@ from collections import Counter
 import pygame
 import pytest
 
-from ai.missions import MISSIONS
+from ai.missions import FIRST, MISSIONS
 from game.bindings import KEYBOARD, Bindings, Command, Held
 from game.context import Context
 from game.controls import Controls, key_name
@@ -94,3 +94,13 @@ def test_signs_stand_in_sentences():
     parts = [typeface.reach(part, 15.0, "regular") for part in ("Press ", sign, " to fly")]
     assert typeface.reach(f"Press {sign} to fly", 15.0, "regular") == pytest.approx(sum(parts), abs=1)
     assert sign.isprintable() is False  # nobody can type it
+
+
+def test_every_mission_has_an_icon_of_its_own():
+    names = [FIRST.name, *MISSIONS, "daily"]
+    pictures = set()
+    for name in names:
+        surface, _ = typeface.render(glyphs.icon(name), 20.0, "regular", INK)
+        pictures.add(pygame.image.tobytes(surface, "RGBA"))
+        assert surface.get_bounding_rect(min_alpha=60).height > 10
+    assert len(pictures) == len(names)
