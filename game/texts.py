@@ -1040,6 +1040,7 @@ TUTORIAL_TOO_TILTED: Final = "{other}  to stand upright before you touch."
 TUTORIAL_AWAY: Final = "The pad is far: lean towards it, and fire."
 TUTORIAL_DONE: Final = "You can fly"
 TUTORIAL_DONE_REASON: Final = "That was all there is to it. The rest is practice."
+TUTORIAL_OPEN: Final = "Fly the first flight again"
 TUTORIAL_SKIP: Final = "skip this"
 TUTORIAL_ASKS: Final = "Learn to fly, one thing at a time. Leave it whenever you like."
 

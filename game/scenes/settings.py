@@ -62,6 +62,8 @@ class SettingsScene:
         self._form.add(Word(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
         keys = (_KEYS_LEFT, _KEYS_WORD, 240, 32)
         self._form.add(Word(self._form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
+        first = (_KEYS_LEFT, _KEYS_WORD + 44, 240, 32)
+        self._form.add(Word(self._form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
 
     def exit(self) -> None:
         """Nothing is held: every change was saved as it was made."""
@@ -141,6 +143,13 @@ class SettingsScene:
 
 def _loudness(volume: float) -> str:
     return texts.SOUND_SHARE.format(percent=round(100 * volume)) if volume else texts.SOUND_OFF
+
+
+def _fly_first_flight() -> Transition:
+    from game.scenes.play import Play
+    from game.tutorial import Tutorial
+
+    return Push(Play(0, course=Tutorial()))
 
 
 def _open_bindings() -> Transition:

@@ -13,6 +13,7 @@ from game.flight import Hand
 from game.records import Records
 from game.scenes.menu import Menu
 from game.scenes.play import Play
+from game.scenes.settings import SettingsScene
 from game.settings import FILE_NAME
 from game.tutorial import LESSONS, Tutorial
 from tests.game.driver import Driver
@@ -194,3 +195,15 @@ def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
     assert course.words(flight, controls).startswith(f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} ")
     driver.move((640, 360))
     assert " or " not in course.words(flight, controls).split(".")[0]
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_it_is_flown_again_from_the_settings(open_game: Open, device: str):
+    player = Player(open_game(SettingsScene()), device)
+    index = [widget.label for widget in player.form.widgets].index(texts.TUTORIAL_OPEN)
+    assert index in player.ways()
+    player.form.focus(player.form.widgets[index])
+    player.press("confirm")
+    assert tutorial(player).lesson.name == "fire"
+    player.press("pause")
+    assert player.top_name == "SettingsScene"
