@@ -41,7 +41,7 @@ _ROW: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices,
 _ROW_HEIGHT: Final = 17.0
 _LABEL_WIDTH: Final = 84.0
 _WIDEST: Final = 452.0  # of a row: the pad begins there
-_CLEAR: Final = Clear(right=PANEL.left - 16.0)
+_CLEAR: Final = Clear(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
 _LONGEST_NAME: Final = 24
 _LONGEST_PROBLEM: Final = 110
 _CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
