@@ -227,14 +227,13 @@ def _row(entry: Entry) -> tuple[str, ...]:
     course = _course(entry)
     points = f"{entry.score}" if entry.landed else "–"
     by = texts.LOGBOOK_YOU if entry.alone else texts.LOGBOOK_SHARED if entry.human > 0 else texts.LOGBOOK_NETWORK
+    if entry.practice:
+        by = texts.PRACTICE
     return when, course, texts.OUTCOMES[entry.outcome][0], f"{entry.seconds:.1f} s", points, by
 
 
 def _course(entry: Entry) -> str:
-    """Name where a flight was flown, and say if it was practice."""
+    """Name where a flight was flown."""
     if entry.course == "daily":
-        name = texts.DAILY
-    else:
-        mission = texts.MISSIONS.get(entry.course)
-        name = mission[0] if mission else texts.COURSE_FREE.get(entry.pads, "")
-    return f"{name}, {texts.PRACTICE}" if entry.practice else name
+        return texts.DAILY
+    return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")
