@@ -224,7 +224,7 @@ def test_settings_are_changed_and_kept(open_screen):
     assert saved(player)["effects_volume"] == pytest.approx(0.7)
     while player.form.focused.label != texts.BACK:
         player.press("down")
-    player.press("right", "confirm")
+    player.press("right", "up", "confirm")
     assert player.top_name == "BindingsScene"
     kind = "keys" if player.device == "keys" else "buttons"
     while player.form.focused.label != texts.BINDINGS["PREVIOUS"]:
