@@ -182,7 +182,9 @@ class Tutorial(Course):
         return not self.through
 
     def card(self, card: Card, flight: Flight) -> Card:  # noqa: ARG002
-        """Say that this was all."""
+        """Say that this was all; of who flies it once more and crashes, say that."""
+        if not card.good:
+            return replace(card, score="")
         return replace(card, title=texts.TUTORIAL_DONE, reason=texts.TUTORIAL_DONE_REASON, score="")
 
     def _begin_lesson(self, number: int) -> None:
