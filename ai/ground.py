@@ -92,15 +92,27 @@ class Ground:
     def build(self, world: World, **surface: Any) -> list[Body]:
         """Put the ground into a world; return the pads. What else there is comes after them."""
         pads = []
-        for pad in self.pads:
-            thickness = pad.top - self.base
-            box = Polygon.box(pad.width, thickness, (0.0, -thickness / 2))
-            pads.append(world.add(box, (pad.x, pad.top), static=True, **surface))
-        width, depth = _PLAIN
-        middle = np.array([0.0, self.base - depth / 2])
-        world.add([Polygon.box(width, depth), *(Polygon(np.array(hill) - middle) for hill in self.hills)],
-                  middle, static=True, **surface)  # fmt: skip
+        for pad, shape in zip(self.pads, self._decks, strict=True):
+            pads.append(world.add(shape, (pad.x, pad.top), static=True, **surface))
+        world.add(self._land, (0.0, self._depth), static=True, **surface)
         return pads
+
+    @cached_property
+    def _decks(self) -> list[Polygon]:
+        """Shapes of the pads, the middle of each top at the origin."""
+        heights = [(pad.width, pad.top - self.base) for pad in self.pads]
+        return [Polygon.box(width, height, (0.0, -height / 2)) for width, height in heights]
+
+    @cached_property
+    def _land(self) -> list[Polygon]:
+        """Shapes of the plain, a deep box, and its hills around that's middle: they take longer to find than to use."""
+        hills = [Polygon(np.array(hill) - (0.0, self._depth)) for hill in self.hills]
+        return [Polygon.box(*_PLAIN), *hills]
+
+    @property
+    def _depth(self) -> float:
+        """Height of the plain's middle."""
+        return self.base - _PLAIN[1] / 2
 
 
 def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) -> Ground:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -50,7 +51,7 @@ class Circle:
 
 
 class Polygon:
-    """A convex polygon in its body's frame, corners (k, 2) in metres, kept counter-clockwise.
+    """A convex polygon in its body's frame, corners (k, 2) in metres, kept counter-clockwise; it never changes.
 
     Raises ValueError for fewer than three corners, no area, or a corner that points inwards.
     """
@@ -76,31 +77,31 @@ class Polygon:
         corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * (width / 2, height / 2)
         return cls(rotate(corners, np.cos(angle), np.sin(angle)) + np.asarray(centre))
 
-    @property
+    @cached_property
     def _fans(self) -> Array:
         """Twice the signed area of the triangle between the origin and each edge, (k,)."""
         return cross(self.vertices, np.roll(self.vertices, -1, axis=0))
 
-    @property
+    @cached_property
     def area(self) -> float:
         """Square metres."""
         return float(self._fans.sum() / 2)
 
-    @property
+    @cached_property
     def centroid(self) -> Array:
         """Centre of area, (2,)."""
         sums = self.vertices + np.roll(self.vertices, -1, axis=0)
         centre: Array = (sums * self._fans[:, None]).sum(axis=0) / (6 * self.area)
         return centre
 
-    @property
+    @cached_property
     def second_moment(self) -> float:
         """Polar second moment of area about the centroid, m⁴; times density it is the inertia."""
         a, b = self.vertices, np.roll(self.vertices, -1, axis=0)
         about_origin = (self._fans * (dot(a, a) + dot(a, b) + dot(b, b))).sum() / 12
         return float(about_origin - self.area * dot(self.centroid, self.centroid))
 
-    @property
+    @cached_property
     def bounding_radius(self) -> float:
         """Farthest corner from the centroid."""
         return float(length(self.vertices - self.centroid).max())

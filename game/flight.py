@@ -264,6 +264,7 @@ class Flight:
         self.env.target[:] = int((likely - 1e-6 * away).argmax())
 
 
+@lru_cache(maxsize=8)
 def ground_of(seed: int, pads: int) -> Ground:
     """Return the ground of a flight: a plain with one pad, or hills with a pad of every size there is."""
     return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
