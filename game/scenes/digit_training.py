@@ -25,9 +25,9 @@ from game.ui.charts import Charts
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.knobs import Knobs
-from game.ui.prose import wrapped
 from game.ui.sky import NightSky
-from game.ui.tokens import FIGURE, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.ui.standing import draw_problem, draw_standing, start_word
+from game.ui.tokens import LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
 from game.ui.widgets import OnPress, Word
 from game.worker import State
 
@@ -266,10 +266,7 @@ class DigitTrainingScene:
 
     def _name_words(self) -> None:
         pupil = self.pupil
-        running = pupil.state in (State.RUNNING, State.STARTING)
-        self.start_word.label = (
-            texts.TRAIN_PAUSE if running else texts.TRAIN_RESUME if pupil.state is State.PAUSED else texts.TRAIN_START
-        )
+        self.start_word.label = start_word(pupil.state)
         stop = texts.PUPIL_GO_ON if pupil.unfinished else ""
         if pupil.alive:
             stop = texts.PUPIL_STOPPING if pupil.stopping else texts.PUPIL_STOP
@@ -301,33 +298,24 @@ class DigitTrainingScene:
             chart.set(series, (0.0, end))
 
     def _draw_title(self, canvas: Canvas) -> None:
-        canvas.text(texts.PUPIL_TITLE, (_LEFT, 46), size=TITLE)
+        assert self._context is not None
         pupil, curves = self.pupil, self.pupil.curves
-        if not curves.points:
-            line = texts.PUPIL_LOADING if pupil.alive else texts.PUPIL_LINE
-            canvas.text(line, (_LEFT, 68), size=SMALL, colour=MUTE)
-        else:
+        line = texts.PUPIL_LOADING if pupil.alive else texts.PUPIL_LINE
+        if curves.points:
             last = curves.points[-1]
             line = texts.PUPIL_FIGURES.format(epoch=last.epoch, epochs=pupil.config.epochs, seconds=last.seconds,
                                               rate=last.images_per_second)  # fmt: skip
-            canvas.text(line, (_LEFT, 68), size=SMALL, colour=MUTE, tabular=True)
             draw_legend(canvas, [Series((), (), texts.PUPIL_HELD_OUT), _batches(curves)], (440, 118))
         part = pupil.test if pupil.test is not None else curves.scores[-1].accuracy if curves.scores else None
-        if part is not None:
-            words = texts.PUPIL_READ if pupil.test is None else texts.PUPIL_TESTED
-            figure = canvas.text(f"{100 * part:.2f}", (_LEFT - 1, 118), size=FIGURE, weight="light", tabular=True,
-                                 colour=canvas.palette.good)  # fmt: skip
-            canvas.text(words, (figure.right + 8, 118), size=SMALL, colour=MUTE)
-        assert self._context is not None
-        word = self._context.controls.word
-        draw_hints(canvas, [(word(Command.BACK), texts.HINT_BACK)], (_WIDTH - 24, 46), from_right=True)
+        figure = "" if part is None else f"{100 * part:.2f}"
+        words = texts.PUPIL_READ if pupil.test is None else texts.PUPIL_TESTED
+        draw_standing(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
+        hints = [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
+        draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)
 
     def _draw_said(self, canvas: Canvas) -> None:
         if problem := self.pupil.problem:
-            warn = canvas.palette.warn
-            canvas.marker("cross", (_PANEL + 5, _SAID - 4), 10, warn)
-            for number, line in enumerate(wrapped(canvas, problem, SMALL, 360)[:4]):
-                canvas.text(line, (_PANEL + 18, _SAID + 17 * number), size=SMALL, colour=warn)
+            draw_problem(canvas, problem, (_PANEL, _SAID), 380, 4)
 
 
 def _batches(curves: Curves) -> Series:

@@ -22,12 +22,11 @@ from game.ui.advice import Advice
 from game.ui.board import Board
 from game.ui.canvas import Canvas
 from game.ui.form import Form
-from game.ui.hints import draw_hints
 from game.ui.inside import Inside
 from game.ui.knobs import Knobs
-from game.ui.prose import wrapped
 from game.ui.scrubber import Scrubber
-from game.ui.tokens import FIGURE, LINE, MUTE, NIGHT0, PANEL, SMALL, TITLE, VIEW_SIZE
+from game.ui.standing import draw_problem, draw_standing, start_word
+from game.ui.tokens import LINE, NIGHT0, PANEL, VIEW_SIZE
 from game.ui.widgets import Choice, OnPress, Widget, Word
 from game.worker import State
 from game.world.swarm import LearningSwarm
@@ -125,7 +124,7 @@ class Train:
         self.inside.update(still)
         # What takes a millisecond or two takes turns.
         self.board.charts.update(at_once=still, turn=not (looked or self.inside.busy))
-        self._name_controls()
+        self._start_word.label = start_word(student.state)
         return self._form.update()
 
     def _listen(self) -> bool:
@@ -334,38 +333,22 @@ class Train:
         self._look_closer()
         return None
 
-    def _name_controls(self) -> None:
-        state = self.student.state
-        running = state in (State.RUNNING, State.STARTING)
-        self._start_word.label = (
-            texts.TRAIN_PAUSE if running else texts.TRAIN_RESUME if state is State.PAUSED else texts.TRAIN_START
-        )
-
     def _draw_title(self, canvas: Canvas) -> None:
         for box in (_TITLE, _WORDS):  # landers fly behind
             canvas.panel(box)
-        canvas.text(texts.TRAIN_TITLE, (_LEFT, 46), size=TITLE)
-        assert self._context is not None
-        back = (self._context.controls.word(Command.BACK), texts.HINT_BACK)
-        draw_hints(canvas, [back], (_TITLE.right - 16, 46), from_right=True)
         history, sight = self.student.history, self.student.sight
-        if not len(history) or sight is None:
-            canvas.text(texts.TRAIN_LINE, (_LEFT, 68), size=SMALL, colour=MUTE, room=_TITLE.width - 32)
-            return
-        last = history.points[-1]
-        line = texts.TRAIN_FIGURES.format(count=len(sight.outcome), seconds=last[0], decisions=int(sight.decisions))
-        canvas.text(line, (_LEFT, 68), size=SMALL, colour=MUTE, tabular=True, room=_TITLE.width - 32)
-        share = f"{100 * history['success'][-1]:.0f}"
-        figure = canvas.text(share, (_LEFT - 1, 122), size=FIGURE, weight="light", tabular=True,
-                             colour=canvas.palette.good)  # fmt: skip
-        canvas.text(texts.TRAIN_LANDED, (figure.right + 8, 122), size=SMALL, colour=MUTE)
+        line, share = texts.TRAIN_LINE, ""
+        if len(history) and sight is not None:
+            line = texts.TRAIN_FIGURES.format(
+                count=len(sight.outcome), seconds=history.points[-1][0], decisions=int(sight.decisions)
+            )
+            share = f"{100 * history['success'][-1]:.0f}"
+        draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
+                      room=_TITLE.width - 32)  # fmt: skip
 
     def _draw_said(self, canvas: Canvas) -> None:
         """Say what is wrong, or what to do first."""
-        left, top = _SAID.left, _SAID.top
-        if not self.student.problem:
-            self._advice.draw(canvas)
         if problem := self.student.problem:
-            canvas.marker("cross", (left + 5, top + 13), 10, canvas.palette.warn)
-            for number, line in enumerate(wrapped(canvas, problem, SMALL, _SAID.width - 20)[:3]):
-                canvas.text(line, (left + 18, top + 17 + 16 * number), size=SMALL, colour=canvas.palette.warn)
+            draw_problem(canvas, problem, (_SAID.left, _SAID.top + 17), _SAID.width, 3)
+        else:
+            self._advice.draw(canvas)

@@ -1,0 +1,41 @@
+"""How a training run stands, in words and one large figure: the same for landers and digits."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from game import texts
+from game.ui.canvas import Canvas, Point
+from game.ui.prose import wrapped
+from game.ui.tokens import FIGURE, MUTE, SMALL, TITLE
+from game.worker import State
+
+_LEADING: Final = 17.0
+
+
+def start_word(state: State | None) -> str:
+    """What the word is that starts a run, lets it rest, and lets it go on."""
+    if state in (State.RUNNING, State.STARTING):
+        return texts.TRAIN_PAUSE
+    return texts.TRAIN_RESUME if state is State.PAUSED else texts.TRAIN_START
+
+
+def draw_standing(
+    canvas: Canvas, corner: Point, title: str, line: str, figure: str, words: str, *, drop: float, room: float
+) -> None:
+    """Draw a title with its baseline at `corner`, a line below it and, `drop` further down, a figure with words."""
+    left, top = corner
+    canvas.text(title, corner, size=TITLE)
+    canvas.text(line, (left, top + 22), size=SMALL, colour=MUTE, tabular=True, room=room)
+    if figure:
+        end = canvas.text(figure, (left - 1, top + drop), size=FIGURE, weight="light", tabular=True,
+                          colour=canvas.palette.good).right  # fmt: skip
+        canvas.text(words, (end + 8, top + drop), size=SMALL, colour=MUTE)
+
+
+def draw_problem(canvas: Canvas, problem: str, corner: Point, width: float, most: int) -> None:
+    """Draw why a run has failed, in at most so many lines."""
+    left, top = corner
+    canvas.marker("cross", (left + 5, top - 4), 10, canvas.palette.warn)
+    for number, line in enumerate(wrapped(canvas, problem, SMALL, width - 20)[:most]):
+        canvas.text(line, (left + 18, top + _LEADING * number), size=SMALL, colour=canvas.palette.warn)
