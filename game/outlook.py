@@ -30,7 +30,7 @@ class Outlook:
 
     def follow(self, waiting: bool) -> None:
         """Look a little further ahead; the way by itself stays the same while the craft hangs and waits."""
-        if self._flight.over:
+        if self._arrived:
             return
         if not waiting:
             self._drift.follow()
@@ -38,9 +38,13 @@ class Outlook:
             self._forecast.follow(self._flight.env)
 
     def draw(self, canvas: Canvas, view: View) -> None:
-        """Draw both ways, until the flight is over."""
-        if self._flight.over:
+        """Draw both ways, until there is none left to go."""
+        if self._arrived:
             return
         draw_dotted(canvas, view, self._drift.path, HUMAN)
         if self._forecast:
             draw_dotted(canvas, view, self._forecast.path, NET)
+
+    @property
+    def _arrived(self) -> bool:
+        return self._flight.over or bool(self._flight.env.contacts[0].any())
