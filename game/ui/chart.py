@@ -204,7 +204,7 @@ class Chart:
         for run, values in reversed(list(zip(self._runs, self._traces, strict=True))):
             paint_run(sheet, area, run, values, axes)
         if not any(np.isfinite(values).any() for values in self._traces):
-            middle = (plot.centerx, plot.centery - 7)
+            middle = (plot.centerx, plot.bottom - 9)  # above the axis, where no line runs
             sheet.text(texts.CHART_EMPTY, middle, size=SMALL, colour=_AXES, align="centre")
         self._paint_ticks(sheet, plot)
         return sheet
