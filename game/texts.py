@@ -79,7 +79,7 @@ MENU: Final = {
 # Settings: label, and the line under it
 SETTINGS_TITLE: Final = "Settings"
 SETTINGS: Final = {
-    "full_screen": ("Full screen", "F11 or Alt + Enter at any time."),
+    "full_screen": ("Full screen", "{key} or Alt + Enter at any time."),
     "reduced_motion": ("Reduced motion", "No shaking, no easing, a still sky."),
     "colour_safe": ("Colours for every eye", "Good and beyond limits, told apart without red and green."),
     "show_hints": ("Hints", "The keys while you fly, and a word of advice after a crash."),
@@ -810,7 +810,7 @@ CHOICES_HINT: Final = "choices"
 PAUSE_CHOICES: Final = "Choices: help, pads, hands"
 CHOICES_ASSIST: Final = "Network helps"
 CHOICES_ASSIST_OFF: Final = "no"
-CHOICES_ASSIST_HELP: Final = "While you fly. Let go of everything, and it flies. In flight: − and +, or the wheel."
+CHOICES_ASSIST_HELP: Final = "While you fly. Let go of everything, and it flies. In flight: {less} and {more}, or the wheel."
 CHOICES_MODE: Final = "It steps in"
 CHOICES_MODES: Final = ("when yours is not as good", "only in need")
 CHOICES_MODES_HELP: Final = (

@@ -70,7 +70,9 @@ class ChoicesScene:
     def _add_help(self) -> None:
         """Add how much the network helps, and when."""
         settings = self._context.settings
-        self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST, texts.CHOICES_ASSIST_HELP)
+        word = self._context.controls.word
+        help_ = texts.CHOICES_ASSIST_HELP.format(less=word(Command.SLOWER), more=word(Command.FASTER))
+        self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST, help_)
         self._choice(texts.CHOICES_MODE, texts.CHOICES_MODES, _index(MODES, settings.copilot),
                      lambda index: self._changes("copilot")(MODES[index]),
                      lambda: texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)])  # fmt: skip

@@ -48,6 +48,7 @@ class SettingsScene:
         for number, name in enumerate(ROWS):
             box = (MARGIN, _FIRST_ROW + number * _ROW, _WIDTH, 56)
             label, hint = texts.SETTINGS[name]
+            hint = hint.format(key=(*context.controls.key_names(Command.FULLSCREEN), texts.BINDINGS_NONE)[0])
             value = getattr(context.settings, name)
             self._form.add(Toggle(self._form.manager, box, label, value, self._changes(name), hint=hint))
         sizes, size = list(TEXT_SIZES), context.settings.text_size

@@ -70,6 +70,21 @@ def test_every_hint_names_the_players_own_key(open_game, context: Context, monke
     assert after == wanted
 
 
+def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
+    bindings = Bindings(KEYBOARD)
+    for meaning, code in {Command.FULLSCREEN: pygame.K_F9, Command.FASTER: pygame.K_x}.items():
+        bindings.bind(meaning, code)
+    context.settings.keys = bindings.to_dict()
+    context.settings_file.save(context.settings)
+    settings = open_game(SCREENS["SettingsScene"](context)).top
+    assert settings._form.widgets[0]._hint.startswith("F9 ")
+    driver = open_game(Menu())
+    driver.app.scenes.apply(Push(OVER_OTHERS["ChoicesScene"](driver.top)))
+    help_ = driver.top._rows[driver.top._form.widgets[0]]()
+    assert " X" in help_
+    assert "+" not in help_
+
+
 def test_a_click_on_a_hint_is_a_press_of_its_key():
     canvas, controls = Canvas(pygame.Surface(VIEW_SIZE)), Controls()
     hints = [(controls.word(Command.RETRY), "again"), (controls.key(pygame.K_SPACE), "stop"), ("wheel", "turn")]
