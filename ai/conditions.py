@@ -48,6 +48,12 @@ class Conditions:
         push: Doubles = self.wind + self.gust * np.sin(2 * np.pi / self.gust_period * time)
         return push
 
+    def impulse(self, time: Doubles) -> Doubles:
+        """What the wind has given until times (n,) in seconds, to the right in N s: the integral of `push`."""
+        rate = 2 * np.pi / self.gust_period
+        given: Doubles = self.wind * time + self.gust / rate * (1 - np.cos(rate * time))
+        return given
+
     def main_works(self, time: Doubles) -> Bools:
         """Whether the main engine fires when it is asked to, (n,)."""
         start, end = self.outage

@@ -53,11 +53,10 @@ def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
 
 
 def _draw_arrow(canvas: Canvas, start: tuple[float, float], push: float) -> None:
-    """Draw which way the wind blows, as long as it is strong, around a middle that stays where it is."""
-    x, y = start
-    middle, reach = x + _ARROW / 2, _ARROW / 2 * min(1.0, abs(push) / _STRONGEST)
-    side = math.copysign(1.0, push)
-    tip = middle + side * reach
-    canvas.line((middle - side * reach, y), (tip, y), INK, 1.5)
+    """Draw which way the wind blows, as long as it is strong."""
+    left, y = start
+    right = left + 6 + (_ARROW - 6) * min(1.0, abs(push) / _STRONGEST)
+    tip, side = (right, 1.0) if push > 0 else (left, -1.0)
+    canvas.line((left, y), (right, y), INK, 1.5)
     for lean in (-3.5, 3.5):
         canvas.line((tip, y), (tip - side * 5, y + lean), INK, 1.5)

@@ -17,6 +17,7 @@ from game.world.looks import LOOKS, look_of
 from game.world.moments import Moments
 from game.world.particles import DUST
 from game.world.stage import Stage
+from game.world.wind import Wind
 
 
 class Scenery:
@@ -37,6 +38,8 @@ class Scenery:
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
         self._moments = Moments(flight.env, reduced_motion)
+        blows = flight.env.conditions.pushes and not reduced_motion
+        self._wind = Wind(flight.env, LOOKS[self._look].on_dust(DUST)) if blows else None
         self._camera = Camera()
         self._time = 0.0
         self.cut()
@@ -57,6 +60,8 @@ class Scenery:
         flight = self._flight
         self.stage.forget()
         self._moments.forget()
+        if self._wind:
+            self._wind.forget()
         action = 0 if flight.over else int(flight.env.fired[0])
         self.stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
         self.stage.blue[:] = flight.flown_by is Hand.NETWORK
@@ -74,6 +79,8 @@ class Scenery:
         self._moments.follow()
         if self._calm:
             return
+        if self._wind:
+            self._wind.follow()
         self._camera.shake(self.stage.jolt)
         if shot is None:
             framing.follow(self._camera, flight.env, clear=self.clear)
@@ -93,7 +100,10 @@ class Scenery:
         env = self._flight.env
         moon = landscape(canvas.surface.get_size(), self._calm, self._look)
         moon.draw(canvas, self._camera, self._time, alpha, earth)
-        draw_ground(canvas, self.view(canvas.scale, alpha), env.ground, self._time, float(env.pad_shift[0]))
+        view = self.view(canvas.scale, alpha)
+        draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
+        if self._wind:
+            self._wind.draw(canvas.surface, view, alpha)
 
     def draw_craft(self, canvas: Canvas, alpha: float, reason: bool = True) -> None:
         """Draw the craft with all that it raises; `reason` is whether that of a crash is told on the spot."""

@@ -57,6 +57,11 @@ def test_gusts_come_and_go_with_their_period():
     assert wind.push(np.array([0.0, 1.0, 2.0, 3.0, 4.0])) == pytest.approx([0.1, 0.5, 0.1, -0.3, 0.1])
 
 
+def test_what_the_wind_has_given_is_the_sum_of_its_pushes():
+    wind, times = Conditions(wind=-0.1, gust=0.4, gust_period=4.0), np.arange(0.0, 7.0, 0.001)
+    assert wind.impulse(times[-1:])[0] == pytest.approx(0.001 * wind.push(times).sum(), abs=1e-3)
+
+
 def test_an_empty_tank_fires_nothing_and_burns_nothing():
     env = LanderEnv(2, 0, "highest", frame_skip=1, conditions=Conditions(tank=1.0))
     env.reset()

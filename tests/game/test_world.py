@@ -2,7 +2,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv
+from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv, Outcome
 from ai.missions import MISSIONS
 from game.render import Camera, View
 from game.ui.canvas import Canvas
@@ -12,10 +12,11 @@ from game.world.craft import stand
 from game.world.flame import HUMAN_PLUME, LEVELS, plume
 from game.world.looks import LOOKS, look_of
 from game.world.pad import draw_pad
-from game.world.particles import Particles
+from game.world.particles import DUST, Particles
 from game.world.paths import Trails, draw_dotted
 from game.world.relief import Relief
 from game.world.stage import Stage
+from game.world.wind import Wind
 
 SIZES = [(1280, 720), (640, 360), (1000, 800)]
 
@@ -156,3 +157,23 @@ def test_every_mission_has_the_sky_and_the_ground_of_its_world():
     assert (night.sum(axis=1) < 0.6 * dawn.sum(axis=1)).all()
     assert np.array_equal(colours(look_of("")), dawn)
     assert set(LOOKS) >= {look_of(mission) for mission in MISSIONS}
+
+
+def test_wind_is_seen_to_go_its_way_and_is_a_matter_of_time_alone():
+    env = MISSIONS["wind"].begin()
+    canvas, view = Canvas(pygame.Surface((640, 360))), View(0.5)
+    wind = Wind(env, DUST)
+
+    def seen(seconds: float) -> np.ndarray:
+        env.steps[:] = round(60 * seconds)
+        wind.follow()
+        canvas.surface.fill((0, 0, 0))
+        wind.draw(canvas.surface, view, 1.0)
+        return pixels(canvas.surface)
+
+    first = seen(1.0)
+    assert first.any()
+    assert not np.array_equal(seen(1.1), first)
+    assert np.array_equal(seen(1.0), first)
+    env.outcome[:] = Outcome.LANDED
+    assert not np.array_equal(seen(1.0), first)  # it goes on blowing
