@@ -58,15 +58,15 @@ class Moments:
         gone = self._contact / _GLOW
         x, y, angle = pose.tolist()
         reach = (0.9 + 2.4 * (1 - (1 - gone) ** 3)) * view.pixels_per_metre
-        level = math.ceil(16 * (1 - gone) ** 1.5)
-        light = pygame.transform.smoothscale(light_pool(level, HUMAN), (2 * round(reach), round(0.16 * reach) + 4))
+        level = math.ceil(30 * (1 - gone) ** 1.3)
+        light = pygame.transform.smoothscale(light_pool(level, HUMAN), (2 * round(reach), round(0.22 * reach) + 6))
         for side in (-1, 1):
             foot = foot_place(x, y, angle, side)
             at_x, at_y = view.pixels(foot).tolist()
             corner = (round(at_x - light.get_width() / 2), round(at_y - light.get_height() / 2))
             canvas.surface.blit(light, corner, special_flags=pygame.BLEND_RGB_ADD)
             place = view.points(foot).tolist()
-            canvas.glow((place[0], place[1]), 0.5 * view.pixels_per_metre / view.scale, HUMAN, 0.9 * (1 - gone) ** 2)
+            canvas.glow((place[0], place[1]), 0.5 * view.pixels_per_metre / view.scale, HUMAN, 1.3 * (1 - gone) ** 2)
 
     def draw_words(self, canvas: Canvas, view: View, pose: Doubles, reason: bool = True) -> None:
         """Write what has happened above the craft; `reason` is whether that of a crash is still to be told."""

@@ -230,9 +230,11 @@ def _puff(radius: int, level: int, colour: Colour) -> pygame.Surface:
 
 
 def _grain(radius: int, level: int, colour: Colour) -> pygame.Surface:
-    surface = pygame.Surface((2 * radius, 2 * radius))
-    surface.fill(mix(colour, (255, 246, 236), 0.34))
-    surface.set_alpha(round(170 * level / _LEVELS))
+    axis = np.arange(-radius, radius + 1)
+    cover = np.clip(radius + 0.2 - np.hypot(axis[:, None], axis[None, :]), 0, 1) * 170 * level / _LEVELS
+    surface = pygame.Surface(cover.shape, pygame.SRCALPHA)
+    surface.fill((*mix(colour, (255, 246, 236), 0.34), 0))
+    pygame.surfarray.pixels_alpha(surface)[:] = cover.astype(np.uint8)
     return surface
 
 
