@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import pygame
 
@@ -21,22 +23,11 @@ class NightSky:
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
         if self._painted is None or self._painted.get_size() != canvas.surface.get_size():
-            self._painted = self._paint(canvas.surface.get_size())
+            self._painted = _paint_night(canvas.surface.get_size(), self._ember).copy()
             canvas.surface.blit(self._painted, (0, 0))
             self._add_stars(canvas)
             self._painted.blit(canvas.surface, (0, 0))
         canvas.surface.blit(self._painted, (0, 0))
-
-    def _paint(self, size: tuple[int, int]) -> pygame.Surface:
-        across, down = np.linspace(0, 1, size[0])[:, None, None], np.linspace(0, 1, size[1])[None, :, None]
-        night0, night1, dusk, ember = (np.array(colour, float) for colour in (NIGHT0, NIGHT1, DUSK, EMBER))
-        sky = night0 + (night1 - night0) * down
-        sky = sky + (dusk - sky) * self._ember * 0.6 * np.clip((down - 0.55) / 0.45, 0, 1) ** 2
-        away = np.hypot((across - 0.78) * 1.5, (down - 1.06) * 1.9)
-        sky = sky + (ember - sky) * self._ember * 0.55 * np.clip(1 - away, 0, 1) ** 2.2
-        # A little noise keeps the long gradient from showing bands.
-        noise = np.random.default_rng(0).random((size[0], size[1], 1)) - 0.5
-        return pygame.surfarray.make_surface(np.clip(sky + noise, 0, 255).astype(np.uint8)).convert()
 
     def _add_stars(self, canvas: Canvas) -> None:
         for (x, y), brightness in zip(self._places, self._brightness, strict=True):
@@ -46,3 +37,20 @@ class NightSky:
             canvas.dot((x, y), 0.5 + 0.7 * float(brightness), (shade, shade, min(255, shade + 12)), level)
             if brightness > 0.75:
                 canvas.glow((x, y), 9, (150, 170, 220), 0.35 * level)
+
+
+@lru_cache(maxsize=4)
+def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
+    """Return a sky without stars, to be shared by the screens that have the same one."""
+    width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
+    across = np.linspace(0, 1, width, dtype=np.float32)[:, None, None]
+    down = np.linspace(0, 1, height, dtype=np.float32)[None, :, None]
+    night0, night1, dusk, glow = (np.array(colour, np.float32) for colour in (NIGHT0, NIGHT1, DUSK, EMBER))
+    sky = night0 + (night1 - night0) * down
+    sky = sky + (dusk - sky) * (ember * 0.6 * np.clip((down - 0.55) / 0.45, 0, 1) ** 2)
+    away = np.hypot((across - 0.78) * 1.5, (down - 1.06) * 1.9)
+    sky = sky + (glow - sky) * (ember * 0.55 * np.clip(1 - away, 0, 1) ** 2.2)
+    sky = sky.repeat(2, 0).repeat(2, 1)[: size[0], : size[1]]
+    # A little noise keeps the long gradient from showing bands.
+    sky += np.random.default_rng(0).random((*size, 1), dtype=np.float32) - 0.5
+    return pygame.surfarray.make_surface(np.clip(sky, 0, 255, out=sky).astype(np.uint8)).convert()

@@ -113,9 +113,13 @@ class Backdrop:
             surface.blit(sprite, (x - sprite.get_width() // 2, y - sprite.get_height() // 2), special_flags=flags)
 
 
-@lru_cache(maxsize=3)
 def landscape(size: tuple[int, int], reduced_motion: bool, look: str = "moon") -> Backdrop:
     """Return the game's own moon at that size, or its look elsewhere, shared by every scene that shows it."""
+    return _paint_landscape(size, reduced_motion, look)  # always called in the same way, to be found again
+
+
+@lru_cache(maxsize=3)
+def _paint_landscape(size: tuple[int, int], reduced_motion: bool, look: str) -> Backdrop:
     if look != "moon":
         return landscape(size, reduced_motion).under(LOOKS[look])
     return Backdrop(size, np.random.default_rng(_MOON), reduced_motion)
