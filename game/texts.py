@@ -981,7 +981,7 @@ MEDAL_NEXT: Final = "{medal} asks for {less}."
 MEDAL_LESS_FUEL: Final = "{:.1f} s less fuel"
 MEDAL_LESS_TIME: Final = "{:.1f} s less time"
 MEDAL_GOLD: Final = "Both feet down, within gold's fuel and time."
-MEDAL_BY_HAND: Final = "Landed. Medals are for flights by your own hand, all the way."
+MEDAL_BY_HAND: Final = "Medals are for flights by your own hand, all the way."
 MISSION_GOAL: Final = "Gold: {fuel:.1f} s of fuel, {seconds:.1f} s of time"
 MISSION_RIVAL_LABEL: Final = "Beside you"
 MISSION_GHOSTS: Final = {"recorded": "the recorded flight", "own": "your best"}
@@ -1013,7 +1013,7 @@ TUTORIAL_STEP: Final = "{number} of {count}"
 TUTORIAL: Final = {
     "fire": ("{main}  fires the main engine. Hold it a moment.", ""),
     "fall": ("Let go of everything, and feel the moon pull.", ""),
-    "lean": ("{turn}  turns the craft. A short tap, and it goes on turning.", ""),
+    "lean": ("{turn}  turns the craft. A short tap is enough.", ""),
     "upright": (
         "{other}  turns it back. Stop it upright.",
         "{other}  in short taps, until it stands still and upright.",
