@@ -22,7 +22,8 @@ HORIZON_HEIGHT: Final = VIEW_BOTTOM + (1 - PLAIN_HORIZON) * VIEW_SIZE[1] / POINT
 # camera goes about.
 MARGIN: Final = 0.04
 WIDE_MARGIN: Final = LAND_REACH / WORLD_WIDTH - 0.5 + 0.01
-_PLAIN_FOOT: Final = 0.085  # shares of the view's height that the plain goes on below it, for a camera far away
+# Shares of the view's height that the plain goes on below it: where a camera rests, and where it goes far away.
+_FOOT, _WIDE_FOOT = 0.03, 0.085
 _WARM: Final = np.array((255, 150, 96), np.float32)
 
 
@@ -107,7 +108,7 @@ def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float =
     width = round(view_width * (1 + 2 * margin))
     edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 6.5 * width / view_width, octaves=6))
     top = int(edge.min()) - 2
-    bottom = height + round(_PLAIN_FOOT * height)
+    bottom = height + round((_FOOT if margin == MARGIN else _WIDE_FOOT) * height)
     rows = np.arange(top, bottom, dtype=np.float32)[:, None] + 0.5
     near = np.clip((rows - height * PLAIN_HORIZON) / (height * (1 - PLAIN_HORIZON)), 0, 1.6)
     sunward, glow = _sunlight(width, view_width, margin)

@@ -7,6 +7,7 @@ from ai.conditions import Conditions
 from ai.ground import Ground, hilly
 from ai.lander import LIMITS, PARAMS, LanderEnv
 from game import framing
+from game.flight import Flight
 from game.render import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, Shot, View
 from game.ui.tokens import VIEW_SIZE
 from game.world.sheet import Sheet
@@ -162,3 +163,23 @@ def test_what_is_scaled_stays_where_it_belongs():
         assert abs(columns.min() - x) <= 1.5
         assert abs(rows.min() - y) <= 1.5
         assert abs(columns.max() + 1 - x - 32 * zoom) <= 1.5
+
+
+@pytest.mark.parametrize("pads", [1, 3])
+def test_over_whole_flights_the_camera_is_smooth_and_craft_and_pad_are_seen(pads: int):
+    rng = np.random.default_rng(7)
+    for seed in range(3):
+        flight, camera, action = Flight(seed, pads=pads), Camera(), 0
+        camera.cut(framing.framed(flight.env))
+        shots = []
+        for step in range(500):
+            if step % 20 == 0:
+                action = int(rng.choice(6))
+            flight.step(action)
+            if flight.over:
+                break
+            framing.follow(camera, flight.env)
+            shots.append((camera.shot.across, camera.shot.zoom))
+            assert seen(camera.view(1.0), tuple(flight.env.position[0]), 40)
+            assert pads > 1 or seen(camera.view(1.0), flight.env.pad[0])
+        assert np.abs(np.diff(shots, 2, axis=0)).max() < 0.01  # metres across, and zoom, a step in a step
