@@ -65,6 +65,10 @@ class Mission:
         return max(0.0, fuel - most_fuel), max(0.0, seconds - longest)
 
 
+_AIR: Final = 0.06  # kg/m
+_STRONG_LEGS: Final = replace(LIMITS, touch_speed=3.0, slide_speed=3.0)
+
+
 def _on(gravity: float, thrust: float) -> LanderParams:
     """The craft on another world, with an engine that is made for it."""
     return replace(PARAMS, gravity=gravity, main_thrust=thrust)
@@ -79,8 +83,8 @@ _ROWS: Final = (
     Mission("narrow", (-9.0, 13.0, 1.0, -0.5, 0.1, 0.0), (3.3, 9.5), (4.4, 13.0), pad=Pad(3.0, 2.2, 3.2)),
     Mission("mars", (7.0, 15.0, -1.0, -1.0, 0.0, 0.0), (3.3, 8.5), (4.4, 12.0), Conditions(wind=-0.1, gust=0.2),
             params=_on(3.71, 8.0), world="mars"),
-    Mission("earth", (-5.0, 14.0, 0.5, 0.0, 0.0, 0.0), (3.6, 7.0), (5.0, 10.0), params=_on(9.81, 19.0), world="earth",
-            landed=12),
+    Mission("earth", (-5.0, 14.0, 0.5, 0.0, 0.0, 0.0), (3.6, 7.0), (5.0, 10.0), world="earth", landed=17,
+            params=replace(_on(9.81, 16.0), quadratic_drag=_AIR), limits=_STRONG_LEGS),
     Mission("night", (11.0, 14.0, -1.0, -0.5, -0.2, 0.0), (3.5, 10.5), (4.7, 15.0), night=True),
     Mission("ferry", (-8.0, 14.0, 0.0, -0.5, 0.0, 0.0), (4.2, 11.0), (5.6, 16.0),
             Conditions(swing=4.0, swing_period=18.0)),

@@ -909,7 +909,7 @@ MISSIONS: Final = {
     "tank": ("Low fuel", "Three seconds of main engine, and not a drop more."),
     "narrow": ("Narrow pad", "Half as wide, and higher than you think."),
     "mars": ("Mars", "Twice the gravity, twice the engine, and dust in the wind."),
-    "earth": ("Earth", "Six times the gravity: what you know is too slow."),
+    "earth": ("Earth", "Six times the gravity: be early in all you do. The legs take 3 m/s."),
     "night": ("Night", "Nothing shines but the pad, and your own fire."),
     "ferry": ("A moving pad", "The pad goes to and fro: touch down when you move as it does."),
     "outage": ("Engine failure", "No main engine from second 2 to 4. You have been told."),
