@@ -810,7 +810,9 @@ CHOICES_HINT: Final = "choices"
 PAUSE_CHOICES: Final = "Choices: help, pads, hands"
 CHOICES_ASSIST: Final = "Network helps"
 CHOICES_ASSIST_OFF: Final = "no"
-CHOICES_ASSIST_HELP: Final = "While you fly. Let go of everything, and it flies. In flight: {less} and {more}, or the wheel."
+CHOICES_ASSIST_HELP: Final = (
+    "While you fly; let go of everything, and it flies. In flight: {less}, {more}, or the wheel."
+)
 CHOICES_MODE: Final = "It steps in"
 CHOICES_MODES: Final = ("when yours is not as good", "only in need")
 CHOICES_MODES_HELP: Final = (
@@ -922,13 +924,10 @@ MISSION_LIMIT: Final = "{fuel:.1f} s of fuel and {seconds:.1f} s at most"
 MISSION_ANY: Final = "any landing"
 MISSION_BEST: Final = "Your best: {fuel:.1f} s of fuel, {seconds:.1f} s, {points} points"
 EXPORT_AS: Final = "Save this flight as a moving picture"
-# Of each kind: its name and what it is like
-EXPORT_KINDS: Final = {
-    ".gif": ("GIF", "640 × 360, shows anywhere"),
-    ".mp4": ("MP4", "1280 × 720, 60 pictures a second"),
-}
+EXPORT_MORE: Final = "A GIF is small and shows anywhere; an MP4 is sharp, and the camera follows."
+EXPORT_KINDS: Final = {".gif": "GIF", ".mp4": "MP4"}
 EXPORT_MISSING: Final = "{kind} needs one more package: install the extra, as in pip install 'tranquility[export]'."
-EXPORT_GOES_ON: Final = "Stop at {percent} %"
+EXPORT_GOES_ON: Final = "Cancel, {percent} %"
 EXPORT_STOPPED: Final = "No moving picture was saved."
 EXPORT_DONE: Final = "Saved: {path}"
 EXPORT_FAILED: Final = "The moving picture could not be saved. {reason}"
@@ -1063,6 +1062,11 @@ PRACTICE_PACE: Final = "speed {percent} %"
 # Size of text, by the setting's words
 TEXT_SIZE: Final = "Text"
 TEXT_SIZES: Final = {"normal": "normal", "large": "large", "largest": "largest"}
+
+# A pen that keys and pads draw with
+PEN: Final = "Draw"
+PEN_HOLD: Final = "hold to draw"
+PEN_LEAVE: Final = "lay the pen aside"
 
 # The command line
 CLI_PHYSICS: Final = "open the gallery of physics"

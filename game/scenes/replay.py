@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -203,11 +204,11 @@ class Replay:
 
     def _begin_or_stop_export(self) -> Transition | None:
         """Ask what kind of moving picture it shall be; or leave the one that is being made."""
-        from game.scenes.dialog import Picking
+        from game.scenes.dialog import Asking
 
         if self._export is None:
-            rows = [texts.EXPORT_KINDS[suffix] for suffix in KINDS]
-            return Push(Picking(self, texts.EXPORT_AS, rows, lambda number: self._begin_export([*KINDS][number])))
+            answers = [(texts.EXPORT_KINDS[suffix], partial(self._begin_export, suffix)) for suffix in KINDS]
+            return Push(Asking(self, texts.EXPORT_AS, texts.EXPORT_MORE, answers))
         self._export.close()
         self._end_export(texts.EXPORT_STOPPED)
         return None

@@ -145,10 +145,9 @@ def test_a_film_that_is_stopped_leaves_nothing(record: Record, small: None, tmp_
 # In the game
 
 
-def _pick(driver: Driver, number: int) -> None:
-    """Choose a kind of film in the dialog."""
-    assert driver.top_name == "Picking"
-    driver.keys(*[pygame.K_DOWN] * number, pygame.K_RETURN)
+def _choose_gif(driver: Driver) -> None:
+    assert driver.top_name == "Asking"
+    driver.key(pygame.K_RETURN)
 
 
 @pytest.fixture
@@ -164,7 +163,7 @@ def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_pa
 def test_without_the_extra_a_message_says_what_to_install(replay: tuple[Driver, Replay], monkeypatch):
     driver, _ = replay
     monkeypatch.setitem(KINDS, ".gif", Kind("no_such_module", (1, 1), 1, True))
-    _pick(driver, 0)
+    _choose_gif(driver)
     assert driver.top_name == "Replay"
     assert "tranquility[export]" in driver.app._notes._text
     assert driver.frames(2)
@@ -173,7 +172,7 @@ def test_without_the_extra_a_message_says_what_to_install(replay: tuple[Driver, 
 def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay], tmp_path: Path):
     pytest.importorskip("PIL")
     driver, scene = replay
-    _pick(driver, 0)
+    _choose_gif(driver)
     scene.stopped = False
     at = scene.tape.at
     driver.frames(5)
@@ -188,13 +187,13 @@ def test_a_film_can_be_stopped_and_leaving_ends_its_process(replay: tuple[Driver
     pytest.importorskip("PIL")
     driver, scene = replay
     for _ in range(2):
-        _pick(driver, 0)
+        _choose_gif(driver)
         driver.frames(3)
         assert multiprocessing.active_children()
         scene._begin_or_stop_export()
         assert not multiprocessing.active_children()
         driver.app.scenes.apply(scene._begin_or_stop_export())
-    _pick(driver, 0)
+    _choose_gif(driver)
     driver.app.close()
     assert not multiprocessing.active_children()
 
@@ -203,7 +202,7 @@ def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, Replay], t
     pytest.importorskip("PIL")
     driver, scene = replay
     (tmp_path / "pictures").write_text("in the way")
-    _pick(driver, 0)
+    _choose_gif(driver)
     driver.wait(lambda: scene._export is None)
     assert "could not be saved" in driver.app._notes._text
     assert driver.frames(2)
