@@ -17,7 +17,7 @@ from game.hud import Rival
 from game.outcomes import flight_figures
 from game.render import View
 from game.ui.canvas import Canvas
-from game.ui.tokens import NET
+from game.ui.tokens import NET, VIEW_SIZE
 from game.world import lander as art
 from game.world.flame import NET_PLUME, plume
 from game.world.paths import Trails
@@ -27,6 +27,8 @@ _FIRE: Final = 0.5  # of full thrust: a ghost's flame must not be taken for one'
 _BODY: Final = 0.30  # how much of a ghost covers what lies behind it, and of its rim
 _RIM: Final = 0.9
 _FADED: Final = 0.55  # of both, once it has crashed
+_EDGE: Final = 18.0  # points from the edge of the view to the mark of a ghost that is beyond it
+_HIDDEN: Final = 24.0  # points beyond the edge from which on it is
 _NO_SLOT: Final = np.zeros(1, bool)
 
 
@@ -64,6 +66,16 @@ class Ghost:
         crashed = flight.outcome is Outcome.CRASHED
         ratio = view.pixels_per_metre / fine
         canvas.surface.blit(*fitted(lambda halves: _phantom(fine, degrees, halves, crashed), ratio, (x, y)))
+        _point_to(canvas, *view.points(pose[:2]).tolist())
+
+
+def _point_to(canvas: Canvas, x: float, y: float) -> None:
+    """Mark, at the edge of the view, the way to a ghost that the camera leaves out."""
+    edge = pygame.FRect(0, 0, *VIEW_SIZE).inflate(-2 * _EDGE, -2 * _EDGE)
+    if not -_HIDDEN <= x <= VIEW_SIZE[0] + _HIDDEN or not -_HIDDEN <= y <= VIEW_SIZE[1] + _HIDDEN:
+        spot = (min(max(x, edge.left), edge.right), min(max(y, edge.top), edge.bottom))
+        canvas.glow(spot, 14, NET, 0.5)
+        canvas.marker("diamond", spot, 9, NET, 0.9)
 
 
 def _result(yours: LanderEnv, theirs: LanderEnv) -> str:

@@ -9,7 +9,7 @@ from ai.pilots import ScriptedPilot
 from game import networks
 from game.flight import DECISION_STEPS, Flight, Hand
 from game.ghost import Ghost
-from game.render import Camera
+from game.render import Camera, View
 from game.scene import Push
 from game.scenes.menu import Menu
 from game.scenes.play import Play
@@ -230,3 +230,16 @@ def test_a_ghost_is_seen(duel):
     around = pygame.surfarray.array3d(canvas.surface)[x - 40 : x + 40, y - 40 : y + 40].astype(int)
     assert (around[..., 2] - around[..., 0]).max() > 100  # the rim is blue
     assert 0.05 < (around.sum(axis=2) > 30).mean() < 0.8
+
+
+def test_a_ghost_that_the_camera_leaves_out_is_marked_at_the_edge(duel):
+    driver = duel(Idle())
+    press(driver, MAIN)
+    driver.frames(20)
+    canvas, ghostly = driver.app.canvas, ghost(driver)
+    x, y = ghostly.flight.env.position[0].tolist()
+    for aside, marked in ((0.0, False), (60.0, True)):
+        canvas.surface.fill((0, 0, 0))
+        ghostly.draw(canvas, View(canvas.scale, (x - aside, y)), 1.0)
+        rim = pygame.surfarray.array3d(canvas.surface)[-canvas.px(30) :, :, 2]
+        assert (rim > 100).any() is np.bool_(marked)
