@@ -38,7 +38,7 @@ _GLOWS: Final[dict[int, Colour]] = {
 }  # fmt: skip
 _SHARDS: Final[tuple[Colour, ...]] = ((214, 158, 74), (190, 198, 214), (92, 98, 118), (168, 112, 48))
 # By kind:
-_GROWTH: Final = np.array([0.34, 0.0, 0.0, 0.0, 0.16, 0.16])  # metres a second
+_GROWTH: Final = np.array([0.34, 0.0, 0.0, 0.0, 0.30, 0.30])  # metres a second
 _WEIGHT: Final = np.array([0.35, 1.0, 1.0, 1.0, 0.0, 0.0])  # share of gravity that pulls
 _BOUNCE: Final = np.array([0.0, 0.1, 0.42, 0.45, 0.0, 0.0])
 _GRIP: Final = np.array([0.9, 0.5, 0.7, 0.75, 1.0, 1.0])  # share of the way along the ground that goes on
@@ -111,15 +111,15 @@ class Particles:
 
     def burn(self, nozzle: Doubles, direction: Doubles, carried: Doubles, thrust: float, blue: float) -> None:
         """Let glowing gas leave a nozzle along a unit vector; `carried` is the velocity of the craft."""
-        count = int(self._rng.poisson(1.6 * thrust))
+        count = int(self._rng.poisson(2.4 * thrust))
         if count:
             kind = Kind.BLUE if blue > 0.5 else Kind.AMBER
             aside = np.array([-direction[1], direction[0]])
             speed = self._rng.uniform(6.5, 11.0, (count, 1))
             push = carried + direction * speed + aside * self._rng.normal(0.0, 0.55, (count, 1))
             start = nozzle + direction * self._rng.uniform(0.2, 0.9, (count, 1))
-            life = self._rng.uniform(0.16, 0.42, count)
-            self._add(kind, start, push, life, self._rng.uniform(0.05, 0.10, count))
+            life = self._rng.uniform(0.14, 0.34, count)
+            self._add(kind, start, push, life, self._rng.uniform(0.03, 0.07, count))
 
     def blow(self, x: float, strength: float) -> None:
         """Blow dust outwards along the ground from where a jet meets it; `strength` 0 to 1.
@@ -243,7 +243,7 @@ def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
     axis = np.arange(-radius, radius + 1) / radius
     away = np.hypot(axis[:, None], axis[None, :])[..., None]
     strength, colour = level / _LEVELS, np.array(_GLOWS[kind])
-    heart, halo = (1.0, 0.6) if kind == Kind.SPARK else (0.16, 0.34)
+    heart, halo = (1.0, 0.6) if kind == Kind.SPARK else (0.10, 0.24)
     hot = 0.35 * colour + 0.65 * 255
     picture = heart * np.exp(-((away / 0.24) ** 2)) * hot + halo * np.clip(1 - away, 0, 1) ** 2 * colour
     return pygame.surfarray.make_surface(np.minimum(strength * picture, 255).astype(np.uint8))
