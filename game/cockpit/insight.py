@@ -15,6 +15,7 @@ from game import hud, texts
 from game.flight import DECISION_STEPS, Flight, Hand
 from game.networks import Thinker
 from game.ui.canvas import Canvas
+from game.ui.kept import Kept
 from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIEW_SIZE
 from game.world.paint import mix
 
@@ -26,8 +27,8 @@ _TRACK: Final = (_LEFT + 96, _WIDTH - 96)
 _FIRST: Final = 64
 _ROW: Final = 24
 _WHY: Final = _FIRST + 6 * _ROW
+_PADS: Final = _WHY + 114  # the first pad's row
 _EASE: Final = 0.35
-_REDRAWN_EVERY: Final = 3  # steps: words and bars cost more than all the rest of the cockpit
 _STAYS: Final = 50  # steps that the word on an override is kept, to be read
 
 
@@ -46,9 +47,7 @@ class Insight:
         self._why: tuple[str, str, str] = ("", "", "")
         self._kept = 0
         self._seen: object = None
-        self._steps = 0
-        self._sheet: Canvas | None = None
-        self._drawn_for: tuple[object, ...] = ()
+        self._words = Kept()
 
     def follow(self, flight: Flight) -> None:
         """Note the step just flown."""
@@ -56,7 +55,6 @@ class Insight:
             return
         self.shown = flight.shared or (flight.hand is Hand.NETWORK and isinstance(flight.network, Thinker))
         self._kept = max(0, self._kept - 1)
-        self._steps += 1
         if flight.hand is Hand.NETWORK:
             self._watch(flight)
         elif flight.decision is not None and flight.decision is not self._seen:
@@ -105,52 +103,53 @@ class Insight:
 
     def draw(self, canvas: Canvas, share: float) -> None:
         """Draw the panel; `share` is the person's share of the flight so far."""
-        lower = _PADS_HIGH if len(self._likely) > 1 else 0
-        canvas.panel((PANEL.left, PANEL.top, PANEL.width, PANEL.height + lower))
-        drawn_for = (canvas.size, self._steps // _REDRAWN_EVERY, round(100 * share))
-        if self._sheet is None or self._drawn_for != drawn_for:
-            self._drawn_for, self._sheet = drawn_for, canvas.sheet(PANEL.width, PANEL.height + _PADS_HIGH)
-            self._paint(self._sheet, share)
-        canvas.surface.blit(self._sheet.surface, canvas.rect(*PANEL).topleft)
-
-    def _paint(self, canvas: Canvas, share: float) -> None:
-        """Draw what stands on the panel, whose corner is the sheet's."""
         pads = self._likely if len(self._likely) > 1 else []
-        lower = _PADS_HIGH if pads else 0
-        canvas.text(texts.INSIGHT_TITLE, (_LEFT, 34))
+        box = (PANEL.left, PANEL.top, PANEL.width, PANEL.height + (_PADS_HIGH if pads else 0))
+        percent, surest = round(100 * share), max(pads, default=0.0)
+        shows = (
+            self._flown, self._feasible.tobytes(), self._why, self._kept > 0, percent,
+            tuple(chance == surest for chance in pads),
+        )  # fmt: skip
+        self._words.draw(canvas, box, shows, lambda sheet: self._paint_words(sheet, pads, percent / 100))
         for action in range(NUM_ACTIONS):
-            self._draw_row(canvas, action)
+            self._draw_bar(canvas, action)
         if 0.0 < self._threshold < 1.0:
-            x = _TRACK[0] + self._threshold * _TRACK[1]
-            canvas.line((x, _FIRST - 9), (x, _FIRST + 5 * _ROW + 9), MUTE)
-            canvas.marker("triangle_down", (x, _FIRST - 13), 6, INK, 0.8)
+            x, y = PANEL.left + _TRACK[0] + self._threshold * _TRACK[1], PANEL.top + _FIRST
+            canvas.line((x, y - 9), (x, y + 5 * _ROW + 9), MUTE)
+            canvas.marker("triangle_down", (x, y - 13), 6, INK, 0.8)
+        for number, chance in enumerate(pads):
+            bar = (PANEL.left + _TRACK[0], PANEL.top + _PADS + 22 * number - 1.5, _TRACK[1], 3)
+            canvas.bar(bar, chance, HUMAN if chance == surest else mix(FAINT, HUMAN, 0.45))
+
+    def _draw_bar(self, canvas: Canvas, action: int) -> None:
+        x, y = PANEL.left + _TRACK[0], PANEL.top + _FIRST + _ROW * action
+        flown, good = action == self._flown, bool(self._feasible[action])
+        value = float(self._bars[action])
+        colour = NET if flown else mix(FAINT, NET, 0.45 if good else 0.12)
+        canvas.bar((x, y - 1.5, _TRACK[1], 3), value, colour)
+        if action == self._asked:
+            canvas.dot((x + value * _TRACK[1], y), 4, HUMAN)
+
+    def _paint_words(self, canvas: Canvas, pads: list[float], share: float) -> None:
+        """Draw the panel and what stands on it, but for what moves all the time."""
+        lower = _PADS_HIGH if pads else 0
+        canvas.panel((0, 0, PANEL.width, PANEL.height + lower))
+        canvas.text(texts.INSIGHT_TITLE, (_LEFT, 34))
+        for action, name in enumerate(ACTION_NAMES):
+            flown, good = action == self._flown, bool(self._feasible[action])
+            canvas.text(name, (_LEFT, _FIRST + _ROW * action + 4), size=SMALL, colour=INK if flown else MUTE,
+                        alpha=1.0 if good or flown else 0.5)  # fmt: skip
         title, *lines = self._why
         canvas.line((_LEFT, _WHY), (_LEFT + _WIDTH, _WHY), LINE)
         canvas.text(title, (_LEFT, _WHY + 26), colour=NET if self._kept else INK)
         for number, line in enumerate(lines):
             canvas.text(line, (_LEFT, _WHY + 48 + 18 * number), size=SMALL, colour=MUTE)
         if pads:
-            self._draw_pads(canvas, pads, _WHY + 94)
+            canvas.text(texts.INSIGHT_MEANT, (_LEFT, _PADS - 20), size=LABEL, colour=MUTE, weight="medium")
+            for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
+                colour = INK if chance == max(pads) else MUTE
+                canvas.text(name, (_LEFT, _PADS + 22 * number + 4), size=SMALL, colour=colour)
         hud.draw_share(canvas, _LEFT, _WHY + 104 + lower, _WIDTH, share, texts.SHARE_COPILOT)
-
-    def _draw_row(self, canvas: Canvas, action: int) -> None:
-        y = _FIRST + _ROW * action
-        flown, good = action == self._flown, bool(self._feasible[action])
-        canvas.text(ACTION_NAMES[action], (_LEFT, y + 4), size=SMALL, colour=INK if flown else MUTE,
-                    alpha=1.0 if good or flown else 0.5)  # fmt: skip
-        colour = NET if flown else mix(FAINT, NET, 0.45 if good else 0.12)
-        canvas.bar((_TRACK[0], y - 1.5, _TRACK[1], 3), float(self._bars[action]), colour)
-        if action == self._asked:
-            canvas.dot((_TRACK[0] + float(self._bars[action]) * _TRACK[1], y), 4, HUMAN)
-
-    def _draw_pads(self, canvas: Canvas, likely: list[float], top: float) -> None:
-        canvas.text(texts.INSIGHT_MEANT, (_LEFT, top), size=LABEL, colour=MUTE, weight="medium")
-        most = max(likely)
-        for number, (name, chance) in enumerate(zip(self._names, likely, strict=True)):
-            y = top + 20 + 22 * number
-            surest = chance == most
-            canvas.text(name, (_LEFT, y + 4), size=SMALL, colour=INK if surest else MUTE)
-            canvas.bar((_TRACK[0], y - 1.5, _TRACK[1], 3), chance, HUMAN if surest else mix(FAINT, HUMAN, 0.45))
 
 
 def _worth(values: Floats) -> Doubles:
