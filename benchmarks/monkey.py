@@ -22,6 +22,7 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 
 import argparse
+import ctypes
 import gc
 import logging
 import sys
@@ -32,7 +33,7 @@ import traceback
 import warnings
 from collections import Counter, deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from itertools import count
 from multiprocessing import active_children
@@ -53,10 +54,9 @@ from game.scenes.menu import Menu
 from game.settings import SettingsFile
 from game.sound import Sound
 from game.sounds.instruments import INSTRUMENTS, Instrument
-from game.ui import shapes, typeface
 
 LOOKS = 10  # times that it is looked whether anything is left behind
-GROWTH = 80.0  # megabytes from the third look to the last that are no leak: surfaces in caches of a fixed length
+GROWTH = 30.0  # megabytes from the third look to the last that are no leak
 _DEEPEST = 7  # scenes one above the other
 _JUMP, _JUMP_HOME = 0.015, 0.15  # how often it is put somewhere else, and from the menu, where it soon would quit
 _NO_SCREENS = ("Fault", "Dialog")  # what is not to be seen, and what is only a part of others
@@ -243,10 +243,13 @@ class Monkey:
 
 def stale_scenes(stack: list[Scene]) -> list[str]:
     """Say which scenes are in memory although they are not in use."""
-    typeface.forget()  # it keeps its files open
-    shapes.forget()
     gc.unfreeze()  # what a game has kept from the collector
     gc.collect()
+    for each in gc.get_objects():
+        if isinstance(each, type(_recording)) and each.__module__.startswith("game."):
+            each.cache_clear()  # pictures, and fonts that keep their files open: so many at the most, but not yet
+    with suppress(OSError, AttributeError):
+        ctypes.CDLL(None).malloc_trim(0)  # what is no longer in use goes back to the system
     kinds = tuple(scene_types())
     alive = Counter(type(each).__name__ for each in gc.get_objects() if isinstance(each, kinds) and each not in stack)
     return [f"{number} × {name} still in memory" for name, number in alive.items()]
