@@ -39,6 +39,7 @@ _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
 _BAR_TOP: Final = 708.0
 _LITTLE_TIME: Final = 5.0
+BAR_ROW: Final = 24  # from one bar of several to the next
 
 
 @dataclass(frozen=True)
@@ -130,27 +131,24 @@ def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None
     canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
 
 
-def draw_bars(canvas: Canvas, rows: list[tuple[str, float]], top: float, left: float, width: float, best: int) -> None:
-    """Draw named values 0 to 1 as bars, the best one in the network's colour and marked."""
-    for number, (name, value) in enumerate(rows):
-        y = top + 24 * number
+def draw_bars(canvas: Canvas, values: Sequence[float], top: float, left: float, width: float, best: int) -> None:
+    """Draw values 0 to 1 as bars beside their names, the best one in the network's colour and marked."""
+    for number, value in enumerate(values):
+        y = top + BAR_ROW * number
         chosen = number == best
-        canvas.text(name, (left, y + 4), size=SMALL, colour=INK if chosen else MUTE)
-        track = width - 96
-        canvas.bar((left + 96, y - 1.5, track, 3), value, NET if chosen else mix(FAINT, NET, 0.42))
+        canvas.bar((left + 96, y - 1.5, width - 96, 3), value, NET if chosen else mix(FAINT, NET, 0.42))
         if chosen:
             canvas.marker("triangle", (left + 88, y), 6, NET)
 
 
 def draw_centred_bars(
-    canvas: Canvas, rows: list[tuple[str, float]], top: float, left: float, width: float, step: float = 19
+    canvas: Canvas, values: Sequence[float], top: float, left: float, width: float, step: float
 ) -> None:
-    """Draw named values -1 to 1 as bars that grow from the middle."""
+    """Draw values -1 to 1 as bars, beside their names, that grow from the middle."""
     track = width - 96
     middle = left + 96 + track / 2
-    for number, (name, value) in enumerate(rows):
+    for number, value in enumerate(values):
         y = top + step * number
-        canvas.text(name, (left, y + 4), size=LABEL, colour=MUTE)
         canvas.pill((left + 96, y - 1, track, 2), FAINT, 0.5)
         reach = min(max(value, -1.0), 1.0) * track / 2
         if abs(reach) >= 1:
