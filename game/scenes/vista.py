@@ -70,7 +70,7 @@ class Vista:
         was_over = self._over
         if not was_over:
             self._decide()
-            env.step(self._action)
+            env.fly(self._action)
         elif self._rested < _REST_STEPS:
             self._rested += 1
         else:
