@@ -103,21 +103,22 @@ def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
 @lru_cache(maxsize=512)
 def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
     """Return the lander as glass: its shades in blue, seen through, and a line of light around it."""
-    craft = art.painted(pixels_per_metre, degrees, halves)
-    phantom = craft.copy()
-    cover = pygame.surfarray.array_alpha(craft).astype(float) / 255
-    reach = max(1, round(pixels_per_metre / 24))
-    grown = cover
-    for _ in range(reach):
-        wide = np.pad(grown, 1)
-        grown = np.max([wide[1:-1, 1:-1], wide[:-2, 1:-1], wide[2:, 1:-1], wide[1:-1, :-2], wide[1:-1, 2:]], axis=0)
-    rim = np.clip(grown - cover, 0, 1)[..., None]
+    phantom = art.painted(pixels_per_metre, degrees, halves).copy()
+    cover = pygame.surfarray.array_alpha(phantom)
+    grown = cover.copy()
+    for _ in range(max(1, round(pixels_per_metre / 24))):
+        inner = grown.copy()
+        for to, of in ((np.s_[1:], np.s_[:-1]), (np.s_[:-1], np.s_[1:]), (np.s_[:, 1:], np.s_[:, :-1]),
+                       (np.s_[:, :-1], np.s_[:, 1:])):  # fmt: skip
+            np.maximum(grown[to], inner[of], out=grown[to])
+    rim = (grown - cover).astype(np.float32) / 255  # it has grown everywhere, if at all
     colour = pygame.surfarray.pixels3d(phantom)
-    shade = 0.4 * colour + 0.6 * np.array(NET)
-    colour[:] = (shade + rim * (NET - shade)).astype(np.uint8)
+    net = np.array(NET, np.float32)
+    shade = np.float32(0.4) * colour + np.float32(0.6) * net
+    colour[:] = shade + rim[..., None] * (net - shade)
     del colour
     alpha = pygame.surfarray.pixels_alpha(phantom)
-    strength = _FADED if wrecked else 1.0
-    alpha[:] = (255 * strength * np.maximum(_BODY * cover, _RIM * rim[..., 0])).astype(np.uint8)
+    strength = 255 * (_FADED if wrecked else 1.0)
+    alpha[:] = strength * np.maximum(_BODY / 255 * cover, _RIM * rim)
     del alpha
     return phantom
