@@ -23,6 +23,7 @@ _FOOT: Final = 0.55  # metres below the plain's line over which a hill fades int
 _CREST_COLOUR: Final = np.array((44, 42, 64), np.float32)
 _FOOT_COLOUR: Final = np.array((20, 22, 38), np.float32)
 _WARM: Final = np.array((255, 150, 96), np.float32)
+_SOFT: Final = 1.1  # metres over which a hill's slope changes, below its edge
 _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 
 
@@ -51,18 +52,21 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[Sheet, tuple[f
     rng = np.random.default_rng(round(1000 * top))
     rise = np.clip((rows - ground.base) / (top - ground.base), 0, 1)[..., None]
     colour = _FOOT_COLOUR + (0.35 + 0.65 * rise) * (_CREST_COLOUR - _FOOT_COLOUR)
-    picture = np.tile(colour, (1, len(crest), 1))
     sunward, near = _sunlight(crest_x.astype(np.float32))
-    lean = _lean(below.shape, pixels_per_metre, rng)
     slope = np.gradient(crest, crest_x).astype(np.float32) * sunward
-    picture = picture * (1 + 0.30 * np.clip(lean * sunward + 0.9 * slope, -1.2, 1.2))[..., None]
-    rim = np.exp(-np.clip(below, 0, None) / 0.05) * 0.6 + np.exp(-np.clip(below, 0, None) / 0.30) * 0.22
-    facing = np.clip(0.45 + 1.1 * slope, 0.10, 1.4)
-    picture += (rim * facing * (0.18 + 0.72 * near))[..., None] * _WARM * 0.62
+    across, down = _folds(below.shape, pixels_per_metre, rng)
+    # Where the sun is straight ahead, folds are lit from above instead of from a side.
+    lean = across * sunward + down * np.sqrt(1 - sunward**2)
+    shade = 1 + 0.30 * np.clip(lean + 0.9 * _softened(slope, _SOFT * pixels_per_metre), -1.2, 1.2)
+    inward = np.exp(np.minimum(below / -0.30, 0))
+    narrow = inward * inward * inward
+    rim = 0.6 * narrow * narrow + 0.22 * inward
+    facing = np.clip(0.45 + 1.1 * slope, 0.10, 1.4) * (0.18 + 0.72 * near)
+    picture = colour.astype(np.float32) * shade[..., None] + (rim * facing)[..., None] * (0.62 * _WARM)
     foot = _FOOT * np.clip((crest - ground.base) / 0.8, 0, 1) ** 0.6  # none where there is no hill
     cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (crest > ground.base + 0.01)
     cover = cover * np.clip(1 + (rows - ground.base) / np.maximum(foot, 0.02), 0, 1) ** 1.5
-    return Sheet(layer(picture.astype(np.float32), cover.astype(np.float32), rng), pixels_per_metre), (-_REACH, top)
+    return Sheet(layer(picture, cover.astype(np.float32), rng), pixels_per_metre), (-_REACH, top)
 
 
 def hills_height(ground: Ground, x: Doubles) -> Doubles:
@@ -81,10 +85,17 @@ def _sunlight(x: Picture) -> tuple[Picture, Picture]:
     return -np.tanh((x - middle) / 3.0), bell(width, float(np.interp(middle, x, np.arange(width))), 0.30 * width)
 
 
-def _lean(shape: tuple[int, int], pixels_per_metre: float, rng: np.random.Generator) -> Picture:
-    """Return how far small folds lean to the right, about -1 to 1."""
+def _folds(shape: tuple[int, int], pixels_per_metre: float, rng: np.random.Generator) -> tuple[Picture, Picture]:
+    """Return how far small folds lean to the right, and how far they face up, each about -1 to 1."""
     rows, columns = shape
     cells = (max(2.0, rows / pixels_per_metre / 1.1), columns / pixels_per_metre / 1.6)
     bumps = clouds(shape, rng, cells, octaves=4, gain=0.5)
-    lean: Picture = np.clip(np.gradient(bumps, axis=1) * pixels_per_metre * 0.6, -1, 1)
-    return lean
+    across, down = (np.clip(0.6 * pixels_per_metre * np.gradient(bumps, axis=axis), -1, 1) for axis in (1, 0))
+    return across, down
+
+
+def _softened(row: Picture, width: float) -> Picture:
+    """Return a row (k,) blurred over so many pixels: a hill's corners are to be seen at its edge alone."""
+    blur = np.hanning(2 * round(width) + 1)
+    soft: Picture = np.convolve(np.pad(row, len(blur) // 2, "edge"), blur / blur.sum(), "valid").astype(np.float32)
+    return soft
