@@ -32,12 +32,13 @@ class Ending:
     """Of one flight; `follow` once for every step of time since it is over.
 
     Attributes:
+        calm: whether motion is reduced.
         card: how it ended; None before, and where it is tried again at once.
 
     """
 
     def __init__(self, flight: Flight, pace: Pace, reduced_motion: bool) -> None:
-        self._flight, self._pace, self._calm = flight, pace, reduced_motion
+        self._flight, self._pace, self.calm = flight, pace, reduced_motion
         self._since = 0
         self._whole: Shot | None = None
         self.card: hud.Card | None = None
@@ -53,7 +54,7 @@ class Ending:
         since = self._since - _CARD_AFTER
         if since <= 0:
             return 0.0
-        return 1.0 if self._calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
+        return 1.0 if self.calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
 
     @property
     def shot(self) -> Shot | None:
@@ -63,7 +64,7 @@ class Ending:
     def follow(self) -> None:
         """Let a step pass; with the first one a crash goes into slow motion."""
         self._since += 1
-        if self._since == 1 and self._flight.outcome is Outcome.CRASHED and not self._calm:
+        if self._since == 1 and self._flight.outcome is Outcome.CRASHED and not self.calm:
             self._pace.slow_down()
 
     def hurry(self) -> bool:

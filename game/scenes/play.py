@@ -54,6 +54,8 @@ class Play:
         self._course = Duel(rival, rival_name) if rival else course
         self._context: Context | None = None
         self.flight: Flight
+        self.ending: Ending
+        self._scenery: Scenery
         self.waiting, self._let_go = True, False
         self._hands = OWN
         self._mouse = MouseStick()
@@ -62,6 +64,7 @@ class Play:
     def enter(self, context: Context) -> None:
         """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
         if self._context is not None:
+            self._scenery.calm = self.ending.calm = self._settings.reduced_motion
             if self.waiting and not self._course and self._chosen() != (self.flight.recording.pads, self._hands):
                 self.retry()
             return

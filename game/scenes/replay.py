@@ -50,6 +50,7 @@ class Replay:
     def __init__(self, record: Record) -> None:
         self.record = record
         self._context: Context | None = None
+        self._scenery: Scenery
         self.stopped = False
         self._speed = SPEEDS.index(1.0)
         self._due = 0.0
@@ -60,6 +61,7 @@ class Replay:
         """Begin with the first moment, or go on where it was left."""
         if self._context is not None:
             self.stopped = True
+            self._scenery.calm = context.settings.reduced_motion
             return
         self._context = context
         self.tape = Tape(self.record)

@@ -26,10 +26,10 @@ _ROWS: Final = (96.0, 600.0)  # the rows between which words may stand
 
 
 class Moments:
-    """Those of one flight; `follow` once after every step."""
+    """Those of one flight; `follow` once after every step. While `calm`, words are there at once, and alone."""
 
     def __init__(self, env: LanderEnv, reduced_motion: bool = False) -> None:
-        self._env, self._calm = env, reduced_motion
+        self._env, self.calm = env, reduced_motion
         self.forget()
 
     def forget(self) -> None:
@@ -53,7 +53,7 @@ class Moments:
 
     def draw_light(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Let light run along the deck from under both feet; with reduced motion there is the word alone."""
-        if not 0 <= self._contact < _GLOW or self._calm:
+        if not 0 <= self._contact < _GLOW or self.calm:
             return
         gone = self._contact / _GLOW
         x, y, angle = pose.tolist()
@@ -82,7 +82,7 @@ class Moments:
         come, stay, go = times
         if not 0 <= since < come + stay + go:
             return 0.0
-        if self._calm:
+        if self.calm:
             return 1.0
         return min(1.0, (since + 1) / come, (come + stay + go - since) / go)
 

@@ -38,10 +38,25 @@ class Scenery:
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
         self._moments = Moments(flight.env, reduced_motion)
-        blows = flight.env.conditions.pushes and not reduced_motion
-        self._wind = Wind(flight.env, LOOKS[self._look].on_dust(DUST)) if blows else None
-        self._camera = Camera()
         self._time = 0.0
+        self._set_up()
+
+    @property
+    def calm(self) -> bool:
+        """Whether motion is reduced; can be changed in the midst of a flight."""
+        return self._calm
+
+    @calm.setter
+    def calm(self, calm: bool) -> None:
+        if calm != self._calm:
+            self._calm = self.stage.calm = self._moments.calm = calm
+            self._set_up()
+
+    def _set_up(self) -> None:
+        """Begin with what moves only where motion is not reduced: the camera, and the dust in a wind."""
+        blows = self._flight.env.conditions.pushes and not self._calm
+        self._wind = Wind(self._flight.env, LOOKS[self._look].on_dust(DUST)) if blows else None
+        self._camera = Camera()
         self.cut()
 
     @property

@@ -36,6 +36,7 @@ class Stage:
     `dust` is what colour flies up, `light` what falls on the craft, 0 to 1, besides that of their own fire.
 
     Attributes:
+        calm: whether motion is reduced.
         jolt: how hard the last step shook what is near, in points.
 
     """
@@ -50,7 +51,7 @@ class Stage:
     ) -> None:
         self._env = env
         self._rng = rng
-        self._calm, self._light = reduced_motion, light
+        self.calm, self._light = reduced_motion, light
         self._relief = Relief(env)
         self.particles = Particles(rng, self._relief, env.gravity, dust)
         count = env.num_envs
@@ -71,7 +72,7 @@ class Stage:
         main, steer = fired >= 3, fired % 3
         wanted = np.stack([main, steer == 2, steer == 1], axis=1) & flying[:, None]
         self.thrust += np.where(wanted, _IGNITE, _DIE) * (wanted - self.thrust)
-        self.blue += (1.0 if self._calm else 0.14) * (networks - self.blue)
+        self.blue += (1.0 if self.calm else 0.14) * (networks - self.blue)
         self._flicker += 1
         self.flash = np.maximum(self.flash - 1, 0)
         self.jolt = 0.0
@@ -100,7 +101,7 @@ class Stage:
         if ended and env.outcome[0] == Outcome.CRASHED:
             speed = float(env.impact[0, :2].max())
             self.jolt = min(_JOLT, 4.0 + 1.4 * speed)
-            if not self._calm:
+            if not self.calm:
                 self._wreck = Wreck(env, 0, self._rng)
         if self._wreck is not None:
             self._wreck.step()
@@ -212,7 +213,7 @@ class Stage:
 
     def _draw_flash(self, canvas: Canvas, view: View, x: float, y: float, slot: int) -> None:
         left = math.ceil(12 * self.flash[slot] / _FLASH_STEPS) / 12  # in steps, so that few glows are ever made
-        if left > 0 and not self._calm:
+        if left > 0 and not self.calm:
             metre = view.pixels_per_metre / view.scale
             canvas.glow(view.points((x, y)).tolist(), 4.6 * metre, (255, 176, 104), 0.8 * left**2)
             canvas.glow(view.points((x, y)).tolist(), 1.7 * metre, (255, 226, 190), 1.0 * left**3)

@@ -171,3 +171,14 @@ def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypat
         jolts.append(stage.jolt)
     assert max(jolts) > 1.0
     assert sum(jolt > 0 for jolt in jolts) <= 3
+
+
+def test_motion_can_be_reduced_in_the_midst_of_a_flight(game: Driver):
+    place(game, (8.0, 12.0, 0.0, 0.0, 0.0, 0.0))
+    game.frames(30)
+    assert scene(game)._scenery.view(1.0) != View(1.0)
+    game.key(pygame.K_ESCAPE)
+    game.app.context.settings.reduced_motion = True
+    game.key(pygame.K_ESCAPE)
+    game.frames(2)
+    assert scene(game)._scenery.view(1.0) == View(1.0)
