@@ -64,7 +64,7 @@ class Play:
     def enter(self, context: Context) -> None:
         """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
         if self._context is not None:
-            self._scenery.calm = self.ending.calm = self._settings.reduced_motion
+            self._scenery.calm = self.ending.calm = context.settings.reduced_motion
             if self.waiting and not self._course and self._chosen() != (self.flight.recording.pads, self._hands):
                 self.retry()
             return
