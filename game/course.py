@@ -59,8 +59,9 @@ class Course:
         """Add to the card of a flight that is over."""
         return card
 
-    def follow(self, flight: Flight) -> None:
-        """See what a step of the flight has brought."""
+    def follow(self, flight: Flight) -> str:  # noqa: ARG002
+        """See what a step of the flight has brought; return the sound that tells of it, empty for none."""
+        return ""
 
     def again(self) -> bool:
         """Whether a flight that is over begins again by itself, without a card."""

@@ -155,20 +155,22 @@ class Tutorial(Course):
         flight.rest()
         return flight
 
-    def follow(self, flight: Flight) -> None:
-        """See whether what is asked has been done."""
+    def follow(self, flight: Flight) -> str:
+        """See whether what is asked has been done, which is heard as well."""
         if self.through:
-            return
+            return ""
         if self._praise:
             self._praise -= 1
             if not self._praise:
                 self._begin_lesson(self._number + 1)
-            return
+            return ""
         done = flight.hand is self.lesson.by and self.lesson.done(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
-        if self._done_for >= self.lesson.steps:
-            self._praise = _PRAISE
-            self.through = self._number == len(self._lessons) - 1
+        if self._done_for < self.lesson.steps:
+            return ""
+        self._praise = _PRAISE
+        self.through = self._number == len(self._lessons) - 1
+        return "" if self.through else "choose"  # a landing has a sound of its own
 
     def skip(self) -> None:
         """Leave out the lesson, and those that begin with it."""

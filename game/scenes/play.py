@@ -171,8 +171,8 @@ class Play:
             self._cockpit.follow()
         self._scenery.clear = self._cockpit.clear
         self._scenery.follow(flight.over and not was_over, self.ending.shot)
-        if self._course:
-            self._course.follow(flight)
+        if self._course and (told := self._course.follow(flight)):
+            self._sound.play(told)
         if flight.over:
             self._end()
 

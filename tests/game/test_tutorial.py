@@ -17,6 +17,7 @@ from game.scenes.settings import SettingsScene
 from game.settings import FILE_NAME
 from game.tutorial import LESSONS, Tutorial
 from tests.game.driver import Driver
+from tests.game.listener import Listener
 from tests.game.player import DEVICES, Player
 
 Open = Callable[..., Driver]
@@ -128,6 +129,16 @@ def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, con
     assert not Records(context.user_dir).entries()
     driver.frames(120)
     assert play(driver).flight.env.steps[0] == 0
+
+
+def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
+    context.sound = sound = Listener()
+    pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    lessons = learn(pupil)
+    next(lessons)
+    sound.heard()
+    next(lessons)
+    assert sound.heard().count("choose") == 1
 
 
 def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
