@@ -150,6 +150,7 @@ class Tutorial(Course):
         self._begun += 1
         self._done_for = self._praise = 0
         flight = Flight(seed, network, mission=FIRST.name)
+        flight.copilot = None  # a fall that the co-pilot brakes is not felt
         flight.env.place(np.ones(1, bool), np.array([self.lesson.start]))
         flight.observation = flight.env.observe()
         flight.rest()

@@ -11,6 +11,7 @@ from game.bindings import Held
 from game.context import Context
 from game.flight import Hand
 from game.records import Records
+from game.scene import Push
 from game.scenes.menu import Menu
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
@@ -139,6 +140,17 @@ def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
     sound.heard()
     next(lessons)
     assert sound.heard().count("choose") == 1
+
+
+def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context):
+    driver = open_game(Menu())
+    context.settings.assist = 1.0
+    driver.app.scenes.apply(Push(Play(0, course=Tutorial())))
+    driver.key(pygame.K_n)
+    driver.key(pygame.K_LEFT)
+    driver.frames(20)
+    assert not play(driver).flight.shared
+    assert play(driver).flight.env.velocity[0, 1] < -0.3
 
 
 def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
