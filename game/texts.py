@@ -987,7 +987,7 @@ MISSION_GHOSTS: Final = {"recorded": "the recorded flight", "own": "your best"}
 MISSION_RIVALS: Final = {"network": "network", "recorded": "recorded flight", "own": "your best"}
 MISSION_NETWORK: Final = "The game's own network lands {landed} of 20 starts near this one."
 MISSION_NETWORK_FAILS: Final = {
-    "earth": "The game's own network lands {landed} of 20 starts near this one: it leans too far, and is carried away.",
+    "earth": "The game's own network lands {landed} of 20 starts near this one: in the others it leans too far.",
     "outage": "The game's own network lands none of 20 starts near this one: it can't know that its engine will fail.",
 }
 
