@@ -10,7 +10,9 @@ import pygame
 
 from game.render import View
 
-_STRIDE: Final = 192  # pixels of the picture: what is scaled begins and ends at a multiple of it
+_STRIDE, _ROWS = 192, 16  # pixels of the picture: what is scaled begins and ends at a multiple of them
+_SPARE: Final = 3  # pixels that it reaches beyond the view at least
+_NICETY: Final = 640  # pixels of width for each pixel that it may be off, half of that at either end
 _RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side: its middle moves the other way
 
 
@@ -18,12 +20,12 @@ class Sheet:
     """A picture painted at `per_metre` pixels per metre.
 
     To scale what is in view takes less than a millisecond, to paint it anew a hundred times that. What was scaled
-    last is kept until the view has moved on by a stride or its size has changed by a pixel.
+    last is kept until the view has moved on by a stride, or either end of it would be more than a pixel off.
     """
 
     def __init__(self, picture: pygame.Surface, per_metre: float) -> None:
         self.picture, self.per_metre = picture, per_metre
-        self._crop, self._size = (0, 0, 0, 0), (0, 0)
+        self._crop = (0, 0, 0, 0)
         self._scaled = picture
 
     def draw(self, surface: pygame.Surface, view: View, corner: tuple[float, float], flags: int = 0) -> None:
@@ -31,9 +33,9 @@ class Sheet:
         ratio = view.pixels_per_metre / self.per_metre
         x, y = view.pixels(corner).tolist()
         width, height = self.picture.get_size()
-        start = max(0, math.floor(-x / ratio / _STRIDE) * _STRIDE)
-        stop = min(width, math.ceil((surface.get_width() - x) / ratio / _STRIDE) * _STRIDE)
-        low = min(height, math.ceil((surface.get_height() - y) / ratio) + 1)
+        start = max(0, math.floor((-x / ratio - _SPARE) / _STRIDE) * _STRIDE)
+        stop = min(width, math.ceil(((surface.get_width() - x) / ratio + _SPARE) / _STRIDE) * _STRIDE)
+        low = min(height, math.ceil(((surface.get_height() - y) / ratio + _SPARE) / _ROWS) * _ROWS)
         if start >= stop or low <= 0:
             return
         if abs(ratio - 1) < 1e-6:
@@ -41,12 +43,13 @@ class Sheet:
             return
         crop = (start, 0, stop - start, low)
         size = (max(1, round((stop - start) * ratio)), max(1, round(low * ratio)))
-        if (crop, size) != (self._crop, self._size):
-            self._crop, self._size = crop, size
+        if crop != self._crop or abs(size[0] - self._scaled.get_width()) * _NICETY > size[0]:
+            self._crop = crop
             if self.picture.get_flags() & pygame.RLEACCEL:  # which would be undone and redone every time
                 self.picture.set_alpha(255)
             self._scaled = pygame.transform.smoothscale(self.picture.subsurface(crop), size)
-        surface.blit(self._scaled, (round(x + start * ratio), round(y)), special_flags=flags)
+        middle = x + (start + stop) / 2 * ratio
+        surface.blit(self._scaled, (round(middle - self._scaled.get_width() / 2), round(y)), special_flags=flags)
 
 
 def fitted(
