@@ -104,22 +104,25 @@ class Insight:
     def draw(self, canvas: Canvas, share: float) -> None:
         """Draw the panel; `share` is the person's share of the flight so far."""
         pads = self._likely if len(self._likely) > 1 else []
-        box = (PANEL.left, PANEL.top, PANEL.width, PANEL.height + (_PADS_HIGH if pads else 0))
-        percent, surest = round(100 * share), max(pads, default=0.0)
-        shows = (
-            self._flown, self._feasible.tobytes(), self._why, self._kept > 0, percent,
-            tuple(chance == surest for chance in pads),
-        )  # fmt: skip
-        self._words.draw(canvas, box, shows, lambda sheet: self._paint_words(sheet, pads, percent / 100))
+        lower, left, top = _PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
+        surest = max(pads, default=0.0)
+        shows = self._flown, self._feasible.tobytes(), tuple(chance == surest for chance in pads)
+        box = (PANEL.left, top, PANEL.width, PANEL.height + lower)
+        self._words.draw(canvas, box, shows, lambda sheet: self._paint_words(sheet, pads))
         for action in range(NUM_ACTIONS):
             self._draw_bar(canvas, action)
         if 0.0 < self._threshold < 1.0:
-            x, y = PANEL.left + _TRACK[0] + self._threshold * _TRACK[1], PANEL.top + _FIRST
+            x, y = PANEL.left + _TRACK[0] + self._threshold * _TRACK[1], top + _FIRST
             canvas.line((x, y - 9), (x, y + 5 * _ROW + 9), MUTE)
             canvas.marker("triangle_down", (x, y - 13), 6, INK, 0.8)
+        title, *lines = self._why
+        canvas.text(title, (left, top + _WHY + 26), colour=NET if self._kept else INK)
+        for number, line in enumerate(lines):
+            canvas.text(line, (left, top + _WHY + 48 + 18 * number), size=SMALL, colour=MUTE)
         for number, chance in enumerate(pads):
-            bar = (PANEL.left + _TRACK[0], PANEL.top + _PADS + 22 * number - 1.5, _TRACK[1], 3)
+            bar = (PANEL.left + _TRACK[0], top + _PADS + 22 * number - 1.5, _TRACK[1], 3)
             canvas.bar(bar, chance, HUMAN if chance == surest else mix(FAINT, HUMAN, 0.45))
+        hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share, texts.SHARE_COPILOT)
 
     def _draw_bar(self, canvas: Canvas, action: int) -> None:
         x, y = PANEL.left + _TRACK[0], PANEL.top + _FIRST + _ROW * action
@@ -130,26 +133,20 @@ class Insight:
         if action == self._asked:
             canvas.dot((x + value * _TRACK[1], y), 4, HUMAN)
 
-    def _paint_words(self, canvas: Canvas, pads: list[float], share: float) -> None:
-        """Draw the panel and what stands on it, but for what moves all the time."""
-        lower = _PADS_HIGH if pads else 0
-        canvas.panel((0, 0, PANEL.width, PANEL.height + lower))
+    def _paint_words(self, canvas: Canvas, pads: list[float]) -> None:
+        """Draw the panel and the words on it that seldom change."""
+        canvas.panel((0, 0, PANEL.width, PANEL.height + (_PADS_HIGH if pads else 0)))
         canvas.text(texts.INSIGHT_TITLE, (_LEFT, 34))
         for action, name in enumerate(ACTION_NAMES):
             flown, good = action == self._flown, bool(self._feasible[action])
             canvas.text(name, (_LEFT, _FIRST + _ROW * action + 4), size=SMALL, colour=INK if flown else MUTE,
                         alpha=1.0 if good or flown else 0.5)  # fmt: skip
-        title, *lines = self._why
         canvas.line((_LEFT, _WHY), (_LEFT + _WIDTH, _WHY), LINE)
-        canvas.text(title, (_LEFT, _WHY + 26), colour=NET if self._kept else INK)
-        for number, line in enumerate(lines):
-            canvas.text(line, (_LEFT, _WHY + 48 + 18 * number), size=SMALL, colour=MUTE)
         if pads:
             canvas.text(texts.INSIGHT_MEANT, (_LEFT, _PADS - 20), size=LABEL, colour=MUTE, weight="medium")
             for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
                 colour = INK if chance == max(pads) else MUTE
                 canvas.text(name, (_LEFT, _PADS + 22 * number + 4), size=SMALL, colour=colour)
-        hud.draw_share(canvas, _LEFT, _WHY + 104 + lower, _WIDTH, share, texts.SHARE_COPILOT)
 
 
 def _worth(values: Floats) -> Doubles:

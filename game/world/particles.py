@@ -19,6 +19,7 @@ from game.world.paint import mix
 from game.world.relief import Relief
 
 _LEVELS: Final = 8
+_FINE: Final = 8  # pixels up to which there is a picture for every radius
 
 
 class Kind(IntEnum):
@@ -181,6 +182,7 @@ class Particles:
         level = np.ceil(_LEVELS * (1 - age / self._life[live])).astype(np.intp)
         radius = np.rint(self._size[live] * view.pixels_per_metre * _SPREAD[kind]).astype(np.intp)
         radius = radius.clip(_LEAST[kind], _MOST)
+        radius -= (radius > _FINE) & (radius % 2)  # every second one will do, where to paint one takes long
         corner = np.rint(place).astype(np.intp) - radius[:, None]
         turn = np.where(kind == Kind.SHARD, (look % 7) * 16 + (age * (3 + look % 5) * 4).astype(np.intp) % 16, 0)
         sprites = map(_sprite, kind.tolist(), radius.tolist(), level.tolist(), turn.tolist(), repeat(self._dust))
