@@ -13,7 +13,7 @@ from game import texts
 from game.outcomes import crash_reason
 from game.render import View
 from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN, INK, SMALL, VIEW_SIZE
+from game.ui.tokens import INK, SMALL, VIEW_SIZE
 from game.world.craft import foot_place
 from game.world.stage import light_pool
 
@@ -59,14 +59,14 @@ class Moments:
         x, y, angle = pose.tolist()
         reach = (0.9 + 2.4 * (1 - (1 - gone) ** 3)) * view.pixels_per_metre
         level = math.ceil(30 * (1 - gone) ** 1.3)
-        light = pygame.transform.smoothscale(light_pool(level, HUMAN), (2 * round(reach), round(0.22 * reach) + 6))
+        light = pygame.transform.smoothscale(light_pool(level, INK), (2 * round(reach), round(0.22 * reach) + 6))
         for side in (-1, 1):
             foot = foot_place(x, y, angle, side)
             at_x, at_y = view.pixels(foot).tolist()
             corner = (round(at_x - light.get_width() / 2), round(at_y - light.get_height() / 2))
             canvas.surface.blit(light, corner, special_flags=pygame.BLEND_RGB_ADD)
             place = view.points(foot).tolist()
-            canvas.glow((place[0], place[1]), 0.5 * view.pixels_per_metre / view.scale, HUMAN, 1.3 * (1 - gone) ** 2)
+            canvas.glow((place[0], place[1]), 0.5 * view.pixels_per_metre / view.scale, INK, 1.3 * (1 - gone) ** 2)
 
     def draw_words(self, canvas: Canvas, view: View, pose: Doubles, reason: bool = True) -> None:
         """Write what has happened above the craft; `reason` is whether that of a crash is still to be told."""
@@ -95,6 +95,6 @@ class Moments:
             canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8 * shown)
             canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn, shown)
         else:
-            canvas.glow((x - width / 2 + 4, y - 4), 13, HUMAN, 0.9 * shown)
-            canvas.dot((x - width / 2 + 4, y - 4), 3.5, HUMAN, shown)
+            canvas.glow((x - width / 2 + 4, y - 4), 13, INK, 0.9 * shown)
+            canvas.dot((x - width / 2 + 4, y - 4), 3.5, INK, shown)
         canvas.text(text, (x - width / 2 + 22, y), size=SMALL, weight="medium", colour=INK, alpha=shown)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -134,13 +135,19 @@ def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float =
 
 def _plain_noise(near: Picture, width: int, view_width: int, rng: np.random.Generator) -> Picture:
     """Return a rolling surface seen from low above it: fine far away, coarse in front."""
-    side = 512
-    field = clouds((side, side), rng, (30, 30), octaves=5, gain=0.62) * 2.2
+    field = _hummocks(int(rng.integers(2**31)))
+    side = len(field)
     scale = 0.16 + near
     across = ((np.arange(width) - width / 2)[None, :] * (0.574 * 1280 / view_width / scale[:, None]) + side / 2) % side
     down = (210 * np.log(scale) + 500) % side
     seen: Picture = field[down.astype(np.intp)[:, None], across.astype(np.intp)]
     return seen * (0.35 + 0.65 * near)[:, None]
+
+
+@lru_cache(maxsize=2)
+def _hummocks(seed: int) -> Picture:
+    """Return a rolling surface seen from above; kept, for the same plain is painted for near and for far cameras."""
+    return clouds((512, 512), np.random.default_rng(seed), (30, 30), octaves=5, gain=0.62) * 2.2
 
 
 def _sink_crater(bumps: Picture, near: Picture, view_width: int, rng: np.random.Generator) -> None:
