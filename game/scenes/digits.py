@@ -17,6 +17,7 @@ from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.fixing import Fixing
 from game.digits.measuring import Measuring
 from game.digits.pad import DrawingPad
+from game.digits.pen import Pen
 from game.digits.reader import Explanation, Numbers, Reader, Switches, Verdict
 from game.digits.shelf import NAMES, called
 from game.digits.sight import LEFT as SIGHT_LEFT
@@ -86,6 +87,7 @@ class Digits:
             self.chosen = next(iter(self._reader.classifiers), self.chosen)
         self._form = Form(context, on_back=Pop)
         self._tabs = self._form.add(self._make_tabs())
+        self._pen = self._form.add(Pen(self._form.manager, lambda: self.pad))
         self._add_words()
         self._look()
         self._offer_undo()
@@ -114,7 +116,7 @@ class Digits:
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Draw, or do what a key, a button or a word means."""
-        if self.pad.handle_event(event):
+        if self.pad.handle_event(event) or (self._pen.focused and self._pen.take(event)):
             return None
         if event.type == pygame.KEYDOWN and event.key == pygame.K_z:
             self.pad.undo()
@@ -356,7 +358,6 @@ class Digits:
         for key, widget in zip(keys, self._under, strict=True):
             left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
             canvas.text(key, (left, widget.baseline), size=SMALL, weight="medium")
-        draw_hints(canvas, [
-            (word(Command.NEXT), texts.DIGITS_HINT_NETWORK),
-            (word(Command.BACK), texts.HINT_BACK),
-        ], (PAD.left, VIEW_SIZE[1] - 40))  # fmt: skip
+        hints = [(word(Command.NEXT), texts.DIGITS_HINT_NETWORK), (word(Command.BACK), texts.HINT_BACK)]
+        hints = self._pen.hints(controls) if self._pen.typing else hints
+        draw_hints(canvas, hints, (PAD.left, VIEW_SIZE[1] - 40))

@@ -16,6 +16,7 @@ from game.controls import Command, translate
 from game.digits.answer import LEFT, percent
 from game.digits.contest import ROUNDS, Contest, Round
 from game.digits.pad import DrawingPad
+from game.digits.pen import Pen
 from game.digits.pictures import picture
 from game.scene import Pop, Transition
 from game.ui import typeface
@@ -25,7 +26,7 @@ from game.ui.hints import draw_hints
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.tokens import FIGURE, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, TITLE, VIEW_SIZE, Colour
-from game.ui.widgets import OnPress, Word
+from game.ui.widgets import OnPress, Widget, Word
 
 if TYPE_CHECKING:
     from ai.digits import DigitClassifier
@@ -74,7 +75,8 @@ class Quiz:
                                    partial(self._read, digit), FIGURE)
                         for digit, texts_of in enumerate(map(str, range(10)))]  # fmt: skip
         self._go_word = self._word(texts.QUIZ_DONE, (LEFT, _WORDS), self._go)
-        self._shown: list[Word] = []
+        self._pen = Pen(self._form.manager, lambda: self.pad)
+        self._shown: list[Widget] = []
         self.restart()
 
     def exit(self) -> None:
@@ -97,7 +99,7 @@ class Quiz:
         """Draw, answer by a digit's key, or do what a word means."""
         current = self.contest.round
         drawing = current is not None and current.kind == "draw" and current.answer is None
-        if drawing and self.pad.handle_event(event):
+        if drawing and (self.pad.handle_event(event) or (self._pen.focused and self._pen.take(event))):
             return None
         if event.type == pygame.KEYDOWN and pygame.K_0 <= event.key <= pygame.K_9:
             self._read(event.key - pygame.K_0)
@@ -194,12 +196,14 @@ class Quiz:
         """Offer the words that mean something now."""
         current = self.contest.round
         if current and current.kind == "read" and current.answer is None:
-            wanted = self._keypad
+            wanted: list[Widget] = [*self._keypad]
         else:
             label = texts.QUIZ_AGAIN if not current else texts.QUIZ_DONE if current.answer is None else texts.QUIZ_NEXT
             if label != self._go_word.label:
                 self._go_word = self._word(label, (LEFT, _WORDS), self._go)
             wanted = [self._go_word]
+            if current and current.answer is None:
+                wanted.append(self._pen)
         if wanted != self._shown:
             for widget in self._form.widgets[:]:
                 self._form.widgets.remove(widget)
@@ -274,6 +278,7 @@ class Quiz:
             ]
         elif current and current.answer is None and not pad:
             hints[:1] = [("0 – 9", texts.HINT_CHOOSE)]
+        hints = self._pen.hints(controls) if self._pen.typing else hints
         draw_hints(canvas, hints, (_PAD.left, VIEW_SIZE[1] - 40))
 
 
