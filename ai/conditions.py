@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -28,17 +29,17 @@ class Conditions:
         if not all(map(math.isfinite, numbers)) or self.gust_period <= 0 or self.swing_period <= 0 or self.tank < 0:
             raise ValueError(f"forces and distances are finite, periods more than 0 and tanks not negative: {self}")
 
-    @property
+    @cached_property
     def pushes(self) -> bool:
         """Whether there is any wind."""
         return self.wind != 0 or self.gust != 0
 
-    @property
+    @cached_property
     def fails(self) -> bool:
         """Whether an engine may do nothing when it is asked to fire."""
         return math.isfinite(self.tank) or math.isfinite(self.outage[0])
 
-    @property
+    @cached_property
     def moves(self) -> bool:
         """Whether the pad moves."""
         return self.swing != 0
