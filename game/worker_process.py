@@ -107,6 +107,8 @@ def _settle() -> None:
 
 def _in_words(error: Exception) -> str:
     said = " ".join(str(error).split())
+    if isinstance(error, OSError) and error.strerror:  # without its number, which helps nobody
+        said = f"{error.strerror}: {error.filename}" if error.filename else error.strerror
     # These say in their own words what a person can do something about; of others the kind is needed as well.
     if said and isinstance(error, ArithmeticError | ValueError | OSError | MemoryError | ImportError):
         return said

@@ -205,4 +205,6 @@ def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, Replay], t
     _choose_gif(driver)
     driver.wait(lambda: scene._export is None)
     assert "could not be saved" in driver.app._notes._text
+    assert "File exists" in driver.app._notes._text
+    assert "Errno" not in driver.app._notes._text
     assert driver.frames(2)
