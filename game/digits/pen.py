@@ -11,7 +11,7 @@ from game import texts
 from game.controls import Command, Controls, presses_main, translate
 from game.digits.pad import DrawingPad
 from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN
+from game.ui.tokens import HUMAN, NIGHT0
 from game.ui.widgets import PointsManager, Widget
 
 _PACE: Final = 4.5  # points in a step of 1/60 s
@@ -115,6 +115,7 @@ class Pen(Widget):
         super().paint(canvas)
         if self.typing:
             x, y = self._place
+            canvas.dot((x, y), 9, NIGHT0, 0.6)  # it has to be seen on ink, too
             canvas.marker("ring", (x, y), 14, HUMAN)
             for across, down in _WAYS.values():
                 canvas.line((x + 9 * across, y + 9 * down), (x + 15 * across, y + 15 * down), HUMAN, 1.5)
