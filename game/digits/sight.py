@@ -51,16 +51,20 @@ class Sight:
     """Draws a reading and its explanation; pictures are made anew only when these have changed."""
 
     def __init__(self) -> None:
-        self._of: tuple[object, ...] = ()
+        self._read: tuple[Reading | None, float] = None, 0.0  # what the pictures are of, and at what scale
+        self._explained: tuple[Explanation | None, float] = None, 0.0
         self._stages: list[pygame.Surface] = []
         self._saliency = self._filters = pygame.Surface((1, 1))
         self._layers: list[pygame.Surface] = []
 
     def draw(self, canvas: Canvas, reading: Reading, name: str, why: Explanation | None, steps: list[bool]) -> None:
         """Draw everything; `steps` says which are taken."""
-        if self._of != (reading, why, canvas.scale):
-            self._of = (reading, why, canvas.scale)
-            self._build(canvas, reading, why)
+        if self._read != (reading, canvas.scale):
+            self._read = reading, canvas.scale
+            self._stages = [_fitted(image, canvas.px(_TILE)) for image in reading.stages]
+        if self._explained != (why, canvas.scale):
+            self._explained = why, canvas.scale
+            self._build(canvas, why)
         self._draw_stages(canvas, steps)
         if why is None:
             return
@@ -68,9 +72,7 @@ class Sight:
         self._draw_filters(canvas, why)
         self._draw_layers(canvas, why)
 
-    def _build(self, canvas: Canvas, reading: Reading, why: Explanation | None) -> None:
-        side = canvas.px(_TILE)
-        self._stages = [_fitted(image, side) for image in reading.stages]
+    def _build(self, canvas: Canvas, why: Explanation | None) -> None:
         if why is None:
             return
         size = canvas.px(_WHY[2])

@@ -66,7 +66,7 @@ class Digits:
         self._context: Context | None = None
         self._switches = Switches()
         self._sight = Sight()
-        self._seen = -1
+        self._seen, self._explained = -1, True
         self._why: Explanation | None = None
         self._unfix: Word | None = None
         self._fix_of = -1  # the drawing, by its revision, that was put right last
@@ -111,7 +111,7 @@ class Digits:
     def probabilities(self) -> Numbers | None:
         """How probable the chosen network finds each digit, (10,); None while nothing is drawn, or it can't be read."""
         if self._seen != self.pad.revision:
-            self._look()
+            self._read()
         return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -142,8 +142,11 @@ class Digits:
 
     def update(self) -> Transition | None:
         """Look at what has been drawn since, and hear what was measured."""
-        if self._seen != self.pad.revision:
-            self._look()
+        # In turns: while the pen moves, to read and to explain would be too much for one frame.
+        if not self._explained:
+            self._explain()
+        elif self._seen != self.pad.revision:
+            self._read()
         self._measuring.listen()
         self._follow_fix()
         return self._form.update()
@@ -168,14 +171,19 @@ class Digits:
             self._reader.load(name, *network.versions())
 
     def _look(self) -> None:
-        """Let the networks read what is on the pad."""
-        self._seen = self.pad.revision
+        """Let the networks read what is on the pad, and the chosen one say why."""
+        self._read()
+        self._explain()
+
+    def _read(self) -> None:
+        self._seen, self._explained = self.pad.revision, False
         self.reading = self._reader.read(self.pad.strokes, self.pad.ink, self._switches, self._pair)
-        self._why = None
-        chosen = self.reading.probabilities.get(self.chosen)
-        if chosen is not None:
-            self._why = self._reader.explain(self.chosen, self.reading.stages.centred)
         self._show_bars()
+
+    def _explain(self) -> None:
+        self._explained, self._why = True, None
+        if self.chosen in self.reading.probabilities:
+            self._why = self._reader.explain(self.chosen, self.reading.stages.centred)
 
     def _show_bars(self) -> None:
         drawn = bool(self.reading.stages.centred.any())

@@ -170,6 +170,7 @@ def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing
 
 def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
     draw(drawing, strokes(2))
+    drawing.frames(1)  # what was read is explained in the frame after
     why, seen = scene(drawing)._why, scene(drawing).reading.stages.centred
     assert np.abs(why.saliency).max() == pytest.approx(1)
     assert np.abs(why.saliency[seen == 0]).max() == 0
