@@ -69,7 +69,11 @@ class Cockpit:
 
     def alone(self, hands: str) -> bool:
         """Whether the flight was flown by the person's own hands from start to end, and without help."""
-        return hands == OWN and not self.helped and self._flight.share == 1.0
+        return hands == OWN and self._unaided
+
+    @property
+    def _unaided(self) -> bool:
+        return not self.helped and self._flight.share == 1.0
 
     def keep_lesson(self, folder: Path, hands: str) -> str:
         """Keep a flight that is over as an example, if wished and worth it; return what to tell the player of that."""
@@ -82,10 +86,11 @@ class Cockpit:
             return texts.NOT_TAUGHT.format(reason=error)
 
     def card(self, best: int, view: View) -> Card:
-        """Return the card of the flight, which is over; `best` is the score to beat."""
+        """Return the card of the flight, which is over; `best` is the score to beat without help."""
         env = self._flight.env
         score = landing_score(env)
-        words = (texts.SCORE_BEST if score > best > 0 else texts.SCORE).format(points=score) if score else ""
+        beaten = score > best > 0 and self._unaided
+        words = (texts.SCORE_BEST if beaten else texts.SCORE).format(points=score) if score else ""
         card = replace(outcome_card(env, self._flight.share), score=words)
         if not self.helped:
             return card

@@ -29,8 +29,8 @@ class Skill:
 
     @property
     def best(self) -> int:
-        """The highest score so far, 0 before any landing."""
-        return max((entry.score for entry in self.entries), default=0)
+        """The highest score without help so far, 0 before any landing."""
+        return max((entry.score for entry in self.entries if entry.alone), default=0)
 
     @property
     def own(self) -> list[bool]:

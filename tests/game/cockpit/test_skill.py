@@ -20,6 +20,10 @@ def test_only_free_flights_say_something_of_it():
     assert Skill([]).best == 0
 
 
+def test_what_the_network_landed_is_not_the_players_best():
+    assert Skill([flown(True, alone=True, score=60), flown(True, alone=False, score=90)]).best == 60
+
+
 def test_every_fifth_flight_is_a_check_and_one_flown_alone_counts_as_such():
     skill = Skill([])
     due = []
