@@ -9,6 +9,7 @@ from typing import Final, TypeVar
 from game.flight import Hand
 from game.scene import Transition
 from game.ui.canvas import Canvas
+from game.ui.kept import Kept
 from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
 from game.ui.widgets import PointsManager, Widget, mix
 
@@ -16,6 +17,7 @@ V = TypeVar("V")
 _LABELS: Final = 84.0  # room for the lanes' names
 _LANE: Final = 12.0  # points from one lane to the next
 _BAR: Final = 3.0
+_TOP: Final = 6.0  # of the strip, from the upper edge
 _STEP: Final = 6  # physics steps that an arrow moves by
 _LIT: Final = mix(MUTE, INK, 0.5)
 _COLOURS: Final = {Hand.HUMAN: HUMAN, Hand.NETWORK: NET}
@@ -35,6 +37,7 @@ class Timeline(Widget):
         on_press: Callable[[], None],
     ) -> None:
         super().__init__(manager, box, "")
+        self._still = Kept()
         self._words, self._on_seek, self._on_press = words, on_seek, on_press
         self.length = max(1, len(actions))
         self.at = self.reached = 0
@@ -71,25 +74,31 @@ class Timeline(Widget):
     def paint(self, canvas: Canvas) -> None:
         """Draw the strip, the lanes below it and the mark of the moment."""
         super().paint(canvas)
-        (left, width), top = self._track, self.box.top + 6.0
-        canvas.pill((left, top, width, _BAR), FAINT, 0.5)
-        self._paint_runs(canvas, self._hands, top)
+        (left, width), top = self._track, self.box.top + _TOP
+        self._still.draw(canvas, self.box, tuple(self.box), self._paint_runs)
         far = self._place(self.reached)
         if far < left + width - 1:  # what has not been looked at yet
             canvas.fill(canvas.rect(far, top - 1, left + width - far, _BAR + 2), LINE, 0.7)
-        for number, (word, lane) in enumerate(zip(self._words, self._lanes, strict=True)):
-            y = top + 12 + number * _LANE
-            canvas.text(word, (self.box.left, y + 4), size=LABEL - 1, colour=MUTE)
-            canvas.line((left, y + 1), (left + width, y + 1), LINE)
-            self._paint_runs(canvas, lane, y - 0.5)
         x = self._place(self.at)
         canvas.line((x, top - 5), (x, top + 12 + 2 * _LANE + 5), INK, 1)
         canvas.dot((x, top + 1.5), 4.5 + self.warmth, INK)
 
-    def _paint_runs(self, canvas: Canvas, stretches: Sequence[tuple[int, int, Colour]], top: float) -> None:
-        for start, stop, colour in stretches:
-            x = self._place(start)
-            canvas.surface.fill(colour, canvas.rect(x, top, max(1.0, self._place(stop) - x), _BAR))
+    def _paint_runs(self, canvas: Canvas) -> None:
+        """Draw what was flown: the same until the end, and many stretches of it."""
+        left, width = _LABELS, self._track[1]
+
+        def lay(stretches: Sequence[tuple[int, int, Colour]], top: float) -> None:
+            for start, stop, colour in stretches:
+                x, end = (left + width * min(step / self.length, 1.0) for step in (start, stop))
+                canvas.surface.fill(colour, canvas.rect(x, top, max(1.0, end - x), _BAR))
+
+        canvas.pill((left, _TOP, width, _BAR), FAINT, 0.5)
+        lay(self._hands, _TOP)
+        for number, (word, lane) in enumerate(zip(self._words, self._lanes, strict=True)):
+            y = _TOP + 12 + number * _LANE
+            canvas.text(word, (0, y + 4), size=LABEL - 1, colour=MUTE)
+            canvas.line((left, y + 1), (left + width, y + 1), LINE)
+            lay(lane, y - 0.5)
 
 
 def runs(values: Iterable[V]) -> list[tuple[int, int, V]]:
