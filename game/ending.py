@@ -67,13 +67,11 @@ class Ending:
         if self._since == 1 and self._flight.outcome is Outcome.CRASHED and not self.calm:
             self._pace.slow_down()
 
-    def hurry(self) -> bool:
-        """Cut the slow motion short, and show the card; whether there was any to cut."""
-        if not self._pace.slow or self._since <= _CRASH_SEEN:
-            return False
-        self._pace.hurry()
-        self._since = _CARD_AFTER
-        return True
+    def hurry(self) -> None:
+        """Cut slow motion short, and show the card."""
+        if self._pace.slow and self._since > _CRASH_SEEN:
+            self._pace.hurry()
+            self._since = _CARD_AFTER
 
     def make_card(self, cockpit: Cockpit, difficulty: Difficulty, course: Course | None, skill: Skill,
                   scenery: Scenery) -> None:  # fmt: skip

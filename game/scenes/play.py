@@ -130,9 +130,10 @@ class Play:
         self._pace.usual = self._settings.pace
         if self._waits():
             self._outlook.follow(waiting=True)
-        elif self._pace.due():
+            return None
+        if self._pace.due():
             self._fly()
-        self._heard.follow(self._scenery.stage.thrust[0])
+        self._heard.follow(self._scenery.stage.thrust[0])  # between steps too, or fire would fall silent
         return None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:

@@ -182,3 +182,11 @@ def test_motion_can_be_reduced_in_the_midst_of_a_flight(game: Driver):
     game.key(pygame.K_ESCAPE)
     game.frames(2)
     assert scene(game)._scenery.view(1.0) == View(1.0)
+
+
+def test_nothing_is_heard_of_a_craft_that_hangs_and_waits(game: Driver, monkeypatch: pytest.MonkeyPatch):
+    heard: list[str] = []
+    monkeypatch.setattr(scene(game)._sound, "play", lambda key, *_: heard.append(key))
+    game.frames(200)
+    assert scene(game).waiting
+    assert heard == []
