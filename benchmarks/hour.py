@@ -21,7 +21,6 @@ os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 
 import argparse
-import gc
 import sys
 import time
 import tracemalloc
@@ -134,7 +133,6 @@ def main() -> int:
         began = time.process_time()
         for minute in range(1, arguments.minutes + 1):
             scenes = Counter(next(frames) for _ in range(_MINUTE))
-            gc.collect()
             memory.append(resident())
             where = ", ".join(scenes)
             print(
