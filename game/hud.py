@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import pygame
@@ -13,6 +14,7 @@ from ai.lander import LanderEnv
 from game import texts
 from game.ui.canvas import Canvas, Point
 from game.ui.hints import draw_hints, hints_width
+from game.ui.kept import Kept
 from game.ui.tokens import (
     FAINT,
     FIGURE,
@@ -38,6 +40,10 @@ _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
 _BAR_TOP: Final = 708.0
+# A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
+_ASIDE, _ABOVE = 4.0, 16.0
+_WORDS: Final = (180.0, 66.0)
+_FIGURES: Final = Kept(256)
 _LITTLE_TIME: Final = 5.0
 BAR_ROW: Final = 24  # from one bar of several to the next
 
@@ -97,18 +103,24 @@ def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence
     """Draw figures side by side; a bar says how far from the limit, a mark beside the label on which side."""
     for x, readout in zip(columns, readouts, strict=True):
         colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
-        label = canvas.text(readout.label, (x, _LABEL_LINE), size=LABEL, colour=MUTE, weight="medium")
-        if readout.within is not None:
-            _draw_mark(canvas, (label.right + 9, _LABEL_LINE - 4), readout.within)
-        figure = canvas.text(
-            readout.figure, (x - 1, _FIGURE_LINE), size=FIGURE, colour=colour, weight="light", tabular=True
-        )
-        gap = 3 if readout.unit == "°" else 6
-        canvas.text(readout.unit, (figure.right + gap, _FIGURE_LINE), size=SMALL, colour=MUTE)
+        shows = readout.label, readout.figure, readout.unit, readout.within
+        box = (x - _ASIDE, _LABEL_LINE - _ABOVE, *_WORDS)
+        _FIGURES.draw(canvas, box, shows, partial(_paint_readout, readout=readout, colour=colour))
         if readout.fill is not None:
             canvas.bar((x, _BAR_TOP, *_BAR), readout.fill, colour)
         if readout.limit is not None:
             canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
+
+
+def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
+    """Draw label, mark, figure and unit on a sheet of their own: most stay the same for some frames."""
+    line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
+    label = canvas.text(readout.label, (_ASIDE, _ABOVE), size=LABEL, colour=MUTE, weight="medium")
+    if readout.within is not None:
+        _draw_mark(canvas, (label.right + 9, _ABOVE - 4), readout.within)
+    figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=FIGURE, colour=colour, weight="light", tabular=True)
+    gap = 3 if readout.unit == "°" else 6
+    canvas.text(readout.unit, (figure.right + gap, line), size=SMALL, colour=MUTE)
 
 
 def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> None:

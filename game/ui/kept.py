@@ -11,20 +11,26 @@ from game.ui.canvas import Canvas
 
 
 class Kept:
-    """A picture, such as the words of a panel, that is painted anew only when what it shows has changed."""
+    """Pictures, such as the words of a panel, that are painted anew only when what they show has changed.
 
-    def __init__(self) -> None:
-        self._shows: tuple[Hashable, ...] = ()
-        self._painted: pygame.Surface | None = None
+    The last `most` are kept, to be found again by what they show.
+    """
+
+    def __init__(self, most: int = 1) -> None:
+        self._most = most
+        self._painted: dict[Hashable, pygame.Surface] = {}
 
     def draw(
         self, canvas: Canvas, box: pygame.typing.RectLike, shows: Hashable, paint: Callable[[Canvas], None]
     ) -> None:
         """Draw what `paint` paints, with the corner of `box` as its origin; `shows` is all that it depends on."""
         x, y, width, height = pygame.FRect(box)
-        now = (canvas.size, canvas.palette, typeface.growth(), shows)
-        if self._painted is None or now != self._shows:
+        key = (canvas.size, canvas.palette, typeface.growth(), width, height, shows)
+        painted = self._painted.get(key)
+        if painted is None:
             sheet = canvas.sheet(width, height)
             paint(sheet)
-            self._shows, self._painted = now, sheet.surface
-        canvas.surface.blit(self._painted, canvas.rect(x, y, width, height).topleft)
+            painted = self._painted[key] = sheet.surface
+            if len(self._painted) > self._most:
+                del self._painted[next(iter(self._painted))]
+        canvas.surface.blit(painted, canvas.rect(x, y, width, height).topleft)
