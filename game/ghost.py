@@ -100,7 +100,7 @@ def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
         canvas.surface.blit(sheet, corner, special_flags=pygame.BLEND_RGB_ADD)
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=192)
 def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
     """Return the lander as glass: its shades in blue, seen through, and a line of light around it."""
     phantom = art.painted(pixels_per_metre, degrees, halves).copy()

@@ -182,9 +182,19 @@ def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[
     ]
 
 
-@lru_cache(maxsize=1536)
 def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool = False) -> pygame.Surface:
     """Return the lander at a size and angle, its middle moved right and down by so many half pixels, 0 or 1."""
+    paint = _paint if pixels_per_metre < _LARGE else _paint_large
+    return paint(pixels_per_metre, degrees, halves, wreck)
+
+
+@lru_cache(maxsize=192)  # a seventh of a megabyte each, and more in a large window
+def _paint_large(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool) -> pygame.Surface:
+    return _paint.__wrapped__(pixels_per_metre, degrees, halves, wreck)
+
+
+@lru_cache(maxsize=1536)
+def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool) -> pygame.Surface:
     half = math.ceil(REACH * pixels_per_metre) + 2
     side = 2 * half + 1
     factor = _FACTOR if pixels_per_metre < _LARGE else _FACTOR // 2

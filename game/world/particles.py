@@ -209,7 +209,7 @@ class Particles:
         self._look[slots] = self._rng.integers(0, 1000, len(slots))
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=2048)
 def _sprite(kind: int, radius: int, level: int, turn: int, dust: Colour) -> pygame.Surface:
     """Return what a particle looks like, `radius` pixels to all sides of its middle one; `level` is in 1/8."""
     if kind == Kind.DUST:
