@@ -72,6 +72,7 @@ class Forecast:
         for _ in range(_DECISIONS):
             if not self._places:
                 ahead.restore(env.snapshot())
+                ahead.gravity = env.gravity
                 self._observation = ahead.observe()
             self._places.append(ahead.position[0].copy())
             if self._arrived():

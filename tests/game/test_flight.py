@@ -234,3 +234,17 @@ def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():
             assert forecast.path[-1, 1] - watched.env.pad[0, 1] - PARAMS.stand < 0.5
     assert watched.recording == alone.recording
     assert np.array_equal(watched.poses.now, alone.poses.now)
+
+
+@pytest.mark.parametrize("share", [0.6, 1.4])
+def test_a_forecast_is_flown_under_the_gravity_of_the_flight(share: float):
+    flight, forecast = Flight(7, ScriptedPilot()), Forecast(ScriptedPilot())
+    flight.set_gravity(share)
+    for _ in range(400):
+        forecast.follow(flight.env)
+        if len(forecast.path):
+            break
+    flight.hand_over()
+    for _ in range(10 * DECISION_STEPS):
+        flight.step(0)
+    assert np.array_equal(forecast.path[10], flight.poses.now[0, :2])
