@@ -26,6 +26,7 @@ VERSION: Final = 2
 _READS: Final = (1, 2)  # the first knew no change of gravity
 _LONGEST: Final = 120 * 60  # physics steps of a flight
 _LARGEST: Final = 1_000_000  # bytes
+_MOST: Final = 32_503_680_000  # of any figure; in seconds the year 3000, up to which every system knows dates
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class Entry:
 
     def __post_init__(self) -> None:
         figures = (self.when, self.seconds, self.fuel, self.touchdown, self.human, self.gravity, self.pace)
-        if not all(isinstance(figure, (int, float)) and math.isfinite(figure) and figure >= 0 for figure in figures):
+        if not all(isinstance(figure, (int, float)) and 0 <= figure < _MOST for figure in figures):
             raise ValueError("a figure is no positive number")
         if self.outcome not in Outcome.__members__ or self.human > 1:
             raise ValueError(f"no flight ends as {self.outcome!r}, {self.human} of it by hand")
@@ -109,7 +110,7 @@ def read(path: Path) -> Record:
         raise ValueError(texts.FLIGHT_GONE.format(name=path.name)) from error
     except OSError as error:
         raise ValueError(f"{path.name}: {error.strerror or error}") from error
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         raise ValueError(texts.FLIGHT_DAMAGED.format(name=path.name, problem=_said(error))) from error
 
 

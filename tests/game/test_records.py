@@ -87,6 +87,9 @@ def test_flights_that_end_at_one_moment_keep_a_file_each(kept: Records):
         lambda text: text.replace('"LANDED"', '"FLOWN"'),
         lambda text: text.replace('"pads": 1', '"pads": 2'),
         lambda text: text.replace('"entry"', '"other"'),
+        lambda text: text.replace('"end": [', f'"end": [{10**400}, '),
+        lambda text: text.replace('"gravity": []', '"gravity": [[Infinity, 1.0]]'),
+        lambda text: text.replace('"when": ', '"when": 99999999999'),
         lambda text: "[" * 100_000,
         lambda text: " " * 2_000_000,
     ],
@@ -115,10 +118,14 @@ def test_no_text_at_all_breaks_the_reader(text: str):
 def test_damaged_lines_of_the_logbook_are_counted_and_the_rest_is_read(kept: Records):
     kept.keep(fly(), NOON)
     with kept.logbook.open("a") as file:
-        file.write('nonsense\n{"when": 1}\n{"when": NaN, "outcome": "LANDED"}\n\n{"when": 17')  # a killed game
+        file.write('nonsense\n{"when": 1}\n{"when": NaN, "outcome": "LANDED"}\n\n')
+        file.write(
+            '{"when": 1' + 400 * "0" + ', "outcome": "LANDED", "seconds": 1, "fuel": 1, "touchdown": 0, "human": 1}\n'
+        )
+        file.write('{"when": 17')  # a killed game
     kept.keep(fly(), NOON + 1)
     assert [line.when for line in kept.entries()] == [NOON, NOON + 1]
-    assert "4 lines" in kept.problem
+    assert "5 lines" in kept.problem
 
 
 def test_a_line_cannot_lead_out_of_the_folder():
