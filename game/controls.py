@@ -292,7 +292,7 @@ def key_name(code: int) -> str:
     """Name a key as it is written on it."""
     name = _KEY_NAMES.get(code)
     if name is None:
-        return chr(code).upper() if 32 < code < 0x10000 else f"#{code}"
+        return chr(code).upper() if 32 < code < 0x10000 and chr(code).isprintable() else f"#{code}"
     return texts.KEY_NAMES.get(name) or name.replace("kp_", "Num ").replace("kp", "Num ").title()
 
 

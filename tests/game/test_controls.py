@@ -2,7 +2,7 @@ import pygame
 import pytest
 
 from game.bindings import FIXED_KEYS, KEYBOARD, KEYS, PAD, Bindings, Command, Held
-from game.controls import Controls, presses_main, translate
+from game.controls import Controls, key_name, presses_main, translate
 from game.settings import Settings
 from game.ui.glyphs import SIGN, family_of, sign
 
@@ -206,6 +206,12 @@ def test_damaged_bindings_are_passed_over(damaged):
         assert len(codes) == len(set(codes))
     assert translate(send(controls, pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0)) is Command.PAUSE
     assert translate(send(controls, pygame.KEYDOWN, key=pygame.K_RETURN, mod=0)) is Command.CONFIRM
+
+
+def test_what_cannot_be_written_is_a_number():
+    assert [key_name(code) for code in (0xE9, 0x85, 0xD800, 0xE3FF, 0x110000)] == [
+        "\xc9", "#133", "#55296", "#58367", "#1114112"
+    ]  # fmt: skip
 
 
 def test_triggers_are_buttons_like_others():
