@@ -152,6 +152,24 @@ def test_frame_skip_only_holds_the_action():
         assert result.reward[0] == pytest.approx(sum(rewards), abs=1e-4)
 
 
+def test_a_flight_without_pay_is_the_same_flight():
+    paid, unpaid = (LanderEnv(12, 5, "practice", frame_skip=2) for _ in range(2))
+    paid.reset()
+    unpaid.reset()
+    for actions in np.random.default_rng(2).integers(0, NUM_ACTIONS, (150, 12)):
+        result = paid.step(actions)
+        unpaid.fly(actions)
+        assert np.array_equal(result.observation, unpaid.observe())
+        assert np.array_equal(result.outcome, unpaid.outcome)
+        assert np.array_equal(paid.fuel, unpaid.fuel)
+        if result.ended.any():
+            paid.reset(result.ended)
+            unpaid.reset(result.ended)
+    assert paid.landings == unpaid.landings
+    with pytest.raises(ValueError, match="0 to 5"):
+        unpaid.fly(np.full(12, 6))
+
+
 def test_gliding_is_flying_until_something_touches_and_goes_through_it_after():
     flown, glided = (placed((3, 12, 1, -1, 0.2, 0.1), (0, 5, 0, -2, 0, 0), frame_skip=4) for _ in range(2))
     for action in (0, 3, 4, 5, 2):
