@@ -20,9 +20,10 @@ FAMILIES: Final[tuple[Family, ...]] = ("xbox", "playstation", "nintendo")
 # Beside the buttons, which have SDL's numbers, and the triggers, 32 and 33 (see `game.bindings`).
 TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT = 40, 41, 42, 43, 44, 45
 
-SIGN: Final = re.compile("([\ue000-\ue3ff])")
 _FIRST: Final = 0xE000
 _FAMILY: Final = 0x100
+_LAST: Final = _FIRST + len(FAMILIES) * _FAMILY + len(ICONS) - 1
+SIGN: Final = re.compile(f"([{chr(_FIRST)}-{chr(_LAST)}])")
 
 # What surrounds a sign, and what stands in it: letters, or the name of a drawing.
 _XBOX: Final[dict[int, tuple[str, str]]] = {
