@@ -22,6 +22,7 @@ from game.ui.advice import Advice
 from game.ui.board import Board
 from game.ui.canvas import Canvas
 from game.ui.form import Form
+from game.ui.hints import draw_hints
 from game.ui.inside import Inside
 from game.ui.knobs import Knobs
 from game.ui.scrubber import Scrubber
@@ -345,6 +346,9 @@ class Train:
             share = f"{100 * history['success'][-1]:.0f}"
         draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
+        assert self._context is not None
+        back = (self._context.controls.word(Command.BACK), texts.HINT_BACK)
+        draw_hints(canvas, [back], (_TITLE.right - 16, 46), from_right=True)
 
     def _draw_said(self, canvas: Canvas) -> None:
         """Say what is wrong, or what to do first."""

@@ -81,6 +81,7 @@ class Canvas:
         sheet = copy(self)
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet.offset = (0, 0)
+        sheet.links = []  # nothing is clicked on a sheet
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
 
