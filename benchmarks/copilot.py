@@ -25,8 +25,8 @@ from ai.lander import NUM_ACTIONS, LanderEnv
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 
 
-def decisions(copilot: CoPilot, ground: Ground, rounds: int) -> tuple[float, float, float]:
-    """Median, 99th percentile and median of processor time, in milliseconds."""
+def decisions(copilot: CoPilot, ground: Ground, rounds: int) -> list[float]:
+    """Median and 99th percentile in milliseconds, by the clock and of processor time, which others do not lengthen."""
     env = LanderEnv(1, 0, frame_skip=1, ground=ground)
     env.reset()
     rng = np.random.default_rng(0)
@@ -40,7 +40,7 @@ def decisions(copilot: CoPilot, ground: Ground, rounds: int) -> tuple[float, flo
         if env.step(action).ended[0]:
             env.reset()
             copilot.forget()
-    return float(np.median(took)) * 1e3, float(np.quantile(took, 0.99)) * 1e3, float(np.median(worked)) * 1e3
+    return [1e3 * float(np.quantile(times, share)) for times in (took, worked) for share in (0.5, 0.99)]
 
 
 def main() -> None:
@@ -49,11 +49,11 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     agent = DeepQAgent.load(MODEL)
     print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
-    print("| | median | 99% within | processor time |\n|---|---|---|---|")
+    print("| | median | 99% within | processor, median | 99% within |\n|---|---|---|---|---|")
     for name, ground in (("one pad", Ground.flat()), ("three pads", hilly(np.random.default_rng(0)))):
         for mode in Mode:
-            median, most, work = decisions(CoPilot(agent, 0.5, mode), ground, rounds)
-            print(f"| {name}, {mode} | {median:.3f} ms | {most:.3f} ms | {work:.3f} ms |")
+            figures = decisions(CoPilot(agent, 0.5, mode), ground, rounds)
+            print(f"| {name}, {mode} | " + " | ".join(f"{figure:.3f} ms" for figure in figures) + " |")
 
 
 if __name__ == "__main__":
