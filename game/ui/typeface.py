@@ -71,6 +71,7 @@ def width(string: str, size: float, weight: Weight) -> float:
 @lru_cache(maxsize=2048)
 def reach(string: str, pixels: float, weight: Weight) -> float:
     """How far the string reaches as it is written, in pixels and their fractions."""
+    string = _writable(string)
     font, factor = _font(pixels, weight), _oversampling(pixels)
     if not SIGN.search(string):
         return font.size(string)[0] / factor
@@ -95,6 +96,7 @@ def digit_width(pixels: float, weight: Weight) -> float:
 @lru_cache(maxsize=1024)
 def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[pygame.Surface, int]:
     """Return the string's surface and the row of its baseline in it."""
+    string = _writable(string)
     font, factor = _font(pixels, weight), _oversampling(pixels)
     large = _write(string, pixels, weight, colour) if SIGN.search(string) else font.render(string, True, colour)
     baseline = -(-font.get_ascent() // factor)
@@ -128,6 +130,11 @@ def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame
             surface.blit(font.render(part, True, colour), (round(x), 0))
             x += font.size(part)[0]
     return surface
+
+
+def _writable(string: str) -> str:
+    """Put question marks where no font has anything: the name of a file can be any bytes."""
+    return string.replace("\0", "?").encode(errors="replace").decode()
 
 
 def forget() -> None:

@@ -142,7 +142,7 @@ def test_small_text_grows_most_and_order_is_kept():
     typeface.grow(1.0)
 
 
-def test_text_grows_no_further_than_its_room_and_never_shrinks(monkeypatch):
+def test_text_grows_no_further_than_its_room_and_never_shrinks():
     canvas = Canvas(pygame.Surface(VIEW_SIZE))
     usual = canvas.text("Within its room", (0, 100), size=SMALL).width
     typeface.grow(1.25)
@@ -156,6 +156,11 @@ def test_text_grows_no_further_than_its_room_and_never_shrinks(monkeypatch):
             )
     finally:
         typeface.grow(1.0)
+
+
+def test_names_that_no_font_can_write_are_written_all_the_same():
+    canvas = Canvas(pygame.Surface(VIEW_SIZE))  # a folder's name can be any bytes
+    assert canvas.text("a\udcff\0", (0, 100)).width == canvas.text("a??", (0, 100)).width
 
 
 def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
