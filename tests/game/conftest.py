@@ -19,6 +19,8 @@ from game.scene import Scene
 from game.settings import Settings, SettingsFile
 from tests.game.driver import Driver
 
+pygame.font.init()  # as long as the tests run, in whatever order
+
 
 @pytest.fixture
 def context(tmp_path: Path) -> Context:

@@ -29,7 +29,6 @@ def collapsed() -> History:
 
 
 def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, collapsed: History) -> None:
-    pygame.font.init()
     turned: list[tuple[str, float]] = []
     gone_to: list[int] = []
     form = Form(context)

@@ -18,7 +18,6 @@ NAN, INF = float("nan"), float("inf")
 
 @pytest.fixture
 def canvas() -> Canvas:
-    pygame.font.init()
     return Canvas(pygame.Surface((1280, 720)))
 
 

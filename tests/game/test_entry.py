@@ -246,7 +246,6 @@ def test_the_mouse_places_the_caret_and_a_nudge_does_not_take_the_focus(page: tu
 
 
 def test_a_long_text_keeps_its_caret_in_sight():
-    pygame.font.init()
     line = Line("m" * 40)
     assert entry.first_shown(line.text, 40, 15, 300) > 0
     assert entry.first_shown(line.text, 0, 15, 300) == 0

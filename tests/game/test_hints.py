@@ -25,11 +25,6 @@ NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES:
 FLOWN = {"Play": lambda _: Play(3), "mission": lambda _: Play(0, course=Flown(MISSIONS["fall"]))}
 
 
-@pytest.fixture
-def font() -> None:
-    pygame.font.init()
-
-
 def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name: str) -> Counter[str]:
     """Open a screen, and count the keys that its hints name."""
     context.settings.tutored, context.settings.reduced_motion = True, True
@@ -97,7 +92,7 @@ def test_a_click_on_a_hint_is_a_press_of_its_key():
     assert canvas.linked((100, 300)) is None
 
 
-def test_every_sign_is_drawn_and_looks_like_no_other(font: None):
+def test_every_sign_is_drawn_and_looks_like_no_other():
     for family in glyphs.FAMILIES:
         pictures = set()
         for number in glyphs._SIGNS[family]:
@@ -109,14 +104,14 @@ def test_every_sign_is_drawn_and_looks_like_no_other(font: None):
         assert len(pictures) == len(glyphs._SIGNS[family])
 
 
-def test_signs_stand_in_sentences(font: None):
+def test_signs_stand_in_sentences():
     sign = glyphs.sign("playstation", pygame.CONTROLLER_BUTTON_A)
     parts = [typeface.reach(part, 15.0, "regular") for part in ("Press ", sign, " to fly")]
     assert typeface.reach(f"Press {sign} to fly", 15.0, "regular") == pytest.approx(sum(parts), abs=1)
     assert sign.isprintable() is False  # nobody can type it
 
 
-def test_every_mission_has_an_icon_of_its_own(font: None):
+def test_every_mission_has_an_icon_of_its_own():
     names = [FIRST.name, *MISSIONS, "daily"]
     pictures = set()
     for name in names:

@@ -15,11 +15,6 @@ LARGE = (90, 80, 1100, 560)
 OBSERVATION = np.linspace(-1, 1, 9)
 
 
-@pytest.fixture(autouse=True)
-def fonts() -> None:
-    pygame.font.init()
-
-
 @pytest.fixture
 def canvas() -> Canvas:
     return Canvas(pygame.Surface((1280, 720)))

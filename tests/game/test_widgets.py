@@ -157,7 +157,6 @@ def test_a_ring_shows_for_keys_and_not_for_the_mouse(page: tuple[Driver, Page]):
 
 @pytest.fixture(params=[(1280, 720), (1920, 1080), (1000, 800), (640, 360)])
 def canvas(request: pytest.FixtureRequest) -> Canvas:
-    pygame.font.init()
     return Canvas(pygame.Surface(request.param))
 
 
