@@ -21,6 +21,7 @@ _BACK: Final = 0.20  # how far the deck's far edge is seen above its near one, i
 _LAMP: Final = 0.20  # height of a lamp above the deck
 _MARGIN: Final = 0.6
 _SOFT: Final = 0.25  # as finely as light without edges is painted
+_BLUR: Final = 0.03  # and so wrong may its width be
 
 
 def draw_pad(
@@ -95,4 +96,4 @@ def _pool(pixels_per_metre: float, width: float, colour: Colour) -> tuple[Sheet,
     shine = sum(np.exp(-(((x - side * width / 2) / 1.25) ** 2) - (y / 0.42) ** 2) for side in (-1, 1))
     fade = np.clip(1 - np.abs(y), 0, 1) * np.clip(1 - np.abs(x) / (width / 2 + 2.6), 0, 1)
     picture = light((0.30 * shine * fade)[..., None] * np.array(colour, np.float32))
-    return Sheet(picture, pixels_per_metre), (half_width / pixels_per_metre, half_height / pixels_per_metre)
+    return Sheet(picture, pixels_per_metre, _BLUR), (half_width / pixels_per_metre, half_height / pixels_per_metre)

@@ -10,21 +10,22 @@ import pygame
 
 from game.render import View
 
-_STRIDE, _ROWS = 192, 16  # pixels of the picture: what is scaled begins and ends at a multiple of them
+_STRIDE, _ROWS = 64, 16  # pixels of the picture: what is scaled begins and ends at a multiple of them
 _SPARE: Final = 3  # pixels that it reaches beyond the view at least
-_NICETY: Final = 640  # pixels of width for each pixel that it may be off, half of that at either end
 _RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side: its middle moves the other way
 
 
 class Sheet:
     """A picture painted at `per_metre` pixels per metre.
 
+    `soft` is the share of its width by which it may be wrong, half of that at either end.
+
     To scale what is in view takes less than a millisecond, to paint it anew a hundred times that. What was scaled
-    last is kept until the view has moved on by a stride, or either end of it would be more than a pixel off.
+    last is kept until the view has moved on by a stride, or it would be more wrong than that.
     """
 
-    def __init__(self, picture: pygame.Surface, per_metre: float) -> None:
-        self.picture, self.per_metre = picture, per_metre
+    def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 640) -> None:
+        self.picture, self.per_metre, self._soft = picture, per_metre, soft
         self._crop = (0, 0, 0, 0)
         self._scaled = picture
 
@@ -43,7 +44,7 @@ class Sheet:
             return
         crop = (start, 0, stop - start, low)
         size = (max(1, round((stop - start) * ratio)), max(1, round(low * ratio)))
-        if crop != self._crop or abs(size[0] - self._scaled.get_width()) * _NICETY > size[0]:
+        if crop != self._crop or abs(size[0] - self._scaled.get_width()) > self._soft * size[0]:
             self._crop = crop
             if self.picture.get_flags() & pygame.RLEACCEL:  # which would be undone and redone every time
                 self.picture.set_alpha(255)
