@@ -2,7 +2,7 @@
 
     python -m docs.pictures [NAME ...]      # all of them, or those
 
-The moving one needs the extra `export`.
+It needs Pillow, which the extra `export` brings.
 """
 
 from __future__ import annotations
@@ -21,9 +21,12 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pygame
+from PIL import Image
 
+from ai.missions import MISSIONS
 from game.app import App
 from game.context import Context
+from game.course import Flown
 from game.scene import Scene
 from game.scenes.digits import Digits
 from game.scenes.menu import Menu
@@ -42,9 +45,11 @@ PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("watch", Watch(64, seed=3), {}, 260),
     ("train", Train(), {5: pygame.K_RETURN}, 30),
     ("digits", Digits(), {}, 150),
-    ("physics", Physics("heap"), {60: pygame.K_c}, 400),
+    ("physics", Physics("heap", time.process_time), {60: pygame.K_c}, 400),
+    ("mars", Play(0, course=Flown(MISSIONS["mars"])), {5: pygame.K_LEFT, 40: pygame.K_UP, 70: pygame.K_UP}, 110),
 )
 HELD = 12  # frames that a key is held
+SHARP = 90
 # What has been chosen where a picture needs it.
 CHOSEN = {"cockpit": Settings(assist=0.6, copilot="guardian", three_pads=True)}
 
@@ -64,18 +69,15 @@ def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
     """Play `scene` for so many frames and save what is then on the screen."""
     held = [(key, frame, frame + HELD) for frame, key in keys.items()]
     last = play(scene, held, frames, CHOSEN.get(name, Settings()))
-    pygame.image.save(last, IMAGES / f"{name}.png")
+    _picture(last).save(IMAGES / f"{name}.webp", quality=SHARP, method=6)
 
 
 def film() -> None:
     """Save the moving picture: WebP, for a camera that moves makes a GIF six times as large."""
-    from PIL import Image
-
     pictures = []
 
     def keep(seen: pygame.Surface) -> None:
-        picture = Image.frombytes("RGB", seen.get_size(), pygame.image.tobytes(seen, "RGB"))
-        pictures.append(picture.resize(MOVING_SIZE, Image.Resampling.LANCZOS))
+        pictures.append(_picture(seen).resize(MOVING_SIZE, Image.Resampling.LANCZOS))
 
     play(Play(seed=12), FLOWN, MOVING_FRAMES, CHOSEN["cockpit"], keep)
     first, *others = pictures[::EVERY]
@@ -111,6 +113,10 @@ def play(
         last = app.canvas.surface.copy()
         app.close()
     return last
+
+
+def _picture(surface: pygame.Surface) -> Image.Image:
+    return Image.frombytes("RGB", surface.get_size(), pygame.image.tobytes(surface, "RGB"))
 
 
 def _move_pen(scene: Digits, frame: int) -> None:
