@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Final, Literal
 
 import numpy as np
+import numpy.typing as npt
 import pygame
 
 from game.ui.tokens import Colour
@@ -61,10 +62,29 @@ def _stroke(sheet: pygame.Surface, colour: Colour, strokes: list[list[tuple[floa
 @lru_cache(maxsize=512)
 def rounded(size: tuple[int, int], radius: float, colour: Colour, width: int = 0) -> pygame.Surface:
     """Return a rectangle with round corners: filled, or with an edge `width` pixels wide."""
-    factor = 4 if size[0] * size[1] < 400_000 else 2
-    sheet = _sheet((size[0] * factor, size[1] * factor), colour)
-    pygame.draw.rect(sheet, colour, sheet.get_rect(), width * factor, border_radius=max(0, round(radius * factor)))
+    reach = math.ceil(max(radius, width)) + 1  # pixels from an end, beyond which nothing changes
+    small = _rounded((min(size[0], 2 * reach), min(size[1], 2 * reach)), radius, colour, width)
+    if small.get_size() == size:
+        return small
+    columns, rows = (_stretched(was, length) for was, length in zip(small.get_size(), size, strict=True))
+    surface = _sheet(size, colour)
+    pygame.surfarray.pixels_alpha(surface)[:] = pygame.surfarray.pixels_alpha(small)[columns[:, None], rows]
+    return surface
+
+
+@lru_cache(maxsize=256)
+def _rounded(size: tuple[int, int], radius: float, colour: Colour, width: int) -> pygame.Surface:
+    sheet = _sheet((size[0] * 4, size[1] * 4), colour)
+    pygame.draw.rect(sheet, colour, sheet.get_rect(), width * 4, border_radius=max(0, round(radius * 4)))
     return pygame.transform.smoothscale(sheet, size)
+
+
+def _stretched(length: int, wanted: int) -> npt.NDArray[np.intp]:
+    """Return which pixel of a row each of a longer one is like: its ends stay, its middle is drawn out."""
+    places = np.arange(wanted)
+    return np.where(
+        places < wanted / 2, np.minimum(places, (length - 1) // 2), np.maximum(places - wanted + length, length // 2)
+    )
 
 
 @lru_cache(maxsize=256)
@@ -89,7 +109,7 @@ def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
 
 def forget() -> None:
     """Drop every shape: the window's size has changed."""
-    for cache in (shape, rounded, plain, glow):
+    for cache in (shape, rounded, _rounded, plain, glow):
         cache.cache_clear()
 
 
