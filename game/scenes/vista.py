@@ -38,18 +38,19 @@ class Vista:
         self._camera.cut(_ASIDE)
         self._env = LanderEnv(1, 0, frame_skip=1)
         self._env.reset()
-        self._stand(self._env.pad[0, 0])
-        self._poses = Poses(self._env)
-        self._stage = Stage(self._env, np.random.default_rng(0))
-        self._stage.blue[:] = 1.0
         self._pilot: Flyer | None = None
-        self._step = self._rested = self._flights = 0
-        self._climbs = True
+        self._step = self._flights = 0
         self._action = np.zeros(1, np.intp)
+        self._rested: int  # steps since a landing
+        self._poses: Poses
+        self._stage: Stage
+        self._begin()
 
     def enter(self, context: Context) -> None:
         """Have the network read beside the first ascent, which needs none."""
         self.still = context.settings.reduced_motion
+        if self.still:
+            self._begin()
 
         def read() -> None:
             from ai.pilots import ScriptedPilot
@@ -91,6 +92,13 @@ class Vista:
     @property
     def _over(self) -> bool:
         return bool(self._env.outcome[0] != Outcome.FLYING)
+
+    def _begin(self) -> None:
+        """Stand on the pad, about to ascend."""
+        self._stand(self._env.pad[0, 0])
+        self._climbs, self._rested = True, 0
+        self._poses, self._stage = Poses(self._env), Stage(self._env, np.random.default_rng(0))
+        self._stage.blue[:] = 1.0
 
     def _stand(self, x: float) -> None:
         self._env.place(np.ones(1, bool), np.array([[x, self._env.pad[0, 1] + STAND, 0.0, 0.0, 0.0, 0.0]]))

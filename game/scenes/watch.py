@@ -19,6 +19,7 @@ from game.flight import Swarm
 from game.mind import PANEL, Mind
 from game.render import Camera, Clear, View
 from game.scene import Pop, Push, Transition
+from game.settings import Settings
 from game.sounds.flight import FlightSound
 from game.ui import typeface
 from game.ui.canvas import Canvas
@@ -61,11 +62,15 @@ class Watch:
         self.stopped = False
         self.shown = 0
         self.problem = self._wanted = ""
+        self._settings: Settings
+        self._stage: Stage
 
     def enter(self, context: Context) -> None:
         """Read the networks and begin, or go on after a pause."""
         if self._context is not None:
             self._look_again()
+            if self._stage.calm != self._settings.reduced_motion:
+                self._set_up_camera()
             return
         self._context, self._settings = context, context.settings
         self._roster = networks.Roster(context.models_dir, context.user_dir)
@@ -151,16 +156,20 @@ class Watch:
         assert self._context is not None
         count = COUNTS[self._count]
         self.swarm = Swarm(count, self._seed, self._network.flyer)
-        self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed), self._settings.reduced_motion)
+        self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed))
         self._stage.blue[:] = 1.0
         self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
-        self._camera = Camera()
-        if count == 1 and not self._settings.reduced_motion:
-            self._camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
+        self._set_up_camera()
         self._mind = Mind()
         self._due = 0.0
         self.shown = min(self.shown, count - 1)
+
+    def _set_up_camera(self) -> None:
+        """Go about with a single lander; with many, or with reduced motion, the camera rests and shows all."""
+        self._camera, self._stage.calm = Camera(), self._settings.reduced_motion
+        if self.swarm.env.num_envs == 1 and not self._stage.calm:
+            self._camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
 
     def _begin_anew(self) -> None:
         assert self._context is not None

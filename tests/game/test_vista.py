@@ -39,3 +39,17 @@ def test_it_stands_still_where_motion_is_reduced(context: Context) -> None:
     for _ in range(60):
         vista.update()
     assert np.array_equal(vista._poses.at(1.0), pose)
+
+
+def test_it_stands_again_when_motion_is_reduced_in_its_midst(context: Context) -> None:
+    vista = Vista()
+    vista.enter(context)
+    pose = vista._poses.at(1.0)
+    for _ in range(60):
+        vista.update()
+    assert not np.array_equal(vista._poses.at(1.0), pose)
+    context.settings.reduced_motion = True
+    vista.enter(context)
+    vista.update()
+    assert np.array_equal(vista._poses.at(0.5), pose)
+    assert not vista._stage.thrust.any()

@@ -206,3 +206,14 @@ def test_menu_leads_to_watch_and_back(open_game: Open):
     assert driver.top_name == "Watch"
     driver.key(pygame.K_BACKSPACE)
     assert driver.top_name == "Menu"
+
+
+def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
+    watch = scene(watching)
+    assert watch._camera.view(1.0).zoom != 1
+    watching.key(pygame.K_ESCAPE)
+    watching.app.context.settings.reduced_motion = True
+    watching.key(pygame.K_ESCAPE)
+    assert scene(watching) is watch
+    watching.frames(5)
+    assert watch._camera.view(1.0) == Camera().view(1.0)
