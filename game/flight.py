@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 # A network decides every so many physics steps, in training and here.
 DECISION_STEPS: Final = 4
-# What share of its gravity a flight can be given.
-GRAVITY_SHARES: Final = (0.6, 1.4)
 # Steps that an ended flight of a swarm stays to be seen.
 _REST_STEPS: Final = 75
 _PROFILE_REACH: Final = 30.0  # metres to both sides of which the ground's height is kept

@@ -19,7 +19,8 @@ from ai.lander import NUM_ACTIONS, Outcome
 from ai.missions import MISSIONS
 from ai.spawns import SPAWNS
 from game import texts
-from game.flight import GRAVITY_SHARES, Hand, Recording
+from game.flight import Hand, Recording
+from game.settings import GRAVITY_SHARES
 
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 2

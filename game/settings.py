@@ -13,6 +13,9 @@ from game import texts
 
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
+# What shares of its gravity, and of time's own pace, a flight can be given.
+GRAVITY_SHARES: Final = (0.6, 1.4)
+PACES: Final = (0.5, 1.0)
 
 
 @dataclass
@@ -36,8 +39,8 @@ class Settings:
     check_flights: bool = False  # every fifth flight without help
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether a panel says what the co-pilot thinks
-    gravity: float = field(default=1.0, metadata={"limits": (0.6, 1.4)})  # share of it in free flights
-    pace: float = field(default=1.0, metadata={"limits": (0.5, 1.0)})  # how fast time passes in a flight
+    gravity: float = field(default=1.0, metadata={"limits": GRAVITY_SHARES})  # share of it in free flights
+    pace: float = field(default=1.0, metadata={"limits": PACES})  # how fast time passes in a flight
     keys: dict[str, Any] = field(default_factory=dict)  # what was changed, as game.bindings writes it
     buttons: dict[str, Any] = field(default_factory=dict)  # of the pads
     tutored: bool = False  # whether the first flight has been offered

@@ -26,7 +26,7 @@ from game.settings import Settings
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, MARGIN, VIEW_SIZE
 
-_MODES: Final = ("tolerance", "guardian")
+MODES: Final = ("tolerance", "guardian")
 _CARD_LEFT: Final = float(MARGIN)  # where else a card may stand, to leave the path in sight
 _CARD_RIGHT: Final = float(VIEW_SIZE[0] - MARGIN - CARD.width)
 
@@ -44,15 +44,15 @@ class Cockpit:
         self.track = Track(flight)
         self._insight = Insight(flight.env.ground)
         self.helped = False  # whether the co-pilot shared the stick at any time
-        if settings.copilot not in _MODES:
-            settings.copilot = _MODES[0]
+        if settings.copilot not in MODES:
+            settings.copilot = MODES[0]
 
     def take(self, event: pygame.event.Event) -> bool:
         """Turn the dial, or change when the co-pilot steps in; whether the event meant that."""
         if self._alone:
             return False
         if translate(event) is Command.MODE:
-            self._settings.copilot = _MODES[1 - _MODES.index(self._settings.copilot)]
+            self._settings.copilot = MODES[1 - MODES.index(self._settings.copilot)]
             return True
         return self._dial.take(event)
 

@@ -9,22 +9,22 @@ from typing import Final
 import pygame
 
 from game import texts
+from game.cockpit.cockpit import MODES
 from game.cockpit.hands import HANDS
 from game.cockpit.lesson import lessons
 from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command, translate
-from game.flight import GRAVITY_SHARES
 from game.records import RECENT_OWN
 from game.scene import Pop, Scene, Transition
 from game.scenes.pause import blurred
+from game.settings import GRAVITY_SHARES, PACES
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, NIGHT0, SMALL, TITLE, VIEW_SIZE
 from game.ui.widgets import Choice, Slider, Toggle, Widget, Word
 
-MODES: Final = ("tolerance", "guardian")
 _WIDTH: Final = 560
 _LABELS: Final = 142
 _FIRST: Final = 136
@@ -56,7 +56,7 @@ class ChoicesScene:
             self._add_help()
             self._add_starts()
             self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, texts.CHOICES_GRAVITY_HELP)
-        self._add_slider("pace", (0.5, 1.0), texts.CHOICES_PACE, texts.CHOICES_PACE_HELP)
+        self._add_slider("pace", PACES, texts.CHOICES_PACE, texts.CHOICES_PACE_HELP)
         toggles = {"check_flights": texts.CHOICES_CHECK, "teach": texts.CHOICES_TEACH, "explain": texts.CHOICES_EXPLAIN}
         if self._course:
             toggles = {"explain": texts.CHOICES_EXPLAIN}

@@ -14,9 +14,7 @@ from game.ui.tokens import DUSK, NIGHT0, NIGHT1, VIEW_SIZE, Colour
 from game.world.paint import Picture, bell, clouds, layer, mix, profile
 from game.world.sky import SUN
 
-# The surface of the moon in metres, and the row it is drawn at, as a share of the view's height.
-SURFACE: Final = 1.0
-_METRES_HIGH: Final = WORLD_WIDTH * 9 / 16
+# The row at which the plain ends, as a share of the view's height.
 PLAIN_HORIZON: Final = 0.856
 HORIZON_HEIGHT: Final = VIEW_BOTTOM + (1 - PLAIN_HORIZON) * VIEW_SIZE[1] / POINTS_PER_METRE  # metres
 # How much wider than the view the land is to either side, so that it can move sideways; and the plain, where a
