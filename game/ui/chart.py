@@ -28,6 +28,7 @@ __all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
 _HEADER: Final = 24.0  # from the top of the box to the highest line
 _FOOT: Final = 18.0  # from the lowest line to the bottom of the box
 _GUTTER: Final = 34.0  # for the lines' numbers, on the right
+_APART: Final = 8.0  # between what a chart shows and its latest number
 _MARGIN: Final = 6.0  # of the sheet around the box
 _AXES: Final = mix(FAINT, MUTE, 0.55)
 _AXES_SIZE: Final = LABEL - 1.5
@@ -210,11 +211,12 @@ class Chart:
         return sheet
 
     def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
-        sheet.text(self.label, (box.x, box.y + 12), size=LABEL, colour=MUTE, weight="medium")
         value = self._runs[0].last() if self._runs else None
         figure, colour = ("–", FAINT) if value is None else (self.read(value), self._runs[0].series.colour)
         right = (box.right - _GUTTER, box.y + 13)
-        sheet.text(figure, right, size=TEXT, colour=colour, align="right", tabular=True)
+        taken = sheet.text(figure, right, size=TEXT, colour=colour, align="right", tabular=True)
+        room = taken.left - _APART - box.x
+        sheet.text(self.label, (box.x, box.y + 12), size=LABEL, colour=MUTE, weight="medium", room=room)
 
     def _paint_grid(self, sheet: Canvas, plot: pygame.FRect) -> None:
         low, high = self._shown

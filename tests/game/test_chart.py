@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game.ui import plotting
+from game.ui import plotting, typeface
 from game.ui.canvas import Canvas
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
 from game.ui.charts import Charts
@@ -537,3 +537,22 @@ def test_a_strip_that_rests_is_not_drawn_again(canvas: Canvas) -> None:
 )
 def test_sums_are_written_with_their_sign(value: float, text: str) -> None:
     assert signed(value) == text
+
+
+def test_a_name_in_large_type_leaves_room_for_the_latest_number(canvas: Canvas, monkeypatch) -> None:
+    boxes: dict[str, pygame.FRect] = {}
+    text = Canvas.text
+
+    def noted(sheet: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
+        boxes[string] = text(sheet, string, position, **more)
+        return boxes[string]
+
+    chart = Chart((0, 0, 170, 100), "EXPLORATION ε", read=lambda value: f"{value:.2f}")
+    chart.set([Series(np.arange(2.0), np.full(2, 0.33), "this run")], (0.0, 1.0))
+    typeface.grow(1.25)
+    try:
+        monkeypatch.setattr(Canvas, "text", noted)
+        chart.draw(canvas)
+    finally:
+        typeface.grow(1.0)
+    assert boxes["EXPLORATION ε"].right < boxes["0.33"].left
