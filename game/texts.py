@@ -786,7 +786,7 @@ INSIGHT_WHY: Final = {
     "PILOT_STEER": ("It sees to main", "{asked}: worth {worth} % of the best,", "not {assist} %. You steer."),
     "COPILOT": ("It does this one", "{asked}: worth {worth} % of the best,", "not {assist} %, and nothing near it is."),
     "HANDS_OFF": ("Hands off: it flies", "Touch anything, and you have", "the stick again."),
-    "ALONE": ("It flies alone", "Take the stick back,", "and you fly it together."),
+    "ALONE": ("It flies alone", "It keeps to what it does while", "nothing else is clearly better."),
 }
 INSIGHT_GUARDIAN: Final = {
     True: "{points} points worse than its {best}.",
@@ -1033,7 +1033,7 @@ TUTORIAL_GOOD: Final = {
     "take_back": "Yours again",
     "land": "Landed",
 }
-TUTORIAL_AGAIN: Final = "Once more, from up here."
+TUTORIAL_AGAIN: Final = "Once more, from the top."
 TUTORIAL_TOO_FAST: Final = "{main}  now: too fast, so near the ground."
 TUTORIAL_TOO_TILTED: Final = "{other}  to stand upright before you touch."
 TUTORIAL_AWAY: Final = "The pad is far: lean towards it, and fire."
