@@ -40,7 +40,6 @@ IMAGES = Path(__file__).resolve().parent / "images"
 # Name, scene, and what is pressed at which frame until the picture is taken.
 PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
     ("menu", Menu(), {}, 200),
-    ("play", Play(seed=12), {5: pygame.K_TAB}, 170),
     ("cockpit", Play(seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
     ("watch", Watch(64, seed=3), {}, 260),
     ("train", Train(), {5: pygame.K_RETURN}, 30),
