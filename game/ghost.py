@@ -15,7 +15,7 @@ from game import texts
 from game.flight import Flight
 from game.hud import Rival
 from game.outcomes import flight_figures
-from game.render import View
+from game.render import Clear, View
 from game.ui.canvas import Canvas
 from game.ui.tokens import NET, VIEW_SIZE
 from game.world import lander as art
@@ -54,9 +54,12 @@ class Ghost:
         figures = {label: (value, unit) for label, value, unit in flight_figures(env)} if self.flight.over else {}
         return Rival(self.name, _result(yours, env), figures)
 
+    def draw_way(self, canvas: Canvas, view: View) -> None:
+        """Draw the way it came, below the words at the head."""
+        self._trail.draw(canvas, view, 0, Clear.head)
+
     def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
-        """Draw the way it came and its shape, with a blue rim."""
-        self._trail.draw(canvas, view, 0)
+        """Draw its shape, with a blue rim."""
         flight = self.flight
         pose = flight.poses.at(alpha)[0]
         if not flight.over and flight.env.fired[0] >= 3:

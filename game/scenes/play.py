@@ -141,6 +141,8 @@ class Play:
         alpha = self._pace.between(alpha)
         view, flight = self._scenery.view(canvas.scale, alpha), self.flight
         self._scenery.draw_land(canvas, alpha)
+        if self._ghost:
+            self._ghost.draw_way(canvas, view)
         self._cockpit.draw_behind(canvas)
         if flight.over:
             self._cockpit.track.draw(canvas, view)

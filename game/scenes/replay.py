@@ -288,10 +288,10 @@ class Replay:
 def _draw_way(canvas: Canvas, view: View, tape: Tape) -> None:
     """Draw where it came from in the colour of who flew, and faintly where it goes."""
     path, hands = tape.path, tape.record.recording.hands
-    at = min(tape.at, len(path) - 1)
+    at, head = min(tape.at, len(path) - 1), canvas.scale * _CLEAR.head
     if at + 4 < len(path):
-        draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35)
+        draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35, head)
     for start, stop, hand in runs(hands[:at]):
         if stop - start > 1:
             stretch = path[start : stop + 1 : 4] if stop - start > 8 else path[start : stop + 1]
-            draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is Hand.HUMAN else NET, 0.6)
+            draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is Hand.HUMAN else NET, 0.6, head)

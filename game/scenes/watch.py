@@ -141,7 +141,7 @@ class Watch:
         others = self._others()
         self._stage.draw_fires(canvas, view, poses, others, self._size)  # the pad hides what reaches below it
         draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
-        self._trails.draw(canvas, view, self.shown)
+        self._trails.draw(canvas, view, self.shown, _CLEAR.head)
         self._stage.draw_swarm(canvas, view, poses, others, self._size)
         self._draw_shown(canvas, view, poses[self.shown])
         self._stage.draw_dust(canvas, view, between)

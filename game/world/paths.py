@@ -19,6 +19,7 @@ _SPACING: Final = 0.62  # metres between dots
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
 _FINEST: Final = 24  # points of a trail that is done: it is smooth, and there are many to draw
 _STRETCH: Final = 12  # points of a trail drawn in one colour
+_FADE: Final = 0.6  # below the words at the head, in their height: where a line fades in
 
 
 def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6) -> None:
@@ -73,20 +74,21 @@ class Trails:
         for trail in self._done:
             trail.age += 1 / 60
 
-    def draw(self, canvas: Canvas, view: View, shown: int) -> None:
-        """Draw the trails of ended flights, newest brightest, and the one of slot `shown` so far."""
+    def draw(self, canvas: Canvas, view: View, shown: int, head: float = 0.0) -> None:
+        """Draw the trails of ended flights, newest brightest, and the one of slot `shown` so far, below the `head`."""
+        head *= canvas.scale
         for rank, trail in enumerate(reversed(self._done)):
             strength = 0.55 * self._fade**rank * max(0.0, 1 - trail.age / 40)
             landed = trail.outcome == Outcome.LANDED
             colour = canvas.palette.good if landed else canvas.palette.warn
             if strength > 0.06:
-                draw_faint(canvas.surface, view.pixels(trail.points), colour, strength)
+                draw_faint(canvas.surface, view.pixels(trail.points), colour, strength, head)
                 if not landed:
                     end = view.points(trail.points[-1]).tolist()
                     canvas.marker("cross", end, 7, colour, min(1.0, strength * 1.8))
         way = self._open[shown]
         if len(way) > 1:
-            draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6)
+            draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6, head)
 
 
 def _thinned(points: Doubles) -> Doubles:
@@ -95,13 +97,20 @@ def _thinned(points: Doubles) -> Doubles:
     return points if count <= _FINEST else points[np.linspace(0, count - 1, _FINEST).astype(int)]
 
 
-def draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float) -> None:
-    """Draw a line as if translucent: each stretch is mixed with what lies under its middle."""
+def draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float, head: float = 0.0) -> None:
+    """Draw a line as if translucent: each stretch is mixed with what lies under its middle.
+
+    It fades out towards the uppermost `head` pixels, where words stand.
+    """
     places = points.tolist()
     area = surface.get_rect()
-    for start in range(0, len(places) - 1, _STRETCH):
-        stretch = places[start : start + _STRETCH + 1]
+    start = 0
+    while start < len(places) - 1:
+        fades = head > 0 and places[start][1] < head * (1 + _FADE)
+        stretch = places[start : start + (1 if fades else _STRETCH) + 1]
+        start += len(stretch) - 1
         x, y = stretch[len(stretch) // 2]
-        if area.collidepoint(x, y):
+        shown = strength * min(max((y / head - 1) / _FADE, 0.0), 1.0) if fades else strength
+        if shown > 0 and area.collidepoint(x, y):
             under = surface.get_at((int(x), int(y)))
-            pygame.draw.aalines(surface, under.lerp(colour, strength), False, stretch)
+            pygame.draw.aalines(surface, under.lerp(colour, shown), False, stretch)

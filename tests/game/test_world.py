@@ -13,7 +13,7 @@ from game.world.flame import HUMAN_PLUME, LEVELS, plume
 from game.world.looks import LOOKS, look_of
 from game.world.pad import draw_pad
 from game.world.particles import DUST, Particles
-from game.world.paths import Trails, draw_dotted
+from game.world.paths import Trails, draw_dotted, draw_faint
 from game.world.relief import Relief
 from game.world.stage import Stage
 from game.world.wind import Wind
@@ -138,6 +138,15 @@ def test_everything_draws_and_draws_alike_twice(canvas: Canvas, count: int):
         stage.draw_dust(canvas, view, 0.5)
         pictures.append(pixels(canvas.surface))
     assert np.array_equal(*pictures)
+
+
+def test_a_line_fades_out_below_the_words_at_the_head(canvas: Canvas):
+    upright = np.stack([np.full(91, 320.0), np.arange(-30.0, 331.0, 4.0)], axis=1)
+    draw_faint(canvas.surface, upright, (255, 255, 255), 1.0, head=100.0)
+    light = pixels(canvas.surface)[320, :, 0].astype(int)
+    assert not light[:98].any()
+    assert (light[170:320] > 240).all()
+    assert (np.diff(light[100:170]) >= 0).all()
 
 
 def test_every_mission_has_the_sky_and_the_ground_of_its_world():
