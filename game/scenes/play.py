@@ -164,8 +164,8 @@ class Play:
         was_over = flight.over
         if not was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = hud.flight_readouts(flight.env)
+            self._difficulty.heed()
         self._cockpit.help()
-        self._difficulty.heed()
         flight.step(self._held)
         if self._ghost:
             self._ghost.step()

@@ -157,6 +157,9 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
     game.frames(5)
     [entry] = Records(context.user_dir).entries()
     assert (entry.practice, entry.alone, entry.gravity) == (True, False, pytest.approx(0.8))
+    context.settings.gravity = 1.2  # for the flights to come
+    game.frames(5)
+    assert play.flight.recording.gravity == [(step, share)]
 
 
 def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
