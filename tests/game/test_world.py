@@ -142,6 +142,7 @@ def test_everything_draws_and_draws_alike_twice(canvas: Canvas, count: int):
 
 def test_a_line_fades_out_below_the_words_at_the_head(canvas: Canvas):
     upright = np.stack([np.full(91, 320.0), np.arange(-30.0, 331.0, 4.0)], axis=1)
+    canvas.surface.fill((0, 0, 0))
     draw_faint(canvas.surface, upright, (255, 255, 255), 1.0, head=100.0)
     light = pixels(canvas.surface)[320, :, 0].astype(int)
     assert not light[:98].any()
