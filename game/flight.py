@@ -124,7 +124,7 @@ class Flight:
         self._held_for = self._yours = 0
         self.copilot: CoPilot | None = None
         self.change_network(network)
-        self._aim(np.zeros(pads))
+        self._aim()
 
     @property
     def outcome(self) -> Outcome:
@@ -231,7 +231,7 @@ class Flight:
         if not self.shared:
             self.decision = None
             if self._held_for == 0:
-                self._aim(np.zeros(len(self.env.ground.pads)))
+                self._aim()
             self._held_for = (self._held_for + 1) % DECISION_STEPS
             return self.asked, Hand.HUMAN
         action = self._ask_copilot()
@@ -256,8 +256,8 @@ class Flight:
         self._held_for = (self._held_for + 1) % DECISION_STEPS
         return int(decision.action[0])
 
-    def _aim(self, likely: Doubles) -> None:
-        """Turn read-outs and network to the pad that seems to be meant; among equals, to the nearest."""
+    def _aim(self, likely: Doubles | float = 0.0) -> None:
+        """Turn read-outs and network to the pad that is most `likely` (pads,) meant; among equals, to the nearest."""
         away = np.abs(self.env.ground.middles[:, 0] - self.env.position[0, 0])
         self.env.target[:] = int((likely - 1e-6 * away).argmax())
 

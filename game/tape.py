@@ -8,7 +8,7 @@ import numpy as np
 
 from ai.env import Doubles
 from ai.pilots import COAST
-from game.flight import Flight, Hand, Recording
+from game.flight import DECISION_STEPS, Flight, Hand, Recording
 from game.flight_file import Record
 
 _EVERY: Final = 20  # steps between moments that can be gone back to at once
@@ -33,6 +33,8 @@ class Rerun(Flight):
             return COAST, self.flown_by
         self.hand = self._source.hands[self.at]
         self.set_gravity(self._source.gravity_at(self.at))
+        if self.hand is Hand.HUMAN and self.at % DECISION_STEPS == 0:  # as read-outs were turned then
+            self._aim()
         return self._source.actions[self.at], self.hand
 
 

@@ -13,7 +13,7 @@ from game.flight_file import Record
 from game.records import Records
 from game.scenes.logbook import Logbook
 from game.scenes.replay import Replay
-from game.tape import Tape
+from game.tape import Rerun, Tape
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]
@@ -58,6 +58,21 @@ def test_a_tape_can_be_wound_to_any_moment_and_shows_it_as_it_was(record: Record
     for step in range(61, 90):
         tape.step()
         assert state(tape) == seen[step]
+
+
+def test_read_outs_turn_to_the_pads_that_they_turned_to_in_flight():
+    flight, pilot = Flight(3, pads=3), ScriptedPilot()
+    first = int(flight.env.target[0])
+    flown, replayed = [], []
+    while not flight.over:
+        flight.step(int(pilot.act(flight.env.observe((first + 1) % 3))[0]))
+        flown.append((int(flight.env.target[0]), float(flight.env.altitude[0])))
+    assert flown[0][0] == first != flown[-1][0]
+    again = Rerun(flight.recording)
+    while not again.over:
+        again.step(0)
+        replayed.append((int(again.env.target[0]), float(again.env.altitude[0])))
+    assert replayed == flown
 
 
 def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flight(record: Record):
