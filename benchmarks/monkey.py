@@ -158,7 +158,8 @@ class Monkey:
                 self._do_something()
             self.go_home()
             self.hands.come_back()
-            self.hands.pass_frame()  # until it is drawn, the game remembers what was drawn before
+            for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must settle
+                self.hands.pass_frame()
             self._forgotten = stale_scenes(self.app.scenes._stack)
             self.close()
 
