@@ -89,6 +89,7 @@ class Flight:
         pads: 1 on a plain, or 3 among hills.
         hands: what the keys pass through, a name of `game.cockpit.hands.HANDS`.
         mission: name of one of `ai.missions.STARTS`, which then says where and under what it is flown; empty for none.
+        shares: whether a network may share the stick, and not only take it.
 
     Attributes:
         copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
@@ -107,6 +108,7 @@ class Flight:
         pads: int = 1,
         hands: str = OWN,
         mission: str = "",
+        shares: bool = True,
     ) -> None:
         if mission:
             self.env = STARTS[mission].begin()
@@ -114,7 +116,7 @@ class Flight:
             self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
             self.env.reset()
         self.observation: Floats = self.env.observe()
-        self.hand = Hand.HUMAN
+        self.hand, self.shares = Hand.HUMAN, shares
         self.recording = Recording(seed, spawn, pads, mission=mission)
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
@@ -188,7 +190,7 @@ class Flight:
         if network is None:
             self.hand = Hand.HUMAN
         before, self.copilot = self.copilot, None
-        if isinstance(network, Thinker):
+        if self.shares and isinstance(network, Thinker):
             from ai.copilot import CoPilot, Mode
 
             self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)

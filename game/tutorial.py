@@ -149,8 +149,7 @@ class Tutorial(Course):
         self._number -= self.lesson.back
         self._begun += 1
         self._done_for = self._praise = 0
-        flight = Flight(seed, network, mission=FIRST.name)
-        flight.copilot = None  # a fall that the co-pilot brakes is not felt
+        flight = Flight(seed, network, mission=FIRST.name, shares=False)  # a fall that is braked for you is not felt
         flight.env.place(np.ones(1, bool), np.array([self.lesson.start]))
         flight.observation = flight.env.observe()
         flight.rest()

@@ -211,7 +211,7 @@ class Play:
         self.waiting, self._let_go = True, False
         course = self._course
         pads, self._hands = (1, OWN) if course else self._chosen()
-        check = self._settings.check_flights and self._skill.check_due and not course
+        self._check = check = self._settings.check_flights and self._skill.check_due and not course
         if check:
             self._hands = OWN
         network = None if check else self._network.flyer
@@ -259,7 +259,7 @@ class Play:
     def _name_what_lacks(self) -> None:
         """Say why turning the dial does nothing, where it does nothing."""
         assert self._context is not None
-        if self._settings.assist > 0 and self.flight.copilot is None:
+        if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
             network = self._network
             text = texts.DIAL_NEEDS if network.flyer else texts.NO_NETWORK
             self._context.note(text.format(name=network.name, problem=network.problem))
@@ -313,8 +313,9 @@ class Play:
         self._settings.model = name
         self._context.apply_settings()
         self._load_network()
-        self.flight.change_network(self._network.flyer)
-        self._outlook.ask(self._guide)
+        if not self._check:  # which is flown alone
+            self.flight.change_network(self._network.flyer)
+            self._outlook.ask(self._guide)
 
     # The picture
 

@@ -151,6 +151,10 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
     driver.frames(20)
     assert not play(driver).flight.shared
     assert play(driver).flight.env.velocity[0, 1] < -0.3
+    play(driver)._choose_network("modern")  # in a pause
+    driver.frames(5)
+    assert play(driver).flight.network is not None
+    assert not play(driver).flight.shared
 
 
 def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
