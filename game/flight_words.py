@@ -49,7 +49,7 @@ def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, course: Course
         hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
     elif course.next_hint:
         hints.insert(0, (word(Command.NEXT), course.next_hint))
-    if flight.network:
+    if flight.network and not flight.over:
         taken = flight.hand is Hand.NETWORK
         hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
     draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
