@@ -24,7 +24,8 @@ def draw_title(
 ) -> None:
     """Say what is flown: a course by its own words, a free flight by who helps; and in `practice`, what is eased."""
     if course:
-        hud.draw_corner(canvas, course.title, course.line, practice or course.goal)
+        goal = texts.MEDAL_BY_HAND if course.goal and flight.shared else course.goal
+        hud.draw_corner(canvas, course.title, course.line, practice or goal)
         draw_surroundings(canvas, flight.env)
         return
     flown = texts.WITH_NETWORK.format(name=network.name) if flight.network else texts.ALONE

@@ -46,6 +46,7 @@ class Cockpit:
         self.helped = False  # whether the co-pilot shared the stick at any time
         if settings.copilot not in MODES:
             settings.copilot = MODES[0]
+        self.help()
 
     def take(self, event: pygame.event.Event) -> bool:
         """Turn the dial, or change when the co-pilot steps in; whether the event meant that."""

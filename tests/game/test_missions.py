@@ -9,8 +9,9 @@ from ai.lander import PARAMS, Cause, Outcome
 from ai.missions import MISSIONS
 from ai.pilots import ScriptedPilot
 from benchmarks.missions import near
-from game import flight_file, networks, texts
+from game import flight_file, flight_words, networks, texts
 from game.assets import ASSETS_DIR, MODELS_DIR
+from game.cockpit.cockpit import Cockpit
 from game.cockpit.surroundings import surroundings
 from game.context import Context
 from game.course import Flown
@@ -24,6 +25,7 @@ from game.scenes.missions import Missions
 from game.scenes.play import Play
 from game.scenes.replay import Replay
 from game.tape import Rerun, Tape
+from game.ui.canvas import Canvas
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]
@@ -243,6 +245,20 @@ def test_no_medal_for_what_the_network_flew_or_for_a_crash(open_game: Open):
     driver.frames(3)
     land(driver)
     assert play(driver).ending.card.score == "no medal"
+
+
+@pytest.mark.parametrize(("assist", "warned"), [(0.0, False), (0.6, True)])
+def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
+    context: Context, monkeypatch: pytest.MonkeyPatch, assist: float, warned: bool
+):
+    context.settings.assist = assist
+    flight = Flight(0, DeepQAgent(9, 6), mission="brake")
+    Cockpit(flight, context.settings)
+    written: set[str] = set()
+    monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.add(string))
+    network = networks.Network("modern", flight.network)
+    flight_words.draw_title(Canvas(pygame.Surface((320, 180))), flight, Flown(MISSIONS["brake"]), network, "own", "")
+    assert (texts.MEDAL_BY_HAND in written) is warned
 
 
 def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
