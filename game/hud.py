@@ -43,7 +43,7 @@ _BAR_TOP: Final = 708.0
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
 _ASIDE, _ABOVE = 4.0, 16.0
 _WORDS: Final = (180.0, 66.0)
-_FIGURES: Final = Kept(256)
+_FIGURES: Final = Kept(64)
 _LITTLE_TIME: Final = 5.0
 BAR_ROW: Final = 24  # from one bar of several to the next
 

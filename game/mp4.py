@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import av
 import numpy as np
@@ -29,9 +29,12 @@ class Mp4Writer:
     """
 
     def __init__(self, path: Path, size: tuple[int, int], rate: int) -> None:
-        name = next(each for each in _ENCODERS if each in av.codecs_available)
+        name = next((each for each in _ENCODERS if _encodes(each)), "")
+        if not name:
+            raise OSError(None, f"no encoder: {', '.join(_ENCODERS)}")
         self._container = av.open(str(path), "w", format="mp4", options={"movflags": "+faststart"})
-        self._stream: Any = self._container.add_stream(name, rate=rate, options=_QUALITY if name == "libx264" else {})
+        options = _QUALITY if name == "libx264" else {}
+        self._stream = cast(Any, self._container.add_stream(name, rate=rate, options=options))
         self._stream.width, self._stream.height = size
         self._stream.pix_fmt = "yuv420p"  # what every player takes
         context = self._stream.codec_context
@@ -55,3 +58,12 @@ class Mp4Writer:
         picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
         picture = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709)
         self._container.mux(self._stream.encode(picture))
+
+
+def _encodes(name: str) -> bool:
+    """Whether this build can write so, and not only read."""
+    try:
+        av.Codec(name, "w")
+    except ValueError:  # of which what av raises is a kind
+        return False
+    return True
