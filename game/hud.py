@@ -45,6 +45,7 @@ _ASIDE, _ABOVE = 4.0, 16.0
 _WORDS: Final = (180.0, 66.0)
 _FIGURES: Final = Kept(64)
 _LITTLE_TIME: Final = 5.0
+_PLENTY_OF_TIME: Final = 120.0
 BAR_ROW: Final = 24  # from one bar of several to the next
 
 
@@ -74,7 +75,6 @@ def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
     if env.conditions.moves:  # what counts on a pad that moves is how one moves beside it
         across -= float(env.pad_velocity[slot])
     tilt = float(env.tilt[slot])
-    left = max(0.0, limits.time - float(env.time[slot]))
 
     def against(label: str, figure: str, unit: str, value: float, limit: float) -> Readout:
         return Readout(label, figure, unit, abs(value) / (1.8 * limit), 1 / 1.8, abs(value) <= limit)
@@ -86,8 +86,17 @@ def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
         against(texts.DRIFT, f"{abs(across):.1f}", "m/s", across, limits.slide_speed),
         against(texts.TILT, f"{math.degrees(tilt):.0f}", "°", tilt, limits.touch_tilt),
         _fuel(env, slot),
-        Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limits.time, within=None if left > _LITTLE_TIME else False),
+        _time(env, slot),
     ]
+
+
+def _time(env: LanderEnv, slot: int) -> Readout:
+    """Say how much time is left, or, where there is plenty, how much has passed."""
+    flown, limit = float(env.time[slot]), env.limits.time
+    if limit > _PLENTY_OF_TIME:
+        return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s")
+    left = max(0.0, limit - flown)
+    return Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > _LITTLE_TIME else False)
 
 
 def _fuel(env: LanderEnv, slot: int) -> Readout:

@@ -118,6 +118,7 @@ TILT: Final = "TILT"
 FUEL_USED: Final = "FUEL USED"
 FUEL_LEFT: Final = "FUEL LEFT"
 TIME_LEFT: Final = "TIME LEFT"
+TIME_FLOWN: Final = "TIME"
 
 # How a flight ended
 OUTCOMES: Final = {

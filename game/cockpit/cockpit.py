@@ -50,7 +50,7 @@ class Cockpit:
 
     def take(self, event: pygame.event.Event) -> bool:
         """Turn the dial, or change when the co-pilot steps in; whether the event meant that."""
-        if self._alone:
+        if self._alone or not self._flight.shares:
             return False
         if translate(event) is Command.MODE:
             self._settings.copilot = MODES[1 - MODES.index(self._settings.copilot)]
@@ -127,6 +127,10 @@ class Cockpit:
         if self._alone and flight.hand is Hand.HUMAN:
             draw_title(canvas, texts.DIAL_JOIN.join((texts.CHECK_FLIGHT, texts.CHECK_ALONE)), ("circle", HUMAN, 0.8))
             return
-        self._dial.draw(canvas, flight.hand, self.overrides.lamp(flight))
+        lamp = self.overrides.lamp(flight)
+        if flight.shares:
+            self._dial.draw(canvas, flight.hand, lamp)
+        else:
+            draw_title(canvas, texts.NETWORK_FLIES if flight.hand is Hand.NETWORK else texts.YOU_FLY, lamp)
         if self.helped:
             self.overrides.draw_line(canvas)
