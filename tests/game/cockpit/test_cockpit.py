@@ -191,8 +191,10 @@ def test_choices_are_made_with_any_device_and_the_waiting_flight_follows(
         driver.button(pygame.CONTROLLER_BUTTON_B)
     else:
         driver.key(pygame.K_c)
-        for place in ((242, 156), (380, 252), (282, 300), (72, 640)):
-            driver.click(place)
+        rows = {widget.label: widget.box.centery for widget in driver.top._form.widgets}
+        for label, x in ((texts.CHOICES_ASSIST, 242), (texts.CHOICES_PADS, 380), (texts.CHOICES_HANDS, 282)):
+            driver.click((x, rows[label]))
+        driver.key(pygame.K_ESCAPE)
     settings = driver.app.context.settings
     assert settings.assist == pytest.approx(0.1)
     assert settings.three_pads
