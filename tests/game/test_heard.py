@@ -3,6 +3,7 @@
 import pygame
 import pytest
 
+from game import texts
 from game.context import Context
 from game.flight import Hand
 from game.scenes.menu import Menu
@@ -19,6 +20,11 @@ DOWN, UP, LEFT, RIGHT, ENTER = pygame.K_DOWN, pygame.K_UP, pygame.K_LEFT, pygame
 def sound(context: Context) -> Listener:
     context.sound = Listener()
     return context.sound
+
+
+def focus(game: Driver, label: str) -> None:
+    (widget,) = [widget for widget in game.top._form.widgets if widget.label == label]
+    game.top._form.focus(widget)
 
 
 def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):
@@ -53,10 +59,9 @@ def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_
     sound.heard()
     game.key(ENTER)
     assert sound.heard() == ["adjust"]
-    game.key(RIGHT)  # it is on already
-    assert sound.heard() == []
-    game.keys(*[DOWN] * 5)
-    sound.heard()
+    game.key(RIGHT)  # it is on already, so the arrow leads on
+    assert sound.heard() == ["move"]
+    focus(game, texts.SOUND_GROUPS["interface"])
     for heard in [["adjust"]] * 3 + [[]]:  # clicks, from 70 % up to all there is
         game.key(RIGHT)
         assert sound.heard() == heard
@@ -64,7 +69,8 @@ def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_
 
 def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(sound: Listener, context, open_game):
     game: Driver = open_game(SettingsScene())
-    game.keys(*[DOWN] * 7, RIGHT)
+    focus(game, texts.SOUND_GROUPS["altitude"])
+    game.key(RIGHT)
     settings = context.settings_file.load()
     assert settings.altitude_volume == pytest.approx(0.1)
     assert [key for key in sound.heard() if key.startswith("altitude")]
