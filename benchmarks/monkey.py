@@ -146,6 +146,7 @@ class Monkey:
         self._frames = count()
         self._last = ""
         self._forgotten: list[str] = []
+        self._others = scenes_alive()  # of whoever played in this process before
         self._weights = np.array(list(DEEDS.values())) / sum(DEEDS.values())
         self.app: App
         self.hands: Hands
@@ -160,7 +161,7 @@ class Monkey:
             self.hands.come_back()
             for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must settle
                 self.hands.pass_frame()
-            self._forgotten = stale_scenes(self.app.scenes._stack)
+            self._forgotten = stale_scenes([*self._others, *self.app.scenes._stack])
             self.close()
 
     def _do_something(self) -> None:
@@ -233,7 +234,7 @@ class Monkey:
     def left_behind(self) -> list[str]:
         """Say what lives on although the game is closed."""
         wait_for(lambda: not active_children() and threading.active_count() == 1, 10.0)
-        found = [*self._forgotten, *stale_scenes([])]
+        found = [*self._forgotten, *stale_scenes(self._others)]
         found += [f"process {child}" for child in active_children()]
         found += [f"thread {each.name}" for each in threading.enumerate() if each is not threading.main_thread()]
         # A process that was killed in the midst of a save leaves a file, which the next one clears away.
@@ -242,17 +243,22 @@ class Monkey:
         return found + [f"file {path}" for path in (*files, *Path(tempfile.gettempdir()).iterdir())]
 
 
-def stale_scenes(stack: list[Scene]) -> list[str]:
-    """Say which scenes are in memory although they are not in use."""
+def scenes_alive() -> list[Scene]:
+    """Return the scenes that are in memory, whether or not anybody uses them."""
     gc.unfreeze()  # what a game has kept from the collector
     gc.collect()
+    kinds = tuple(scene_types())
+    return [each for each in gc.get_objects() if isinstance(each, kinds)]
+
+
+def stale_scenes(in_use: list[Scene]) -> list[str]:
+    """Say which scenes are in memory although they are not in use."""
     for each in gc.get_objects():
         if isinstance(each, type(_recording)) and each.__module__.startswith("game."):
             each.cache_clear()  # pictures, and fonts that keep their files open: so many at the most, but not yet
     with suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)  # what is no longer in use goes back to the system
-    kinds = tuple(scene_types())
-    alive = Counter(type(each).__name__ for each in gc.get_objects() if isinstance(each, kinds) and each not in stack)
+    alive = Counter(type(each).__name__ for each in scenes_alive() if each not in in_use)
     return [f"{number} × {name} still in memory" for name, number in alive.items()]
 
 
