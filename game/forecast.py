@@ -23,9 +23,9 @@ from game.networks import Flyer
 
 # Metres above the ground at which to stop: the touchdown itself is another matter.
 _CLEAR: Final = 0.3
-_DECISIONS: Final = 2  # of the way with a network, in every frame
+_DECISIONS: Final = 2  # of the way with a network, in a frame
 _STRIDE: Final = 10  # physics steps between places of the way by itself, taken at once
-_STRIDES: Final = 12  # in every frame: a path is whole after a few
+_STRIDES: Final = 12  # in a frame: a path is whole after a few
 _SECONDS: Final = 9.0
 
 
@@ -66,10 +66,10 @@ class Forecast:
         self._observation: Floats = self._ahead.reset()
         self._places: list[Doubles] = []
 
-    def follow(self, env: LanderEnv) -> None:
+    def follow(self, env: LanderEnv, decisions: int = _DECISIONS) -> None:
         """Fly some decisions further ahead of `env`, beginning anew from where it is once the ground is reached."""
         ahead = self._ahead
-        for _ in range(_DECISIONS):
+        for _ in range(decisions):
             if not self._places:
                 ahead.restore(env.snapshot())
                 ahead.gravity = env.gravity

@@ -17,6 +17,7 @@ class Outlook:
     def __init__(self, flight: Flight, network: Flyer | None) -> None:
         self._flight = flight
         self._drift = Drift(flight.env)
+        self._drifts = False
         self.ask(network)
 
     @property
@@ -32,10 +33,11 @@ class Outlook:
         """Look a little further ahead; the way by itself stays the same while the craft hangs and waits."""
         if self._arrived:
             return
-        if not waiting:
+        self._drifts = not self._drifts and not waiting  # every other step, so that no frame has all of both
+        if self._drifts:
             self._drift.follow()
         if self._forecast:
-            self._forecast.follow(self._flight.env)
+            self._forecast.follow(self._flight.env, 1 if self._drifts else 2)
 
     def draw(self, canvas: Canvas, view: View) -> None:
         """Draw both ways, until there is none left to go."""

@@ -24,7 +24,7 @@ class Sheet:
     last is kept until the view has moved on by a stride, or it would be more wrong than that.
     """
 
-    def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 400) -> None:
+    def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 300) -> None:
         self.picture, self.per_metre, self._soft = picture, per_metre, soft
         self._crop = (0, 0, 0, 0)
         self._scaled = picture
