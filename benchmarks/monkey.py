@@ -146,7 +146,8 @@ class Monkey:
         self._frames = count()
         self._last = ""
         self._forgotten: list[str] = []
-        self._others = scenes_alive()  # of whoever played in this process before
+        # Of whoever did something in this process before:
+        self._others, self._threads = scenes_alive(), set(threading.enumerate())
         self._weights = np.array(list(DEEDS.values())) / sum(DEEDS.values())
         self.app: App
         self.hands: Hands
@@ -233,10 +234,10 @@ class Monkey:
 
     def left_behind(self) -> list[str]:
         """Say what lives on although the game is closed."""
-        wait_for(lambda: not active_children() and threading.active_count() == 1, 10.0)
+        wait_for(lambda: not active_children() and self._threads.issuperset(threading.enumerate()), 10.0)
         found = [*self._forgotten, *stale_scenes(self._others)]
         found += [f"process {child}" for child in active_children()]
-        found += [f"thread {each.name}" for each in threading.enumerate() if each is not threading.main_thread()]
+        found += [f"thread {each.name}" for each in set(threading.enumerate()) - self._threads]
         # A process that was killed in the midst of a save leaves a file, which the next one clears away.
         children = {self._folder / "user" / name for name in ("models", "digits")}
         files = [path for path in (self._folder / "user").rglob(".*") if children.isdisjoint(path.parents)]
