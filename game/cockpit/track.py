@@ -14,6 +14,7 @@ from game.flight import Flight, Hand
 from game.render import View
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, NET
+from game.world.paths import draw_stretch
 
 _STRIDE: Final = 4  # steps between points
 _MOST_MARKS: Final = 24
@@ -61,8 +62,8 @@ class Track:
             ends.append(ends[-1] + len(list(run)))
         for start, end in pairwise(ends):
             colour = HUMAN if self._hands[start] is Hand.HUMAN else NET
-            faint = tuple(round(_DIM * part) for part in colour)
-            pygame.draw.aalines(canvas.surface, faint, False, pixels[start : end + 1])
+            faint = pygame.Color(colour).lerp((0, 0, 0), 1 - _DIM)
+            draw_stretch(canvas.surface, faint, pixels[start : end + 1])
         if shown >= 1:
             for place in self._marked():
                 canvas.marker("diamond", view.points(place).tolist(), 8, NET)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,7 +13,7 @@ import pygame
 from ai.env import Bools, Doubles, Ints
 from ai.lander import Outcome
 from game.render import View
-from game.ui.canvas import Canvas
+from game.ui.canvas import Canvas, Point
 from game.ui.tokens import NET, Colour
 
 _SPACING: Final = 0.62  # metres between dots
@@ -113,4 +114,15 @@ def draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strengt
         shown = strength * min(max((y / head - 1) / _FADE, 0.0), 1.0) if fades else strength
         if shown > 0 and area.collidepoint(x, y):
             under = surface.get_at((int(x), int(y)))
-            pygame.draw.aalines(surface, under.lerp(colour, shown), False, stretch)
+            draw_stretch(surface, under.lerp(colour, shown), stretch)
+
+
+def draw_stretch(surface: pygame.Surface, colour: Colour | pygame.Color, places: Sequence[Point]) -> None:
+    """Draw a thin open line through places in pixels, two or more.
+
+    pygame's `aalines` reads beyond the end of two points alone, and then draws by chance.
+    """
+    if len(places) > 2:
+        pygame.draw.aalines(surface, colour, False, places)
+    else:
+        pygame.draw.aaline(surface, colour, places[0], places[1])

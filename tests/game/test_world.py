@@ -13,7 +13,7 @@ from game.world.flame import HUMAN_PLUME, LEVELS, plume
 from game.world.looks import LOOKS, look_of
 from game.world.pad import draw_pad
 from game.world.particles import DUST, Particles
-from game.world.paths import Trails, draw_dotted, draw_faint
+from game.world.paths import Trails, draw_dotted, draw_faint, draw_stretch
 from game.world.relief import Relief
 from game.world.stage import Stage
 from game.world.wind import Wind
@@ -148,6 +148,18 @@ def test_a_line_fades_out_below_the_words_at_the_head(canvas: Canvas):
     assert not light[:98].any()
     assert (light[170:320] > 240).all()
     assert (np.diff(light[100:170]) >= 0).all()
+
+
+@pytest.mark.parametrize("before", [(900.0, 300.0), (250.0, 900.0)])
+def test_a_line_of_two_points_is_drawn_alike_whatever_was_drawn_before(canvas: Canvas, before: tuple[float, float]):
+    ends = [(248.7245776677237, 302.21186801448243), (253.0597146377713, 306.56827854735695)]
+    canvas.surface.fill((0, 0, 0))
+    pygame.draw.aaline(canvas.surface, (200, 100, 50), *ends)
+    alone = pixels(canvas.surface)
+    pygame.draw.aalines(canvas.surface, (0, 0, 0), False, [*ends, before])
+    canvas.surface.fill((0, 0, 0))
+    draw_stretch(canvas.surface, (200, 100, 50), ends)
+    assert np.array_equal(pixels(canvas.surface), alone)
 
 
 def test_every_mission_has_the_sky_and_the_ground_of_its_world():
