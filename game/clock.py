@@ -1,4 +1,4 @@
-"""Turns the frames' uneven time into even steps."""
+"""Turns the frames' uneven time into even steps, and those into steps at another pace."""
 
 from __future__ import annotations
 
@@ -30,3 +30,31 @@ class FixedStep:
         steps = int(self._remainder / STEP + 1e-9)
         self._remainder = max(self._remainder - steps * STEP, 0.0)
         return steps
+
+
+class Tempo:
+    """A scene's own time: how many of its steps are due in an update of 1/60 s.
+
+    Attributes:
+        rate: steps to an update; may be a fraction.
+
+    """
+
+    def __init__(self, rate: float = 1.0) -> None:
+        self.rate = rate
+        self._due = 0.0
+
+    def begin(self) -> None:
+        """Forget what has passed of the next step."""
+        self._due = 0.0
+
+    def steps(self) -> int:
+        """Let an update pass, and return how many steps are due in it."""
+        self._due += self.rate
+        steps = int(self._due)
+        self._due -= steps
+        return steps
+
+    def between(self, alpha: float) -> float:
+        """How far to draw from the last step but one to the last, where `alpha` of an update has passed."""
+        return min(1.0, self._due + alpha * self.rate)

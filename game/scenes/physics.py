@@ -12,6 +12,7 @@ import pygame
 
 from engine.vector import Array
 from game import hud, texts
+from game.clock import Tempo
 from game.context import Context
 from game.controls import Command, translate
 from game.exhibits import EXHIBITS, Label
@@ -51,8 +52,7 @@ class Physics:
         self._chosen = self._names.index(exhibit)
         self._now = now
         self._context: Context | None = None
-        self._gravity, self._speed = 0, SPEEDS.index(1.0)
-        self._due = 0.0
+        self._gravity, self._tempo = 0, Tempo()
         self._mouse = (-1.0, -1.0)
         self.stopped = self.contacts_drawn = False
         self.grip: Grip | None = None
@@ -69,7 +69,7 @@ class Physics:
         tabs = pygame.Rect(*_TABS, math.ceil(_width(words, TEXT)), 24)
         self._tabs = self._form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
         self._add_row(0, texts.PHYSICS_GRAVITY, texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity)
-        self._speeds = self._add_row(1, texts.WATCH_SPEED, _SPEED_WORDS, self._speed, self._choose_speed)
+        self._speeds = self._add_row(1, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
         self._contacts = self._add_row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)
         self.restart()
 
@@ -82,7 +82,8 @@ class Physics:
         self.exhibit = EXHIBITS[self._names[self._chosen]](GRAVITIES[self._gravity])
         self._outlines = Outlines(self.exhibit.pieces)
         self._poses = self._poses_before = self.exhibit.poses
-        self._due = self.step_time = 0.0
+        self._tempo.begin()
+        self.step_time = 0.0
         self.grip = None
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -122,15 +123,13 @@ class Physics:
     def update(self) -> Transition | None:
         """Take as many steps as the chosen speed makes due."""
         if not self.stopped:
-            self._due += SPEEDS[self._speed]
-            while self._due >= 1:
-                self._due -= 1
+            for _ in range(self._tempo.steps()):
                 self._step()
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the room, what is in it, and the words around it."""
-        between = 1.0 if self.stopped else min(1.0, self._due + alpha * SPEEDS[self._speed])
+        between = 1.0 if self.stopped else self._tempo.between(alpha)
         poses = self._poses_before + between * (self._poses - self._poses_before)
         view = self._view(canvas.scale)
         self._sky.draw(canvas)
@@ -213,7 +212,7 @@ class Physics:
         self.restart()
 
     def _choose_speed(self, index: int) -> None:
-        self._speed = index
+        self._tempo.rate = SPEEDS[index]
 
     def _show_contacts(self, index: int) -> None:
         self.contacts_drawn = bool(index)

@@ -11,7 +11,7 @@ import pygame
 
 from ai.lander import Outcome
 from game import hud, texts
-from game.clock import STEP
+from game.clock import STEP, Tempo
 from game.collection import exports_dir
 from game.context import Context
 from game.controls import Command, translate
@@ -52,8 +52,7 @@ class Replay:
         self._context: Context | None = None
         self._scenery: Scenery
         self.stopped = False
-        self._speed = SPEEDS.index(1.0)
-        self._due = 0.0
+        self._tempo = Tempo()
         self._warned = False
         self._export: Export | None = None
 
@@ -116,9 +115,7 @@ class Replay:
             self._warned = True
             self._context.note(texts.REPLAY_OTHER_RULES)
         if not self.stopped:
-            self._due += SPEEDS[self._speed]
-            while self._due >= 1:
-                self._due -= 1
+            for _ in range(self._tempo.steps()):
                 self._fly()
             self._heard.follow(self._scenery.stage.thrust[0])
         self._scenery.breathe()
@@ -130,7 +127,7 @@ class Replay:
         """Show another moment."""
         self.tape.seek(step)
         self._scenery.wind_to()
-        self._due = 0.0
+        self._tempo.begin()
         self._look()
 
     @property
@@ -171,7 +168,7 @@ class Replay:
         ))  # fmt: skip
         width = 84 + sum(typeface.width(word, SMALL, "regular") + GAP for word in _SPEED_WORDS)
         box = (MARGIN, _VERBS, round(width), _VERB)
-        self._speeds = self._form.add(Choice(manager, box, texts.WATCH_SPEED, _SPEED_WORDS, self._speed,
+        self._speeds = self._form.add(Choice(manager, box, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0),
                                              self._choose_speed, label_width=84, size=SMALL))  # fmt: skip
         rows: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over), (texts.LOGBOOK_RACE, self._race),
@@ -187,7 +184,7 @@ class Replay:
         self._export_word = words[2]
 
     def _choose_speed(self, index: int) -> None:
-        self._speed = index
+        self._tempo.rate = SPEEDS[index]
 
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
@@ -247,7 +244,7 @@ class Replay:
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, the way there and on, and its figures."""
-        between = 1.0 if self.stopped else min(1.0, self._due + alpha * SPEEDS[self._speed])
+        between = 1.0 if self.stopped else self._tempo.between(alpha)
         self._scenery.draw_land(canvas, between, _EARTH)
         _draw_way(canvas, self._scenery.view(canvas.scale, between), self.tape)
         self._scenery.draw_craft(canvas, between)

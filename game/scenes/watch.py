@@ -12,7 +12,7 @@ import pygame
 from ai.env import Bools, Doubles
 from ai.lander import Outcome
 from game import framing, hud, networks, texts
-from game.clock import STEP
+from game.clock import STEP, Tempo
 from game.context import Context
 from game.controls import Command, translate
 from game.flight import Swarm
@@ -57,8 +57,7 @@ class Watch:
         self._count = COUNTS.index(count)
         self._seed = seed
         self._context: Context | None = None
-        self._speed = SPEEDS.index(1.0)
-        self._time = self._due = 0.0
+        self._tempo, self._time = Tempo(), 0.0
         self.stopped = False
         self.shown = 0
         self.problem = self._wanted = ""
@@ -81,7 +80,7 @@ class Watch:
         self._count_choice = self._add_choice(
             1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
         )
-        self._speed_choice = self._add_choice(2, texts.WATCH_SPEED, _SPEED_WORDS, self._speed, self._choose_speed)
+        self._speed_choice = self._add_choice(2, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
         if self._seed is None:
             self._seed = int(context.rng.integers(2**31))
         self._choose_network(wanted)
@@ -122,9 +121,7 @@ class Watch:
     def update(self) -> Transition | None:
         """Fly as many steps as the chosen speed makes due."""
         if not self.stopped:
-            self._due += SPEEDS[self._speed]
-            while self._due >= 1:
-                self._due -= 1
+            for _ in range(self._tempo.steps()):
                 self._fly()
             self._heard.follow(self._stage.thrust[self.shown], self.shown)
         if not self._settings.reduced_motion:
@@ -133,7 +130,7 @@ class Watch:
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the swarm, the panel and the choices."""
-        between = min(1.0, self._due + alpha * SPEEDS[self._speed]) if not self.stopped else 1.0
+        between = self._tempo.between(alpha) if not self.stopped else 1.0
         view = self._camera.view(canvas.scale, between)
         size = canvas.surface.get_size()
         landscape(size, self._settings.reduced_motion).draw(canvas, self._camera, self._time, between)
@@ -162,7 +159,7 @@ class Watch:
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._set_up_camera()
         self._mind = Mind()
-        self._due = 0.0
+        self._tempo.begin()
         self.shown = min(self.shown, count - 1)
 
     def _set_up_camera(self) -> None:
@@ -267,7 +264,7 @@ class Watch:
         self._begin()
 
     def _choose_speed(self, index: int) -> None:
-        self._speed = index
+        self._tempo.rate = SPEEDS[index]
 
     # The picture
 
