@@ -11,7 +11,7 @@ from ai.lander import Cause, LanderEnv, Outcome
 from ai.missions import Mission
 from game import texts
 from game.controls import Controls
-from game.flight import Flight
+from game.flight import Flight, Recording
 from game.flight_file import Record
 from game.ghost import Ghost
 from game.hud import Card
@@ -107,7 +107,7 @@ class Race(Course):
     def flight(self, seed: int, network: Flyer | None) -> Flight:
         """Begin where that flight began, under its gravity."""
         recording = self._record.recording
-        flight = Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+        flight = _as_begun(recording, seed, network)
         flight.set_gravity(recording.gravity_at(0))
         return flight
 
@@ -130,8 +130,7 @@ class FlyOn(Course):
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
         """Begin in its midst."""
-        recording = self._recording
-        flight = Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
+        flight = _as_begun(self._recording, seed, network)
         flight.put(self._moment, self._recording, self._step)
         return flight
 
@@ -140,6 +139,11 @@ class FlyOn(Course):
         rerun = Rerun(self._recording)
         rerun.put(self._moment, self._recording, self._step)
         return Ghost(rerun, self._name)
+
+
+def _as_begun(recording: Recording, seed: int, network: Flyer | None) -> Flight:
+    """Begin where a recorded flight began."""
+    return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
 
 
 class Flown(Course):
