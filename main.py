@@ -11,11 +11,18 @@ from importlib.util import find_spec
 from pathlib import Path
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Run `tranquility` with these arguments and return the exit code."""
-    # Small matrices: a second thread of linear algebra only gets in the way, of the window most of all.
+def limit_threads() -> None:
+    """Let linear algebra use one thread; call it before NumPy is imported, or it has no effect.
+
+    The matrices are small: a second thread only gets in the way, of the window most of all.
+    """
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run `tranquility` with these arguments and return the exit code."""
+    limit_threads()
     arguments = _parser().parse_args(argv)
     try:
         if arguments.run is not None:

@@ -1,9 +1,8 @@
 """Property tests draw the same examples every time: a suite that passed passes again. One thread each is enough."""
 
-import os
+from main import limit_threads
 
-for library in ("OPENBLAS", "OMP", "MKL"):  # before NumPy is imported, or it has no effect
-    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+limit_threads()
 
 from hypothesis import settings  # noqa: E402
 
