@@ -13,6 +13,8 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.pilots import ScriptedPilot
+from game import networks
 from game.app import App
 from game.context import Context
 from game.scene import Scene
@@ -48,3 +50,9 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
 @pytest.fixture
 def game(open_game: Callable[..., Driver]) -> Driver:
     return open_game()
+
+
+@pytest.fixture
+def scripted_network(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The scripted pilot stands in for the network."""
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", ScriptedPilot()))

@@ -10,28 +10,21 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.pilots import ScriptedPilot
 from game.context import Context
 from game.export import KINDS, Kind
 from game.film import film, frames
-from game.flight import Flight
 from game.flight_file import Record
-from game.records import Records
 from game.scenes import replay as module
 from game.scenes.replay import Replay
 from tests.game.driver import Driver
+from tests.game.flights import kept, scripted
 
 SMALL = {".gif": Kind("PIL", (160, 90), 60, True), ".mp4": Kind("av", (160, 90), 60, False)}
 
 
 @pytest.fixture
 def record(context: Context) -> Record:
-    flight = Flight(3, ScriptedPilot())
-    flight.hand_over()
-    while not flight.over:
-        flight.step(0)
-    records = Records(context.user_dir)
-    return records.read(records.keep(flight, 1_700_000_000.0).file)
+    return kept(context, scripted())
 
 
 @pytest.fixture

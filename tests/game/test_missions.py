@@ -7,8 +7,7 @@ import pytest
 from ai.agent import DeepQAgent
 from ai.lander import PARAMS, Cause, Outcome
 from ai.missions import MISSIONS
-from ai.pilots import ScriptedPilot
-from benchmarks.missions import near
+from benchmarks.missions import fly
 from game import flight_file, flight_words, networks, texts
 from game.assets import ASSETS_DIR, MODELS_DIR
 from game.cockpit.cockpit import Cockpit
@@ -27,20 +26,11 @@ from game.scenes.replay import Replay
 from game.tape import Rerun, Tape
 from game.ui.canvas import Canvas
 from tests.game.driver import Driver
+from tests.game.flights import kept, play, scripted
 
 Open = Callable[..., Driver]
-NOON = 1_700_000_000.0
 REST = float(PARAMS.pad_top + PARAMS.stand + 0.002)
-
-
-@pytest.fixture(autouse=True)
-def _stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", ScriptedPilot()))
-
-
-def play(driver: Driver) -> Play:
-    assert isinstance(driver.top, Play)
-    return driver.top
+pytestmark = pytest.mark.usefixtures("scripted_network")
 
 
 def land(driver: Driver) -> None:
@@ -91,22 +81,13 @@ def test_every_mission_can_be_won_and_has_a_recorded_flight_that_earns_gold(name
 def test_the_network_lands_where_its_page_says_so():
     agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
     for mission in MISSIONS.values():
-        env = near(mission, 20)
-        observation = env.observe()
-        while (env.outcome == Outcome.FLYING).any():
-            observation = env.step(agent.act(observation, held=env.actions)).observation
-        landed = int((env.outcome == Outcome.LANDED).sum())
+        landed = int((fly(agent, mission, 20)[0] == Outcome.LANDED).sum())
         assert abs(landed - mission.landed) <= 2, mission.name  # another processor may round otherwise
 
 
 @pytest.mark.parametrize("name", ["wind", "outage", "ferry"])
 def test_a_mission_is_flown_again_from_its_file_as_it_was(context: Context, name: str):
-    flight = Flight(0, ScriptedPilot(), mission=name)
-    flight.hand_over()
-    while not flight.over:
-        flight.step(0)
-    records = Records(context.user_dir)
-    tape = Tape(records.read(records.keep(flight, NOON, course=name).file))
+    tape = Tape(kept(context, scripted(0, mission=name), course=name))
     tape.scout(10_000)
     assert tape.faithful
     assert tape.complete
@@ -275,13 +256,7 @@ def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
 
 @pytest.fixture
 def book(open_game: Open, context: Context) -> Driver:
-    flight = Flight(3, ScriptedPilot())
-    for _ in range(30):
-        flight.step(0)
-    flight.hand_over()
-    while not flight.over:
-        flight.step(0)
-    Records(context.user_dir).keep(flight, NOON)
+    kept(context, scripted(by_hand=30))
     driver = open_game(Logbook())
     driver.frames(2)
     return driver

@@ -12,18 +12,12 @@ from game import records
 from game.flight import Flight, Hand, Recording
 from game.flight_file import Entry, Record, from_text, to_text
 from game.records import Records, best, skill, totals
-
-NOON = 1_700_000_000.0
+from tests.game.flights import NOON, fly_out, scripted
 
 
 def fly(seed: int = 3, *, by_hand: bool = False, pads: int = 1) -> Flight:
     """A flight to its end: the scripted pilot's, or, by hand, a fall."""
-    flight = Flight(seed, ScriptedPilot(), pads=pads)
-    if not by_hand:
-        flight.hand_over()
-    while not flight.over:
-        flight.step(0)
-    return flight
+    return fly_out(Flight(seed, ScriptedPilot(), pads=pads)) if by_hand else scripted(seed, pads=pads)
 
 
 def entry(outcome: str = "LANDED", when: float = NOON, **figures) -> Entry:

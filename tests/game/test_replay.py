@@ -15,26 +15,14 @@ from game.scenes.logbook import Logbook
 from game.scenes.replay import Replay
 from game.tape import Rerun, Tape
 from tests.game.driver import Driver
+from tests.game.flights import NOON, kept, scripted
 
 Open = Callable[..., Driver]
-NOON = 1_700_000_000.0
-
-
-def fly(seed: int = 3, pads: int = 1, by_hand: int = 40) -> Flight:
-    """The scripted pilot's flight, after the person has coasted for so many steps."""
-    flight = Flight(seed, ScriptedPilot(), pads=pads)
-    for _ in range(by_hand):
-        flight.step(0)
-    flight.hand_over()
-    while not flight.over:
-        flight.step(0)
-    return flight
 
 
 @pytest.fixture
 def record(context: Context) -> Record:
-    records = Records(context.user_dir)
-    return records.read(records.keep(fly(), NOON).file)
+    return kept(context, scripted(by_hand=40))
 
 
 def state(tape: Tape) -> tuple:
@@ -93,7 +81,7 @@ def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flig
 @pytest.mark.parametrize("pads", [1, 3])
 def test_hands_are_those_that_flew(context: Context, pads: int):
     records = Records(context.user_dir)
-    flight = fly(pads=pads)
+    flight = scripted(pads=pads, by_hand=40)
     tape = Tape(records.read(records.keep(flight, NOON).file))
     tape.scout(10_000)
     tape.seek(40)
@@ -216,7 +204,7 @@ def test_drawing_changes_nothing(replay: Driver):
 @pytest.fixture
 def book(open_game: Open, context: Context) -> Driver:
     records = Records(context.user_dir)
-    fall, landing = Flight(5), fly(by_hand=0)
+    fall, landing = Flight(5), scripted()
     while not fall.over:
         fall.step(0)
     records.keep(landing, NOON, alone=True)

@@ -18,6 +18,7 @@ from game.scenes.settings import SettingsScene
 from game.settings import FILE_NAME
 from game.tutorial import LESSONS, Tutorial
 from tests.game.driver import Driver
+from tests.game.flights import play
 from tests.game.listener import Listener
 from tests.game.player import DEVICES, Player
 
@@ -25,16 +26,7 @@ Open = Callable[..., Driver]
 PILOT = ScriptedPilot()
 KEYS = ("main", "left", "right")
 NAMES = [lesson.name for lesson in LESSONS]
-
-
-@pytest.fixture(autouse=True)
-def _stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", ScriptedPilot()))
-
-
-def play(driver: Driver) -> Play:
-    assert isinstance(driver.top, Play)
-    return driver.top
+pytestmark = pytest.mark.usefixtures("scripted_network")
 
 
 def tutorial(driver: Driver) -> Tutorial:

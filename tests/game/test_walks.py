@@ -10,16 +10,14 @@ import pytest
 
 from ai.digits import DigitClassifier
 from ai.lander import Outcome
-from ai.pilots import ScriptedPilot
 from benchmarks.tour import scene_types
 from game import texts
 from game.assets import MODELS_DIR
 from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command
-from game.flight import Flight, Hand
+from game.flight import Hand
 from game.flight_file import Record
-from game.records import Records
 from game.scene import Push, Scene
 from game.scenes.bindings import BindingsScene
 from game.scenes.choices import ChoicesScene
@@ -41,6 +39,7 @@ from game.scenes.train import Train
 from game.scenes.watch import Watch
 from game.ui.widgets import Widget
 from tests.game.driver import Driver
+from tests.game.flights import kept, scripted
 from tests.game.player import DEVICES, Player
 
 SCREENS: dict[str, Callable[[Context], Scene]] = {
@@ -75,12 +74,7 @@ def reader() -> DigitClassifier:
 
 
 def flown(context: Context) -> Record:
-    flight = Flight(3, ScriptedPilot())
-    flight.hand_over()
-    while not flight.over:
-        flight.step(0)
-    records = Records(context.user_dir)
-    return records.read(records.keep(flight, time.time(), alone=True).file)
+    return kept(context, scripted(), time.time(), alone=True)
 
 
 @pytest.fixture(params=DEVICES)

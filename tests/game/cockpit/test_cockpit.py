@@ -17,6 +17,7 @@ from game.scenes.play import Play
 from game.settings import SettingsFile
 from game.ui.canvas import Canvas
 from tests.game.driver import Driver
+from tests.game.flights import play
 
 Open = Callable[..., Driver]
 COAST, LEFT, RIGHT, MAIN = range(4)
@@ -44,11 +45,6 @@ def fly(open_game: Open, context: Context, **settings: object) -> Driver:
     driver = open_game(Play(seed=4))
     driver.frames(2)
     return driver
-
-
-def play(driver: Driver) -> Play:
-    assert isinstance(driver.top, Play)
-    return driver.top
 
 
 def down(driver: Driver, key: int) -> None:
