@@ -14,7 +14,7 @@ from game.digits.shelf import called
 from game.ui.canvas import Canvas
 from game.ui.prose import wrapped
 from game.ui.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
-from game.ui.widgets import PointsManager, Widget, mix
+from game.ui.widget import PointsManager, Widget, mix
 
 LEFT: Final = 624.0
 RIGHT: Final = 848.0

@@ -13,7 +13,7 @@ from game.controls import Command, translate
 from game.digits.pictures import picture
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, Colour
-from game.ui.widgets import PointsManager, Widget
+from game.ui.widget import PointsManager, Widget
 
 _DIGITS: Final = 10
 _ARROWS: Final = {Command.UP: (-1, 0), Command.DOWN: (1, 0), Command.LEFT: (0, -1), Command.RIGHT: (0, 1)}

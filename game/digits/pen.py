@@ -12,7 +12,7 @@ from game.controls import Command, Controls, presses_main, translate
 from game.digits.pad import DrawingPad
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, NIGHT0
-from game.ui.widgets import PointsManager, Widget
+from game.ui.widget import PointsManager, Widget
 
 _PACE: Final = 4.5  # points in a step of 1/60 s
 _DEAD: Final = 0.2  # of a stick's way, where it rests

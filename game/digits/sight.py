@@ -15,7 +15,8 @@ from game.digits.pictures import AMBER, height_of, mosaic, picture
 from game.digits.reader import Explanation, Numbers, Reading, Verdict
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, Colour
-from game.ui.widgets import PointsManager, Toggle, draw_switch
+from game.ui.widget import PointsManager
+from game.ui.widgets import Toggle, draw_switch
 
 LEFT: Final = 900.0
 RIGHT: Final = 1244.0

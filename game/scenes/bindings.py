@@ -17,7 +17,8 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.sky import NightSky
 from game.ui.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
-from game.ui.widgets import PointsManager, Widget, Word, mix
+from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widgets import Word
 
 _FIRST: Final = 144
 _ROW: Final = 31

@@ -23,7 +23,8 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, NIGHT0, SMALL, TITLE, VIEW_SIZE
-from game.ui.widgets import Choice, Slider, Toggle, Widget, Word
+from game.ui.widget import Widget
+from game.ui.widgets import Choice, Slider, Toggle, Word
 
 _WIDTH: Final = 560
 _LABELS: Final = 142

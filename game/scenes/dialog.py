@@ -20,7 +20,8 @@ from game.ui.hints import draw_hints
 from game.ui.listing import Listing, Row
 from game.ui.prose import wrapped
 from game.ui.tokens import FAINT, MUTE, NIGHT0, SMALL, TEXT
-from game.ui.widgets import OnPress, Word
+from game.ui.widget import OnPress
+from game.ui.widgets import Word
 
 _LEFT, _WIDTH = 400, 480
 _MARGIN: Final = 32

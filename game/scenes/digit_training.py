@@ -28,7 +28,8 @@ from game.ui.knobs import Knobs
 from game.ui.sky import NightSky
 from game.ui.standing import draw_problem, draw_standing, start_word
 from game.ui.tokens import LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
-from game.ui.widgets import OnPress, Word
+from game.ui.widget import OnPress
+from game.ui.widgets import Word
 from game.worker import State
 
 if TYPE_CHECKING:

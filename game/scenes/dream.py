@@ -24,7 +24,8 @@ from game.ui.hints import draw_hints
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, VIEW_SIZE
-from game.ui.widgets import Choice, PointsManager, Slider, Widget, Word
+from game.ui.widget import PointsManager, Widget
+from game.ui.widgets import Choice, Slider, Word
 
 if TYPE_CHECKING:
     from ai.digits import DigitClassifier

@@ -22,7 +22,8 @@ from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
 from game.ui.sky import NightSky
 from game.ui.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
-from game.ui.widgets import Choice, Widget, Word
+from game.ui.widget import Widget
+from game.ui.widgets import Choice, Word
 
 _LIST: Final = pygame.Rect(MARGIN, 252, 672, 336)
 _PITCH: Final = 28

@@ -15,7 +15,8 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.tokens import MARGIN, NIGHT0, VIEW_SIZE
-from game.ui.widgets import OnPress, Word
+from game.ui.widget import OnPress
+from game.ui.widgets import Word
 
 _FIRST_WORD: Final = 304
 _LINE: Final = 44

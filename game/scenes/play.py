@@ -23,7 +23,7 @@ from game.records import Records
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
 from game.ui.canvas import Canvas
-from game.ui.widgets import OnPress
+from game.ui.widget import OnPress
 from game.world.scenery import Scenery
 
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.

@@ -26,7 +26,8 @@ from game.ui.hints import draw_hints
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.tokens import FIGURE, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, TITLE, VIEW_SIZE, Colour
-from game.ui.widgets import OnPress, Widget, Word
+from game.ui.widget import OnPress, Widget
+from game.ui.widgets import Word
 
 if TYPE_CHECKING:
     from ai.digits import DigitClassifier

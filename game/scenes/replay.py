@@ -28,7 +28,8 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.timeline import Timeline, runs
 from game.ui.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
-from game.ui.widgets import Choice, OnPress, Word
+from game.ui.widget import OnPress
+from game.ui.widgets import Choice, Word
 from game.ui.words import GAP
 from game.world.paths import draw_faint
 from game.world.scenery import Scenery

@@ -22,7 +22,8 @@ from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
 from game.ui.sky import NightSky
 from game.ui.tokens import LABEL, LINE, MARGIN, MUTE, NET, SMALL, TITLE, VIEW_SIZE
-from game.ui.widgets import OnPress, Widget, Word
+from game.ui.widget import OnPress, Widget
+from game.ui.widgets import Word
 
 _LIST: Final = pygame.Rect(MARGIN, 168, 672, 408)
 _PITCH: Final = 34

@@ -28,7 +28,8 @@ from game.ui.knobs import Knobs
 from game.ui.scrubber import Scrubber
 from game.ui.standing import draw_problem, draw_standing, start_word
 from game.ui.tokens import LINE, NIGHT0, PANEL, VIEW_SIZE
-from game.ui.widgets import Choice, OnPress, Widget, Word
+from game.ui.widget import OnPress, Widget
+from game.ui.widgets import Choice, Word
 from game.worker import State
 from game.world.swarm import LearningSwarm
 

@@ -27,7 +27,8 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.pick import Pick
 from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
-from game.ui.widgets import Choice, OnPress
+from game.ui.widget import OnPress
+from game.ui.widgets import Choice
 from game.ui.words import GAP
 from game.world.backdrop import landscape
 from game.world.pad import draw_pad

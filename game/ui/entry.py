@@ -16,7 +16,7 @@ from game.scene import Transition
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.tokens import FAINT, HUMAN, INK, LABEL, MUTE, TEXT
-from game.ui.widgets import PointsManager, Widget
+from game.ui.widget import PointsManager, Widget
 
 Fits = Callable[[str], str]
 _PASTE: Final = pygame.KMOD_CTRL | pygame.KMOD_META

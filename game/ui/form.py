@@ -12,7 +12,7 @@ from game.controls import Command, Controls, presses_main, translate
 from game.scene import Transition
 from game.ui import focus
 from game.ui.canvas import Canvas
-from game.ui.widgets import OnPress, PointsManager, Widget
+from game.ui.widget import OnPress, PointsManager, Widget
 
 W = TypeVar("W", bound=Widget)
 _ARROWS: Final = {

@@ -24,7 +24,8 @@ from game.ui.netplan import Show
 from game.ui.netview import NetView
 from game.ui.strip import Strip
 from game.ui.tokens import MUTE, SMALL, TITLE
-from game.ui.widgets import Choice, Widget, Word
+from game.ui.widget import Widget
+from game.ui.widgets import Choice, Word
 
 SHOWN: Final[tuple[Show, ...]] = get_args(Show)
 _NETWORK, _PAID = 0, 1

@@ -21,7 +21,8 @@ from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.entry import Entry, digits, draw_line
 from game.ui.tokens import FAINT, HUMAN, INK, MUTE, NET, PANEL, SMALL, Colour
-from game.ui.widgets import PointsManager, Widget, draw_switch, mix
+from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widgets import draw_switch
 from game.ui.words import WordRow
 
 MARGIN: Final = 16  # left of the label, for the dot

@@ -15,7 +15,7 @@ from game.ui.hints import draw_hints
 from game.ui.knob import Knob, SeedKnob
 from game.ui.prose import wrapped
 from game.ui.tokens import HUMAN, INK, LABEL, MUTE, SMALL, Colour
-from game.ui.widgets import Widget
+from game.ui.widget import Widget
 
 HEIGHT: Final = 60  # points, at the bottom of the panel
 ANSWERS: Final = 42  # from the bottom to the top of the words that answer a notice

@@ -16,7 +16,8 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.knob import MARGIN, Knob, SeedKnob, SliderKnob, SwitchKnob, WordsKnob
 from game.ui.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
-from game.ui.widgets import Choice, PointsManager, Widget, Word, mix
+from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widgets import Choice, Word
 
 _KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
 _HEAD: Final = 34  # from the top to the line under the presets

@@ -11,7 +11,7 @@ from game.controls import Command, translate
 from game.scene import Transition
 from game.ui.canvas import Canvas
 from game.ui.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
-from game.ui.widgets import PointsManager, Widget, mix
+from game.ui.widget import PointsManager, Widget, mix
 
 Row = tuple[str, ...]  # what it is called, and a few words for each column
 _BAR: Final = 3.0

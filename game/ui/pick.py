@@ -11,7 +11,8 @@ from game.scene import Transition
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.tokens import SMALL
-from game.ui.widgets import Choice, OnPress, PointsManager
+from game.ui.widget import OnPress, PointsManager
+from game.ui.widgets import Choice
 from game.ui.words import WordRow
 
 _GAP: Final = 20.0  # between the row and the word that opens the list

@@ -8,7 +8,7 @@ from game.scene import Transition
 from game.ui.canvas import Canvas
 from game.ui.charts import Charts
 from game.ui.tokens import INK
-from game.ui.widgets import OnPress, PointsManager, Widget
+from game.ui.widget import OnPress, PointsManager, Widget
 
 
 class Scrubber(Widget):

@@ -11,7 +11,7 @@ from game.scene import Transition
 from game.ui.canvas import Canvas
 from game.ui.kept import Kept
 from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
-from game.ui.widgets import PointsManager, Widget, mix
+from game.ui.widget import PointsManager, Widget, mix
 
 V = TypeVar("V")
 _LABELS: Final = 84.0  # room for the lanes' names

@@ -1,8 +1,4 @@
-"""Words, toggles, sliders and choices: pygame_gui elements, laid out in points and drawn by our canvas.
-
-pygame_gui settles which element the mouse meets; a `Form` adds the keyboard and the gamepad. A widget
-draws itself in the window's own pixels, so nothing is laid out again when the window changes.
-"""
+"""Words, toggles, sliders and choices."""
 
 from __future__ import annotations
 
@@ -11,114 +7,16 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 import pygame
-from pygame_gui import UIManager
-from pygame_gui.core import UIElement
 
 from game.scene import Transition
 from game.ui.canvas import Canvas
-from game.ui.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
+from game.ui.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, Colour
 from game.ui.typeface import Weight
+from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
 from game.ui.words import GAP as CHOICE_GAP
 from game.ui.words import WordRow
 
-OnPress = Callable[[], Transition | None]
-_EASE: Final = 0.22
 _SWITCH: Final = 46  # what a switch takes of the box it is in
-
-
-class PointsManager(UIManager):
-    """pygame_gui's manager, living in points: it is told where the mouse is instead of asking the window."""
-
-    def __init__(self) -> None:
-        super().__init__(VIEW_SIZE, enable_live_theme_updates=False)
-        self.mouse_position = (-1, -1)
-
-    def process_events(self, event: pygame.event.Event) -> bool:
-        """Give a mouse event, in points, to the elements."""
-        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
-            self.mouse_position = (int(event.pos[0]), int(event.pos[1]))
-        return bool(super().process_events(event))
-
-    def calculate_scaled_mouse_position(self, position: tuple[float, float]) -> tuple[int, int]:
-        """Return a position in points as it is."""
-        return int(position[0]), int(position[1])
-
-    def _update_mouse_position(self) -> None:
-        """Keep what the last event said."""
-
-
-class Widget(UIElement):
-    """What all widgets share: a box, a label, being pressed, being in focus.
-
-    Attributes:
-        focused: whether the form's focus is here.
-        typing: whether letters are for this widget alone, and no commands.
-        warmth: 0 to 1, follows `focused` gently.
-        help: a sentence about it, for a screen that shows one for what is in focus.
-        ringed: whether a ring is drawn around the widget in focus; not while a mouse is in use.
-
-    """
-
-    def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
-        super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)
-        self.label, self.help = label, ""
-        self.focused = self.typing = self.ringed = self.held = False
-        self.warmth = 0.0
-        self.outcome: Transition | None = None
-
-    @property
-    def box(self) -> pygame.Rect:
-        """Where it is, in points."""
-        return pygame.Rect(self.rect)
-
-    def press(self) -> Transition | None:
-        """Do what the widget is for."""
-        return None
-
-    def shift(self, direction: int) -> bool:  # noqa: ARG002
-        """Go one step left (-1) or right (1); false if the widget has no such steps."""
-        return False
-
-    def drag(self, x: float) -> None:
-        """Follow the mouse while its button is held."""
-
-    def take(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
-        """Take a key or a pad's button before the form does, being in focus; false leaves it to the form."""
-        return False
-
-    def scroll(self, rows: int) -> bool:  # noqa: ARG002
-        """Follow the mouse's wheel, positive towards the beginning; false if there is nothing to scroll."""
-        return False
-
-    def process_event(self, event: pygame.event.Event) -> bool:
-        """Be pressed by the mouse: down and up again on the widget."""
-        if event.type == pygame.MOUSEMOTION and self.held:
-            self.drag(event.pos[0])
-            return True
-        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.hover_point(*event.pos):
-            self.held = True
-            self.drag(event.pos[0])
-            return True
-        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.held:
-            self.held = False
-            if self.hover_point(*event.pos):
-                self.outcome = self.press()
-            return True
-        return False
-
-    def ease(self, at_once: bool) -> None:
-        """Let 1/60 s pass."""
-        target = float(self.focused)
-        self.warmth = target if at_once else self.warmth + (target - self.warmth) * _EASE
-
-    def paint(self, canvas: Canvas) -> None:
-        """Draw the widget."""
-        if self.ringed and self.warmth > 0.02:
-            canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
-
-    def tint(self) -> Colour:
-        """Return the label's colour: muted, and ink as it comes into focus."""
-        return mix(MUTE, INK, self.warmth)
 
 
 class Word(Widget):
@@ -190,7 +88,7 @@ class Toggle(Widget):
         """Let the knob slide."""
         super().ease(at_once)
         target = float(self.value)
-        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * _EASE
+        self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the label, the hint under it and the switch."""
@@ -344,10 +242,3 @@ def draw_switch(canvas: Canvas, rect: tuple[float, float, float, float], slid: f
     canvas.pill(rect, mix(FAINT, colour, slid))
     half = height / 2
     canvas.dot((left + half + (width - height) * slid, top + half), half - 2.5, INK)
-
-
-def mix(a: Colour, b: Colour, fraction: float) -> Colour:
-    """Return the colour that lies between two; in steps, so that few are ever rendered."""
-    part = round(8 * min(max(fraction, 0.0), 1.0)) / 8
-    red, green, blue = (round(x + (y - x) * part) for x, y in zip(a, b, strict=True))
-    return red, green, blue

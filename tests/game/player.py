@@ -6,7 +6,7 @@ from ai.pilots import Pilot, ScriptedPilot
 from game.scenes.play import Play
 from game.ui.form import Form
 from game.ui.listing import Listing
-from game.ui.widgets import Widget
+from game.ui.widget import Widget
 from tests.game.driver import Driver
 
 KEYS = {"up": pygame.K_UP, "down": pygame.K_DOWN, "left": pygame.K_LEFT, "right": pygame.K_RIGHT,

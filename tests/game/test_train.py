@@ -30,7 +30,7 @@ from game.scenes.train import Train
 from game.student import Student
 from game.ui import focus
 from game.ui.netview import NetView
-from game.ui.widgets import Widget
+from game.ui.widget import Widget
 from game.worker import State
 from tests.game.driver import Driver
 

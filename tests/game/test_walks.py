@@ -37,7 +37,7 @@ from game.scenes.runs import Runs
 from game.scenes.settings import SettingsScene
 from game.scenes.train import Train
 from game.scenes.watch import Watch
-from game.ui.widgets import Widget
+from game.ui.widget import Widget
 from tests.game.driver import Driver
 from tests.game.flights import kept, scripted
 from tests.game.player import DEVICES, Player

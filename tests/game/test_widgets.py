@@ -11,7 +11,8 @@ from game.scene import Pop, Transition
 from game.ui import focus, typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
-from game.ui.widgets import CHOICE_GAP, Choice, PointsManager, Slider, Toggle, Word
+from game.ui.widget import PointsManager
+from game.ui.widgets import CHOICE_GAP, Choice, Slider, Toggle, Word
 from tests.game.driver import Driver
 
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
