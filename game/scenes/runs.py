@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
@@ -20,8 +19,9 @@ from game.ui.entry import Entry
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
+from game.ui.run_page import draw_run, row, suggestion
 from game.ui.sky import NightSky
-from game.ui.tokens import LABEL, LINE, MARGIN, MUTE, NET, SMALL, TITLE, VIEW_SIZE
+from game.ui.tokens import LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Word
 
@@ -121,7 +121,7 @@ class Runs:
         self.runs = [*own, *shipped]
         folders = [run.folder for run in self.runs]
         index = folders.index(shown) if shown in folders else self._list.index
-        self._list.set_rows([_row(run, own=run in own) for run in self.runs], index)
+        self._list.set_rows([row(run, own=run in own) for run in self.runs], index)
         self._line = self._library.problem or (
             texts.RUNS_PLACE.format(folder=self._library.folder) if own else texts.RUNS_NONE
         )
@@ -205,7 +205,7 @@ class Runs:
         run, context = self.shown, self._context
         assert run is not None
         assert context is not None
-        text = _suggestion(self._library, run) if context.controls.pad_in_use else run.name
+        text = suggestion(self._library, run) if context.controls.pad_in_use else run.name
         self._entry = Entry(
             self._form.manager, (_LEFT, 140, _WIDTH, 34), texts.RUN_NAME, text, self._rename,
             on_cancel=self._end_naming, limit=LONGEST_NAME, fits=fitting, size=TITLE,
@@ -286,14 +286,16 @@ class Runs:
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the list, and the chosen run beside it."""
+        assert self._context is not None
         self._sky.draw(canvas)
         title = texts.RUNS_CHOOSE_TITLE if self._choose else texts.RUNS_TITLE
         canvas.text(title, (MARGIN, 84), size=34, weight="light")
         canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE)
         self._draw_headings(canvas)
         self._form.draw(canvas)
-        if self.shown:
-            self._draw_run(canvas, self.shown)
+        if run := self.shown:
+            flies = self._names.get(run.folder) == (self._context.settings.model or networks.DEFAULT)
+            draw_run(canvas, run, _LEFT, _WIDTH, own=self._is_own, named=not self._entry, flies=flies)
         self._draw_hints(canvas)
 
     def _draw_headings(self, canvas: Canvas) -> None:
@@ -304,33 +306,6 @@ class Runs:
             place = (self._list.right - column, y)
             canvas.text(label, place, size=LABEL, weight="medium", colour=MUTE, align="right")
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
-
-    def _draw_run(self, canvas: Canvas, run: SavedRun) -> None:
-        assert self._context is not None
-        if not self._entry:
-            canvas.text(shortened(canvas, run.name, TITLE, _WIDTH), (_LEFT, 165), size=TITLE)
-        y = 222 if run.problem else 294
-        if run.problem:
-            canvas.marker("cross", (_LEFT + 5, 190), 10, canvas.palette.warn)
-            problem = shortened(canvas, run.problem, SMALL, _WIDTH - 20)
-            canvas.text(problem, (_LEFT + 18, 194), size=SMALL, colour=canvas.palette.warn)
-        else:
-            canvas.text(_made(run), (_LEFT, 194), size=SMALL, colour=MUTE)
-            self._draw_figures(canvas, run)
-        when = time.strftime("%Y-%m-%d %H:%M", time.localtime(run.saved))
-        saved = texts.RUN_SAVED.format(when=when) if self._is_own else texts.RUN_SHIPPED
-        canvas.text(saved, (_LEFT, y), size=SMALL, colour=MUTE)
-        if self._names.get(run.folder) == (self._context.settings.model or networks.DEFAULT):
-            canvas.dot((_LEFT + 4, y + 20), 4, NET)
-            canvas.text(texts.RUN_FLIES, (_LEFT + 16, y + 24), size=SMALL, colour=NET)
-
-    def _draw_figures(self, canvas: Canvas, run: SavedRun) -> None:
-        figures = (_percent(run), _count(run.decisions), _duration(run.seconds))
-        for number, (label, (figure, unit)) in enumerate(zip(texts.RUN_FIGURES, figures, strict=True)):
-            x = _LEFT + number * 132
-            canvas.text(label, (x, 230), size=LABEL, weight="medium", colour=MUTE)
-            box = canvas.text(figure, (x - 1, 262), size=28, weight="light", tabular=True)
-            canvas.text(unit, (box.right + 5, 262), size=SMALL, colour=MUTE)
 
     def _draw_hints(self, canvas: Canvas) -> None:
         assert self._context is not None
@@ -348,38 +323,3 @@ def _train_on(folder: Path) -> Transition:
     from game.scenes.train import Train
 
     return Push(Train(resume=folder))
-
-
-def _row(run: SavedRun, own: bool) -> tuple[str, str, str, str]:
-    saved = time.strftime("%Y-%m-%d", time.localtime(run.saved)) if own else texts.RUNS_SHIPPED
-    if run.problem:
-        return run.name, "–", "–", saved
-    return run.name, " ".join(_percent(run)), " ".join(_count(run.decisions)), saved
-
-
-def _made(run: SavedRun) -> str:
-    settings = texts.RUN_SETTINGS.get(run.changes, texts.RUN_SETTINGS_MANY)
-    return texts.RUN_SEED.format(settings=settings.format(preset=run.preset, count=run.changes), seed=run.seed)
-
-
-def _suggestion(library: Library, run: SavedRun) -> str:
-    """Name a run by its figures: for those who have no keys to write with."""
-    if run.problem:
-        return library.free_name(run.name)
-    count = "".join(_count(run.decisions))
-    suggestion = texts.RUN_SUGGESTION.format(preset=run.preset, decisions=count, percent=_percent(run)[0])
-    return library.free_name(suggestion)
-
-
-def _percent(run: SavedRun) -> tuple[str, str]:
-    return ("–", "") if run.success is None else (f"{100 * run.success:.1f}", "%")
-
-
-def _count(number: int) -> tuple[str, str]:
-    if number >= 1_000_000:
-        return f"{number / 1e6:.1f}", "M"
-    return (f"{number / 1e3:.0f}", "k") if number >= 1000 else (str(number), "")
-
-
-def _duration(seconds: float) -> tuple[str, str]:
-    return (f"{seconds:.0f}", "s") if seconds < 120 else (f"{seconds / 60:.0f}", "min")
