@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import time
 import unicodedata
@@ -57,6 +58,15 @@ def is_valid_name(text: str) -> bool:
 def exports_dir() -> Path:
     """Return where a player finds what is exported: among their documents."""
     return Path(platformdirs.user_documents_dir()) / texts.GAME
+
+
+def free_path(folder: Path, name: str, suffix: str = "") -> Path:
+    """Return where something new of that name goes: with a number behind it, if the name is taken."""
+    path, number = folder / f"{name}{suffix}", 1
+    while os.path.lexists(path):  # which, unlike Path.exists, raises nothing where it may not look
+        number += 1
+        path = folder / f"{name} {number}{suffix}"
+    return path
 
 
 class Collection:
@@ -123,10 +133,7 @@ class Collection:
         folder = folder or exports_dir()
         with told(texts.LIBRARY_NOT_EXPORTED, name):
             folder.mkdir(parents=True, exist_ok=True)
-            target, number = folder / name, 1
-            while target.exists():
-                number += 1
-                target = folder / f"{name} {number}"
+            target = free_path(folder, name)
             _copy(source, target)
         return target
 

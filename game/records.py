@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from game import flight_file, texts
+from game.collection import free_path
 from game.flight import Flight
 from game.flight_file import Entry, Record
 from game.outcomes import landing_score
@@ -66,7 +67,7 @@ class Records:
         entry = describe(flight, when, **more)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            path = self._free_path(when)
+            path = free_path(self.folder, f"{datetime.fromtimestamp(when):%Y-%m-%d %H.%M.%S.%f}"[:-3], ".json")
             entry = replace(entry, file=path.name)
             x, y, angle = flight.poses.now[0].tolist()
             flight_file.write(path, Record(flight.recording, entry, (x, y, angle)))
@@ -113,14 +114,6 @@ class Records:
             self.problem = texts.FLIGHT_NOT_DELETED.format(name=name, reason=error.strerror or error)
             return False
         return True
-
-    def _free_path(self, when: float) -> Path:
-        name = f"{datetime.fromtimestamp(when):%Y-%m-%d %H.%M.%S.%f}"[:-3]
-        path, number = self.folder / f"{name}.json", 1
-        while path.exists():
-            number += 1
-            path = self.folder / f"{name} {number}.json"
-        return path
 
     def _append(self, entry: Entry) -> None:
         """Add a line; one that a killed game has left unfinished must not swallow it."""

@@ -12,7 +12,7 @@ import pygame
 from ai.lander import Outcome
 from game import hud, texts
 from game.clock import STEP, Tempo
-from game.collection import exports_dir
+from game.collection import exports_dir, free_path
 from game.context import Context
 from game.controls import Command, translate
 from game.export import KINDS, Export
@@ -218,7 +218,7 @@ class Replay:
         if KINDS[suffix].missing:
             self._context.note(texts.EXPORT_MISSING.format(kind=suffix[1:].upper()))
             return
-        path = exports_dir() / f"{Path(self.record.entry.file).stem or texts.REPLAY_TITLE}{suffix}"
+        path = free_path(exports_dir(), Path(self.record.entry.file).stem or texts.REPLAY_TITLE, suffix)
         self._export = Export(self.record, path, colour_safe=self._context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:

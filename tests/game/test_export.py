@@ -4,6 +4,7 @@ import importlib.util
 import multiprocessing
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -174,6 +175,19 @@ def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay
     assert scene.tape.at > at
     scene._export.close()  # a film of full size takes its time: the process itself is tested elsewhere
     driver.wait(lambda: scene._export is None)
+
+
+@pytest.mark.parametrize("file", ["", "a flight.json"])
+def test_no_picture_takes_the_place_of_another(replay: tuple[Driver, Replay], file: str, tmp_path: Path):
+    pytest.importorskip("PIL")
+    driver, scene = replay
+    scene.record = replace(scene.record, entry=replace(scene.record.entry, file=file))
+    folder, name = tmp_path / "pictures", Path(file).stem or "Replay"
+    folder.mkdir()
+    for taken in (f"{name}.gif", f"{name} 2.gif"):
+        (folder / taken).write_text("another flight")
+    _choose_gif(driver)
+    assert scene._export.path == folder / f"{name} 3.gif"
 
 
 def test_a_film_can_be_stopped_and_leaving_ends_its_process(replay: tuple[Driver, Replay], tmp_path: Path):
