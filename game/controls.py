@@ -102,7 +102,7 @@ class Controls:
         keys, buttons: what the keyboard's keys and the pads' buttons mean.
         mouse_in_use: whether the mouse was touched last; no ring is drawn around what is in focus then.
         listening: whether the next press is to be bound, and commands nothing.
-        pad_name: what the pad plugged in last calls itself.
+        pad_name: what the pad plugged in last calls itself; empty if it was pulled out again at once.
 
     """
 
@@ -247,6 +247,7 @@ class Controls:
     def _open(self, device_index: int) -> None:
         from pygame._sdl2 import controller
 
+        self.pad_name = ""
         try:
             device = controller.Controller(device_index)
             instance = device.as_joystick().get_instance_id()

@@ -122,6 +122,16 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Calla
     assert SIGN.search(game.app.context.controls.word(Command.CONFIRM))
 
 
+def test_a_pad_pulled_out_before_its_turn_is_not_told_of_by_the_name_of_another(game: Driver, pads: VirtualPads):
+    pads.plug_in()
+    game.frames(2)
+    assert "Virtual" in game.app._notes._text
+    game.app._notes.show("said since")
+    game.post(pygame.CONTROLLERDEVICEADDED, device_index=7, guid="")
+    assert game.app._notes._text == "said since"
+    assert game.app.context.controls.pads == 1
+
+
 def test_a_pad_pulled_out_that_nobody_uses_disturbs_nobody(open_game: Callable[..., Driver], pads: VirtualPads):
     game = open_game(Play(3))
     pads.plug_in()
