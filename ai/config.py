@@ -1,17 +1,12 @@
-"""Every choice in a training run, as one dataclass; the presets; and what a screen needs to show them.
-
-A field's metadata hold a sentence of help, its group, its range, and whether it may change while a run goes on.
-"""
+"""Every choice in a training run, as one dataclass, and the presets."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import Field, asdict, astuple, dataclass, field, fields, replace
+from dataclasses import astuple, dataclass
 from typing import Any, Final
 
-import numpy as np
-
+from ai.knobs import Knobs, knob
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
 from ai.rewards import RewardWeights
@@ -22,39 +17,8 @@ LANDER: Final = "lander"
 _HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without flickering jets
 
 
-def knob(
-    default: Any,
-    help: str,  # noqa: A002 - what it is called wherever options are described
-    group: str,
-    *,
-    low: float | None = None,
-    high: float | None = None,
-    choices: tuple[str, ...] = (),
-    log: bool = False,
-    live: bool = False,
-    offers: tuple[Any, ...] = (),
-) -> Any:
-    """Describe a field: its help, group, range or choices, scale, and whether it may change during a run.
-
-    `offers` are a few values for a screen, of a field whose range says too little.
-    """
-    described = {
-        "help": help,
-        "group": group,
-        "low": low,
-        "high": high,
-        "choices": choices,
-        "log": log,
-        "live": live,
-        "offers": offers,
-    }
-    if isinstance(default, RewardWeights):
-        return field(default_factory=lambda: default, metadata=described)
-    return field(default=default, metadata=described)
-
-
 @dataclass(frozen=True)
-class Config:
+class Config(Knobs):
     """One training run. The defaults are the `modern` preset."""
 
     # fmt: off
@@ -130,66 +94,19 @@ class Config:
     weights: RewardWeights = knob(_HASTE, "What each part of the reward pays.", "lander", live=True)  # noqa: RUF009
     # fmt: on
 
-    def __post_init__(self) -> None:
-        problems = [problem for item in fields(self) if (problem := field_problem(item, getattr(self, item.name)))]
+    def problems(self) -> list[str]:
+        """Say what is wrong with the values."""
+        problems = super().problems()
+        if not _pays(self.weights):
+            problems.append(f"weights are finite numbers, one for each part of the reward, not {self.weights!r}")
         if not problems and self.replay_prune > self.replay_size:
-            problems = [f"replay_prune is at most replay_size, {self.replay_size}, not {self.replay_prune}"]
-        if problems:
-            raise ValueError("; ".join(problems))
-
-    def to_json(self) -> dict[str, Any]:
-        """Plain values, for a file."""
-        return asdict(self)
+            problems.append(f"replay_prune is at most replay_size, {self.replay_size}, not {self.replay_prune}")
+        return problems
 
     @classmethod
-    def from_json(cls, values: Mapping[str, Any]) -> Config:
-        """Read what `to_json` wrote; unknown names and values out of range raise ValueError."""
-        known = {item.name for item in fields(cls)}
-        unknown = sorted(set(values) - known)
-        if unknown:
-            raise ValueError(f"unknown settings: {', '.join(unknown)}")
-        given = dict(values)
-        try:
-            if "hidden" in given:
-                given["hidden"] = tuple(given["hidden"])
-            if "weights" in given:
-                given["weights"] = RewardWeights(**given["weights"])
-            return cls(**given)
-        except TypeError as error:
-            raise ValueError(f"settings cannot be read: {error}") from error
-
-    def changed(self, **values: Any) -> Config:
-        """Return a copy with some fields changed, checked like any other."""
-        return replace(self, **values)
-
-
-def field_problem(item: Field[Any], value: Any) -> str | None:
-    """Say what is wrong with a field's value, if anything."""
-    described = item.metadata
-    if described["choices"] and value not in described["choices"]:
-        return f"{item.name} is one of {', '.join(described['choices'])}, not {value!r}"
-    if isinstance(value, bool) != (item.type == "bool"):
-        return f"{item.name} is {'' if item.type == 'bool' else 'not '}a yes or no, and was {value!r}"
-    if item.type == "int" and not isinstance(value, int | np.integer):
-        return f"{item.name} is a whole number, not {value!r}"
-    if item.type == "RewardWeights" and not _pays(value):
-        return f"{item.name} are finite numbers, one for each part of the reward, not {value!r}"
-    if described["low"] is not None:
-        numbers = value if isinstance(value, tuple) else (value,)
-        if not numbers or not all(
-            isinstance(n, int | float) and described["low"] <= n <= described["high"] for n in numbers
-        ):
-            return f"{item.name} lies between {described['low']:g} and {described['high']:g}, not {value!r}"
-    return None
-
-
-def nearest_preset(given: Mapping[str, Any], presets: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Name the preset with the fewest settings different, and those settings; all as `to_json` gives them."""
-    changes = {
-        name: {key: value for key, value in given.items() if value != preset[key]} for name, preset in presets.items()
-    }
-    nearest = min(changes, key=lambda name: len(changes[name]))
-    return {"preset": nearest, "changes": changes[nearest]}
+    def value_from_json(cls, name: str, value: Any) -> Any:
+        """Return the value of a field from what a file holds of it; what cannot be one raises TypeError."""
+        return RewardWeights(**value) if name == "weights" else super().value_from_json(name, value)
 
 
 def _pays(weights: Any) -> bool:

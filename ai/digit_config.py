@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
-from ai.config import field_problem, knob
 from ai.ink import SIDE
+from ai.knobs import Knobs, knob
 from ai.nn import (
     OPTIMIZERS,
     ActivationLayer,
@@ -25,7 +24,7 @@ from ai.nn.costs import COSTS
 
 
 @dataclass(frozen=True)
-class DigitConfig:
+class DigitConfig(Knobs):
     """One training run. The defaults are the `modern` preset."""
 
     # fmt: off
@@ -59,33 +58,6 @@ class DigitConfig:
                                "images", low=0.0, high=2.0, live=True)
     original: float = knob(0.1, "Share of images that are shown as they are.", "images", low=0.0, high=1.0, live=True)
     # fmt: on
-
-    def __post_init__(self) -> None:
-        problems = [said for item in fields(self) if (said := field_problem(item, getattr(self, item.name)))]
-        if problems:
-            raise ValueError("; ".join(problems))
-
-    def to_json(self) -> dict[str, Any]:
-        """Plain values, for a file."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, values: Mapping[str, Any]) -> DigitConfig:
-        """Read what `to_json` wrote; unknown names and values out of range raise ValueError."""
-        unknown = sorted(set(values) - {item.name for item in fields(cls)})
-        if unknown:
-            raise ValueError(f"unknown settings: {', '.join(unknown)}")
-        try:
-            given: dict[str, Any] = {
-                k: tuple(value) if isinstance(value, list) else value for k, value in values.items()
-            }
-            return cls(**given)
-        except TypeError as error:
-            raise ValueError(f"settings cannot be read: {error}") from error
-
-    def changed(self, **values: Any) -> DigitConfig:
-        """Return a copy with some fields changed, checked like any other."""
-        return replace(self, **values)
 
 
 DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {

@@ -10,10 +10,10 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from ai.config import nearest_preset
 from ai.digit_config import DIGIT_PRESETS, DigitConfig
 from ai.digit_training import DigitTraining, accuracy
 from ai.digits import DigitClassifier
+from ai.knobs import nearest_preset
 from ai.mnist import TEST, load_part
 from ai.nn import ModelFormatError, atomic_folder
 

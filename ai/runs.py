@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent import DeepQAgent
-from ai.config import LANDER, PRESETS, nearest_preset
+from ai.config import LANDER, PRESETS
 from ai.gym_task import gym_config
 from ai.history import History
+from ai.knobs import nearest_preset
 from ai.nn import ModelFormatError, atomic_folder
 from ai.task import TEST_SEED
 from ai.training import Progress, Training
