@@ -94,6 +94,7 @@ class Flight:
     Attributes:
         copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
         decision: the latest one of the co-pilot's; None while it does not share the stick.
+        sensed: what a network that flies alone made its latest decision on, (1, 9); None before the first.
         asked: the action that the hands asked for in the last step.
         overridden: whether something else was flown than hands on the stick asked for.
 
@@ -121,6 +122,7 @@ class Flight:
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
         self.decision: Decision | None = None
+        self.sensed: Floats | None = None
         self._hands = Hands(hands, seed, DECISION_STEPS)
         self._chosen = COAST
         self._held_for = self._yours = 0
@@ -243,7 +245,8 @@ class Flight:
     def _ask_network(self) -> int:
         if self._held_for == 0:
             assert self.network is not None
-            self._chosen = int(self.network.act(self.env.observe(), held=self.env.actions)[0])
+            self.sensed = self.env.observe()
+            self._chosen = int(self.network.act(self.sensed, held=self.env.actions)[0])
         self._held_for = (self._held_for + 1) % DECISION_STEPS
         return self._chosen
 

@@ -12,7 +12,7 @@ from ai.ground import Ground
 from ai.lander import ACTION_NAMES, NUM_ACTIONS
 from ai.pilots import COAST
 from game import hud, texts
-from game.flight import DECISION_STEPS, Flight, Hand
+from game.flight import Flight, Hand
 from game.networks import Thinker
 from game.ui.canvas import Canvas
 from game.ui.kept import Kept
@@ -62,10 +62,11 @@ class Insight:
         self._bars += _EASE * (self._wanted - self._bars)
 
     def _watch(self, flight: Flight) -> None:
-        """Ask a network that flies alone for what it thinks."""
-        if not isinstance(flight.network, Thinker) or len(flight.recording.actions) % DECISION_STEPS != 1:
+        """Ask a network that flies alone what it thinks, whenever it has decided."""
+        if not isinstance(flight.network, Thinker) or flight.sensed is None or flight.sensed is self._seen:
             return
-        self._wanted = _worth(flight.network.q_values(flight.env.observe())[0])
+        self._seen = flight.sensed
+        self._wanted = _worth(flight.network.q_values(flight.sensed)[0])
         self._feasible[:], self._threshold, self._asked = True, 0.0, None
         self._flown, self._likely = flight.recording.actions[-1], []
         self._why, self._kept = texts.INSIGHT_WHY["ALONE"], 0

@@ -1,0 +1,34 @@
+import numpy as np
+import pytest
+
+from game.cockpit.insight import Insight
+from game.flight import Flight
+
+
+class Wavers:
+    """A network that wants something else in every step that it is asked in, most of what it flies."""
+
+    def q_values(self, observation: np.ndarray) -> np.ndarray:
+        return np.sin(1e4 * observation[:, :1] * np.arange(1, 7)).astype(np.float32)
+
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
+        return self.q_values(observation).argmax(axis=1)
+
+
+@pytest.mark.parametrize("before", range(8))
+def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(before: int):
+    flight = Flight(3, Wavers(), shares=False)
+    insight = Insight(flight.env.ground)
+    for _ in range(before):
+        flight.step(3)
+        insight.follow(flight)
+    flight.hand_over()
+    seen = set()
+    for _ in range(20):
+        flight.step(0)
+        insight.follow(flight)
+        flown = flight.recording.actions[-1]
+        assert insight.shown
+        assert insight._flown == insight._wanted.argmax() == flown
+        seen.add(flown)
+    assert len(seen) > 1
