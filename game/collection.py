@@ -98,7 +98,7 @@ class Collection:
         """Return where it lies; a name must not lead out of it, whatever it is."""
         folder = self.folder / name
         if name.startswith(".") or Path(name).name != name or not folder.is_dir():
-            raise LibraryError(texts.LIBRARY_GONE.format(name=name))
+            raise LibraryError(texts.GONE.format(name=name))
         return folder
 
     def holder(self, name: str) -> str:
@@ -150,7 +150,7 @@ class Collection:
     def throw_away(self, folder: Path, name: str) -> None:
         """Put a folder aside, from where `undo_delete` can have it back by that name; very old ones are deleted."""
         trash = self.folder / TRASH
-        with told(texts.LIBRARY_NOT_DELETED, name):
+        with told(texts.NOT_DELETED, name):
             trash.mkdir(exist_ok=True)
             folder.rename(trash / f"{time.time_ns()} {name}")
         for old in self._thrown()[:-_TRASH_KEPT]:

@@ -108,7 +108,7 @@ def read(path: Path) -> Record:
             raise ValueError(texts.FLIGHT_TOO_LARGE)
         return from_text(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        raise ValueError(texts.FLIGHT_GONE.format(name=path.name)) from error
+        raise ValueError(texts.GONE.format(name=path.name)) from error
     except OSError as error:
         raise ValueError(f"{path.name}: {error.strerror or error}") from error
     except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:

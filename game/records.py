@@ -111,7 +111,7 @@ class Records:
         try:
             (self.folder / name).unlink(missing_ok=True)
         except OSError as error:
-            self.problem = texts.FLIGHT_NOT_DELETED.format(name=name, reason=error.strerror or error)
+            self.problem = texts.NOT_DELETED.format(name=name, reason=error.strerror or error)
             return False
         return True
 

@@ -137,7 +137,7 @@ class Insight:
     def _paint_words(self, canvas: Canvas, pads: list[float]) -> None:
         """Draw the panel and the words on it that seldom change."""
         canvas.panel((0, 0, PANEL.width, PANEL.height + (_PADS_HIGH if pads else 0)))
-        canvas.text(texts.INSIGHT_TITLE, (_LEFT, 34))
+        canvas.text(texts.MIND_TITLE, (_LEFT, 34))
         for action, name in enumerate(ACTION_NAMES):
             flown, good = action == self._flown, bool(self._feasible[action])
             canvas.text(name, (_LEFT, _FIRST + _ROW * action + 4), size=SMALL, colour=INK if flown else MUTE,

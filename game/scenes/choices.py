@@ -57,7 +57,7 @@ class ChoicesScene:
             self._add_help()
             self._add_starts()
             self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, texts.CHOICES_GRAVITY_HELP)
-        self._add_slider("pace", PACES, texts.CHOICES_PACE, texts.CHOICES_PACE_HELP)
+        self._add_slider("pace", PACES, texts.PACE, texts.CHOICES_PACE_HELP)
         toggles = {"check_flights": texts.CHOICES_CHECK, "teach": texts.CHOICES_TEACH, "explain": texts.CHOICES_EXPLAIN}
         if self._course:
             toggles = {"explain": texts.CHOICES_EXPLAIN}

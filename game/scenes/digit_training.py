@@ -215,7 +215,7 @@ class DigitTrainingScene:
             self._say(texts.PUPIL_NOTHING)
             return None
         suggestion = self.pupil.collection.free_name(texts.PUPIL_NAME.format(preset=self.knobs.name))
-        return Push(Naming(self, texts.PUPIL_NAMING, suggestion, self._save_as))
+        return Push(Naming(self, texts.NAMING, suggestion, self._save_as))
 
     def _save_as(self, name: str) -> str:
         problem, alive = self.pupil.save(name), self.pupil.alive

@@ -213,7 +213,7 @@ class Train:
             return None
         name = texts.TRAIN_TAUGHT_NAME if self.student.lessons else texts.TRAIN_NAME
         suggestion = self.student.library.free_name(name.format(preset=self.knobs.name))
-        return Push(Naming(self, texts.TRAIN_NAMING, suggestion, self._save_as))
+        return Push(Naming(self, texts.NAMING, suggestion, self._save_as))
 
     def _save_as(self, name: str) -> str:
         """Save under a name; returns why it can't be called so."""
@@ -295,7 +295,7 @@ class Train:
         except ValueError as error:
             self._context.note(str(error))
             return None
-        return Push(Play(rival=rival, rival_name=texts.TRAIN_RIVAL.format(seconds=checkpoint.seconds)))
+        return Push(Play(rival=rival, rival_name=texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds)))
 
     # The picture
 

@@ -178,7 +178,7 @@ def test_nothing_but_the_pace_can_be_chosen_in_a_course(open_game: Open):
     game = open_game(Play(0, course=Flown(MISSIONS["fall"])))
     game.keys(pygame.K_UP, pygame.K_c)
     labels = [widget.label for widget in game.top._form.widgets]
-    assert texts.CHOICES_PACE in labels
+    assert texts.PACE in labels
     assert texts.CHOICES_GRAVITY not in labels
 
 

@@ -125,7 +125,7 @@ def test_without_assist_nothing_of_the_co_pilot_is_seen_or_felt(open_game: Open,
     driver.frames(20)
     assert set(play(driver).flight.recording.actions) == {COAST}
     assert play(driver).flight.share == 1.0
-    assert texts.INSIGHT_TITLE not in words
+    assert texts.MIND_TITLE not in words
     assert texts.YOU_FLY in words
 
 
