@@ -44,17 +44,22 @@ class Tempo:
         self.rate = rate
         self._due = 0.0
 
+    @property
+    def now(self) -> float:
+        """Steps to an update at this moment."""
+        return self.rate
+
     def begin(self) -> None:
         """Forget what has passed of the next step."""
         self._due = 0.0
 
     def steps(self) -> int:
         """Let an update pass, and return how many steps are due in it."""
-        self._due += self.rate
+        self._due = self.now + (self._due if self.now % 1 else 0.0)  # whole steps leave nothing over
         steps = int(self._due)
         self._due -= steps
         return steps
 
     def between(self, alpha: float) -> float:
         """How far to draw from the last step but one to the last, where `alpha` of an update has passed."""
-        return min(1.0, self._due + alpha * self.rate)
+        return min(1.0, self._due + alpha * self.now)

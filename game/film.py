@@ -27,7 +27,7 @@ from game.ui.tokens import COLOUR_SAFE, PALETTE
 
 Frame = NDArray[np.uint8]  # (height, width, 3)
 
-_AFTER: Final = 90  # steps that are shown after the end: fire dies, dust settles
+_AFTER: Final = 120  # updates that are shown after the end: slow motion, fire dies, dust settles
 _LINGER: Final = 60  # steps that the last frame then stays
 _SAMPLE: Final = 40  # steps between the frames whose colours a palette is chosen from
 
@@ -73,7 +73,7 @@ def film(record: Record, path: Path, colour_safe: bool = False) -> Generator[lis
 
 
 def frames(record: Record, kind: Kind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
-    """Yield what is seen of a flight at these physics steps, which rise."""
+    """Yield what is seen of a flight at these updates of its replay, which rise; up to its end, one is one step."""
     _need_no_screen()
     settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)
     scene = Replay(record)

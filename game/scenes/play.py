@@ -127,11 +127,11 @@ class Play:
         self._cockpit.ease()
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
-        self._pace.usual = self._settings.pace
+        self._pace.rate = self._settings.pace
         if self._waits():
             self._outlook.follow(waiting=True)
             return None
-        if self._pace.due():
+        if self._pace.steps():
             self._fly()
         self._heard.follow(self._scenery.stage.thrust[0])  # between steps too, or fire would fall silent
         return None
@@ -223,8 +223,8 @@ class Play:
         self._scenery = Scenery(
             self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
         )
-        self._heard = FlightSound(self._sound, self.flight.env, slows=not self._settings.reduced_motion)
         self._pace = Pace()
+        self._heard = FlightSound(self._sound, self.flight.env, self._pace)
         self.ending = Ending(self.flight, self._pace, self._settings.reduced_motion)
         self._readouts = hud.flight_readouts(self.flight.env)
         self._outlook = Outlook(self.flight, None if check else self._guide)
@@ -294,7 +294,7 @@ class Play:
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
-        return [*words, (texts.PAUSE_CHOICES if self._course is None else texts.PAUSE_PACE, self._choose)]
+        return [*words, (texts.PAUSE_CHOICES if self._course is None else texts.PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
         """Let the player choose how the next flights are flown; a course is flown as it is, but for its pace."""

@@ -11,13 +11,14 @@ import pygame
 
 from ai.lander import Outcome
 from game import hud, texts
-from game.clock import STEP, Tempo
+from game.clock import STEP
 from game.collection import exports_dir, free_path
 from game.context import Context
 from game.controls import Command, translate
 from game.export import KINDS, Export
 from game.flight import Hand
 from game.flight_file import Record
+from game.pace import Pace
 from game.render import Clear, View
 from game.scene import Pop, Push, Transition
 from game.sounds.flight import FlightSound
@@ -53,7 +54,7 @@ class Replay:
         self._context: Context | None = None
         self._scenery: Scenery
         self.stopped = False
-        self._tempo = Tempo()
+        self._pace = Pace()
         self._warned = False
         self._export: Export | None = None
 
@@ -67,7 +68,7 @@ class Replay:
         self.tape = Tape(self.record)
         self.tape.scout(1)
         self._scenery = Scenery(self.tape.flight, context.settings.reduced_motion, _CLEAR)
-        self._heard = FlightSound(context.sound, self.tape.flight.env, warns=False)
+        self._heard = FlightSound(context.sound, self.tape.flight.env, self._pace, warns=False)
         self._build(context)
         self._look()
 
@@ -116,7 +117,7 @@ class Replay:
             self._warned = True
             self._context.note(texts.REPLAY_OTHER_RULES)
         if not self.stopped:
-            for _ in range(self._tempo.steps()):
+            for _ in range(self._pace.steps()):
                 self._fly()
             self._heard.follow(self._scenery.stage.thrust[0])
         self._scenery.breathe()
@@ -128,7 +129,7 @@ class Replay:
         """Show another moment."""
         self.tape.seek(step)
         self._scenery.wind_to()
-        self._tempo.begin()
+        self._pace.begin()
         self._look()
 
     @property
@@ -143,7 +144,10 @@ class Replay:
         flight = self.tape.flight
         was_over = flight.over
         self.tape.step()
-        self._scenery.follow(flight.over and not was_over)
+        ended = flight.over and not was_over
+        if ended and flight.outcome is Outcome.CRASHED and self._pace.rate == 1 and not self._scenery.calm:
+            self._pace.slow_down()
+        self._scenery.follow(ended)
         self._look()
 
     def _look(self) -> None:
@@ -185,7 +189,8 @@ class Replay:
         self._export_word = words[2]
 
     def _choose_speed(self, index: int) -> None:
-        self._tempo.rate = SPEEDS[index]
+        self._pace.begin()
+        self._pace.rate = SPEEDS[index]
 
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
@@ -245,7 +250,7 @@ class Replay:
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, the way there and on, and its figures."""
-        between = 1.0 if self.stopped else self._tempo.between(alpha)
+        between = 1.0 if self.stopped else self._pace.between(alpha)
         self._scenery.draw_land(canvas, between, _EARTH)
         _draw_way(canvas, self._scenery.view(canvas.scale, between), self.tape)
         self._scenery.draw_craft(canvas, between)

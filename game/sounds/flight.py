@@ -8,6 +8,7 @@ import numpy as np
 
 from ai.env import Doubles
 from ai.lander import LanderEnv, Outcome
+from game.pace import Pace
 from game.sound import Sound
 from game.sounds.instruments import RUNGS, altitude_key
 
@@ -34,13 +35,13 @@ class FlightSound:
     Args:
         sound: what plays.
         env: the landers.
+        pace: that of what is seen: a crash in slow motion is heard so.
         warns: whether it warns of what would be a crash.
-        slows: whether a crash is seen in slow motion, and heard so.
 
     """
 
-    def __init__(self, sound: Sound, env: LanderEnv, *, warns: bool = True, slows: bool = False) -> None:
-        self._sound, self._env, self._warns, self._slows = sound, env, warns, slows
+    def __init__(self, sound: Sound, env: LanderEnv, pace: Pace | None = None, *, warns: bool = True) -> None:
+        self._sound, self._env, self._pace, self._warns = sound, env, pace or Pace(), warns
         self._slot = -1
         self._time = 0.0
         self._outcome = Outcome.FLYING
@@ -57,7 +58,7 @@ class FlightSound:
         self._touch()
         outcome = Outcome(int(env.outcome[slot]))
         if outcome is not self._outcome and outcome in _ENDS:
-            self._sound.play("slow_crash" if self._slows and outcome is Outcome.CRASHED else _ENDS[outcome])
+            self._sound.play("slow_crash" if self._pace.slow and outcome is Outcome.CRASHED else _ENDS[outcome])
         self._outcome = outcome
         if outcome is Outcome.FLYING:
             self._sound_height()

@@ -116,6 +116,21 @@ def test_slow_motion_can_be_cut_short_and_loses_no_key(game: Driver):
     assert not scene(game)._pace.slow
 
 
+@pytest.mark.parametrize("reduced", [False, True])
+def test_a_crash_is_heard_as_it_is_seen_also_if_motion_was_reduced_on_the_way(game: Driver, reduced: bool, monkeypatch):
+    heard: list[str] = []
+    monkeypatch.setattr(game.app.context.sound, "play", lambda key, *_: heard.append(key))
+    game.app.context.settings.reduced_motion = not reduced
+    game.key(pygame.K_r)
+    game.key(pygame.K_UP)
+    game.key(pygame.K_ESCAPE)
+    game.app.context.settings.reduced_motion = reduced
+    game.key(pygame.K_ESCAPE)
+    crash(game)
+    assert scene(game)._pace.slow is not reduced
+    assert [key for key in heard if "crash" in key] == ["crash" if reduced else "slow_crash"]
+
+
 def test_the_reason_of_a_crash_is_told_on_the_spot_before_the_card(game: Driver, written: list[str]):
     crash(game)
     written.clear()

@@ -5,7 +5,7 @@ from game.pace import Pace
 
 def test_at_its_own_pace_every_update_is_a_step():
     pace = Pace()
-    assert all(pace.due() for _ in range(100))
+    assert all(pace.steps() == 1 for _ in range(100))
     assert pace.between(0.4) == 0.4
 
 
@@ -14,11 +14,11 @@ def test_slow_motion_takes_about_a_second_for_a_third_of_the_steps_and_then_is_o
     pace.slow_down()
     steps = updates = 0
     while pace.slow:
-        steps += pace.due()
+        steps += pace.steps()
         updates += 1
     assert 45 <= updates <= 75
     assert 0.3 < steps / updates < 0.65
-    assert all(pace.due() for _ in range(50))
+    assert all(pace.steps() == 1 for _ in range(50))
 
 
 def test_a_picture_never_runs_backward():
@@ -27,7 +27,7 @@ def test_a_picture_never_runs_backward():
     pace.slow_down()
     steps, last = 1, 0.0  # it begins with a step, that of the crash
     for update in range(120):
-        steps += pace.due() if update else 0
+        steps += pace.steps() if update else 0
         for alpha in (0.0, 0.5, 0.99):
             moment = steps - 1 + pace.between(alpha)
             assert moment >= last - 1e-9
@@ -39,15 +39,15 @@ def test_slow_motion_can_be_cut_short():
     pace = Pace()
     pace.slow_down()
     for _ in range(5):
-        pace.due()
+        pace.steps()
     pace.hurry()
     assert not pace.slow
-    assert all(pace.due() for _ in range(9))
+    assert all(pace.steps() == 1 for _ in range(9))
 
 
 def test_the_players_own_pace_holds_for_as_long_as_it_is_wished():
     pace = Pace(0.5)
-    assert sum(pace.due() for _ in range(200)) == 100
-    pace.usual = 1.0
-    assert all(pace.due() for _ in range(10))
+    assert sum(pace.steps() for _ in range(200)) == 100
+    pace.rate = 1.0
+    assert all(pace.steps() == 1 for _ in range(10))
     assert pace.between(0.4) == 0.4

@@ -15,7 +15,7 @@ from game.scenes.logbook import Logbook
 from game.scenes.replay import Replay
 from game.tape import Rerun, Tape
 from tests.game.driver import Driver
-from tests.game.flights import NOON, kept, scripted
+from tests.game.flights import NOON, fly_out, kept, scripted
 
 Open = Callable[..., Driver]
 
@@ -163,6 +163,22 @@ def test_at_the_end_it_stays_and_space_begins_anew(replay: Driver):
     replay.key(pygame.K_SPACE)
     replay.frames(3)
     assert 0 < scene(replay).tape.at < 10
+
+
+@pytest.mark.parametrize(("reduced", "faster", "slow"), [(False, 0, True), (False, 1, False), (True, 0, False)])
+def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, reduced: bool, faster: int, slow: bool):
+    context.settings_file.save(replace(context.settings, reduced_motion=reduced))
+    driver = open_game(Replay(kept(context, fly_out(Flight(5)))))
+    driver.frames(2)
+    driver.keys(*[pygame.K_PLUS] * faster)
+    driver.wait(lambda: scene(driver).ended)
+    assert scene(driver).tape.flight.outcome is Outcome.CRASHED
+    assert scene(driver)._pace.slow is slow
+    driver.keys(pygame.K_HOME)
+    assert not scene(driver)._pace.slow
+    before = scene(driver).tape.at
+    driver.frames(10)
+    assert scene(driver).tape.at == before + 10 * (1 + faster)
 
 
 def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
