@@ -104,7 +104,7 @@ class FlightSound:
         descent = -float(env.velocity[slot, 1])
         if descent <= env.limits.touch_speed:
             return False
-        braking = env.params.main_thrust / env.params.mass - env.params.gravity
+        braking = env.params.main_thrust / env.params.mass - env.gravity
         left = float(env.altitude[slot]) - (0.0 if env.actions[slot] >= 3 else _REACTION * descent)
         return descent**2 - env.limits.touch_speed**2 > 2 * max(left, 0.0) * _HARD_BRAKING * braking
 

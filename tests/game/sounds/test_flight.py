@@ -94,8 +94,18 @@ def test_who_brakes_in_time_is_not_warned():
     assert [key for key in heard.sound.heard() if key.startswith("too")] == ["too_fast"]
 
 
+@pytest.mark.parametrize(("height", "share", "warned"), [
+    (3.8, 0.6, False), (3.8, 1.0, True), (4.5, 1.0, False), (4.5, 1.4, True),
+])  # fmt: skip
+def test_warnings_know_the_gravity_of_the_flight(height: float, share: float, warned: bool):
+    heard = over_the_pad(height, fall=3.8)
+    heard.flight.set_gravity(share)
+    heard.step()
+    assert ("too_fast" in heard.sound.heard()) is warned
+
+
 def test_two_warnings_take_turns():
-    heard = over_the_pad(4.5, fall=4.0, angle=0.8)
+    heard = over_the_pad(4.5, fall=5.0, angle=0.8)
     heard.flight.env.world.gravity[:] = 0
     heard.step(number=45)
     assert [key for key in heard.sound.heard() if key.startswith("too")] == ["too_fast", "too_tilted"]
