@@ -60,6 +60,7 @@ class App:
         self._clock = pygame.time.Clock()
         self._steps = FixedStep()
         self._notes = Notes()
+        self._mouse: tuple[tuple[int, int], ...] = ()  # where it was last, in the window and on the desktop
         self._settled = 0.0  # when the window will have kept its size long enough to be worth a picture
         self.window = GameWindow(context.settings.full_screen)
         self.canvas = Canvas(self.window.surface)
@@ -152,6 +153,8 @@ class App:
     # Events
 
     def _handle(self, event: pygame.event.Event) -> None:
+        if event.type == pygame.MOUSEMOTION and not self._moved(event):
+            return
         self._follow(event)
         self.context.sound.handle_event(event)
         match event.type:
@@ -178,6 +181,12 @@ class App:
                 self._save_screenshot()
             case _:
                 self._guarded(lambda: self.scenes.handle_event(event))
+
+    def _moved(self, event: pygame.event.Event) -> bool:
+        """Tell whether it was the mouse that moved, and not the window below it."""
+        (x, y), (left, top) = event.pos, self.window.position
+        before, self._mouse = self._mouse, ((x, y), (x + left, y + top))
+        return all(now != then for now, then in zip(self._mouse, before, strict=False))
 
     def _follow(self, event: pygame.event.Event) -> None:
         controls = self.context.controls

@@ -61,6 +61,11 @@ class GameWindow:
         self._window.size = size
 
     @property
+    def position(self) -> tuple[int, int]:
+        """Where on the desktop the window's top left corner is, in pixels."""
+        return self._window.position
+
+    @property
     def full_screen(self) -> bool:
         """Whether the window covers the whole desktop; can be set."""
         return self._full_screen

@@ -136,6 +136,22 @@ def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
     assert game.top_name == "Menu"
 
 
+def test_a_mouse_at_rest_takes_nothing_from_the_keyboard(open_game, monkeypatch: pytest.MonkeyPatch):
+    game = open_game(SettingsScene())
+    controls, at = game.app.context.controls, (600, 300)
+    game.move(at)
+    assert controls.mouse_in_use
+    game.key(pygame.K_DOWN)
+    game.move(at)  # as the system says when the window below it changes
+    assert not controls.mouse_in_use
+    left, top = game.app.window.position
+    monkeypatch.setattr(type(game.app.window), "position", property(lambda _: (left - 160, top - 90)))
+    game.move((760, 390))  # it is the window that went up and left
+    assert not controls.mouse_in_use
+    game.move((770, 390))
+    assert controls.mouse_in_use
+
+
 def test_sixty_updates_a_second_and_no_spiral(open_game, context: Context):
     probe = Probe()
     app = App(
