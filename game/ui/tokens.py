@@ -49,7 +49,7 @@ class Palette:
     warn: Colour
 
 
-PALETTE: Final = Palette(good=(126, 217, 174), warn=(255, 138, 108))
+PALETTE: Final = Palette(good=(124, 220, 178), warn=(255, 124, 86))
 # Bluish green and vermillion, as Okabe and Ito chose them, lifted to the lightness of the colours above:
-# the two stay twice as far apart for eyes without the red or the green cones.
+# the two stay half as far apart again for eyes without the red or the green cones.
 COLOUR_SAFE: Final = Palette(good=(86, 220, 196), warn=(255, 134, 70))
