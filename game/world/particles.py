@@ -41,6 +41,7 @@ _SHARDS: Final[tuple[Colour, ...]] = ((214, 158, 74), (190, 198, 214), (92, 98, 
 # By kind:
 _GROWTH: Final = np.array([0.34, 0.0, 0.0, 0.0, 0.30, 0.30])  # metres a second
 _WEIGHT: Final = np.array([0.35, 1.0, 1.0, 1.0, 0.0, 0.0])  # share of gravity that pulls
+_SAIL: Final = np.array([0.7, 0.3, 0.0, 0.3, 3.0, 3.0])  # share of the wind's speed that is taken on in a second
 _BOUNCE: Final = np.array([0.0, 0.1, 0.42, 0.45, 0.0, 0.0])
 _GRIP: Final = np.array([0.9, 0.5, 0.7, 0.75, 1.0, 1.0])  # share of the way along the ground that goes on
 _SPREAD: Final = np.array([1.0, 1.0, 1.0, 3.0, 3.0, 3.0])  # radius of the sprite, in radii of the particle
@@ -51,13 +52,15 @@ _MOST: Final = 64
 class Particles:
     """A fixed number of slots; the oldest are taken over when all are in use.
 
-    The ground, `gravity` in m/s² and the colour of its dust are those of the flight; gravity may change.
+    The ground, `gravity` in m/s² and the colour of its dust are those of the flight; gravity may change, and so may
+    `wind`, the speed of the air to the right in m/s.
     """
 
     def __init__(
         self, rng: np.random.Generator, relief: Relief, gravity: float, dust: Colour = DUST, slots: int = 640
     ) -> None:
         self._rng, self._relief, self.gravity, self._dust = rng, relief, gravity, dust
+        self.wind = 0.0
         self._position = np.zeros((slots, 2))
         self._before = np.zeros((slots, 2))
         self._velocity = np.zeros((slots, 2))
@@ -85,6 +88,7 @@ class Particles:
             return
         kind = self._kind[live]
         before, velocity = self._position[live], self._velocity[live]
+        velocity[:, 0] += _SAIL[kind] * self.wind * STEP
         velocity[:, 1] -= _WEIGHT[kind] * self.gravity * STEP
         position = before + velocity * STEP
         self._bounce(position, velocity, kind)

@@ -17,7 +17,6 @@ from game.world.looks import LOOKS, look_of
 from game.world.moments import Moments
 from game.world.particles import DUST
 from game.world.stage import Stage
-from game.world.wind import Wind
 
 
 class Scenery:
@@ -39,7 +38,8 @@ class Scenery:
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
         self._moments = Moments(flight.env, reduced_motion)
         self._time = 0.0
-        self._set_up()
+        self._camera = Camera()
+        self.cut()
 
     @property
     def calm(self) -> bool:
@@ -50,14 +50,8 @@ class Scenery:
     def calm(self, calm: bool) -> None:
         if calm != self._calm:
             self._calm = self.stage.calm = self._moments.calm = calm
-            self._set_up()
-
-    def _set_up(self) -> None:
-        """Begin with what moves only where motion is not reduced: the camera, and the dust in a wind."""
-        blows = self._flight.env.conditions.pushes and not self._calm
-        self._wind = Wind(self._flight.env, LOOKS[self._look].on_dust(DUST)) if blows else None
-        self._camera = Camera()
-        self.cut()
+            self._camera = Camera()
+            self.cut()
 
     @property
     def across(self) -> float:
@@ -75,8 +69,6 @@ class Scenery:
         flight = self._flight
         self.stage.forget()
         self._moments.forget()
-        if self._wind:
-            self._wind.forget()
         action = 0 if flight.over else int(flight.env.fired[0])
         self.stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
         self.stage.blue[:] = flight.flown_by is Hand.NETWORK
@@ -94,8 +86,6 @@ class Scenery:
         self._moments.follow()
         if self._calm:
             return
-        if self._wind:
-            self._wind.follow()
         self._camera.shake(self.stage.jolt)
         if shot is None:
             framing.follow(self._camera, flight.env, clear=self.clear)
@@ -117,8 +107,8 @@ class Scenery:
         moon.draw(canvas, self._camera, self._time, alpha, earth)
         view = self.view(canvas.scale, alpha)
         draw_ground(canvas, view, env.ground, self._time, float(env.pad_shift[0]))
-        if self._wind:
-            self._wind.draw(canvas.surface, view, alpha)
+        if env.conditions.pushes and not self._calm:
+            self.stage.wind.draw(canvas.surface, view, alpha)
 
     def draw_craft(self, canvas: Canvas, alpha: float, reason: bool = True) -> None:
         """Draw the craft with all that it raises; `reason` is whether that of a crash is told on the spot."""

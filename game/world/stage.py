@@ -20,6 +20,7 @@ from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_pla
 from game.world.paint import light, mix
 from game.world.particles import DUST, Particles
 from game.world.relief import Relief
+from game.world.wind import Wind
 from game.world.wreck import Wreck
 
 _IGNITE: Final = 0.34  # share of the way to full thrust, and to none, in a step
@@ -38,6 +39,7 @@ class Stage:
     Attributes:
         calm: whether motion is reduced.
         jolt: how hard the last step shook what is near, in points.
+        wind: the flight's, which carries what flies about.
 
     """
 
@@ -53,7 +55,7 @@ class Stage:
         self._rng = rng
         self.calm, self._light = reduced_motion, light
         self._relief = Relief(env)
-        self.particles = Particles(rng, self._relief, env.gravity, dust)
+        self.particles, self.wind = Particles(rng, self._relief, env.gravity, dust), Wind(env, dust)
         count = env.num_envs
         self.thrust = np.zeros((count, 3))  # main engine, left-hand jet, right-hand jet
         self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between in passing
@@ -81,13 +83,15 @@ class Stage:
             self.particles.burst(env.position[slot], env.velocity[slot], 1.0 if env.num_envs == 1 else 0.2)
         if env.num_envs == 1:
             self._follow_one(bool(ended[0]))
-        self.particles.gravity = env.gravity
+        self.wind.follow()
+        self.particles.gravity, self.particles.wind = env.gravity, self.wind.speed
         self.particles.update()
 
     def forget(self) -> None:
         """Take away what the last steps have left: another moment is shown."""
         self.flash[:] = 0
         self.particles.clear()
+        self.wind.forget()
         self._wreck = None
         self._down, self._fall = self._env.contacts[0].copy(), 0.0
 

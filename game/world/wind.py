@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.env import Doubles
 from ai.lander import LanderEnv, Outcome
 from game.clock import STEP
 from game.render import View
@@ -15,7 +16,7 @@ from game.ui.tokens import Colour
 
 _COUNT: Final = 90
 _WIDTH, _LOW, _HIGH = 64.0, 1.3, 24.0  # metres: how wide and between which heights it blows
-_CARRY: Final = 16.0  # m/s of the nearest dust for every m/s² that the wind pushes
+_CARRY: Final = 16.0  # m/s of the air for every m/s² that it pushes a craft
 _TRAIL: Final = 0.2  # seconds of its way that a grain seems to stretch over
 _STEPS: Final = 4  # points by which trails differ in length, so that few are ever made
 
@@ -39,13 +40,19 @@ class Wind:
         flying = self._env.outcome[0] == Outcome.FLYING
         self._time = float(self._env.time[0]) if flying else self._time + STEP
 
+    @property
+    def speed(self) -> float:
+        """How fast the air goes to the right, in m/s; the nearest dust goes with it."""
+        return self._of_air(self._env.conditions.push(np.array([self._time])))
+
+    def _of_air(self, given: Doubles) -> float:
+        """Turn a push of the wind (1,) in N, or what it has given in N s, into the speed or the way of the air."""
+        return _CARRY / self._env.params.mass * float(given[0])
+
     def draw(self, surface: pygame.Surface, view: View, alpha: float) -> None:
         """Draw it, `alpha` of the way from the last step to this one."""
-        conditions, mass = self._env.conditions, self._env.params.mass
-        time = np.array([self._time + (alpha - 1) * STEP])
-        gone, speed = (
-            _CARRY / mass * float(value[0]) * self._near for value in (conditions.impulse(time), conditions.push(time))
-        )
+        conditions, time = self._env.conditions, np.array([self._time + (alpha - 1) * STEP])
+        gone, speed = (self._near * self._of_air(given) for given in (conditions.impulse(time), conditions.push(time)))
         place = self._start.copy()
         place[:, 0] = (place[:, 0] + gone) % _WIDTH - _WIDTH / 2
         length = np.abs(speed) * _TRAIL * view.pixels_per_metre / view.scale

@@ -71,6 +71,26 @@ def test_what_flies_about_falls_as_on_that_world(mission: str):
     assert stage.particles._velocity[0, 1] == pytest.approx(-env.params.gravity)
 
 
+def test_the_wind_carries_what_is_light_and_no_faster_than_it_goes():
+    env, calm = MISSIONS["wind"].begin(), LanderEnv(1, 0, frame_skip=1)
+    calm.reset()
+    sideways = []
+    for each in (env, calm):
+        stage = Stage(each, np.random.default_rng(0))
+        stage.thrust[0, 0] = 1.0
+        speeds = []
+        for _ in range(60):
+            each.step(np.array([3]))
+            stage.follow(np.zeros(1, bool), np.zeros(1, bool))
+            assert stage.particles.wind == stage.wind.speed
+            gas = stage.particles.alive & (stage.particles._kind == Kind.AMBER)
+            speeds += (stage.particles._velocity[gas, 0] - each.velocity[0, 0]).tolist()
+        sideways.append(np.mean(speeds))
+    blowing = [MISSIONS["wind"].conditions.push(np.arange(60) / 60).max() * 16]
+    assert stage.wind.speed == 0
+    assert 1.0 < sideways[0] - sideways[1] < blowing[0]
+
+
 def test_a_jet_raises_more_dust_the_nearer_and_the_stronger_it_is():
     raised = []
     for height, action in ((7.5, 3), (5.0, 3), (2.7, 3), (2.7, 0)):
