@@ -305,6 +305,8 @@ LIBRARY_NOT_KEPT: Final = "{name} could not be kept: {reason}"
 # Charts, the reward strip and the drawing of the network
 CHART_SECONDS: Final = "{:.0f} s"
 CHART_EMPTY: Final = "nothing to show yet"
+NET_EMPTY: Final = "Units that light up, and weights that grow: once it learns."
+STRIP_EMPTY: Final = "Each flight's earnings, part by part: once one has ended."
 NET_ALL: Final = "{total} units"
 NET_SOME: Final = "{shown} of {total}"
 NET_UNIT: Final = "layer {layer}, unit {unit}"
@@ -549,6 +551,15 @@ TRAIN_CHARTS: Final = {
     "mean_q": "MEAN Q",
     "epsilon": "EXPLORATION ε",
     "stage": "STAGE",
+}
+# What each will show, while it is empty
+TRAIN_CHARTS_SHOW: Final = {
+    "success": "of its last hundred flights",
+    "mean_return": "what a flight earns it, on average",
+    "loss": "how far off it is",
+    "mean_q": "what it hopes to earn",
+    "epsilon": "moves at random",
+    "stage": "how high it starts",
 }
 TRAIN_THIS: Final = "this run"
 TRAIN_RUN: Final = "run {number}"

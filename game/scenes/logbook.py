@@ -126,7 +126,7 @@ class Logbook:
     def _plot(self) -> None:
         own = skill(self._entries)
         fuel = [entry.fuel if entry.landed else np.nan for entry in self._entries if entry.alone]
-        number, span = np.arange(1, len(own) + 1), (1.0, float(max(2, len(own))))
+        number, span = np.arange(1, len(own) + 1), (1.0, float(len(own)))
         share = Series(number, 100 * np.array(own), texts.LOGBOOK_YOU, HUMAN, smooth=False)
         landings = Series(number, np.array(fuel, float), texts.LOGBOOK_YOU, HUMAN)
         for chart, series in zip(self._charts.charts, (share, landings), strict=True):

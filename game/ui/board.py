@@ -42,7 +42,8 @@ class Board:
 
     def __init__(self) -> None:
         self.charts = Charts([
-            Chart(box, texts.TRAIN_CHARTS[name], limits=limits, read=partial(_written, form), log=name == "loss")
+            Chart(box, texts.TRAIN_CHARTS[name], limits=limits, read=partial(_written, form), log=name == "loss",
+                  empty=texts.TRAIN_CHARTS_SHOW[name])
             for name, box, limits, form in _CHARTS
         ])  # fmt: skip
         self._turn = 0

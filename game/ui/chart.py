@@ -15,7 +15,7 @@ import pygame
 
 from game import texts
 from game.ui import plotting
-from game.ui.canvas import Canvas, Point
+from game.ui.canvas import Align, Canvas, Point
 from game.ui.curves import Axes, paint_run, trace_run
 from game.ui.plotting import Limits, Numbers
 from game.ui.series import RUN_STYLES, Run, Series, Tick, draw_legend
@@ -44,7 +44,7 @@ class Chart:
 
     `read` writes a value, `read_x` a place on the x axis. `limits` fixes the vertical axis; otherwise it
     follows the numbers, and a few that have exploded are cut off and marked by an arrow. On a `log` axis, what is
-    not positive makes a gap.
+    not positive makes a gap. `empty` is said while there is nothing to show.
     """
 
     def __init__(
@@ -56,9 +56,10 @@ class Chart:
         read: Callable[[float], str] = plotting.compact,
         read_x: Callable[[float], str] = texts.CHART_SECONDS.format,
         log: bool = False,
+        empty: str = texts.CHART_EMPTY,
     ) -> None:
         self.box = pygame.FRect(box)
-        self.label, self.read_x = label, read_x
+        self.label, self.read_x, self._empty = label, read_x, empty
         self._value: Callable[[float], float] = (lambda height: 10.0**height) if log else float
         self._make_grid = plotting.decades if log else plotting.grid
         self._log, self._read = log, read
@@ -67,6 +68,7 @@ class Chart:
         self._runs: list[Run] = []
         self._ticks: tuple[Tick, ...] = ()
         self._x_range: Limits = (0.0, 1.0)
+        self._told: tuple[float, ...] = ()  # the ends of the x axis: both, or one if it is a single place
         self._lines = self._make_grid(*(limits or (0.0, 1.0)))
         self._shown = self._goal
         self._traces: list[Numbers] = []
@@ -112,6 +114,7 @@ class Chart:
             return
         first = not any(run.last() is not None for run in self._runs)
         self._runs, self._x_range, self._ticks = runs, span, tuple(ticks)
+        self._told = tuple(dict.fromkeys((start, max(start, end))))
         self._set_limits()
         if first:
             self._shown = self._goal
@@ -198,15 +201,15 @@ class Chart:
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)
         self._paint_header(sheet, box)
-        self._paint_grid(sheet, plot)
         area = sheet.rect(*plot)
         axes = Axes(self._x_range, self._shown, self._goal)
         self._traces = [trace_run(run, axes, area.width) for run in self._runs]
+        if any(np.isfinite(values).any() for values in self._traces):
+            self._paint_grid(sheet, plot)
+        else:
+            self._paint_empty(sheet, plot)
         for run, values in reversed(list(zip(self._runs, self._traces, strict=True))):
             paint_run(sheet, area, run, values, axes)
-        if not any(np.isfinite(values).any() for values in self._traces):
-            middle = (plot.centerx, plot.bottom - 9)  # above the axis, where no line runs
-            sheet.text(texts.CHART_EMPTY, middle, size=SMALL, colour=_AXES, align="centre")
         self._paint_ticks(sheet, plot)
         return sheet
 
@@ -217,6 +220,11 @@ class Chart:
         taken = sheet.text(figure, right, size=TEXT, colour=colour, align="right", tabular=True)
         room = taken.left - _APART - box.x
         sheet.text(self.label, (box.x, box.y + 12), size=LABEL, colour=MUTE, weight="medium", room=room)
+
+    def _paint_empty(self, sheet: Canvas, plot: pygame.FRect) -> None:
+        for y in (plot.top, plot.bottom):
+            sheet.line((plot.x, y), (plot.right, y), LINE)
+        sheet.text(self._empty, (plot.x, plot.bottom - 9), size=SMALL, colour=_AXES, room=plot.width)
 
     def _paint_grid(self, sheet: Canvas, plot: pygame.FRect) -> None:
         low, high = self._shown
@@ -229,10 +237,10 @@ class Chart:
                 if number in (0, len(lines) - 1):
                     text = plotting.round_number(self._value(float(value)))
                     sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES, tabular=True)
-        start, end = (self.read_x(x) for x in self._x_range)
-        y = plot.bottom + 15
-        sheet.text(start, (plot.x, y), size=_AXES_SIZE, colour=_AXES, tabular=True)
-        sheet.text(end, (plot.right, y), size=_AXES_SIZE, colour=_AXES, tabular=True, align="right")
+        ends: tuple[tuple[float, Align], ...] = ((plot.x, "left"), (plot.right, "right"))
+        for (x, align), told in zip(ends, self._told, strict=False):
+            place = (x, plot.bottom + 15)
+            sheet.text(self.read_x(told), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align)
 
     def _paint_ticks(self, sheet: Canvas, plot: pygame.FRect) -> None:
         start, end = self._x_range

@@ -238,7 +238,7 @@ class NetView:
         centres = [[self._on_sheet(centre) for centre in column] for column in self._centres]
         if not plan or not centres:
             middle = (_MARGIN + self.box.width / 2, _MARGIN + self.box.height / 2)
-            signs.text(texts.CHART_EMPTY, middle, size=SMALL, colour=MUTE, align="centre")
+            signs.text(texts.NET_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
             return light, signs
         yield
         drawn = 0.0

@@ -146,7 +146,7 @@ class Strip:
         self._paint_header(sheet, hovered)
         if not self._values.any():
             middle = (left + self.box.width / 2, top + 14)
-            sheet.text(texts.CHART_EMPTY, middle, size=SMALL, colour=MUTE, align="centre")
+            sheet.text(texts.STRIP_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
             return
         sheet.line((left, top + _BAR_HEIGHT / 2), (right, top + _BAR_HEIGHT / 2), LINE)
         for piece in pieces:

@@ -451,6 +451,21 @@ def test_an_empty_chart_has_no_x_but_its_axis(canvas: Canvas) -> None:
     Charts([]).draw(canvas)
 
 
+def test_a_chart_writes_no_number_that_is_not_there(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    write = Canvas.text
+    monkeypatch.setattr(Canvas, "text", lambda *args, **more: written.append(args[1]) or write(*args, **more))
+    chart = Chart(BOX, "SKILL", limits=(0.0, 100.0), read_x="flight {:.0f}".format, empty="of your last ten")
+    chart.draw(canvas)
+    assert written == ["–", "SKILL", "of your last ten"]
+    for flights, ends in ((1, ["flight 1"]), (2, ["flight 1", "flight 2"])):
+        written.clear()
+        chart.set([Series(range(1, flights + 1), [50.0] * flights, "you")], (1.0, float(flights)))
+        chart.renew()
+        chart.draw(canvas)
+        assert [each for each in written if each.startswith("flight")] == ends
+
+
 @pytest.mark.parametrize(
     ("value", "text"),
     [
