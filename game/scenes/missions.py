@@ -151,9 +151,11 @@ class Missions:
         title = f"{icon(name)}   {(_TOLD.get(name) or texts.MISSIONS[name])[0]}"
         if name == FIRST.name:
             return title, "", ""
+        if best is None:
+            return title, "–", ""
         if name == _DAILY:
-            return title, "", f"{best.score}" if best else "–"
-        return title, texts.MEDALS[best.medal] if best else "–", f"{best.fuel:.1f} s" if best else ""
+            return title, "", texts.SCORE.format(points=best.score)
+        return title, texts.MEDALS[best.medal], f"{best.fuel:.1f} s"
 
     # The picture
 

@@ -116,7 +116,7 @@ class SettingsScene:
             canvas.marker("triangle", (title.right + 18, _SOUND - 16), 9, canvas.palette.warn)
             canvas.text(texts.SOUND_PROBLEM, (title.right + 30, _SOUND - 12), size=SMALL, colour=canvas.palette.warn)
         below = _SOUND + len(GROUPS) * _SOUND_ROW + 12
-        canvas.text(texts.SOUND_ALTITUDE, (MARGIN, below), size=SMALL, colour=MUTE, room=_WIDTH)
+        canvas.text(texts.SOUND_ALTITUDE, (MARGIN, below), size=SMALL, colour=MUTE)
 
     def _draw_swatches(self, canvas: Canvas, middle: float) -> None:
         left = MARGIN + _WIDTH + 40
