@@ -12,7 +12,7 @@ Stroke = npt.ArrayLike  # (n, 2): x to the right, y down, in pixels from the can
 Canvas = npt.NDArray[np.float32]
 Points = npt.NDArray[np.float64]
 _SMALL: Final = 8.0  # pixels beyond the pen's width that a piece may take and count as short
-_CELLS: Final = 2**16  # pixels that are worked upon at a time: they stay in a core's cache
+_CELLS: Final = 2**14  # pixels that are worked upon at a time: they stay in a core's cache
 
 
 def as_points(strokes: Sequence[Stroke]) -> list[Points]:
@@ -39,8 +39,9 @@ def spaced(points: Points, spacing: float) -> Points:
 def draw_strokes(strokes: Sequence[Stroke], shape: tuple[int, int], width: float) -> Canvas:
     """Return a canvas of shape (height, width), 0 to 1, drawn upon with a round pen `width` pixels wide."""
     canvas = np.zeros(shape, np.float32)
-    for points in as_points(strokes):
-        starts, ends = (points[:-1], points[1:]) if len(points) > 1 else (points, points)
+    if lines := as_points(strokes):
+        starts = np.concatenate([points[: max(1, len(points) - 1)] for points in lines])
+        ends = np.concatenate([points[min(1, len(points) - 1) :] for points in lines])
         draw_segments(canvas, starts, ends, np.full(len(starts), width))
     return canvas
 
@@ -94,9 +95,14 @@ def _draw_long(canvas: Canvas, start: Points, end: Points, width: float) -> None
 
 def _cover(across: Any, down: Any, dx: Any, dy: Any, width: Any) -> Any:
     """Return how much of pixels at a place from a piece's start is covered; (dx, dy) leads to its end."""
-    along = np.clip((across * dx + down * dy) / np.maximum(dx * dx + dy * dy, 1e-12), 0.0, 1.0)
-    distance = np.sqrt(np.square(across - along * dx) + np.square(down - along * dy))
-    return np.clip(width / 2 + 0.5 - distance, 0.0, np.minimum(1.0, width))
+    square = np.maximum(dx * dx + dy * dy, 1e-12)
+    along = across * (dx / square) + down * (dy / square)
+    np.clip(along, 0.0, 1.0, out=along)
+    distance = np.square(across - along * dx)
+    distance += np.square(down - along * dy)
+    np.sqrt(distance, out=distance)
+    np.subtract(width / 2 + 0.5, distance, out=distance)
+    return np.clip(distance, 0.0, np.minimum(1.0, width), out=distance)
 
 
 def _clipped(low: float, high: float, size: int) -> tuple[int, int]:

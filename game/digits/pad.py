@@ -47,8 +47,8 @@ class DrawingPad:
 
     @property
     def strokes(self) -> list[npt.NDArray[np.float64]]:
-        """The strokes, each as (n, 2) points from the pad's upper left corner, y down."""
-        return [np.array(stroke.path) for stroke in self._strokes]
+        """The strokes, each as (n, 2) points from the pad's upper left corner, y down. They are kept; do not write."""
+        return [stroke.points for stroke in self._strokes]
 
     @property
     def ink(self) -> Ink:

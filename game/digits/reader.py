@@ -122,11 +122,8 @@ class Reader:
             return str(error) or type(error).__name__
         return ""
 
-    def read(
-        self, strokes: Sequence[Stroke], ink: npt.ArrayLike, switches: Switches, names: Iterable[str] | None = None
-    ) -> Reading:
-        """Let networks read a drawing, all of them if none are named."""
-        seen = switches.prepare(strokes, ink)
+    def read(self, seen: Stages, names: Iterable[str] | None = None) -> Reading:
+        """Let networks read a drawing that was prepared, all of them if none are named."""
         wanted = self.classifiers if names is None else names
         return Reading(seen, {name: self.classifiers[name].predict(seen.centred)[0] for name in wanted})
 

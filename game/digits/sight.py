@@ -157,7 +157,8 @@ def _fitted(image: Image, side: int) -> pygame.Surface:
     if coarse > 1:
         rows, columns = (max(1, length // coarse) for length in image.shape)
         part = np.pad(image, [(0, max(0, coarse - length)) for length in image.shape])
-        image = part[: rows * coarse, : columns * coarse].reshape(rows, coarse, columns, coarse).mean(axis=(1, 3))
+        part = part[: rows * coarse, : columns * coarse].reshape(rows, coarse, -1).mean(axis=1)
+        image = part.reshape(rows, columns, coarse) @ np.full(coarse, 1 / coarse, np.float32)
     height, width = image.shape
     scale = side / max(height, width)
     size = (max(1, round(width * scale)), max(1, round(height * scale)))

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import Final
 
+import numpy as np
+import numpy.typing as npt
+
 PEN_WIDTH: Final = 28.0  # points, of a pen that moves at a middling speed
 _SLOW, _FAST = 1.12, 0.72  # times that width
 _FASTEST: Final = 40.0  # points from one event to the next
@@ -31,12 +34,21 @@ class Stroke:
         self.path: list[Point] = [start]
         self.widths = [PEN_WIDTH * self._pressure]
         self.settled = 0
+        self._points: npt.NDArray[np.float64] | None = None
+
+    @property
+    def points(self) -> npt.NDArray[np.float64]:
+        """The path as an array (n, 2). It is kept; do not write."""
+        if self._points is None:
+            self._points = np.array(self.path)
+        return self._points
 
     def add(self, point: Point) -> bool:
         """Go on to a point: straight for now, and bent as soon as the next one is known; false if it is there."""
         last = self._added[-1]
         if point == last:
             return False
+        self._points = None
         if len(self._added) > 1:
             del self.path[self.settled + 1 :], self.widths[self.settled + 1 :]
             before = self._added[-3] if len(self._added) > 2 else None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -66,7 +67,8 @@ class Digits:
         self._context: Context | None = None
         self._switches = Switches()
         self._sight = Sight()
-        self._seen, self._explained = -1, True
+        self._seen = -1  # the drawing, by its revision, that was looked at last
+        self._looking: Iterator[None] = iter(())
         self._why: Explanation | None = None
         self._unfix: Word | None = None
         self._fix_of = -1  # the drawing, by its revision, that was put right last
@@ -89,7 +91,7 @@ class Digits:
         self._tabs = self._form.add(self._make_tabs())
         self._pen = self._form.add(Pen(self._form.manager, lambda: self.pad))
         self._add_words()
-        self._look()
+        self._look_anew()
         self._offer_undo()
 
     def exit(self) -> None:
@@ -110,8 +112,7 @@ class Digits:
     @property
     def probabilities(self) -> Numbers | None:
         """How probable the chosen network finds each digit, (10,); None while nothing is drawn, or it can't be read."""
-        if self._seen != self.pad.revision:
-            self._read()
+        self._catch_up()
         return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -142,11 +143,9 @@ class Digits:
 
     def update(self) -> Transition | None:
         """Look at what has been drawn since, and hear what was measured."""
-        # In turns: while the pen moves, to read and to explain would be too much for one frame.
-        if not self._explained:
-            self._explain()
-        elif self._seen != self.pad.revision:
-            self._read()
+        if next(self._looking, True) and self._seen != self.pad.revision:
+            self._looking = self._look()
+            next(self._looking)
         self._measuring.listen()
         self._follow_fix()
         return self._form.update()
@@ -170,20 +169,30 @@ class Digits:
         if network := self._fixing.networks.get(name):
             self._reader.load(name, *network.versions())
 
-    def _look(self) -> None:
-        """Let the networks read what is on the pad, and the chosen one say why."""
-        self._read()
-        self._explain()
+    def _look(self) -> Iterator[None]:
+        """Prepare what is on the pad, let the networks read it, and the chosen one say why.
 
-    def _read(self) -> None:
-        self._seen, self._explained = self.pad.revision, False
-        self.reading = self._reader.read(self.pad.strokes, self.pad.ink, self._switches, self._pair)
+        A part at a time: while the pen moves, all of it would be too much for one frame.
+        """
+        self._seen = self.pad.revision
+        seen = self._switches.prepare(self.pad.strokes, self.pad.ink)
+        yield
+        self.reading = self._reader.read(seen, self._pair)
         self._show_bars()
+        yield
+        known = self.chosen in self.reading.probabilities
+        self._why = self._reader.explain(self.chosen, seen.centred) if known else None
+        yield
 
-    def _explain(self) -> None:
-        self._explained, self._why = True, None
-        if self.chosen in self.reading.probabilities:
-            self._why = self._reader.explain(self.chosen, self.reading.stages.centred)
+    def _catch_up(self) -> None:
+        """Bring to an end the look at what is on the pad now."""
+        if self._seen != self.pad.revision:
+            self._looking = self._look()
+        deque(self._looking, maxlen=0)
+
+    def _look_anew(self) -> None:
+        self._seen = -1
+        self._catch_up()
 
     def _show_bars(self) -> None:
         drawn = bool(self.reading.stages.centred.any())
@@ -206,13 +215,14 @@ class Digits:
 
     def _switch(self, step: str, on: bool) -> None:
         self._switches = replace(self._switches, **{step: on})
-        self._look()
+        self._look_anew()
         self._measuring.ask(self._switches)
 
     # Putting it right
 
     def _correct(self, digit: int) -> None:
         """Teach the chosen network that what is drawn is this digit."""
+        self._catch_up()
         image = self.reading.stages.centred
         if image.any() and self.chosen in self._reader.classifiers:
             self._fixing.begin(self.chosen, image, digit, self._reader.sources[self.chosen])
@@ -229,7 +239,7 @@ class Digits:
     def _take_anew(self, name: str) -> None:
         """Go on with a network that is another one now."""
         self._load(name)
-        self._look()
+        self._look_anew()
         self._offer_undo()
         self._measuring.anew(self._switches)
 
@@ -282,7 +292,7 @@ class Digits:
             return
         if self.chosen not in self._fixing.networks:
             self.chosen = NAMES[0]
-            self._look()
+            self._look_anew()
         tabs = self._make_tabs()
         self._form.replace([self._tabs], [tabs])
         self._tabs = tabs
@@ -296,7 +306,7 @@ class Digits:
             self._tabs.index = names.index(self.chosen)
             return
         self.chosen = names[index]
-        self._look()
+        self._look_anew()
         self._offer_undo()
         if set(self._pair) != set(before):
             self._measuring.anew(self._switches)

@@ -170,7 +170,7 @@ def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing
 
 def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
     draw(drawing, strokes(2))
-    drawing.frames(1)  # what was read is explained in the frame after
+    drawing.frames(2)  # it is read in the frame after, and then explained
     why, seen = scene(drawing)._why, scene(drawing).reading.stages.centred
     assert np.abs(why.saliency).max() == pytest.approx(1)
     assert np.abs(why.saliency[seen == 0]).max() == 0
@@ -181,6 +181,7 @@ def test_a_step_that_is_switched_off_changes_what_is_seen_and_its_price_is_measu
     monkeypatch.setattr("game.digits.measuring.stage_accuracy", partial(stage_accuracy, count=60))
     digits = scene(drawing)
     draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
+    drawing.frames(1)
     before = digits.reading.stages.centred
     crop = next(widget for widget in digits._form.widgets if widget.label == "cropped")
     drawing.click(crop.box.center)
