@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from copy import copy
-from typing import Literal
+from typing import Final, Literal
 
 import pygame
 
@@ -23,6 +24,10 @@ from game.ui.tokens import (
 )
 from game.ui.typeface import Weight
 
+_MOST_WORDS: Final = 256  # that are remembered of a page
+_FAINT_WORDS: Final = 0.4  # the alpha from which on they are worth it
+_AROUND: Final = 4.0  # points around words that are to be as quiet
+
 Point = tuple[float, float]
 Align = Literal["left", "centre", "right"]
 
@@ -40,6 +45,7 @@ class Canvas:
         palette: the colours for good and warn that the player chose.
         links: where a click means a press of a key, in points, and of which: as it was drawn last.
         pointer: where the mouse is, in points; None while it is not in use.
+        words: where words, widgets and panels were put on this page, in pixels.
 
     """
 
@@ -48,6 +54,7 @@ class Canvas:
         self.scale = 0.0
         self.links: list[tuple[pygame.FRect, pygame.event.Event]] = []
         self.pointer: Point | None = None
+        self.words: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)
         self.attach(window)
 
     def attach(self, window: pygame.Surface) -> None:
@@ -82,8 +89,20 @@ class Canvas:
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet.offset = (0, 0)
         sheet.links = []  # nothing is clicked on a sheet
+        sheet.words = deque(maxlen=0)
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
+
+    def lay(self, sheet: Canvas, x: float, y: float) -> None:
+        """Put a sheet down with its top left corner there."""
+        self.words.append(self.surface.blit(sheet.surface, (self.px(x), self.px(y))))
+
+    def turn_page(self) -> list[pygame.Rect]:
+        """Begin a new page, and return where the last one had words: a sky keeps its stars from there."""
+        around = 2 * self.px(_AROUND)
+        words = [box.inflate(around, around) for box in self.words]
+        self.words.clear()
+        return words
 
     def to_points(self, window_position: Point) -> Point:
         """Turn a position in the window's pixels, such as the mouse's, into points."""
@@ -138,6 +157,8 @@ class Canvas:
         elif string:
             self._stamp(string, (round(x), y), pixels, weight, colour, alpha)
         above, below = typeface.extent(pixels, weight)
+        if alpha > _FAINT_WORDS:
+            self.words.append(pygame.Rect(x, y - above, width, above + below))
         scale = self.scale
         return pygame.FRect(x / scale, (y - above) / scale, width / scale, (above + below) / scale)
 
@@ -282,6 +303,8 @@ class Canvas:
     def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
         """Draw the one translucent box there is."""
         self.rounded(rect, 8, PANEL, alpha)
+        if alpha > _FAINT_WORDS:
+            self.words.append(self.rect(*pygame.FRect(rect)))
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""

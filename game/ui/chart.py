@@ -188,8 +188,7 @@ class Chart:
         if self._sheet is None or self._sheet.scale != canvas.scale:
             self._sheet = self._paint(canvas)
             self._stale = False
-        corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
-        canvas.surface.blit(self._sheet.surface, corner)
+        canvas.lay(self._sheet, self.box.x - _MARGIN, self.box.y - _MARGIN)
         if self._marker:
             self._draw_marker(canvas, *self._marker)
         if self._cursor is not None:

@@ -18,7 +18,7 @@ class Kept:
 
     def __init__(self, most: int = 1) -> None:
         self._most = most
-        self._painted: dict[Hashable, pygame.Surface] = {}
+        self._painted: dict[Hashable, Canvas] = {}
 
     def draw(
         self, canvas: Canvas, box: pygame.typing.RectLike, shows: Hashable, paint: Callable[[Canvas], None]
@@ -28,9 +28,8 @@ class Kept:
         key = (canvas.size, canvas.palette, typeface.growth(), width, height, shows)
         painted = self._painted.get(key)
         if painted is None:
-            sheet = canvas.sheet(width, height)
-            paint(sheet)
-            painted = self._painted[key] = sheet.surface
+            painted = self._painted[key] = canvas.sheet(width, height)
+            paint(painted)
             if len(self._painted) > self._most:
                 del self._painted[next(iter(self._painted))]
-        canvas.surface.blit(painted, canvas.rect(x, y, width, height).topleft)
+        canvas.lay(painted, x, y)

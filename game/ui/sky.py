@@ -1,4 +1,4 @@
-"""The ground of screens that show no world: night above, a last ember below, stars."""
+"""The ground of screens that show no world: night above, a last ember below, stars where no words are."""
 
 from __future__ import annotations
 
@@ -12,25 +12,30 @@ from game.ui.tokens import DUSK, EMBER, NIGHT0, NIGHT1, VIEW_SIZE
 
 
 class NightSky:
-    """A still sky, painted once per window size."""
+    """A still sky, painted anew only when the window's size changes, or words come or go where a star is."""
 
     def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
         self._places = rng.random((stars, 2)) * VIEW_SIZE
         self._brightness = rng.random(stars) ** 4
         self._ember = ember
         self._painted: pygame.Surface | None = None
+        self._shown: list[int] = []
 
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
-        if self._painted is None or self._painted.get_size() != canvas.surface.get_size():
-            self._painted = _paint_night(canvas.surface.get_size(), self._ember).copy()
+        words = canvas.turn_page()
+        dots = [(*place, 1, 1) for place in (self._places * canvas.scale).tolist()]
+        shown = [star for star, dot in enumerate(dots) if pygame.Rect(dot).collidelist(words) < 0]
+        size = canvas.surface.get_size()
+        if self._painted is None or self._painted.get_size() != size or shown != self._shown:
+            self._painted, self._shown = _paint_night(size, self._ember).copy(), shown
             canvas.surface.blit(self._painted, (0, 0))
             self._add_stars(canvas)
             self._painted.blit(canvas.surface, (0, 0))
         canvas.surface.blit(self._painted, (0, 0))
 
     def _add_stars(self, canvas: Canvas) -> None:
-        for (x, y), brightness in zip(self._places, self._brightness, strict=True):
+        for (x, y), brightness in zip(self._places[self._shown], self._brightness[self._shown], strict=True):
             fade = float(1 - y / VIEW_SIZE[1])
             level = (0.25 + 0.75 * float(brightness)) * fade
             shade = 120 + round(120 * float(brightness))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy, deepcopy
 from functools import lru_cache
 from typing import Final
@@ -35,7 +36,7 @@ class Backdrop:
     def __init__(self, size: tuple[int, int], rng: np.random.Generator, reduced_motion: bool = False) -> None:
         self.size = size
         sky, stars, earth, self._plain_chance, *ranges = rng.spawn(4 + len(RIDGES))
-        self._sky = paint_sky(size, sky)
+        self._sky, self._clear = paint_sky(size, sky)
         self._stars = NearStars(size, stars, still=reduced_motion)
         self._disc, self._air = paint_earth(EARTH_RADIUS * size[1] / 720, earth)
         self._ridges = [
@@ -48,7 +49,7 @@ class Backdrop:
         """Return the same land on another world, or in other light."""
         other = copy(self)
         other._look, other._plains = look, {}
-        other._sky = look.on_sky(self._sky)
+        other._sky, other._clear = look.on_sky(self._sky), look.on_sky(self._clear)
         other._ridges = [(look.on_land(sheet), top, depth) for sheet, top, depth in self._ridges]
         return other
 
@@ -59,7 +60,7 @@ class Backdrop:
 
         `earth` is where the Earth's middle stands, in points.
         """
-        self.paint(canvas.surface, camera.view(canvas.scale, alpha), time, earth)
+        self.paint(canvas.surface, camera.view(canvas.scale, alpha), time, earth, canvas.turn_page())
 
     def paint(
         self,
@@ -67,8 +68,11 @@ class Backdrop:
         view: View | None = None,
         time: float = 0.0,
         earth: tuple[float, float] = EARTH,
+        words: Sequence[pygame.Rect] = (),
     ) -> None:
         """Fill a surface of this backdrop's size, as seen in a view; without one, as at rest.
+
+        No star is where `words` are, in pixels: it would be read as a dot, or as a speck on a panel.
 
         What is far away keeps its size however close the camera comes. It goes up and down with the horizon, and
         aside by a small share of what the camera does.
@@ -81,8 +85,10 @@ class Backdrop:
             surface.blit(self._sky, (0, 0), (0, 0, self.size[0], down))
         elif down < 0:  # behind the plain, which may be the least bit translucent
             surface.fill(NIGHT0, (0, self.size[1] + down, self.size[0], -down))
+        for box in words:
+            surface.blit(self._clear, box, box.move(0, -down).clamp(self._clear.get_rect()))
         if self._look.stars:
-            self._stars.draw(surface, (across, down), time)
+            self._stars.draw(surface, (across, down), time, words)
         if self._look.earth:
             self._draw_earth(surface, earth, across, down)
         margin = MARGIN * self.size[0]

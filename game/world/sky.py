@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 import pygame
 
+from ai.env import Bools, Doubles
 from game.ui.tokens import DUSK, EMBER, NIGHT0, NIGHT1
 from game.world.paint import Picture, bell, clouds, light, mix, opaque, ramp
 
@@ -18,8 +20,8 @@ _GLOW: Final = (232, 142, 90)
 _CORE: Final = (255, 204, 138)
 
 
-def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface:
-    """Return everything that is too far away ever to move: night, glow, star dust."""
+def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> tuple[pygame.Surface, pygame.Surface]:
+    """Return everything that is too far away ever to move: night, glow, star dust; and the same without stars."""
     width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
     warm = mix(DUSK, EMBER, 0.14)
     night = [
@@ -40,7 +42,8 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface
         glow = np.outer(bell(height, y, up * height), bell(width, x, across * width))
         picture += (strength * glow)[..., None] * np.array(colour, np.float32)
     picture = picture.repeat(2, 0).repeat(2, 1)[: size[1], : size[0]]
-    return opaque(_far_stars(picture, rng), rng)
+    starry = opaque(_far_stars(picture.copy(), rng), rng)
+    return starry, opaque(picture, rng)
 
 
 def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
@@ -95,15 +98,30 @@ class NearStars:
         self._rows = [sprites[kind] for kind in kinds.tolist()]
         self._half = np.array([row[0].get_width() // 2 for row in self._rows])
 
-    def draw(self, surface: pygame.Surface, shift: tuple[float, float], time: float) -> None:
-        """Add the stars to the sky; `shift` is how far, in pixels, the foreground has gone aside and the horizon up."""
+    def draw(
+        self, surface: pygame.Surface, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect] = ()
+    ) -> None:
+        """Add the stars to the sky, but where words are.
+
+        `shift` is how far, in pixels, the foreground has gone aside and the horizon up.
+        """
         place = self._place + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
         corners = np.rint(place - self._half[:, None]).astype(np.intp).tolist()
         level = np.full(len(place), self.LEVELS - 2)
         if not self._still:
             level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
         sprites = [row[bright] for row, bright in zip(self._rows, level.tolist(), strict=True)]
-        surface.fblits(list(zip(sprites, corners, strict=True)), pygame.BLEND_RGB_ADD)
+        seen = np.flatnonzero(~_within(place, words)).tolist()
+        surface.fblits([(sprites[star], corners[star]) for star in seen], pygame.BLEND_RGB_ADD)
+
+
+def _within(place: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:
+    """Return which places (n, 2) are in one of the boxes."""
+    corners = np.array([(*box.topleft, *box.bottomright) for box in boxes]).reshape(-1, 4)
+    x, y = place[:, :1], place[:, 1:]
+    left, top, right, bottom = corners.T
+    found: Bools = np.any((x >= left) & (x < right) & (y >= top) & (y < bottom), axis=1)
+    return found
 
 
 def _star(kind: int, brightness: float, unit: float) -> pygame.Surface:

@@ -6,6 +6,7 @@ from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv, Outcome
 from ai.missions import MISSIONS
 from game.render import Camera, View
 from game.ui.canvas import Canvas
+from game.ui.sky import NightSky
 from game.world import lander as art
 from game.world.backdrop import Backdrop
 from game.world.craft import stand
@@ -17,6 +18,7 @@ from game.world.paths import Trails, draw_dotted, draw_faint, draw_stretch
 from game.world.relief import Relief
 from game.world.stage import Stage
 from game.world.wind import Wind
+from tests.game.driver import Driver
 
 SIZES = [(1280, 720), (640, 360), (1000, 800)]
 
@@ -64,6 +66,24 @@ def test_reduced_motion_stills_the_stars_and_motion_does_not(canvas: Canvas):
             backdrop.draw(canvas, Camera(), time)
             pictures.append(pixels(canvas.surface))
         assert np.array_equal(*pictures) is reduced
+
+
+def test_no_star_is_where_words_are(game: Driver):
+    canvas = game.app.canvas
+    moon, night = Backdrop(canvas.size, np.random.default_rng(7)), NightSky(np.random.default_rng(7), stars=900)
+    words = pygame.FRect(450, 40, 700, 200)
+    area = pygame.Rect(canvas.rect(*words))
+    for draw in (lambda: moon.draw(canvas, Camera(), 1.0), lambda: night.draw(canvas)):
+        glare = []
+        for written in (False, True, False):
+            canvas.turn_page()
+            if written:
+                canvas.panel(words)
+            draw()
+            picture = pixels(canvas.surface).max(axis=2).astype(int)[area.left : area.right, area.top : area.bottom]
+            glare.append((picture > np.median(picture) + 25).sum())
+        assert glare[1] == 0
+        assert glare[0] == glare[2] > 20, "they come back when the words are gone"
 
 
 def test_the_art_fits_the_physics():
