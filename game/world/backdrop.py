@@ -16,7 +16,7 @@ from game.ui.tokens import NIGHT0, VIEW_SIZE
 from game.world.earth import paint_earth
 from game.world.looks import LOOKS, MOON, Look
 from game.world.sheet import Sheet
-from game.world.sky import NearStars, paint_sky
+from game.world.sky import HORIZON, NearStars, paint_sky
 from game.world.terrain import HORIZON_HEIGHT, MARGIN, PLAIN_HORIZON, RIDGES, WIDE_MARGIN, paint_plain, paint_ridge
 
 EARTH: Final = (312.0, 152.0)  # points
@@ -85,6 +85,7 @@ class Backdrop:
             surface.blit(self._sky, (0, 0), (0, 0, self.size[0], down))
         elif down < 0:  # behind the plain, which may be the least bit translucent
             surface.fill(NIGHT0, (0, self.size[1] + down, self.size[0], -down))
+        words = [box for box in words if box.top < HORIZON * self.size[1] + down]
         for box in words:
             surface.blit(self._clear, box, box.move(0, -down).clamp(self._clear.get_rect()))
         if self._look.stars:
