@@ -272,6 +272,7 @@ PHYSICS_CONTACTS: Final = "Contacts"
 PHYSICS_CONTACTS_WORDS: Final = ("hidden", "drawn")
 PHYSICS_STOPPED: Final = "Stopped"
 PHYSICS_DRAG: Final = "Take hold of anything with the mouse."
+PHYSICS_HAND: Final = "{key}: a hand to take hold of things"
 BODIES: Final = "BODIES"
 CONTACT_POINTS: Final = "CONTACTS"
 KINETIC_ENERGY: Final = "IN MOTION"
@@ -532,7 +533,7 @@ SABOTAGES: Final = {
 SWARM_BEST: Final = "best"
 SWARM_LUCKIEST: Final = "luckiest"
 TRAIN_TITLE: Final = "Watch it learn"
-TRAIN_LINE: Final = "Press Start: a swarm that falls like stones learns to land."
+TRAIN_LINE: Final = "Press Start: what falls like stones learns to land."
 TRAIN_FIGURES: Final = "{count} landers at once · {seconds:.0f} s · {decisions:,} decisions"
 TRAIN_LANDED: Final = "% of the last 100 landed"
 TRAIN_START: Final = "Start"
@@ -1069,8 +1070,10 @@ PRACTICE_PACE: Final = "speed {percent} %"
 TEXT_SIZE: Final = "Text"
 TEXT_SIZES: Final = {"normal": "normal", "large": "large", "largest": "largest"}
 
-# A pen that keys and pads draw with
-PEN: Final = "Draw"
+# What keys and pads point with, where others have a mouse
+POINTER: Final = "Point"
+POINTER_LEAVE: Final = "lay it aside"
+POINTER_GRIP: Final = "hold to grip"
 PEN_HOLD: Final = "hold to draw"
 PEN_LEAVE: Final = "lay the pen aside"
 

@@ -25,6 +25,7 @@ from game.ui.charts import Charts
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.knobs import Knobs
+from game.ui.pointer import Pointer
 from game.ui.sky import NightSky
 from game.ui.standing import draw_problem, draw_standing, start_word
 from game.ui.tokens import LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
@@ -82,6 +83,7 @@ class DigitTrainingScene:
         ])  # fmt: skip
         self._form = Form(context, on_back=self._leave)
         self._add_words()
+        self._form.add(Pointer(self._form.manager, self.charts.box, self.charts.follow))
         self.knobs = Knobs(
             self._form, _KNOBS, DIGIT_PRESETS["classic"], 0, self._turned, self._begin, FAMILY
         )  # fmt: skip
@@ -100,8 +102,7 @@ class DigitTrainingScene:
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Start, pause, stop, turn knobs, look closer."""
-        if event.type == pygame.MOUSEMOTION:
-            self.charts.hover(event.pos)
+        self.charts.follow(event)
         outcome = self._form.handle_event(event)
         if outcome is None and not self._form.used:
             match translate(event):
@@ -311,7 +312,7 @@ class DigitTrainingScene:
         figure = "" if part is None else f"{100 * part:.2f}"
         words = texts.PUPIL_READ if pupil.test is None else texts.PUPIL_TESTED
         draw_standing(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
-        hints = [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
+        hints = self._form.hints or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)
 
     def _draw_said(self, canvas: Canvas) -> None:

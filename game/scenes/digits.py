@@ -18,7 +18,7 @@ from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.fixing import Fixing
 from game.digits.measuring import Measuring
 from game.digits.pad import DrawingPad
-from game.digits.pen import Pen
+from game.digits.pen import make_pen
 from game.digits.reader import Explanation, Numbers, Reader, Switches, Verdict
 from game.digits.shelf import NAMES, called
 from game.digits.sight import LEFT as SIGHT_LEFT
@@ -89,7 +89,7 @@ class Digits:
             self.chosen = next(iter(self._reader.classifiers), self.chosen)
         self._form = Form(context, on_back=Pop)
         self._tabs = self._form.add(self._make_tabs())
-        self._pen = self._form.add(Pen(self._form.manager, lambda: self.pad))
+        self._pen = self._form.add(make_pen(self._form.manager, lambda: self.pad))
         self._add_words()
         self._look_anew()
         self._offer_undo()
@@ -377,5 +377,4 @@ class Digits:
             left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
             canvas.text(key, (left, widget.baseline), size=SMALL, weight="medium")
         hints = [(word(Command.NEXT), texts.DIGITS_HINT_NETWORK), (word(Command.BACK), texts.HINT_BACK)]
-        hints = self._pen.hints(controls) if self._pen.typing else hints
-        draw_hints(canvas, hints, (PAD.left, VIEW_SIZE[1] - 40))
+        draw_hints(canvas, self._form.hints or hints, (PAD.left, VIEW_SIZE[1] - 40))

@@ -20,6 +20,7 @@ from game.ui.charts import Charts
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
+from game.ui.pointer import Pointer
 from game.ui.sky import NightSky
 from game.ui.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.ui.widget import Widget
@@ -56,11 +57,10 @@ class Logbook:
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Leave it to the widgets; Delete throws a flight away, as elsewhere."""
-        if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
+        if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE and not self._form.typing:
             self._forget()
             return None
-        if event.type == pygame.MOUSEMOTION:
-            self._charts.hover(event.pos)
+        self._charts.follow(event)
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
@@ -100,6 +100,7 @@ class Logbook:
             Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
                   read_x=texts.LOGBOOK_FLIGHT.format),
         ])  # fmt: skip
+        self._form.add(Pointer(manager, self._charts.box, self._charts.follow))
 
     def _reload(self) -> None:
         """Look at the disk again."""
@@ -206,7 +207,7 @@ class Logbook:
         arrows = controls.arrows
         hints = [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
                  (controls.word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+        draw_hints(canvas, self._form.hints or hints, (MARGIN, VIEW_SIZE[1] - 40))
 
 
 def _draw_totals(canvas: Canvas, sums: Totals) -> None:

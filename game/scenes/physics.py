@@ -24,6 +24,7 @@ from game.ui.canvas import Canvas
 from game.ui.figures import write_figures
 from game.ui.form import Form
 from game.ui.hints import draw_hints
+from game.ui.pointer import Pointer
 from game.ui.sky import NightSky
 from game.ui.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
 from game.ui.widgets import Choice
@@ -38,6 +39,7 @@ _ROWS: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices
 _ROW_HEIGHT: Final = 17.0
 _LABEL_WIDTH: Final = 84.0
 _GAP: Final = 24.0
+_ROOM: Final = (16.0, 152.0, VIEW_SIZE[0] - 32.0, 444.0)
 _COLUMNS: Final = (758.0, 880.0, 1002.0, 1124.0)
 _REACH: Final = 8.0  # points by which the mouse may miss a body
 _GAUGE: Final = 64.0
@@ -68,6 +70,7 @@ class Physics:
         manager = self._form.manager
         tabs = pygame.Rect(*_TABS, math.ceil(_width(words, TEXT)), 24)
         self._tabs = self._form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
+        self._hand = self._form.add(Pointer(manager, _ROOM, self._point, hold=texts.POINTER_GRIP))
         self._add_row(0, texts.PHYSICS_GRAVITY, texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity)
         self._speeds = self._add_row(1, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
         self._contacts = self._add_row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)
@@ -89,9 +92,10 @@ class Physics:
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Take hold, stop, step, choose, pause."""
         if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
-            self._mouse = (float(event.pos[0]), float(event.pos[1]))
-            if self._handle_grip(event):
+            if self._point(event):
                 return None
+        elif self._hand.focused and self._hand.take(event):
+            return None
         if event.type == pygame.WINDOWFOCUSLOST:
             self.grip = None
         if _stops(event):
@@ -165,15 +169,16 @@ class Physics:
         return self._view(1.0).metres(point)
 
     def _hovered(self) -> int | None:
-        """Body under the mouse, if the mouse is what is in use."""
+        """Body under the mouse, if the mouse is what is in use, or under what stands in for it."""
         assert self._context is not None
-        if not self._context.controls.mouse_in_use:
+        if not self._context.controls.mouse_in_use and not self._hand.typing:
             return None
         piece = body_at(self.exhibit.pieces, self._poses, self._place(self._mouse), 0.0)
         return piece.body.index if piece else None
 
-    def _handle_grip(self, event: pygame.event.Event) -> bool:
+    def _point(self, event: pygame.event.Event) -> bool:
         """Take hold of a body, pull it, let go; false if the mouse means something else."""
+        self._mouse = (float(event.pos[0]), float(event.pos[1]))
         if self.grip:
             self.grip.target = self._place(self._mouse)
             if event.type == pygame.MOUSEBUTTONUP and event.button == 1:
@@ -181,7 +186,7 @@ class Physics:
             return True
         if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
             return False
-        if any(widget.hover_point(*event.pos) for widget in self._form.widgets):
+        if any(widget.hover_point(*event.pos) for widget in self._form.widgets if widget is not self._hand):
             return False
         place = self._place(self._mouse)
         reach = _REACH * self.exhibit.width / VIEW_SIZE[0]
@@ -246,13 +251,16 @@ class Physics:
             (word(Command.RETRY), texts.HINT_RESTART_EXHIBIT),
             (word(Command.PAUSE), texts.HINT_PAUSE),
         ]  # fmt: skip
-        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True)
+        draw_hints(canvas, self._form.hints or hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True)
         self._draw_state(canvas)
 
     def _draw_state(self, canvas: Canvas) -> None:
-        """Say on the right that time stands still, or else what the mouse is for."""
-        right = VIEW_SIZE[0] - MARGIN
-        text = texts.PHYSICS_STOPPED if self.stopped else texts.PHYSICS_DRAG
+        """Say on the right that time stands still, or else how to take hold of what is there."""
+        assert self._context is not None
+        right, controls = VIEW_SIZE[0] - MARGIN, self._context.controls
+        keys = self._hand.focused and not controls.mouse_in_use
+        drag = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
+        text = texts.PHYSICS_STOPPED if self.stopped else "" if self._hand.typing else drag
         colour = INK if self.stopped else HUMAN
         canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right")
 

@@ -16,7 +16,7 @@ from game.controls import Command, translate
 from game.digits.answer import LEFT, percent
 from game.digits.contest import ROUNDS, Contest, Round
 from game.digits.pad import DrawingPad
-from game.digits.pen import Pen
+from game.digits.pen import make_pen
 from game.digits.pictures import picture
 from game.scene import Pop, Transition
 from game.ui import typeface
@@ -76,7 +76,7 @@ class Quiz:
                                    partial(self._read, digit), FIGURE)
                         for digit, texts_of in enumerate(map(str, range(10)))]  # fmt: skip
         self._go_word = self._word(texts.QUIZ_DONE, (LEFT, _WORDS), self._go)
-        self._pen = Pen(self._form.manager, lambda: self.pad)
+        self._pen = make_pen(self._form.manager, lambda: self.pad)
         self._shown: list[Widget] = []
         self.restart()
 
@@ -279,8 +279,7 @@ class Quiz:
             ]
         elif current and current.answer is None and not pad:
             hints[:1] = [("0 – 9", texts.HINT_CHOOSE)]
-        hints = self._pen.hints(controls) if self._pen.typing else hints
-        draw_hints(canvas, hints, (_PAD.left, VIEW_SIZE[1] - 40))
+        draw_hints(canvas, self._form.hints or hints, (_PAD.left, VIEW_SIZE[1] - 40))
 
 
 def _draw_tile(canvas: Canvas, each: Round, place: tuple[float, float], *, current: bool) -> None:

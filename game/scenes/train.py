@@ -25,6 +25,7 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.inside import Inside
 from game.ui.knobs import Knobs
+from game.ui.pointer import Pointer
 from game.ui.scrubber import Scrubber
 from game.ui.standing import draw_problem, draw_standing, start_word
 from game.ui.tokens import LINE, NIGHT0, PANEL, VIEW_SIZE
@@ -89,9 +90,9 @@ class Train:
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Start, pause, step, turn knobs, look closer."""
-        if event.type == pygame.MOUSEMOTION:
-            self.board.charts.hover(None if self.inside.large else event.pos)
-            self.inside.hover(event.pos)
+        if not self.inside.large:
+            self.board.charts.follow(event)
+        self.inside.follow(event)
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.inside.covers(event.pos):
             self._look_closer()
             return None
@@ -321,13 +322,15 @@ class Train:
             beside = [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
-            self._scrubber = Scrubber(self._form.manager, self.board.charts, self._scrub_to, self._duel)
-            beside.append(self._scrubber)
+            charts = self.board.charts
+            beside += [Pointer(self._form.manager, charts.box, charts.follow),
+                       Scrubber(self._form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
         self._form.replace(self._beside, beside)
         self._beside = beside
 
     def _look_closer(self) -> None:
         self._lay_beside(large=not self.inside.large)
+        self.board.charts.hover(None)
 
     def _back(self) -> Transition | None:
         if not self.inside.large:
@@ -348,8 +351,8 @@ class Train:
         draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
         assert self._context is not None
-        back = (self._context.controls.word(Command.BACK), texts.HINT_BACK)
-        draw_hints(canvas, [back], (_TITLE.right - 16, 46), from_right=True)
+        hints = self._form.hints[-1:] or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
+        draw_hints(canvas, hints, (_TITLE.right - 16, 46), from_right=True)
 
     def _draw_said(self, canvas: Canvas) -> None:
         """Say what is wrong, or what to do first."""

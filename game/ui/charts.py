@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import pygame
+
 from game.ui.canvas import Canvas, Point
 from game.ui.chart import Chart
 
@@ -20,6 +22,17 @@ class Charts:
         for chart in self.charts:
             chart.point_to(x, pointed=point is not None and chart.x_at(point) is not None)
         return x
+
+    def follow(self, event: pygame.event.Event) -> None:
+        """Follow the mouse, or what stands in for it: an event, its position in points."""
+        if event.type == pygame.MOUSEMOTION:
+            self.hover(event.pos)
+
+    @property
+    def box(self) -> pygame.Rect:
+        """Where they are, all together."""
+        first, *others = (pygame.Rect(chart.box) for chart in self.charts)
+        return first.unionall(others)
 
     def x_at(self, point: Point) -> float | None:
         """Return the x under a point of the canvas, or None outside all charts."""

@@ -52,6 +52,11 @@ class Form:
         return self.focused is not None and self.focused.typing
 
     @property
+    def hints(self) -> list[tuple[str, str]]:
+        """What can be done with a widget that takes every key for itself; none without one."""
+        return self.focused.hints(self.controls) if self.focused and self.typing else []
+
+    @property
     def controls(self) -> Controls:
         """What is held, and which device is in use."""
         return self._context.controls

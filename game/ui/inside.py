@@ -22,6 +22,7 @@ from game.ui.canvas import Canvas, Point
 from game.ui.form import Form
 from game.ui.netplan import Show
 from game.ui.netview import NetView
+from game.ui.pointer import Pointer
 from game.ui.strip import Strip
 from game.ui.tokens import MUTE, SMALL, TITLE
 from game.ui.widget import Widget
@@ -59,6 +60,7 @@ class Inside:
                         texts.TRAIN_INSIDE, 0, self._turn, size=SMALL))  # fmt: skip
         self._closer = form.add(Word(form.manager, (_ROW.right - width, _ROW.top, width, _ROW.height),
                                      texts.TRAIN_CLOSER, on_closer, size=SMALL))  # fmt: skip
+        form.add(Pointer(form.manager, _SMALL, self.follow))
         self.clear()
 
     def clear(self) -> None:
@@ -89,7 +91,10 @@ class Inside:
         self._view.place(_LARGE if large else _SMALL)
         box = (_LEFT, 88, 400, 28)
         index = SHOWN.index(self._view.show)
-        return [Choice(self._form.manager, box, "", texts.NET_SHOWS, index, self._show)] if large else []
+        if not large:
+            return []
+        return [Choice(self._form.manager, box, "", texts.NET_SHOWS, index, self._show),
+                Pointer(self._form.manager, _LARGE, self.follow)]  # fmt: skip
 
     def take(self, insight: Insight, config: Config) -> None:
         """Look at the network as a run tells of it."""
@@ -111,10 +116,11 @@ class Inside:
         """Show what the latest flights were paid for."""
         self._strip.set(PARTS, history.parts[-1])
 
-    def hover(self, point: Point) -> None:
-        """Follow the mouse."""
-        self._view.hover(point if self._shows_network else None)
-        self._strip.hover(None if self._shows_network and not self.large else point)
+    def follow(self, event: pygame.event.Event) -> None:
+        """Follow the mouse, or what stands in for it: an event, its position in points."""
+        if event.type == pygame.MOUSEMOTION:
+            self._view.hover(event.pos if self._shows_network else None)
+            self._strip.hover(None if self._shows_network and not self.large else event.pos)
 
     def covers(self, point: Point) -> bool:
         """Whether a point is on the small picture of the network."""

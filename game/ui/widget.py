@@ -13,6 +13,7 @@ import pygame
 from pygame_gui import UIManager
 from pygame_gui.core import UIElement
 
+from game.controls import Controls
 from game.scene import Transition
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, MUTE, VIEW_SIZE, Colour
@@ -80,6 +81,10 @@ class Widget(UIElement):
     def take(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
         """Take a key or a pad's button before the form does, being in focus; false leaves it to the form."""
         return False
+
+    def hints(self, controls: Controls) -> list[tuple[str, str]]:  # noqa: ARG002
+        """Return what else can be done with it while it is `typing`: keys, and what they do."""
+        return []
 
     def scroll(self, rows: int) -> bool:  # noqa: ARG002
         """Follow the mouse's wheel, positive towards the beginning; false if there is nothing to scroll."""

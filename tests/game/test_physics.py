@@ -71,7 +71,7 @@ def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
 
 def test_gravity_is_chosen_and_the_exhibit_begins_anew(gallery: Driver):
     first = scene(gallery).exhibit
-    gallery.keys(pygame.K_DOWN, pygame.K_RIGHT)
+    gallery.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RIGHT)
     assert scene(gallery).exhibit is not first
     assert scene(gallery).exhibit.world.gravity.tolist() == [0.0, -EARTH]
 

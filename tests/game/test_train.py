@@ -30,7 +30,9 @@ from game.scenes.train import Train
 from game.student import Student
 from game.ui import focus
 from game.ui.netview import NetView
+from game.ui.scrubber import Scrubber
 from game.ui.widget import Widget
+from game.ui.widgets import Choice
 from game.worker import State
 from tests.game.driver import Driver
 
@@ -192,7 +194,7 @@ def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     start(train)
     scene = train.top
-    scene._form.focus(scene._scrubber)
+    scene._form.focus(next(each for each in scene._form.widgets if isinstance(each, Scrubber)))
     train.key(pygame.K_LEFT)
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, Play)
@@ -243,7 +245,8 @@ def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
         reached, frontier = {0}, [0]
         while frontier:
             index = frontier.pop()
-            turns = type(form.widgets[index]).shift is not Widget.shift  # left and right turn it, and lead nowhere
+            # Left and right turn some, and lead nowhere; a choice leads on at its ends.
+            turns = type(form.widgets[index]).shift not in (Widget.shift, Choice.shift)
             ways = (focus.UP, focus.DOWN) if turns else (focus.UP, focus.DOWN, focus.LEFT, focus.RIGHT)
             fresh = {focus.neighbour(boxes, index, way) for way in ways} - reached
             reached |= fresh
