@@ -45,7 +45,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.monkey_deeds import DEEDS, Hands
-from benchmarks.tour import makers, scene_types, stock
+from benchmarks.tour import dialogs, makers, scene_types, stock
 from game.app import App
 from game.assets import MODELS_DIR
 from game.context import Context
@@ -162,7 +162,8 @@ class Monkey:
             self.hands.come_back()
             for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must settle
                 self.hands.pass_frame()
-            self._forgotten = stale_scenes([*self._others, *self.app.scenes._stack])
+            in_use = [*self._others, *self.app.scenes._stack]
+            self._forgotten = stale_scenes(in_use) if self.hands.goes_on else []  # one that was left draws no more
             self.close()
 
     def _do_something(self) -> None:
@@ -194,7 +195,7 @@ class Monkey:
         scenes = self.app.scenes
         if len(scenes._stack) >= _DEEPEST or self.rng.random() < 0.5:
             self.go_home()
-        choices = makers(self.app.context)
+        choices = {**makers(self.app.context), **dialogs(scenes.top)}
         name = list(choices)[self.rng.integers(len(choices))]
         scene = choices[name]()
         self.hands.posted += 1
@@ -246,7 +247,7 @@ class Monkey:
 
 def scenes_alive() -> list[Scene]:
     """Return the scenes that are in memory, whether or not anybody uses them."""
-    gc.unfreeze()  # what a game has kept from the collector
+    gc.unfreeze()
     gc.collect()
     kinds = tuple(scene_types())
     return [each for each in gc.get_objects() if isinstance(each, kinds)]
@@ -254,6 +255,7 @@ def scenes_alive() -> list[Scene]:
 
 def stale_scenes(in_use: list[Scene]) -> list[str]:
     """Say which scenes are in memory although they are not in use."""
+    gc.unfreeze()  # or what a game has kept from the collector would not be found
     for each in gc.get_objects():
         if isinstance(each, type(_recording)) and each.__module__.startswith("game."):
             each.cache_clear()  # pictures, and fonts that keep their files open: so many at the most, but not yet

@@ -14,12 +14,14 @@ import game.scenes
 from ai.digits import DigitClassifier
 from ai.missions import MISSIONS
 from ai.pilots import ScriptedPilot
+from game.collection import name_problem
 from game.context import Context
 from game.course import Daily, Flown
 from game.exhibits import EXHIBITS
 from game.flight import Flight
 from game.records import Records
 from game.scene import Scene
+from game.scenes.dialog import Asking, Naming, Picking
 from game.scenes.dream import Dream
 from game.scenes.physics import Physics
 from game.scenes.play import Play
@@ -87,6 +89,15 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "Replay": lambda: replayed(Replay),
         "Dream": lambda: of_digits(Dream),
         "Quiz": lambda: of_digits(Quiz),
+    }
+
+
+def dialogs(below: Scene) -> dict[str, Callable[[], Scene]]:
+    """Return what makes each dialog over another scene; deep in scenes that train, they are seldom come by."""
+    return {
+        "Asking": lambda: Asking(below, "?", "", [("yes", int), ("no", int)]),
+        "Naming": lambda: Naming(below, "?", "name", name_problem),
+        "Picking": lambda: Picking(below, "?", [("a",), ("b",)], int),
     }
 
 
