@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import Final
 
+import numpy as np
 import pygame
 
 from ai.lander import LanderEnv
@@ -26,6 +27,7 @@ from game.ui.tokens import (
     MEDALS,
     MUTE,
     NET,
+    NIGHT0,
     SMALL,
     TEXT,
     TITLE,
@@ -40,6 +42,8 @@ _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
 _BAR_TOP: Final = 708.0
+_SHADE, _SHADE_TOP = 0.6, 640.0  # how dark it is behind them, at most, and from where on
+_CAPITAL: Final = 0.72  # height of a figure, in sizes of its type
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
 _ASIDE, _ABOVE = 4.0, 16.0
 _WORDS: Final = (180.0, 66.0)
@@ -110,6 +114,8 @@ def _fuel(env: LanderEnv, slot: int) -> Readout:
 
 def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
     """Draw figures side by side; a bar says how far from the limit, a mark beside the label on which side."""
+    top = canvas.px(_SHADE_TOP)
+    canvas.surface.blit(_shade((canvas.size[0], canvas.size[1] - top)), (0, top))
     for x, readout in zip(columns, readouts, strict=True):
         colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
         shows = readout.label, readout.figure, readout.unit, readout.within
@@ -121,6 +127,16 @@ def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence
             canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
 
 
+@lru_cache(maxsize=2)
+def _shade(size: tuple[int, int]) -> pygame.Surface:
+    """Return what quietens craters and wrecks behind the figures, more and more towards the edge."""
+    shade = pygame.Surface(size, pygame.SRCALPHA)
+    shade.fill(NIGHT0)
+    rise = np.linspace(0.0, 1.0, size[1]) ** 0.7
+    pygame.surfarray.pixels_alpha(shade)[:] = np.round(255 * _SHADE * rise).astype(np.uint8)
+    return shade
+
+
 def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
     """Draw label, mark, figure and unit on a sheet of their own: most stay the same for some frames."""
     line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
@@ -128,8 +144,8 @@ def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
     if readout.within is not None:
         _draw_mark(canvas, (label.right + 9, _ABOVE - 4), readout.within)
     figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=FIGURE, colour=colour, weight="light", tabular=True)
-    gap = 3 if readout.unit == "°" else 6
-    canvas.text(readout.unit, (figure.right + gap, line), size=SMALL, colour=MUTE)
+    gap, rise = (3, _CAPITAL * (FIGURE - SMALL)) if readout.unit == "°" else (6, 0.0)
+    canvas.text(readout.unit, (figure.right + gap, line - rise), size=SMALL, colour=MUTE)
 
 
 def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> None:
