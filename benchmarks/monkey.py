@@ -163,7 +163,8 @@ class Monkey:
             for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must settle
                 self.hands.pass_frame()
             in_use = [*self._others, *self.app.scenes._stack]
-            self._forgotten = stale_scenes(in_use) if self.hands.goes_on else []  # one that was left draws no more
+            stale = stale_scenes(in_use)
+            self._forgotten = stale if self.hands.goes_on else []  # a game that was left draws no more
             self.close()
 
     def _do_something(self) -> None:
