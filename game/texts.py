@@ -717,6 +717,7 @@ PUPIL_GO_ON: Final = "Go on with the last run"
 PUPIL_DREAM: Final = "Let it dream"
 PUPIL_QUIZ: Final = "Quiz it"
 PUPIL_CHARTS: Final = {"loss": "LOSS", "accuracy": "READ RIGHT, %"}
+PUPIL_CHARTS_SHOW: Final = {"loss": "how far off it is", "accuracy": "of digits it has never learnt from"}
 PUPIL_HELD_OUT: Final = "held out"
 PUPIL_BATCHES: Final = "as it learns"
 PUPIL_SAVED: Final = "Saved as {name}. It can be chosen in Draw a digit."

@@ -78,8 +78,8 @@ class DigitTrainingScene:
         self.pupil = Pupil(runs_dir(context.user_dir))
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = Charts([
-            Chart(_CHARTS["loss"], texts.PUPIL_CHARTS["loss"], read="{:.3g}".format),
-            Chart(_CHARTS["accuracy"], texts.PUPIL_CHARTS["accuracy"], read="{:.2f}".format),
+            Chart(_CHARTS[name], texts.PUPIL_CHARTS[name], read=form.format, empty=texts.PUPIL_CHARTS_SHOW[name])
+            for name, form in (("loss", "{:.3g}"), ("accuracy", "{:.2f}"))
         ])  # fmt: skip
         self._form = Form(context, on_back=self._leave)
         self._add_words()

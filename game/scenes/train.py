@@ -339,15 +339,15 @@ class Train:
         return None
 
     def _draw_title(self, canvas: Canvas) -> None:
-        for box in (_TITLE, _WORDS):  # landers fly behind
-            canvas.panel(box)
         history, sight = self.student.history, self.student.sight
-        line, share = texts.TRAIN_LINE, ""
+        height, line, share = 66, texts.TRAIN_LINE, ""
         if len(history) and sight is not None:
             line = texts.TRAIN_FIGURES.format(
                 count=len(sight.outcome), seconds=history.points[-1][0], decisions=int(sight.decisions)
             )
-            share = f"{100 * history['success'][-1]:.0f}"
+            height, share = _TITLE.height, f"{100 * history['success'][-1]:.0f}"
+        for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
+            canvas.panel(box)
         draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
         assert self._context is not None

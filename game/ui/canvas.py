@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import deque
 from copy import copy
 from typing import Final, Literal
@@ -27,6 +28,8 @@ from game.ui.typeface import Weight
 _MOST_WORDS: Final = 256  # that are remembered of a page
 _FAINT_WORDS: Final = 0.4  # the alpha from which on they are worth it
 _AROUND: Final = 4.0  # points around words that are to be as quiet
+
+_PARTS: Final = re.compile(r"\d|\D+")  # digits one by one, and what is between them
 
 Point = tuple[float, float]
 Align = Literal["left", "centre", "right"]
@@ -181,17 +184,18 @@ class Canvas:
         if not tabular:
             return typeface.reach(string, pixels, weight)
         digit = typeface.digit_width(pixels, weight)
-        return sum(digit if c.isdigit() else typeface.reach(c, pixels, weight) for c in string)
+        parts = _PARTS.findall(string)
+        return sum(digit if part.isdecimal() else typeface.reach(part, pixels, weight) for part in parts)
 
     def _write_digits(
         self, string: str, start: Point, pixels: float, weight: Weight, colour: Colour, alpha: float
     ) -> None:
         x, y = start
         digit = typeface.digit_width(pixels, weight)
-        for character in string:
-            own = typeface.reach(character, pixels, weight)
-            cell = digit if character.isdigit() else own
-            self._stamp(character, (round(x + (cell - own) / 2), round(y)), pixels, weight, colour, alpha)
+        for part in _PARTS.findall(string):
+            own = typeface.reach(part, pixels, weight)
+            cell = digit if part.isdecimal() else own
+            self._stamp(part, (round(x + (cell - own) / 2), round(y)), pixels, weight, colour, alpha)
             x += cell
 
     def _stamp(

@@ -31,7 +31,8 @@ def draw_hints(
     pairs = list(hints)
     x, y = position
     if room < math.inf:
-        size *= min(1.0, room / max(hints_width(canvas, pairs, size), 1.0))
+        gaps = len(pairs) * _GAPS[0] + (len(pairs) - 1) * _GAPS[1]  # which do not shrink
+        size *= min(1.0, (room - gaps) / max(hints_width(canvas, pairs, size) - gaps, 1.0))
     widths = [_width(canvas, pair, size) for pair in pairs]
     if from_right:
         x -= sum(widths) + (len(widths) - 1) * _GAPS[1]
