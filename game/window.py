@@ -36,7 +36,8 @@ class GameWindow:
             if "SDL_VIDEODRIVER" not in os.environ and pygame.display.get_driver() in _INVISIBLE:
                 raise pygame.error(texts.NO_VIDEO_DEVICE)
             pygame.font.init()
-            self._window = pygame.Window(texts.GAME, VIEW_SIZE, resizable=True, fullscreen_desktop=full_screen)
+            size = pygame.display.get_desktop_sizes()[0] if full_screen else VIEW_SIZE  # see `_place`
+            self._window = pygame.Window(texts.GAME, size, resizable=True, fullscreen_desktop=full_screen)
             self._window.get_surface()
         except pygame.error as error:
             raise NoDisplayError(str(error)) from error

@@ -40,6 +40,7 @@ _FLOOR: Final = 434.0  # where the charts begin
 _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 50)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
+_COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
 _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
@@ -347,7 +348,7 @@ class Train:
             )
             height, share = _TITLE.height, f"{100 * history['success'][-1]:.0f}"
         for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
-            canvas.panel(box)
+            canvas.panel(box, _COVER)
         draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
         assert self._context is not None

@@ -56,6 +56,14 @@ def test_full_screen_ten_times_in_a_real_window(display: str, tmp_path: Path):
         assert window.close() == 0
 
 
+def test_a_game_that_begins_in_full_screen_covers_the_screen(display: str, tmp_path: Path):
+    with start(display, tmp_path / "user", "--fullscreen") as window:
+        window.wait_for(lambda: window.picture().get_size() == (1280, 800), "the whole screen")
+        window.key("F11")
+        window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window")
+        assert window.close() == 0
+
+
 def test_interrupt_ends_the_game_without_a_traceback(display: str, tmp_path: Path):
     with start(display, tmp_path / "user") as window:
         assert window.interrupt() == 130
