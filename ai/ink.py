@@ -49,26 +49,26 @@ def preprocess(canvas: npt.ArrayLike) -> Image:
 
 def preprocess_strokes(strokes: Sequence[Stroke]) -> Image:
     """Return the same of strokes, each a list of points (x, y), y down, whatever pen they were drawn with."""
-    ink = _redrawn(strokes)
+    ink = redrawn(strokes)
     if not ink.any():
         return np.zeros((SIDE, SIDE), np.float32)
     return _placed(ink, (len(ink) / 2, len(ink) / 2), CELLS, True)
 
 
-def stroke_stages(strokes: Sequence[Stroke], canvas: npt.ArrayLike, *, centre: bool = True) -> Stages:
-    """Return strokes at each stage, and the canvas that they were drawn on with some pen.
+def stroke_stages(ink: Image, canvas: npt.ArrayLike, *, centre: bool = True) -> Stages:
+    """Return strokes that were `redrawn` at each stage, and the canvas that they were drawn on with some pen.
 
     What the network reads of them is what `preprocess_strokes` returns: they are not thinned on the canvas, where
     a wide pen may have filled a loop, but drawn anew.
     """
-    seen, ink = stages(canvas, width=False), _redrawn(strokes)
+    seen = stages(canvas, width=False)
     if not ink.any():
         return seen
     middle = (len(ink) / 2, len(ink) / 2)
     return seen._replace(thinned=_resample(ink, middle, CELLS, BOX), centred=_placed(ink, middle, CELLS, centre))
 
 
-def _redrawn(strokes: Sequence[Stroke]) -> Image:
+def redrawn(strokes: Sequence[Stroke]) -> Image:
     """Return strokes as large as the box, on its fine grid, with a pen as wide as MNIST's."""
     points, size = as_points(strokes), (BOX + 2 * MARGIN) * CELLS
     if not points:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from pathlib import Path
@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.ink import SIDE, Image, Stages, stages, stroke_stages
-from ai.strokes import Stroke
 
 if TYPE_CHECKING:
     from ai.digits import DigitClassifier
@@ -44,11 +43,11 @@ class Switches:
     width: bool = True
     centre: bool = True
 
-    def prepare(self, strokes: Sequence[Stroke], ink: npt.ArrayLike) -> Stages:
-        """Return strokes, and the canvas with them, at every stage."""
+    def prepare(self, strokes: Image, canvas: npt.ArrayLike) -> Stages:
+        """Return strokes, as `ai.ink.redrawn` has drawn them anew, and the canvas with them, at every stage."""
         if self.crop and self.fit and self.width:
-            return stroke_stages(strokes, ink, centre=self.centre)
-        return stages(ink, **vars(self))
+            return stroke_stages(strokes, canvas, centre=self.centre)
+        return stages(canvas, **vars(self))
 
 
 @dataclass(frozen=True, eq=False)

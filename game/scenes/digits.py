@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
+from ai.ink import redrawn
 from game import texts
 from game.context import Context
 from game.controls import Command, translate
@@ -170,13 +171,14 @@ class Digits:
             self._reader.load(name, *network.versions())
 
     def _look(self) -> Iterator[None]:
-        """Prepare what is on the pad, let the networks read it, and the chosen one say why.
+        """Draw what is on the pad anew, let the networks read it, and the chosen one say why.
 
         A part at a time: while the pen moves, all of it would be too much for one frame.
         """
         self._seen = self.pad.revision
-        seen = self._switches.prepare(self.pad.strokes, self.pad.ink)
+        strokes = redrawn(self.pad.strokes)
         yield
+        seen = self._switches.prepare(strokes, self.pad.ink)
         self.reading = self._reader.read(seen, self._pair)
         self._show_bars()
         yield

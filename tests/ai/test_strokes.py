@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ai.digits import preprocess, preprocess_strokes
-from ai.ink import stroke_stages
+from ai.ink import redrawn, stroke_stages
 from ai.strokes import draw_segments, draw_strokes, spaced
 
 WAVE = np.stack([np.linspace(20, 90, 200), 60 + 25 * np.sin(np.linspace(0, 7, 200))], axis=1)
@@ -39,8 +39,8 @@ def test_spaced_points_keep_both_ends_and_the_shape():
 def test_a_loop_that_a_wide_pen_fills_is_still_seen_in_the_strokes():
     ring = 30 + 12 * np.stack([np.cos(np.linspace(0, 6.3, 60)), np.sin(np.linspace(0, 6.3, 60))], axis=1)
     canvas = draw_strokes([ring], (60, 60), 22)
-    seen = stroke_stages([ring], canvas)
+    seen = stroke_stages(redrawn([ring]), canvas)
     assert np.array_equal(seen.centred, preprocess_strokes([ring]))
     assert seen.centred[14, 14] < 0.2 < preprocess(canvas)[14, 14]
     assert np.array_equal(seen.drawn, canvas)
-    assert stroke_stages([], np.zeros((9, 9))).centred.max() == 0
+    assert stroke_stages(redrawn([]), np.zeros((9, 9))).centred.max() == 0

@@ -3,6 +3,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+from ai.ink import redrawn
 from game.assets import MODELS_DIR
 from game.digits.reader import Reader, Switches, Verdict
 
@@ -23,7 +24,7 @@ def reader() -> Reader:
 def test_any_canvas_has_an_answer_with_any_switches(reader: Reader, ink):
     for switches in (Switches(*on) for on in product((True, False), repeat=4)):
         for strokes in ([], [np.array([(3.0, np.nan)])], [np.array([(1e9, 2.0), (-1e9, 5.0)])]):
-            reading = reader.read(switches.prepare(strokes, ink))
+            reading = reader.read(switches.prepare(redrawn(strokes), ink))
             for name, values in reading.probabilities.items():
                 assert values.sum() == pytest.approx(1, abs=1e-4)
                 assert reading.verdict(name) in Verdict
@@ -35,7 +36,7 @@ def test_switches_are_those_of_preprocessing(reader: Reader):
     line = np.array([(20.0, 20.0), (40.0, 60.0)])
     ink = np.zeros((260, 260), np.float32)
     ink[10:30, 10:20] = 1
-    seen = {switches: switches.prepare([line], ink).centred.tobytes() for switches in (
+    seen = {switches: switches.prepare(redrawn([line]), ink).centred.tobytes() for switches in (
         Switches(), Switches(centre=False), Switches(width=False), Switches(fit=False), Switches(crop=False)
     )}  # fmt: skip
     assert len(set(seen.values())) == 5
@@ -52,7 +53,7 @@ def test_a_damaged_folder_falls_back_on_the_next(reader: Reader, tmp_path):
 
 def test_two_networks_have_to_agree_to_be_sure(reader: Reader):
     ring = 100 + 60 * np.stack([np.cos(np.linspace(0, 6.3, 60)), 1.3 * np.sin(np.linspace(0, 6.3, 60))], axis=1)
-    reading = reader.read(Switches().prepare([ring], np.zeros((9, 9))))
+    reading = reader.read(Switches().prepare(redrawn([ring]), np.zeros((9, 9))))
     assert reading.verdict("modern") is Verdict.SURE
     reading.probabilities["classic"] = np.roll(reading.probabilities["classic"], 1)
     assert reading.verdict("modern") is Verdict.LIKELY
