@@ -63,7 +63,7 @@ class Dialog:
         """Draw the scene below, dimmed, and the question."""
         self._below.draw(canvas, 1.0)
         canvas.links.clear()  # the hints of what stands still below
-        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.7)
+        canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.8)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)
         left, top = self.box.left + _MARGIN, self.box.top
