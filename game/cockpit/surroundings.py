@@ -15,7 +15,7 @@ _FIRST: Final = 98.0  # the first row, under what is asked of the flight
 _ROW: Final = 20.0
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _ARROW: Final = 52.0  # points that the strongest wind is long
-_STRONGEST: Final = 0.6  # m/s²
+_STRONGEST, _CALM = 0.6, 0.05  # m/s²
 
 
 def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
@@ -26,10 +26,9 @@ def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
         if warns:
             canvas.marker("triangle", (x + 5, y - 4), 9, canvas.palette.warn)
             x += 18
-        if wind:
-            _draw_arrow(canvas, (x, y - 4), wind)
-            x += _ARROW + 12
-        canvas.text(text, (x, y), size=SMALL, colour=canvas.palette.warn if warns else MUTE)
+        end = canvas.text(text, (x, y), size=SMALL, colour=canvas.palette.warn if warns else MUTE, tabular=True).right
+        if abs(wind) >= _CALM:
+            _draw_arrow(canvas, (end + 12, y - 4), wind)
 
 
 def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
