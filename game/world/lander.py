@@ -177,9 +177,17 @@ def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[
     half = painted(pixels_per_metre, 0, (0, 0)).get_width() // 2
     corners = np.rint(middles - half).astype(int).tolist()
     return [
-        (painted(pixels_per_metre, turn, (0, 0)), (left, top))
+        (_packed(pixels_per_metre, turn), (left, top))
         for turn, (left, top) in zip(degrees.tolist(), corners, strict=True)
     ]
+
+
+@lru_cache(maxsize=512)
+def _packed(pixels_per_metre: float, degrees: int) -> pygame.Surface:
+    """Return the lander stored so that clear and solid runs cost next to nothing: there are hundreds to draw."""
+    picture = painted(pixels_per_metre, degrees, (0, 0)).copy()
+    picture.set_alpha(255, pygame.RLEACCEL)
+    return picture
 
 
 def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool = False) -> pygame.Surface:
