@@ -220,7 +220,7 @@ class App:
     # The picture
 
     def _draw(self) -> None:
-        self.canvas.links.clear()
+        self.canvas.turn_page()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
         self._notes.draw(self.canvas)
         self.window.flip()

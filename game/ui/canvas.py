@@ -48,7 +48,7 @@ class Canvas:
         palette: the colours for good and warn that the player chose.
         links: where a click means a press of a key, in points, and of which: as it was drawn last.
         pointer: where the mouse is, in points; None while it is not in use.
-        words: where words, widgets and panels were put on this page, in pixels.
+        words: where words, widgets and panels were put on the last page, and a little around them, in pixels.
 
     """
 
@@ -57,7 +57,8 @@ class Canvas:
         self.scale = 0.0
         self.links: list[tuple[pygame.FRect, pygame.event.Event]] = []
         self.pointer: Point | None = None
-        self.words: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)
+        self.words: list[pygame.Rect] = []
+        self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # on this page
         self.attach(window)
 
     def attach(self, window: pygame.Surface) -> None:
@@ -92,20 +93,24 @@ class Canvas:
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet.offset = (0, 0)
         sheet.links = []  # nothing is clicked on a sheet
-        sheet.words = deque(maxlen=0)
+        sheet._covered = deque(maxlen=0)
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
 
     def lay(self, sheet: Canvas, x: float, y: float) -> None:
         """Put a sheet down with its top left corner there."""
-        self.words.append(self.surface.blit(sheet.surface, (self.px(x), self.px(y))))
+        self.cover(self.surface.blit(sheet.surface, (self.px(x), self.px(y))))
 
-    def turn_page(self) -> list[pygame.Rect]:
-        """Begin a new page, and return where the last one had words: a sky keeps its stars from there."""
+    def cover(self, area: pygame.Rect) -> None:
+        """Note that something to be read is there, in pixels."""
+        self._covered.append(area)
+
+    def turn_page(self) -> None:
+        """Begin a new frame: no link is left, and skies keep their stars from where the last one had words."""
         around = 2 * self.px(_AROUND)
-        words = [box.inflate(around, around) for box in self.words]
-        self.words.clear()
-        return words
+        self.links.clear()
+        self.words = [box.inflate(around, around) for box in self._covered]
+        self._covered.clear()
 
     def to_points(self, window_position: Point) -> Point:
         """Turn a position in the window's pixels, such as the mouse's, into points."""
@@ -161,7 +166,7 @@ class Canvas:
             self._stamp(string, (round(x), y), pixels, weight, colour, alpha)
         above, below = typeface.extent(pixels, weight)
         if alpha > _FAINT_WORDS:
-            self.words.append(pygame.Rect(x, y - above, width, above + below))
+            self.cover(pygame.Rect(x, y - above, width, above + below))
         scale = self.scale
         return pygame.FRect(x / scale, (y - above) / scale, width / scale, (above + below) / scale)
 
@@ -308,7 +313,7 @@ class Canvas:
         """Draw the one translucent box there is."""
         self.rounded(rect, 8, PANEL, alpha)
         if alpha > _FAINT_WORDS:
-            self.words.append(self.rect(*pygame.FRect(rect)))
+            self.cover(self.rect(*pygame.FRect(rect)))
 
     def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
         """Add light around a point, fading out towards the radius."""

@@ -23,9 +23,8 @@ class NightSky:
 
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
-        words = canvas.turn_page()
         dots = [(*place, 1, 1) for place in (self._places * canvas.scale).tolist()]
-        shown = [star for star, dot in enumerate(dots) if pygame.Rect(dot).collidelist(words) < 0]
+        shown = [star for star, dot in enumerate(dots) if pygame.Rect(dot).collidelist(canvas.words) < 0]
         size = canvas.surface.get_size()
         if self._painted is None or self._painted.get_size() != size or shown != self._shown:
             self._painted, self._shown = _paint_night(size, self._ember).copy(), shown

@@ -113,7 +113,7 @@ class Widget(UIElement):
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the widget."""
-        canvas.words.append(canvas.rect(*self.box))
+        canvas.cover(canvas.rect(*self.box))
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
 

@@ -60,7 +60,7 @@ class Backdrop:
 
         `earth` is where the Earth's middle stands, in points.
         """
-        self.paint(canvas.surface, camera.view(canvas.scale, alpha), time, earth, canvas.turn_page())
+        self.paint(canvas.surface, camera.view(canvas.scale, alpha), time, earth, canvas.words)
 
     def paint(
         self,

@@ -76,9 +76,9 @@ def test_no_star_is_where_words_are(game: Driver):
     for draw in (lambda: moon.draw(canvas, Camera(), 1.0), lambda: night.draw(canvas)):
         glare = []
         for written in (False, True, False):
-            canvas.turn_page()
             if written:
                 canvas.panel(words)
+            canvas.turn_page()
             draw()
             picture = pixels(canvas.surface).max(axis=2).astype(int)[area.left : area.right, area.top : area.bottom]
             glare.append((picture > np.median(picture) + 25).sum())
