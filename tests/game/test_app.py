@@ -1,4 +1,6 @@
+import gc
 import signal
+import weakref
 from pathlib import Path
 
 import pygame
@@ -230,6 +232,18 @@ def test_pause_offers_retry_settings_and_the_way_out(open_game):
     game.app.scenes.apply(Push(Pause(probe)))
     game.keys(pygame.K_UP, pygame.K_RETURN)
     assert game.top_name == "Menu"
+
+
+def test_a_scene_that_is_left_for_good_is_in_memory_no_more(game: Driver):
+    game.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
+    settings = weakref.ref(game.top)
+    game.frames(20)
+    gc.disable()
+    try:
+        game.key(pygame.K_ESCAPE)
+        assert settings() is None
+    finally:
+        gc.enable()
 
 
 def test_stack_pops_several_levels_and_ends_empty(game: Driver):
