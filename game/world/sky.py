@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles
+from ai.env import Bools, Doubles, Ints
 from game.ui.tokens import DUSK, EMBER, NIGHT0, NIGHT1
-from game.world.paint import Picture, bell, clouds, light, mix, opaque, ramp
+from game.world.paint import Picture, bell, clouds, light, mix, opaque, ramp, shine
 
 # Where things stand, as shares of the view.
 HORIZON: Final = 0.80
@@ -32,7 +32,7 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> tuple[pygame.S
     ]
     column = ramp(height, [*night, (HORIZON, warm), (1.0, warm)])
     picture = np.repeat(column[:, None, :], width, axis=1)
-    picture += _milky_way((width, height), rng)[..., None] * np.array((150, 165, 215), np.float32)
+    shine(picture, _milky_way((width, height), rng), (150, 165, 215))
     x, y = SUN[0] * width, SUN[1] * height
     for colour, strength, across, up in (
         (mix(DUSK, EMBER, 0.45), 0.34, 0.50, 0.28),
@@ -40,10 +40,13 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> tuple[pygame.S
         (_CORE, 0.32, 0.12, 0.075),
     ):
         glow = np.outer(bell(height, y, up * height), bell(width, x, across * width))
-        picture += (strength * glow)[..., None] * np.array(colour, np.float32)
-    picture = picture.repeat(2, 0).repeat(2, 1)[: size[1], : size[0]]
-    starry = opaque(_far_stars(picture.copy(), rng), rng)
-    return starry, opaque(picture, rng)
+        shine(picture, strength * glow, colour)
+    places, light = _far_stars(size, rng)
+    clear = opaque(picture.repeat(2, 1).repeat(2, 0)[: size[1], : size[0]], rng)
+    starry = clear.copy()
+    pixels = pygame.surfarray.pixels3d(starry)
+    pixels[places] = np.clip(pixels[places] + light, 0, 255)
+    return starry, clear
 
 
 def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
@@ -60,9 +63,12 @@ def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
     return glow
 
 
-def _far_stars(picture: Picture, rng: np.random.Generator) -> Picture:
-    """Set single pixels alight, more of them along the band; the glow drowns the low ones."""
-    height, width = picture.shape[:2]
+def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[Ints, Ints], Doubles]:
+    """Return single pixels (columns, rows), more of them along the band, and the light (n, 3) that sets them alight.
+
+    The glow drowns the low ones.
+    """
+    width, height = size
     count = round(width * height / 640)
     across = rng.uniform(0, 1, count)
     spread = rng.uniform(-1, 1, count) * HORIZON
@@ -73,8 +79,7 @@ def _far_stars(picture: Picture, rng: np.random.Generator) -> Picture:
     rows, columns = (down[seen] * (height - 1)).astype(int), (across[seen] * (width - 1)).astype(int)
     brightness = 95 * rng.random(seen.sum()) ** 3.5 * np.clip((HORIZON - 0.06 - down[seen]) / 0.3, 0, 1) + 3
     tint = 1 + 0.16 * rng.uniform(-1, 1, (seen.sum(), 1)) * np.array((1.0, 0.1, -1.0))
-    np.add.at(picture, (rows, columns), (brightness[:, None] * tint).astype(np.float32))
-    return picture
+    return (columns, rows), brightness[:, None] * tint
 
 
 class NearStars:

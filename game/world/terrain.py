@@ -11,7 +11,7 @@ import pygame
 
 from game.render import LAND_REACH, POINTS_PER_METRE, VIEW_BOTTOM, WORLD_WIDTH
 from game.ui.tokens import DUSK, NIGHT0, NIGHT1, VIEW_SIZE, Colour
-from game.world.paint import Picture, bell, clouds, layer, mix, profile
+from game.world.paint import Picture, bell, clouds, layer, mix, profile, shine
 from game.world.sky import SUN
 
 # The row at which the plain ends, as a share of the view's height.
@@ -61,17 +61,17 @@ def paint_ridge(size: tuple[int, int], ridge: Ridge, rng: np.random.Generator) -
     depth = np.clip(below, 0, None)
     sunward, near = _sunlight(width, view_width)
     haze = np.clip((np.arange(top, bottom) - crest.mean()) / (bottom - crest.mean()), 0, 1).astype(np.float32)
-    colour = np.array(ridge.top, np.float32) + haze[:, None, None] ** 1.3 * (
-        np.array(ridge.foot, np.float32) - np.array(ridge.top, np.float32)
-    )
     shade = _relief(below + crest - _smooth(crest), height, rng) * sunward
     slope = np.gradient(crest) * sunward
     facing = np.clip(0.55 + 1.6 * slope, 0.08, 1.6)
     unit = height / 720
     rim = np.exp(-depth / (1.5 * unit)) * 0.75 + np.exp(-depth / (9 * unit)) * 0.25
-    picture = colour * (1 + (0.26 - 0.17 * haze[:, None]) * shade)[..., None]
+    tone = 1 + (0.26 - 0.17 * haze[:, None]) * shade
+    picture = np.zeros((*tone.shape, 3), np.float32)
+    shine(picture, tone, ridge.top)
+    shine(picture, tone * haze[:, None] ** 1.3, np.subtract(ridge.foot, ridge.top))
     warmth = ridge.rim * rim * facing * (0.16 + 0.84 * near) + 0.10 * near * haze[:, None]
-    picture += (warmth + 0.07 * near * np.clip(shade, 0, 1))[..., None] * _WARM
+    shine(picture, warmth + 0.07 * near * np.clip(shade, 0, 1), _WARM)
     return layer(picture, cover, rng), top
 
 
@@ -115,18 +115,17 @@ def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float =
     for _ in range(round(48 * (1 + 2 * margin))):
         _sink_crater(bumps, near[:, 0], view_width, rng)
     lean = np.diff(bumps, axis=1, append=bumps[:, -1:]) * (height / 720) * -1.0 * -sunward
-    far, close = (
-        np.array(mix(NIGHT1, DUSK, 0.55), np.float32),
-        np.array(mix(NIGHT0, NIGHT1, 0.25), np.float32),
-    )
-    colour = far + (np.clip(near * 1.15, 0, 1) ** 0.55)[..., None] * (close - far)
+    far, close = mix(NIGHT1, DUSK, 0.55), mix(NIGHT0, NIGHT1, 0.25)
     lit = np.clip(lean, -1, 1)
-    picture = colour * (1 + 0.62 * lit)[..., None]
+    tone = 1 + 0.62 * lit
+    picture = np.zeros((*tone.shape, 3), np.float32)
+    shine(picture, tone, far)
+    shine(picture, tone * np.clip(near * 1.15, 0, 1) ** 0.55, np.subtract(close, far))
     sheen = glow * np.exp(-near / 0.30)
-    picture += (0.20 * sheen * (1 + 0.9 * lit) + 0.055 * np.clip(lit, 0, 1) * (0.3 + glow))[..., None] * _WARM
+    shine(picture, 0.20 * sheen * (1 + 0.9 * lit) + 0.055 * np.clip(lit, 0, 1) * (0.3 + glow), _WARM)
     depth = rows - edge
     rim = np.exp(-np.clip(depth, 0, None) / (1.3 * height / 720)) * (0.10 + 0.42 * glow)
-    picture += rim[..., None] * _WARM
+    shine(picture, rim, _WARM)
     _scatter_stones(picture, near[:, 0], sunward, glow, view_width, rng)
     return layer(picture, np.clip(depth + 0.5, 0, 1), rng), top
 
