@@ -16,7 +16,7 @@ from game.ui.canvas import Canvas
 from game.ui.kept import Kept
 from game.ui.tokens import INK, LABEL, LINE, MUTE, SMALL, TEXT
 
-PANEL: Final = pygame.Rect(984, 84, 260, 426)
+PANEL: Final = pygame.Rect(984, 84, 260, 432)
 _COVER: Final = 0.92  # landers fly past behind it, and its small words are to be read all the same
 _LEFT: Final = 20  # of what stands on the panel, from its corner
 _BARS: Final = 62  # the first of the bars, from its top

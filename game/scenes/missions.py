@@ -30,6 +30,7 @@ from game.ui.widgets import Choice, Word
 _LIST: Final = pygame.Rect(MARGIN, 164, 560, 416)
 _PITCH: Final = 32
 _COLUMNS: Final = (112.0, 0.0)
+_LAMP, _LAMPS = 13.0, 62.0  # from one lamp of a medal to the next, and from the last to the end of its column
 _LEFT: Final = 720
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
 _RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
@@ -173,6 +174,10 @@ class Missions:
             canvas.text(label, place, size=LABEL, weight="medium", colour=MUTE, align=align)  # type: ignore[arg-type]
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
         self._form.draw(canvas)
+        for row, name in enumerate(self._names):
+            if name in MISSIONS and name in self._best:
+                end, medal = self._list.right - _COLUMNS[0] - _LAMPS, self._best[name].medal
+                _draw_lamps(canvas, (end - _LAMP * medal, self._list.baseline(row) - 4), medal)
         self._draw_mission(canvas, self.chosen)
         controls = self._context.controls
         arrows = controls.arrows
@@ -197,13 +202,18 @@ class Missions:
         mission, best = MISSIONS[name], self._best.get(name)
         for row, (medal, limit) in enumerate(((3, mission.gold), (2, mission.silver), (1, None))):
             y = 276 + 30 * row
-            for lamp in range(medal):
-                canvas.dot((_LEFT + 5 + 13 * lamp, y - 4), 4, MEDALS[medal])
+            _draw_lamps(canvas, (_LEFT + 5, y - 4), medal)
             canvas.text(texts.MEDALS[medal], (_LEFT + 52, y), size=SMALL + 1, colour=INK)
             words = texts.MISSION_LIMIT.format(fuel=limit[0], seconds=limit[1]) if limit else texts.MISSION_ANY
             canvas.text(words, (_LEFT + 124, y), size=SMALL, colour=MUTE)
             if best and best.medal >= medal:
                 canvas.marker("check", (_LEFT + _WIDTH - 8, y - 4), 11, canvas.palette.good)
+
+
+def _draw_lamps(canvas: Canvas, first: tuple[float, float], medal: int) -> None:
+    """Draw a medal: three lamps for gold, two for silver, one for bronze."""
+    for lamp in range(medal):
+        canvas.dot((first[0] + _LAMP * lamp, first[1]), 4, MEDALS[medal])
 
 
 _TOLD: Final = {

@@ -39,10 +39,10 @@ SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
 _SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2")
 _EARTH: Final = (208.0, 268.0)  # points; clear of the words
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
-_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 54.0)
+_STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
-_VERBS: Final = 144.0
-_CLEAR: Final = Clear(head=190.0)  # below the verbs
+_VERBS: Final = 149.0
+_CLEAR: Final = Clear(head=194.0)  # below the verbs
 _VERB: Final = 20.0
 
 

@@ -58,6 +58,10 @@ class Listing(Widget):
         """How many rows there is room for."""
         return max(1, int(self.box.height // self._pitch))
 
+    def baseline(self, row: int) -> float:
+        """Where the words of a row stand, in points."""
+        return self.box.top + (row - self.first + 0.62) * self._pitch
+
     @property
     def right(self) -> float:
         """Where the rows end: before the scroll bar, if there is one."""
@@ -122,7 +126,7 @@ class Listing(Widget):
         super().paint(canvas)
         box = self.box
         if not self.rows:
-            canvas.text(self._empty, (box.left, box.top + 0.62 * self._pitch), size=self._size, colour=MUTE)
+            canvas.text(self._empty, (box.left, self.baseline(self.first)), size=self._size, colour=MUTE)
         for number, row in enumerate(self.rows[self.first : self.first + self.room], self.first):
             top = box.top + (number - self.first) * self._pitch
             self._paint_row(canvas, row, (box.left, top, self.right), chosen=number == self.index)

@@ -15,7 +15,7 @@ from game.ui.widget import PointsManager, Widget, mix
 
 V = TypeVar("V")
 _LABELS: Final = 84.0  # room for the lanes' names
-_LANE: Final = 12.0  # points from one lane to the next
+_LANE: Final = 15.0  # points from one lane to the next
 _BAR: Final = 3.0
 _TOP: Final = 6.0  # of the strip, from the upper edge
 _STEP: Final = 6  # physics steps that an arrow moves by

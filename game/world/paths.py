@@ -18,7 +18,7 @@ from game.ui.tokens import NET, Colour
 
 _SPACING: Final = 0.62  # metres between dots
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail
-_FINEST: Final = 24  # points of a trail that is done: it is smooth, and there are many to draw
+_FINEST: Final = 40  # points of a trail that is done: it is smooth, and there are many to draw
 _STRETCH: Final = 12  # points of a trail drawn in one colour
 _FADE: Final = 0.6  # below the words at the head, in their height: where a line fades in
 
