@@ -23,8 +23,8 @@ from game.flight import Hand, Recording
 from game.settings import GRAVITY_SHARES
 
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 2
-_READS: Final = (1, 2)  # the first knew no change of gravity
+VERSION: Final = 3
+_READS: Final = (1, 2, 3)  # the first knew no change of gravity, the second no rules of missions
 _LONGEST: Final = 120 * 60  # physics steps of a flight
 _LARGEST: Final = 1_000_000  # bytes
 _MOST: Final = 32_503_680_000  # of any figure; in seconds the year 3000, up to which every system knows dates
@@ -46,6 +46,7 @@ class Entry:
         score: points for the landing.
         gravity: the share of what it is there that was farthest from all of it.
         pace: how fast time passed at the slowest, as the player chose it; 1 is its own pace.
+        rules: the number of the rules of its mission, as `rules_of` it was then.
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of what it can be flown again from.
@@ -67,6 +68,7 @@ class Entry:
     file: str = ""
     gravity: float = 1.0
     pace: float = 1.0
+    rules: int = 0
 
     def __post_init__(self) -> None:
         figures = (self.when, self.seconds, self.fuel, self.touchdown, self.human, self.gravity, self.pace)
@@ -76,7 +78,8 @@ class Entry:
             raise ValueError(f"no flight ends as {self.outcome!r}, {self.human} of it by hand")
         if not all(isinstance(word, str) for word in (self.network, self.course, self.file)):
             raise ValueError("a name is no text")
-        if not all(isinstance(count, int) and count >= 0 for count in (self.alone, self.pads, self.score, self.medal)):
+        counts = (self.alone, self.pads, self.score, self.medal, self.rules)
+        if not all(isinstance(count, int) and count >= 0 for count in counts):
             raise ValueError("a count is no whole number")
         if Path(self.file).name != self.file:
             raise ValueError("a file has no plain name")
@@ -87,9 +90,19 @@ class Entry:
         return self.gravity != 1 or self.pace != 1
 
     @property
+    def outdated(self) -> bool:
+        """Whether its mission is flown under other rules now: then it is not among the best, and its medal is past."""
+        return self.rules != rules_of(self.course)
+
+    @property
     def landed(self) -> bool:
         """Whether it ended well."""
         return self.outcome == Outcome.LANDED.name
+
+
+def rules_of(course: str) -> int:
+    """Return the number of the rules that a course is flown under now."""
+    return MISSIONS[course].rules if course in MISSIONS else 0
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,7 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
         pads=len(env.ground.pads),
         score=landing_score(env),
         gravity=max((share for _, share in flight.recording.gravity), key=lambda share: abs(share - 1), default=1.0),
+        rules=flight_file.rules_of(more.get("course", "")),
         **more,
     )
 
@@ -142,10 +143,13 @@ class Records:
 
 
 def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
-    """Return the best landings of each course by the person alone that can be flown again, at most so many of each."""
+    """Return the best landings of each course by the person alone that can be flown again, at most so many of each.
 
-    def course(entry: Entry) -> tuple[str, int]:
-        return entry.course, entry.pads
+    Those under other rules are apart, as another course.
+    """
+
+    def course(entry: Entry) -> tuple[str, int, int]:
+        return entry.course, entry.pads, entry.rules
 
     own = (entry for entry in entries if entry.landed and entry.alone and not entry.practice)
     landings = sorted((entry for entry in own if entry.file), key=course)

@@ -117,7 +117,7 @@ class Logbook:
         chosen = [
             lambda: self._entries[::-1],
             lambda: [entry for entry in reversed(self._entries) if entry.landed],
-            lambda: best(self._entries),
+            lambda: [entry for entry in best(self._entries) if not entry.outdated],
         ][self._filter.index]()
         self._shown = chosen
         index = chosen.index(before) if before in chosen else 0
@@ -229,8 +229,8 @@ def _row(entry: Entry) -> tuple[str, ...]:
     course = _course(entry)
     points = f"{entry.score}" if entry.landed else "–"
     by = texts.LOGBOOK_YOU if entry.alone else texts.LOGBOOK_SHARED if entry.human > 0 else texts.LOGBOOK_NETWORK
-    if entry.practice:
-        by = texts.PRACTICE
+    if entry.practice or entry.outdated:
+        by = texts.PRACTICE if entry.practice else texts.LOGBOOK_OUTDATED
     return when, course, texts.OUTCOMES[entry.outcome][0], f"{entry.seconds:.1f} s", points, by
 
 

@@ -228,6 +228,7 @@ def _network_words(name: str) -> str:
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:
-    """Return the best landing by the person alone in each course that has a name."""
-    landings = [entry for entry in entries if entry.course and entry.landed and entry.alone]
+    """Return the best landing by the person alone in each course that has a name, under the rules of now."""
+    own = (entry for entry in entries if entry.course and entry.alone)
+    landings = [entry for entry in own if entry.landed and not entry.outdated]
     return {entry.course: entry for entry in sorted(landings, key=rank, reverse=True)}
