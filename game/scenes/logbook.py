@@ -28,7 +28,7 @@ from game.ui.widgets import Choice, Word
 
 _LIST: Final = pygame.Rect(MARGIN, 252, 672, 336)
 _PITCH: Final = 28
-_COLUMNS: Final = (388.0, 236.0, 152.0, 76.0, 0.0)  # how far from the list's right end each cell ends
+_COLUMNS: Final = (392.0, 244.0, 164.0, 92.0, 0.0)  # how far from the list's right end each cell ends
 _LEFT: Final = 824
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
 _CHARTS: Final = (136, 304)
