@@ -60,9 +60,12 @@ class Scenery:
         return float(self._camera.view(1.0).points(place)[0])
 
     def cut(self) -> None:
-        """Turn to the flight as it stands, at once."""
+        """Turn to the flight as it stands, at once; with reduced motion only if it would be behind words, for good."""
+        shot = framing.framed(self._flight.env, clear=self.clear)
         if not self._calm:
-            self._camera.cut(framing.framed(self._flight.env, clear=self.clear))
+            self._camera.cut(shot)
+        elif shot.zoom < self._camera.shot.zoom:
+            self._camera.cut(Shot(zoom=shot.zoom))
 
     def wind_to(self) -> None:
         """Show the flight at another moment: what the steps before it left is gone."""
@@ -98,7 +101,7 @@ class Scenery:
 
     def shot_of(self, path: Doubles) -> Shot:
         """Return a shot of the whole of a path (k, 2); with reduced motion, of what is always shown."""
-        return Shot() if self._calm else framing.whole(path)
+        return self._camera.shot if self._calm else framing.whole(path)
 
     def draw_land(self, canvas: Canvas, alpha: float, earth: tuple[float, float] = EARTH) -> None:
         """Fill the view with sky and land; `earth` is where the Earth stands, in points."""

@@ -8,6 +8,7 @@ import pytest
 
 from ai.lander import PARAMS, Outcome
 from game import networks, texts
+from game.flight_words import BELOW_OPENING
 from game.render import View
 from game.scenes.play import Play
 from game.tape import Rerun
@@ -170,10 +171,23 @@ def test_the_camera_comes_near_lingers_and_draws_back_for_the_card(game: Driver)
 def test_with_reduced_motion_nothing_zooms_pans_or_shakes(game: Driver):
     game.app.context.settings.reduced_motion = True
     game.key(pygame.K_r)
+    still = scene(game)._scenery.view(1.5)
     place(game, FALL)
     for _ in range(150):
         game.frames(1)
-        assert scene(game)._scenery.view(1.5, 0.3) == View(1.5)
+        assert scene(game)._scenery.view(1.5, 0.3) == still
+
+
+@pytest.mark.parametrize("reduced", [False, True])
+def test_a_craft_that_waits_high_up_hangs_below_the_words(game: Driver, reduced: bool):
+    game.app.context.settings.reduced_motion = reduced
+    game.key(pygame.K_r)
+    place(game, (3.0, 16.0, 0.0, 0.0, 0.0, 0.0))
+    scenery = scene(game)._scenery
+    scenery.cut()
+    _, y = scenery.view(1.0).points((3.0, 16.0 + PARAMS.stand))
+    assert y > BELOW_OPENING.head
+    assert scenery.view(1.0).centre[0] == 0 or not reduced
 
 
 def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypatch: pytest.MonkeyPatch):
