@@ -53,7 +53,8 @@ class Tape:
         self.length = len(record.recording.actions)
         self.flight, self._scout = Rerun(record.recording), Rerun(record.recording)
         self._moments = [self._scout.env.snapshot()]
-        self._places = [self._scout.env.position[0].copy()]
+        self._places = np.empty((self.length + 1, 2))
+        self._places[0] = self._scout.env.position[0]
 
     @property
     def at(self) -> int:
@@ -67,8 +68,13 @@ class Tape:
 
     @property
     def path(self) -> Doubles:
-        """Where the flight went."""
-        return np.array(self._places)
+        """Where the flight went, as far as it is known: (steps, 2). It is kept; do not write."""
+        return self._places[: self.reached + 1]
+
+    @property
+    def touching(self) -> bool:
+        """Whether the scout is on the ground, where a step takes several times as long as in the air."""
+        return bool(self._scout.env.contacts.any())
 
     @property
     def complete(self) -> bool:
@@ -90,7 +96,7 @@ class Tape:
             if self.complete:
                 return
             self._scout.step(COAST)
-            self._places.append(self._scout.env.position[0].copy())
+            self._places[self.reached] = self._scout.env.position[0]
             if self.reached % _EVERY == 0:
                 self._moments.append(self._scout.env.snapshot())
 

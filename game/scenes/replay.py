@@ -109,7 +109,7 @@ class Replay:
     def update(self) -> Transition | None:
         """Let as many steps pass as the chosen speed makes due, and look a little further ahead."""
         assert self._context is not None
-        self.tape.scout(_SCOUT)
+        self.tape.scout(1 if self.tape.touching else _SCOUT)
         self._strip.reached = self.tape.reached
         if self._export:
             self._follow_export(self._export)
