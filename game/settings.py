@@ -45,17 +45,20 @@ class Settings:
     buttons: dict[str, Any] = field(default_factory=dict)  # of the pads
     tutored: bool = False  # whether the first flight has been offered
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
+    unread: bool = field(default=False, compare=False)  # whether there is a file that could not be read; not kept
 
     def to_dict(self) -> dict[str, Any]:
         """Return what the file holds."""
         values = asdict(self)
+        del values["unread"]
         return {**values.pop("unknown"), **values}
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> Settings:
         """Take every value of the right kind; the others keep their defaults."""
         settings = cls()
-        known = {each.name: each.metadata.get("limits", (0.0, 1.0)) for each in fields(cls) if each.name != "unknown"}
+        known = {each.name: each.metadata.get("limits", (0.0, 1.0)) for each in fields(cls)}
+        del known["unknown"], known["unread"]
         for name in known.keys() & values.keys():
             if _fits(values[name], getattr(settings, name), known[name]):
                 setattr(settings, name, values[name])
@@ -90,13 +93,16 @@ class SettingsFile:
             self._set_aside()
             return Settings()
         except OSError as error:
-            self.problem = texts.SETTINGS_UNREADABLE.format(reason=error.strerror)
-            return Settings()
+            self.problem = texts.SETTINGS_UNREADABLE.format(reason=error.strerror, name=DAMAGED_NAME)
+            return Settings(unread=True)
         return Settings.from_dict(values)
 
     def save(self, settings: Settings) -> bool:
-        """Write the settings whole or not at all."""
+        """Write the settings whole or not at all; a file that could not be read is put aside first."""
         try:
+            if settings.unread and os.path.lexists(self.path):
+                self.path.replace(self.path.with_name(DAMAGED_NAME))
+            settings.unread = False
             write_atomically(self.path, json.dumps(settings.to_dict(), indent=2) + "\n")
         except OSError as error:
             self.problem = texts.SETTINGS_NOT_SAVED.format(reason=error.strerror)

@@ -1085,7 +1085,7 @@ CLI_EXHIBIT: Final = "what to begin with (default: {name})"
 NETWORK_MISSING: Final = "{path} is missing"
 
 # The settings file
-SETTINGS_UNREADABLE: Final = "The settings could not be read: {reason}. These are the defaults."
+SETTINGS_UNREADABLE: Final = "The settings could not be read: {reason}. Here are the defaults; the file becomes {name}."
 SETTINGS_NOT_SAVED: Final = "The settings could not be saved: {reason}."
 SETTINGS_DAMAGED: Final = "The settings file was damaged and is kept as {name}. These are the defaults."
 SETTINGS_DAMAGED_HERE: Final = "The settings file is damaged. These are the defaults."

@@ -90,6 +90,33 @@ def test_a_folder_in_the_files_place_is_a_message(tmp_path: Path):
     assert not file.save(Settings())
 
 
+def test_a_file_that_cannot_be_read_is_put_aside_and_never_overwritten(tmp_path: Path, monkeypatch):
+    file = SettingsFile(tmp_path)
+    file.save(Settings(model="precious"))
+    locked = PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "read_text", raising(locked))
+        settings = file.load()
+        assert "Permission denied" in file.problem
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", raising(locked))  # still locked
+        assert not file.save(settings)
+        assert file.load().model == "precious"
+    settings.model = "new"
+    assert file.save(settings)
+    assert file.save(settings)
+    assert file.load() == Settings(model="new")
+    assert json.loads((tmp_path / DAMAGED_NAME).read_text())["model"] == "precious"
+    assert "unread" not in json.loads((tmp_path / FILE_NAME).read_text())
+
+
+def raising(error: OSError):
+    def fail(*_: object, **__: object) -> None:
+        raise error
+
+    return fail
+
+
 def test_writing_leaves_no_temporary_file(tmp_path: Path):
     write_atomically(tmp_path / "a.txt", "one")
     write_atomically(tmp_path / "a.txt", "two")
