@@ -7,6 +7,7 @@ os.environ["SDL_AUDIODRIVER"] = "dummy"
 
 from collections.abc import Callable, Iterator
 from itertools import count
+from multiprocessing import active_children
 from pathlib import Path
 
 import numpy as np
@@ -41,9 +42,9 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
         return opened[-1]
 
     yield open_it
-    for driver in opened:
-        if pygame.display.get_init():
-            driver.app.close()
+    for driver in reversed(opened):  # whatever one has closed, the others still have scenes to leave
+        driver.app.close()
+    assert not active_children()
     pygame.event.get() if pygame.display.get_init() else None
 
 
