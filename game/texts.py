@@ -260,8 +260,8 @@ DRAG_LANES: Final = {
     "linear": "linear, {mass:.0f} kg, up to {terminal:.2f} m/s",
     "quadratic": "quadratic, {mass:.0f} kg, up to {terminal:.2f} m/s",
 }
-IMPACTS_RAIL: Final = "{struck} struck · {moving} move · {momentum:.1f} kg·m/s"
-SPIN_TURNING: Final = "ω {spin:.2f} rad/s · I·ω {momentum:.2f}"
+IMPACTS_RAIL: Final = "{struck} struck  ·  {moving} move  ·  {momentum:.1f} kg·m/s"
+SPIN_TURNING: Final = "ω {spin:.2f} rad/s  ·  I·ω {momentum:.2f}"
 SPIN_BARS: Final = (
     "pushed in the middle: {pace:.2f} m/s, {spin:.2f} rad/s",
     "pushed near its end: {pace:.2f} m/s, {spin:.2f} rad/s",
@@ -534,7 +534,7 @@ SWARM_BEST: Final = "best"
 SWARM_LUCKIEST: Final = "luckiest"
 TRAIN_TITLE: Final = "Watch it learn"
 TRAIN_LINE: Final = "Press Start: what falls like stones learns to land."
-TRAIN_FIGURES: Final = "{count} landers at once · {seconds:.0f} s · {decisions:,} decisions"
+TRAIN_FIGURES: Final = "{count} landers at once  ·  {seconds:.0f} s  ·  {decisions:,} decisions"
 TRAIN_LANDED: Final = "% of the last 100 landed"
 TRAIN_START: Final = "Start"
 TRAIN_PAUSE: Final = "Pause"
@@ -708,7 +708,7 @@ NET_LINES: Final = {
 PUPIL_TITLE: Final = "Train it here"
 PUPIL_LINE: Final = "Press Start: a network that has never seen a digit learns to read."
 PUPIL_LOADING: Final = "Unpacking 60,000 handwritten digits …"
-PUPIL_FIGURES: Final = "epoch {epoch:.2f} of {epochs} · {seconds:.0f} s · {rate:,.0f} images a second"
+PUPIL_FIGURES: Final = "epoch {epoch:.2f} of {epochs}  ·  {seconds:.0f} s  ·  {rate:,.0f} images a second"
 PUPIL_READ: Final = "% read of what was held out"
 PUPIL_TESTED: Final = "% read of the 10,000 test images"
 PUPIL_STOP: Final = "Stop"
@@ -731,10 +731,10 @@ PUPIL_PRESETS: Final = {
     "classic": ("Classic", "Looks at all pixels at once: quick to learn, and good enough for neat hands."),
 }
 MATRIX_TITLE: Final = "WHAT IT MISREADS"
-MATRIX_AXES: Final = "rows: what it is · columns: what it reads"
+MATRIX_AXES: Final = "rows: what it is  ·  columns: what it reads"
 MATRIX_RIGHT: Final = "{digit}, read rightly"
 MATRIX_WRONG: Final = "{digit}, read as {read}"
-MATRIX_COUNT: Final = "{count} of {shown} · {percent:.1f} %"
+MATRIX_COUNT: Final = "{count} of {shown}  ·  {percent:.1f} %"
 MATRIX_EMPTY: Final = "It fills as the network learns."
 
 # A digit with its article
