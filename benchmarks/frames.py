@@ -44,7 +44,7 @@ from game.context import Context
 from game.course import Flown
 from game.exhibits import EXHIBITS
 from game.scene import Scene
-from game.scenes.dialog import Asking
+from game.scenes.dialog import Asking, Naming, Picking
 from game.scenes.fault import Fault
 from game.scenes.menu import Menu
 from game.scenes.pause import Pause
@@ -96,6 +96,8 @@ def rows() -> dict[str, Row]:
         **{f"mission, {name}": Row(lambda _, m=m: Play(0, course=Flown(m)), FLOWN) for name, m in MISSIONS.items()},
         "pause": Row(over_play(Pause)),
         "dialog": Row(over_play(lambda below: Asking(below, "?", "", [("a", print), ("b", print)]))),
+        "dialog, naming": Row(over_play(lambda below: Naming(below, "?", "name", lambda _: ""))),
+        "dialog, picking": Row(over_play(lambda below: Picking(below, "?", [("a",), ("b",)], print))),
         "choices": Row(play.make, (pygame.K_c, pygame.K_DOWN)),
         "fault": Row(lambda _: Fault(ValueError(), Path("log"))),
         **{f"watch, {number}": Row(lambda _, n=number: Watch(n, seed=4)) for number in COUNTS},
