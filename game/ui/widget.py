@@ -7,11 +7,12 @@ draws itself in the window's own pixels, so nothing is laid out again when the w
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 import pygame
 from pygame_gui import UIManager
 from pygame_gui.core import UIElement
+from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 
 from game.controls import Controls
 from game.scene import Transition
@@ -25,9 +26,17 @@ EASE: Final = 0.22  # of the way that is left, in every sixtieth of a second
 class PointsManager(UIManager):
     """pygame_gui's manager, living in points: it is told where the mouse is instead of asking the window."""
 
+    _theme: UIAppearanceTheme | None = None
+
     def __init__(self) -> None:
         super().__init__(VIEW_SIZE, enable_live_theme_updates=False)
         self.mouse_position = (-1, -1)
+
+    def create_new_theme(self, theme_path: Any = None) -> UIAppearanceTheme:
+        """Return a theme that all share: nothing is drawn by it, and to read it takes half of a frame."""
+        if PointsManager._theme is None:
+            PointsManager._theme = super().create_new_theme(theme_path)
+        return PointsManager._theme
 
     def process_events(self, event: pygame.event.Event) -> bool:
         """Give a mouse event, in points, to the elements."""
