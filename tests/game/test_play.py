@@ -14,6 +14,7 @@ from game import networks, texts
 from game.assets import MODELS_DIR
 from game.context import Context
 from game.flight import Hand
+from game.records import Records
 from game.scenes.play import Play
 from game.ui.canvas import Canvas
 from tests.game.driver import Driver
@@ -225,17 +226,78 @@ def test_a_missing_network_is_named_and_the_game_goes_on(open_game: Open, contex
     assert "missing" in play._network.problem
 
 
+def cut_short(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:100])
+
+
+def one_nan(path: Path) -> None:
+    weights = np.load(path)
+    weights.flat[-1] = np.nan
+    np.save(path, weights)
+
+
 @pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exists(), reason="no trained network here")
-def test_a_damaged_network_is_named_and_the_game_goes_on(open_game: Open, context: Context, tmp_path: Path):
+@pytest.mark.parametrize("damage", [cut_short, one_nan])
+def test_a_damaged_network_is_named_and_the_game_goes_on(
+    open_game: Open, context: Context, tmp_path: Path, damage: Callable[[Path], None]
+):
     shutil.copytree(MODELS_DIR / "lander" / "modern", tmp_path / "lander" / "modern")
     for path in (tmp_path / "lander" / "modern").rglob("*weights.npy"):
-        path.write_bytes(path.read_bytes()[:100])
+        damage(path)
     context.models_dir = tmp_path
     driver = open_game(Play(seed=1))
     driver.key(pygame.K_TAB)
     driver.frames(30)
     assert scene(driver).flight.hand is Hand.HUMAN
     assert "weights" in scene(driver)._network.problem
+    assert scene(driver)._network.problem in driver.app._notes._text
+
+
+def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_other_flight(open_game: Open, context):
+    resource = pytest.importorskip("resource")
+    driver = open_game(Play(seed=1))
+    crash(driver)
+    before = {path.name: path.read_bytes() for path in context.user_dir.rglob("*.json*")}
+    assert len(before) == 2  # the logbook, and the flight
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, limits[1]))
+    try:
+        driver.key(pygame.K_r)
+        crash(driver)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "could not be kept: " in driver.app._notes._text
+    assert {path.name: path.read_bytes() for path in context.user_dir.rglob("*.json*")} == before
+    driver.key(pygame.K_r)
+    crash(driver)
+    assert len(Records(context.user_dir).entries()) == 2
+
+
+def crash(driver: Driver) -> None:
+    scene(driver).waiting = False
+    scene(driver).flight.env.place(np.ones(1, bool), np.array([[8.0, 2.2, 0.0, -3.0, 0.0, 0.0]]))
+    while scene(driver).ending.card is None:
+        driver.frames(1)
+
+
+def test_a_window_that_is_minimised_for_a_minute_finds_the_flight_as_it_was_left(open_game: Open, flown_by):
+    driver = open_game(Play(seed=1))
+    driver.frames(2)
+    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    driver.frames(30)
+    driver.post(pygame.WINDOWMINIMIZED)
+    driver.post(pygame.WINDOWFOCUSLOST)
+    driver.frames(3600)
+    driver.post(pygame.WINDOWRESTORED)
+    driver.post(pygame.WINDOWFOCUSGAINED)
+    assert driver.top_name == "Pause"
+    driver.key(pygame.K_ESCAPE)
+    flight = scene(driver).flight
+    flown = len(flight.recording.actions)
+    assert 20 < flown < 60
+    driver.frames(10)
+    assert len(flight.recording.actions) == flown + 10
+    assert set(flight.recording.actions[-10:]) == {0}  # no engine sticks
 
 
 def with_networks(context: Context, tmp_path: Path, *names: str) -> None:
