@@ -65,6 +65,8 @@ class Play:
         """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
         if self._context is not None:
             self._scenery.calm = self.ending.calm = context.settings.reduced_motion
+            if self.ending.calm:
+                self._pace.hurry()
             if self.waiting and not self._course and self._chosen() != (self.flight.recording.pads, self._hands):
                 self.retry()
             return
