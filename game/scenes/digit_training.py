@@ -206,6 +206,9 @@ class DigitTrainingScene:
         self.pupil.change(name, value)
 
     def _leave(self) -> Transition:
+        assert self._context is not None
+        if self.pupil.alive and self.pupil.steps:
+            self._context.note(texts.TRAIN_KEPT)
         self.pupil.close()
         return Pop()
 

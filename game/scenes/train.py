@@ -334,7 +334,10 @@ class Train:
         self.board.charts.hover(None)
 
     def _back(self) -> Transition | None:
+        assert self._context is not None
         if not self.inside.large:
+            if self.student.alive and len(self.student.history):
+                self._context.note(texts.TRAIN_KEPT)
             return Pop()
         self._look_closer()
         return None

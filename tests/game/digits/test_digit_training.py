@@ -148,9 +148,12 @@ def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     scene = train.top
     train.key(pygame.K_RETURN)
     wait(train, lambda: scene.pupil.curves.points)
+    notes: list[str] = []
+    train.app.context.note = notes.append
     train.key(pygame.K_ESCAPE)
     assert scene.pupil.state is State.ENDED
     assert scene.pupil.unfinished
+    assert notes == [texts.TRAIN_KEPT]
 
 
 def test_a_process_that_dies_is_told_of_and_another_can_be_started(train: Driver):
