@@ -56,6 +56,7 @@ class Play:
         self.flight: Flight
         self.ending: Ending
         self._scenery: Scenery
+        self._pace: Pace
         self.waiting, self._let_go = True, False
         self._hands = OWN
         self._mouse = MouseStick()
