@@ -201,7 +201,7 @@ def _paint_large(pixels_per_metre: float, degrees: int, halves: tuple[int, int],
     return _paint.__wrapped__(pixels_per_metre, degrees, halves, wreck)
 
 
-@lru_cache(maxsize=1536)
+@lru_cache(maxsize=512)  # a twentieth of one at most: in an hour of play, all that fit in are there
 def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool) -> pygame.Surface:
     half = math.ceil(REACH * pixels_per_metre) + 2
     side = 2 * half + 1
