@@ -16,7 +16,7 @@ _AROUND: Final = 2.2  # metres beside a craft, and above it
 _BESIDE: Final = 1.6  # metres beside a pad
 _LEAD: Final = 0.6  # seconds: how far ahead of a craft the camera looks
 # Of several pads, those count to which a craft at that height may still turn.
-_REACH: Final = (6.5, 1.1)  # metres to the side at the height of the ground, and more for every metre above it
+_REACH: Final = (6.0, 2.2)  # metres to the side at the height of the ground, and more for every metre above it
 _FADE: Final = 3.0  # metres over which a pad out of reach stops to count
 
 

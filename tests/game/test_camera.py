@@ -8,6 +8,7 @@ from ai.ground import Ground, hilly
 from ai.lander import LIMITS, PARAMS, LanderEnv
 from game import framing
 from game.flight import Flight
+from game.flight_words import BELOW_OPENING
 from game.render import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, Shot, View
 from game.ui.tokens import VIEW_SIZE
 from game.world.sheet import Sheet
@@ -163,6 +164,13 @@ def test_what_is_scaled_stays_where_it_belongs():
         assert abs(columns.min() - x) <= 1.5
         assert abs(rows.min() - y) <= 1.5
         assert abs(columns.max() + 1 - x - 32 * zoom) <= 1.5
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_flight_begins_with_all_its_pads_in_view(seed: int):
+    env = Flight(seed, pads=3).env
+    view = framing.framed(env, clear=BELOW_OPENING).view(1.0)
+    assert all(seen(view, (edge, pad.top)) for pad in env.ground.pads for edge in (pad.left, pad.right))
 
 
 @pytest.mark.parametrize("pads", [1, 3])
