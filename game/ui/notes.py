@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 from game.ui.canvas import Canvas
-from game.ui.tokens import INK, SMALL, VIEW_SIZE
+from game.ui.tokens import FAINT, INK, SMALL, VIEW_SIZE
 
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
 _LONGEST: Final = 150
 _TOP: Final = 68
+_COVER: Final = 0.96  # it comes over whatever is there
 
 
 class Notes:
@@ -37,5 +38,7 @@ class Notes:
         alpha = min(1.0, self._left / _STEPS_FADING)
         width = canvas.text_width(self._text, size=SMALL)
         middle = VIEW_SIZE[0] / 2
-        canvas.panel((middle - width / 2 - 16, _TOP, width + 32, 32))
+        box = (middle - width / 2 - 16, _TOP, width + 32, 32)
+        canvas.panel(box, _COVER * alpha)
+        canvas.outline(box, 8, FAINT, alpha=alpha)
         canvas.text(self._text, (middle, _TOP + 20), size=SMALL, colour=INK, align="centre", alpha=alpha)
