@@ -39,6 +39,7 @@ class DrawingPad:
         self._ink = _Layer((self.rect.width // 2, self.rect.height // 2), 0.5)
         self._layer: _Layer | None = None
         self._sheet = pygame.Surface((1, 1), pygame.SRCALPHA)
+        self._paper: Canvas
 
     @property
     def empty(self) -> bool:
@@ -92,20 +93,32 @@ class DrawingPad:
 
     def draw(self, canvas: Canvas, colour: Colour = INK) -> None:
         """Draw the pad and what is on it, in the window's own pixels."""
-        canvas.rounded(self.rect, _RADIUS, NIGHT0)
-        canvas.outline(self.rect, _RADIUS, LINE)
         area = canvas.rect(*self.rect)
         if self._layer is None or self._layer.scale != canvas.scale or self._sheet.get_size() != area.size:
             self._layer = _Layer(area.size, canvas.scale)
             self._sheet = pygame.Surface(area.size, pygame.SRCALPHA)
             self._sheet.fill((*colour, 0))
+            self._paper = canvas.sheet(*self.rect.size)
+            self._lay_ink(self._paper.surface.get_rect())
         changed = self._layer.follow(self._strokes)
         if changed:
             rows, columns = changed
             alpha = pygame.surfarray.pixels_alpha(self._sheet)
             alpha[columns, rows] = (self._layer.cover[rows, columns] * 255.5).astype(np.uint8).T
             del alpha  # it locks the surface
-        canvas.surface.blit(self._sheet, area)
+            (left, right, _), (top, bottom, _) = columns.indices(area.width), rows.indices(area.height)
+            self._lay_ink(pygame.Rect(left, top, right - left, bottom - top))
+        canvas.surface.blit(self._paper.surface, area)
+
+    def _lay_ink(self, part: pygame.Rect) -> None:
+        """Put box, edge and ink into one picture again, in a part of it: a third of the pixels to draw in every frame."""
+        paper, box = self._paper, (0, 0, *self.rect.size)
+        paper.surface.set_clip(part)
+        paper.surface.fill((0, 0, 0, 0))
+        paper.rounded(box, _RADIUS, NIGHT0)
+        paper.outline(box, _RADIUS, LINE)
+        paper.surface.blit(self._sheet, (0, 0))
+        paper.surface.set_clip(None)
 
     def _begin(self, position: Point) -> None:
         self._remember()
