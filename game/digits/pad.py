@@ -111,7 +111,7 @@ class DrawingPad:
         canvas.surface.blit(self._paper.surface, area)
 
     def _lay_ink(self, part: pygame.Rect) -> None:
-        """Put box, edge and ink into one picture again, in a part of it: a third of the pixels to draw in every frame."""
+        """Put box, edge and ink into one picture again, in a part of it: every frame draws one, not three."""
         paper, box = self._paper, (0, 0, *self.rect.size)
         paper.surface.set_clip(part)
         paper.surface.fill((0, 0, 0, 0))
