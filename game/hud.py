@@ -241,7 +241,7 @@ class Rival:
 
 CARD: Final = pygame.Rect(400, 136, 480, 264)
 _ADVICE_ROW: Final = 24
-_RIVAL_ROWS: Final = 54
+_RIVAL_ROWS: Final = 60
 
 
 def draw_card(
@@ -275,7 +275,7 @@ def draw_card(
         figure = canvas.text(value, (x, top + 149), size=TITLE, weight="light", tabular=True)
         canvas.text(unit, (figure.right + 4, top + 149), size=LABEL, colour=MUTE)
     if rival:
-        _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 176), width)
+        _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 183), width)
         top += _RIVAL_ROWS
     shared = card.stepped_in is not None
     draw_share(canvas, left, top + 188, width, card.human, texts.SHARE_COPILOT if shared else texts.SHARE_NETWORK)
