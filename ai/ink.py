@@ -23,7 +23,7 @@ STROKE_WIDTH: Final = 2.4  # pixels: the mean of MNIST's training images, as `st
 CELLS: Final = 5  # along a pixel: the grid on which strokes are measured and changed
 MARGIN: Final = 2  # pixels of it around the box, room for strokes that grow
 SPACING: Final = 1.5  # cells from one point of a stroke to the next: more of them change nothing that can be seen
-MOST_POINTS: Final = 400  # of all strokes together: digits have half as many, and a scribble must not take long
+MOST_POINTS: Final = 250  # of all strokes together: digits have fewer, and a scribble must not take long
 LARGEST_GROWTH: Final = 2.0  # how far ink is enlarged once its strokes are thinner: a dot stays a dot
 
 Image = npt.NDArray[np.float32]

@@ -69,16 +69,17 @@ def _draw_short(canvas: Canvas, starts: Points, ends: Points, widths: Points) ->
     side = int(np.ceil((np.maximum(starts, ends) + widths[:, None] / 2 + 1 - corners).max()))
     inside = ((corners > -side) & (corners < (width, height))).all(axis=1)
     starts, ends, corners, widths = starts[inside], ends[inside], corners[inside], widths[inside]
+    rows, columns = min(side, height), min(side, width)
+    corners = np.clip(corners, 0, (width - columns, height - rows))  # windows at an edge are moved inwards
     pixels = np.arange(side, dtype=np.float32) + 0.5
     (across, down), (dx, dy) = (starts - corners).astype(np.float32).T, (ends - starts).astype(np.float32).T
     covers = _cover(
-        pixels - across[:, None, None], pixels[:, None] - down[:, None, None], dx[:, None, None], dy[:, None, None],
-        widths.astype(np.float32)[:, None, None],
+        pixels[:columns] - across[:, None, None], pixels[:rows, None] - down[:, None, None],
+        dx[:, None, None], dy[:, None, None], widths.astype(np.float32)[:, None, None],
     )  # fmt: skip
     for (left, top), cover in zip(corners.astype(int).tolist(), covers, strict=True):
-        part = canvas[max(top, 0) : top + side, max(left, 0) : left + side]
-        above, before = max(-top, 0), max(-left, 0)
-        np.maximum(part, cover[above : above + part.shape[0], before : before + part.shape[1]], out=part)
+        part = canvas[top : top + rows, left : left + columns]
+        np.maximum(part, cover, out=part)
 
 
 def _draw_long(canvas: Canvas, start: Points, end: Points, width: float) -> None:
