@@ -16,7 +16,7 @@ from game.ui.tokens import NIGHT0, VIEW_SIZE
 from game.world.earth import paint_earth
 from game.world.looks import LOOKS, MOON, Look
 from game.world.sheet import Sheet
-from game.world.sky import HORIZON, NearStars, paint_sky
+from game.world.sky import NearStars, paint_sky
 from game.world.terrain import HORIZON_HEIGHT, MARGIN, PLAIN_HORIZON, RIDGES, WIDE_MARGIN, paint_plain, paint_ridge
 
 EARTH: Final = (312.0, 152.0)  # points
@@ -36,7 +36,7 @@ class Backdrop:
     def __init__(self, size: tuple[int, int], rng: np.random.Generator, reduced_motion: bool = False) -> None:
         self.size = size
         sky, stars, earth, self._plain_chance, *ranges = rng.spawn(4 + len(RIDGES))
-        self._sky, self._clear = paint_sky(size, sky)
+        self._sky = paint_sky(size, sky)
         self._stars = NearStars(size, stars, still=reduced_motion)
         self._disc, self._air = paint_earth(EARTH_RADIUS * size[1] / 720, earth)
         self._ridges = [
@@ -49,7 +49,7 @@ class Backdrop:
         """Return the same land on another world, or in other light."""
         other = copy(self)
         other._look, other._plains = look, {}
-        other._sky, other._clear = look.on_sky(self._sky), look.on_sky(self._clear)
+        other._sky = look.on_sky(self._sky)
         other._ridges = [(look.on_land(sheet), top, depth) for sheet, top, depth in self._ridges]
         return other
 
@@ -85,9 +85,6 @@ class Backdrop:
             surface.blit(self._sky, (0, 0), (0, 0, self.size[0], down))
         elif down < 0:  # behind the plain, which may be the least bit translucent
             surface.fill(NIGHT0, (0, self.size[1] + down, self.size[0], -down))
-        words = [box for box in words if box.top < HORIZON * self.size[1] + down]
-        for box in words:
-            surface.blit(self._clear, box, box.move(0, -down).clamp(self._clear.get_rect()))
         if self._look.stars:
             self._stars.draw(surface, (across, down), time, words)
         if self._look.earth:

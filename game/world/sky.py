@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles, Ints
+from ai.env import Doubles, Ints
 from game.ui.tokens import DUSK, EMBER, NIGHT0, NIGHT1
 from game.world.paint import Picture, bell, clouds, light, mix, opaque, ramp, shine
 
@@ -20,8 +20,8 @@ _GLOW: Final = (232, 142, 90)
 _CORE: Final = (255, 204, 138)
 
 
-def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> tuple[pygame.Surface, pygame.Surface]:
-    """Return everything that is too far away ever to move: night, glow, star dust; and the same without stars."""
+def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface:
+    """Return everything that is too far away ever to move: night, glow, star dust."""
     width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
     warm = mix(DUSK, EMBER, 0.14)
     night = [
@@ -42,11 +42,10 @@ def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> tuple[pygame.S
         glow = np.outer(bell(height, y, up * height), bell(width, x, across * width))
         shine(picture, strength * glow, colour)
     places, light = _far_stars(size, rng)
-    clear = opaque(picture.repeat(2, 1).repeat(2, 0)[: size[1], : size[0]], rng)
-    starry = clear.copy()
-    pixels = pygame.surfarray.pixels3d(starry)
+    sky = opaque(picture.repeat(2, 1).repeat(2, 0)[: size[1], : size[0]], rng)
+    pixels = pygame.surfarray.pixels3d(sky)
     pixels[places] = np.clip(pixels[places] + light, 0, 255)
-    return starry, clear
+    return sky
 
 
 def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
@@ -66,7 +65,7 @@ def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
 def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[Ints, Ints], Doubles]:
     """Return single pixels (columns, rows), more of them along the band, and the light (n, 3) that sets them alight.
 
-    The glow drowns the low ones.
+    The glow drowns the low ones. None is as bright as to be read as a dot: they stay where words are.
     """
     width, height = size
     count = round(width * height / 640)
@@ -77,7 +76,7 @@ def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[I
     down = np.where(in_band, start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count), np.abs(spread))
     seen = (down > 0) & (down < HORIZON)
     rows, columns = (down[seen] * (height - 1)).astype(int), (across[seen] * (width - 1)).astype(int)
-    brightness = 95 * rng.random(seen.sum()) ** 3.5 * np.clip((HORIZON - 0.06 - down[seen]) / 0.3, 0, 1) + 3
+    brightness = 52 * rng.random(seen.sum()) ** 2.7 * np.clip((HORIZON - 0.06 - down[seen]) / 0.3, 0, 1) + 3
     tint = 1 + 0.16 * rng.uniform(-1, 1, (seen.sum(), 1)) * np.array((1.0, 0.1, -1.0))
     return (columns, rows), brightness[:, None] * tint
 
@@ -116,17 +115,10 @@ class NearStars:
         if not self._still:
             level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
         sprites = [row[bright] for row, bright in zip(self._rows, level.tolist(), strict=True)]
-        seen = np.flatnonzero(~_within(place, words)).tolist()
+        boxes = [box for box in words if box.top < HORIZON * surface.get_height()]
+        dots = [(x, y, 1, 1) for x, y in place.tolist()]
+        seen = [star for star, dot in enumerate(dots) if pygame.Rect(dot).collidelist(boxes) < 0]
         surface.fblits([(sprites[star], corners[star]) for star in seen], pygame.BLEND_RGB_ADD)
-
-
-def _within(place: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:
-    """Return which places (n, 2) are in one of the boxes."""
-    corners = np.array([(*box.topleft, *box.bottomright) for box in boxes]).reshape(-1, 4)
-    x, y = place[:, :1], place[:, 1:]
-    left, top, right, bottom = corners.T
-    found: Bools = np.any((x >= left) & (x < right) & (y >= top) & (y < bottom), axis=1)
-    return found
 
 
 def _star(kind: int, brightness: float, unit: float) -> pygame.Surface:
