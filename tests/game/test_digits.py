@@ -8,6 +8,7 @@ import pygame
 import pytest
 
 from ai.digit_stages import stage_accuracy
+from ai.ink import preprocess_strokes
 from benchmarks.digits_robustness import TEMPLATES
 from game.context import Context
 from game.digits.reader import Switches, Verdict
@@ -175,6 +176,16 @@ def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
     assert np.abs(why.saliency).max() == pytest.approx(1)
     assert np.abs(why.saliency[seen == 0]).max() == 0
     assert [layer.shape for layer in why.layers] == [(32, 12, 12), (64, 4, 4), (128,)]
+
+
+def test_what_is_put_right_is_what_is_drawn_however_soon_that_is(drawing: Driver, monkeypatch):
+    digits, given = scene(drawing), []
+    monkeypatch.setattr(digits._fixing, "begin", lambda _, image, *others: given.append((image, *others)))
+    draw(drawing, strokes(2))
+    drawing.key(pygame.K_7)  # it has not been read yet
+    [(image, digit, _)] = given
+    assert digit == 7
+    assert np.array_equal(image, preprocess_strokes(digits.pad.strokes))
 
 
 def test_a_step_that_is_switched_off_changes_what_is_seen_and_its_price_is_measured(drawing: Driver, monkeypatch):

@@ -75,6 +75,16 @@ def test_ink_lies_where_it_was_drawn_however_it_was_painted(pad: DrawingPad):
     assert rows[0] == pytest.approx(50 - PEN_WIDTH / 4, abs=2)
 
 
+def test_a_drawing_looks_the_same_whether_it_was_seen_to_grow_or_not(pad: DrawingPad):
+    for way in ([(3, 3), (200, 90), (517, 260)], [(400, 517), (60, 430)], [(260, 260), (270, 300)]):
+        drag(pad, *way)
+        grown = picture(pad)
+    pad.undo()
+    drag(pad, (260, 260), (270, 300))
+    picture(pad, (640, 360))  # another size: everything is painted anew
+    assert np.array_equal(picture(pad), grown)
+
+
 def test_a_click_is_a_dot(pad: DrawingPad):
     drag(pad, (200, 300))
     assert len(pad.strokes) == 1

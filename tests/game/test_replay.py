@@ -70,7 +70,9 @@ def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flig
     assert tape.at == 30
     tape.seek(-5)
     assert tape.at == 0
+    assert not tape.touching
     tape.scout(10_000)
+    assert tape.touching
     tape.seek(10_000)
     assert (tape.at, tape.complete, tape.faithful) == (tape.length, True, True)
     assert len(tape.path) == tape.length + 1
