@@ -5,9 +5,9 @@
 It is the real game without a window, on a clock of its own: 60 frames a second, 216,000 in all. It goes
 round all scenes, as a player would: flights by hand, shared and by the network, missions, races, replays that are
 wound, swarms, exhibits, digits that are drawn, screens that are looked through. Every simulated minute it prints
-what is in memory. A round takes five minutes; scenes differ, so the most of one round is compared with that of
-another. Exit code 1 if the last one needed 20 MB more than the second. With `--trace`, it says at the end which
-lines of code hold more than after ten minutes; that takes three times as long.
+what is in memory, without what the allocator only keeps free. A round takes five minutes; scenes differ, so the most
+of one round is compared with that of another. Exit code 1 if the last one needed 20 MB more than the second. With
+`--trace`, it says at the end which lines of code hold more than after ten minutes; that takes three times as long.
 
 Training goes by the clock on the wall, and has a script of its own: train_endurance.
 """

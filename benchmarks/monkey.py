@@ -260,8 +260,6 @@ def stale_scenes(in_use: list[Scene]) -> list[str]:
     for each in gc.get_objects():
         if isinstance(each, type(_recording)) and each.__module__.startswith("game."):
             each.cache_clear()  # pictures, and fonts that keep their files open: so many at the most, but not yet
-    with suppress(OSError, AttributeError):
-        ctypes.CDLL(None).malloc_trim(0)  # what is no longer in use goes back to the system
     alive = Counter(type(each).__name__ for each in scenes_alive() if each not in in_use)
     return [f"{number} × {name} still in memory" for name, number in alive.items()]
 
@@ -275,7 +273,12 @@ def wait_for(holds: Callable[[], object], seconds: float) -> bool:
 
 
 def resident() -> float:
-    """Return the megabytes this process has in memory; 0 where the system does not tell."""
+    """Return the megabytes this process has in memory; 0 where the system does not tell.
+
+    What the allocator holds free between what is in use, some 100 MB, first goes back to the system.
+    """
+    with suppress(OSError, AttributeError):
+        ctypes.CDLL(None).malloc_trim(0)
     file = Path("/proc/self/statm")
     return int(file.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6 if file.exists() else 0.0
 
