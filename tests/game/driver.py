@@ -27,6 +27,13 @@ class Driver:
             goes_on = self.app.tick()
         return goes_on
 
+    def skip(self, number: int) -> None:
+        """Play frames of which only every tenth is drawn: drawing is most of the work."""
+        for frame in range(number):
+            self.app.window.minimised = frame % 10 > 0
+            self.frames(1)
+        self.app.window.minimised = False
+
     def wait(self, until: Callable[[], object], seconds: float = 40.0) -> None:
         """Play frames until something holds; the limit is only there so that a failure ends."""
         end = time.monotonic() + seconds

@@ -91,7 +91,7 @@ def test_with_and_without_motion_the_same_hands_fly_the_same_flight(game: Driver
         game.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
         game.frames(80)
         game.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
-        game.frames(900)
+        game.skip(900)
         flight = scene(game).flight
         assert flight.over
         again = Rerun(flight.recording)

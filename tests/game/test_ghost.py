@@ -189,7 +189,7 @@ def test_a_ghost_that_still_flies_has_no_figures_and_flies_on(duel):
     yours = scene(driver).flight.env
     row = ghost(driver).row(yours)
     assert (row.result, row.figures) == ("still flying", {})
-    driver.frames(1200)
+    driver.skip(1200)
     assert ghost(driver).row(yours).result == "landed"
 
 

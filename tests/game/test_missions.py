@@ -276,7 +276,7 @@ def test_the_ghost_of_a_race_flies_as_the_flight_did(book: Driver):
     book.click(word.box.center)
     ghost = play(book)._ghost
     play(book).waiting = False
-    book.frames(1200)
+    book.skip(1200)
     assert ghost.flight.outcome is Outcome.LANDED
     book.key(pygame.K_r)
     assert play(book).waiting

@@ -125,7 +125,7 @@ def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_
     driver.key(LEFT)
     driver.frames(20)
     driver.key(pygame.K_TAB)
-    driver.frames(1400)
+    driver.skip(1400)
     play = scene(driver)
     assert play.flight.outcome is Outcome.LANDED
     assert play.ending.card is not None

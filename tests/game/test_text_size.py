@@ -111,7 +111,7 @@ def test_nothing_meets_or_leaves_at_the_largest(open_game, context: Context, mon
     ("mission", {}, crashed),
     ("Play", {"assist": 0.6, "three_pads": True}, shared),
     ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
-    ("swarm", {}, lambda driver: driver.frames(400)),
+    ("swarm", {}, lambda driver: driver.skip(400)),
 ])  # fmt: skip
 def test_nor_in_the_midst_of_things(open_game, context: Context, monkeypatch, name: str, settings, happens):
     for setting, value in settings.items():
