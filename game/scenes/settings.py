@@ -132,6 +132,7 @@ class SettingsScene:
         canvas.text(texts.KEYS_TITLE, (_KEYS_LEFT, y), size=LABEL, weight="medium", colour=MUTE)
         canvas.text(texts.KEYS_KEYBOARD, (_KEYS_LEFT + 192, y), size=LABEL, weight="medium", colour=MUTE)
         canvas.text(texts.KEYS_PAD, (pad_left, y), size=LABEL, weight="medium", colour=MUTE, align="right")
+        canvas.cover(canvas.rect(_KEYS_LEFT, y, pad_left - _KEYS_LEFT, 36 * len(_KEYS)))  # no star in the table
         controls = self._context.controls
         for meaning in _KEYS:
             canvas.line((_KEYS_LEFT, y + 12), (pad_left, y + 12), LINE, 1)
