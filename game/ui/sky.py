@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 import pygame
 
+from ai.env import Bools, Doubles
 from game.ui.canvas import Canvas
 from game.ui.tokens import DUSK, EMBER, NIGHT0, NIGHT1, VIEW_SIZE
 
@@ -23,8 +25,7 @@ class NightSky:
 
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
-        dots = [(*place, 1, 1) for place in (self._places * canvas.scale).tolist()]
-        shown = [star for star, dot in enumerate(dots) if pygame.Rect(dot).collidelist(canvas.words) < 0]
+        shown = np.flatnonzero(beside(self._places * canvas.scale, canvas.words)).tolist()
         size = canvas.surface.get_size()
         if self._painted is None or self._painted.get_size() != size or shown != self._shown:
             self._painted, self._shown = _paint_night(size, self._ember).copy(), shown
@@ -58,3 +59,11 @@ def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
     # A little noise keeps the long gradient from showing bands.
     sky += np.random.default_rng(0).random((*size, 1), dtype=np.float32) - 0.5
     return pygame.surfarray.make_surface(np.clip(sky, 0, 255, out=sky).astype(np.uint8)).convert()
+
+
+def beside(places: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:
+    """Return which of the places (n, 2) are in none of the boxes."""
+    edges = np.array([(box.left, box.top, box.right, box.bottom) for box in boxes]).reshape(-1, 4)
+    reached, left = places[:, None] >= edges[:, :2], places[:, None] >= edges[:, 2:]
+    inside: Bools = (reached & ~left).all(axis=2)
+    return ~inside.any(axis=1)

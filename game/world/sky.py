@@ -9,6 +9,7 @@ import numpy as np
 import pygame
 
 from ai.env import Doubles, Ints
+from game.ui.sky import beside
 from game.ui.tokens import DUSK, EMBER, NIGHT0, NIGHT1
 from game.world.paint import Picture, bell, clouds, light, mix, opaque, ramp, shine
 
@@ -115,9 +116,7 @@ class NearStars:
         if not self._still:
             level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
         sprites = [row[bright] for row, bright in zip(self._rows, level.tolist(), strict=True)]
-        boxes = [box for box in words if box.top < HORIZON * surface.get_height()]
-        dots = [(x, y, 1, 1) for x, y in place.tolist()]
-        seen = [star for star, dot in enumerate(dots) if pygame.Rect(dot).collidelist(boxes) < 0]
+        seen = np.flatnonzero(beside(place, words)).tolist()
         surface.fblits([(sprites[star], corners[star]) for star in seen], pygame.BLEND_RGB_ADD)
 
 

@@ -7,6 +7,7 @@ from ai.missions import MISSIONS
 from game.render import Camera, View
 from game.ui.canvas import Canvas
 from game.ui.sky import NightSky
+from game.ui.sky import beside
 from game.world import lander as art
 from game.world.backdrop import Backdrop
 from game.world.craft import stand
@@ -219,3 +220,10 @@ def test_wind_is_seen_to_go_its_way_and_is_a_matter_of_time_alone():
     assert np.array_equal(seen(1.0), first)
     env.outcome[:] = Outcome.LANDED
     assert not np.array_equal(seen(1.0), first)  # it goes on blowing
+
+
+def test_what_is_beside_words_lies_in_no_box():
+    words = [pygame.Rect(10, 10, 20, 5), pygame.Rect(40, 0, 1, 1)]
+    places = np.array([[10.0, 10.0], [29.9, 14.9], [30.0, 12.0], [20.0, 15.0], [40.5, 0.5], [0.0, 0.0]])
+    assert beside(places, words).tolist() == [False, False, True, True, False, True]
+    assert beside(places, []).all()
