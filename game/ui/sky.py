@@ -64,6 +64,7 @@ def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
 def beside(places: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:
     """Return which of the places (n, 2) are in none of the boxes."""
     edges = np.array([(box.left, box.top, box.right, box.bottom) for box in boxes]).reshape(-1, 4)
-    reached, left = places[:, None] >= edges[:, :2], places[:, None] >= edges[:, 2:]
-    inside: Bools = (reached & ~left).all(axis=2)
-    return ~inside.any(axis=1)
+    past, beyond = places[:, None] >= edges[:, :2], places[:, None] >= edges[:, 2:]
+    outside: Bools = ~np.logical_and.reduce(past & ~beyond, axis=2)
+    free: Bools = np.logical_and.reduce(outside, axis=1)
+    return free

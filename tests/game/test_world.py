@@ -6,8 +6,7 @@ from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv, Outcome
 from ai.missions import MISSIONS
 from game.render import Camera, View
 from game.ui.canvas import Canvas
-from game.ui.sky import NightSky
-from game.ui.sky import beside
+from game.ui.sky import NightSky, beside
 from game.world import lander as art
 from game.world.backdrop import Backdrop
 from game.world.craft import stand
