@@ -87,6 +87,9 @@ def field_problem(item: Field[Any], value: Any) -> str | None:
         return f"{item.name} is {'' if item.type == 'bool' else 'not '}a yes or no, and was {value!r}"
     if item.type == "int" and not isinstance(value, int | np.integer):
         return f"{item.name} is a whole number, not {value!r}"
+    several = str(item.type).startswith("tuple")
+    if isinstance(value, tuple) != several:
+        return f"{item.name} is {'' if several else 'not '}a list of numbers, and was {value!r}"
     if described["low"] is not None:
         numbers = value if isinstance(value, tuple) else (value,)
         if not numbers or not all(

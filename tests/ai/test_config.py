@@ -56,3 +56,9 @@ def test_a_setting_out_of_range_is_named(changes, message):
 def test_unknown_settings_are_named():
     with pytest.raises(ValueError, match="unknown settings: warp"):
         Config.from_json({"warp": 9})
+
+
+@pytest.mark.parametrize("values", [{"hidden": 64}, {"hidden": "64"}, {"learning_rate": [0.001]}])
+def test_a_number_is_no_list_and_a_list_no_number(values):
+    with pytest.raises(ValueError, match=next(iter(values))):
+        Config.from_json(values)
