@@ -22,12 +22,16 @@ class NightSky:
         self._ember = ember
         self._painted: pygame.Surface | None = None
         self._shown: list[int] = []
+        self._words: list[pygame.Rect] = []  # that these stars keep away from
 
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
-        shown = np.flatnonzero(beside(self._places * canvas.scale, canvas.words)).tolist()
-        size = canvas.surface.get_size()
-        if self._painted is None or self._painted.get_size() != size or shown != self._shown:
+        size, shown = canvas.surface.get_size(), self._shown
+        fits = self._painted is not None and self._painted.get_size() == size
+        if not fits or canvas.words != self._words:
+            self._words = canvas.words
+            shown = np.flatnonzero(beside(self._places * canvas.scale, canvas.words)).tolist()
+        if self._painted is None or not fits or shown != self._shown:
             self._painted, self._shown = _paint_night(size, self._ember).copy(), shown
             canvas.surface.blit(self._painted, (0, 0))
             self._add_stars(canvas)
