@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import zlib
 from dataclasses import dataclass
 from functools import cached_property
@@ -55,11 +54,17 @@ class Symmetry:
         matrix[self.features, np.arange(size)] = self.signs
         return matrix
 
-    def apply(self, cell: MemoryCell, count: int) -> None:
-        """Mirror the first `count` transitions of a batch, or of each of many (batches, n), in place."""
-        for states in (cell.state, cell.next_state):
+    def apply(self, cells: MemoryCell, count: int) -> MemoryCell:
+        """Return a batch, or many (batches, n), with the first `count` of each mirrored, in new arrays.
+
+        States are in the units of the environment: scaled by different means for left and right, they have no
+        mirror image of this form.
+        """
+        state, next_state, action = (part.copy() for part in (cells.state, cells.next_state, cells.action))
+        for states in (state, next_state):
             states[..., :count, :] = states[..., :count, :] @ self.matrix
-        cell.action[..., :count] = self.actions[cell.action[..., :count]]
+        action[..., :count] = self.actions[action[..., :count]]
+        return cells._replace(state=state, next_state=next_state, action=action)
 
 
 class DeepQAgent:
@@ -154,49 +159,62 @@ class DeepQAgent:
             for episode in self._episodes.add(cells, slots, result.ended, success):
                 self.successes.add(episode)
 
+    @np.errstate(over="ignore", invalid="ignore")  # what overflows is found by the optimizer
     def learn(self) -> float | None:
         """Take `config.updates` steps, and a second pass over successes if asked for; return the mean loss.
 
-        None before the warm-up is over. The targets of all these steps are computed in one go beforehand.
+        None before the warm-up is over. The targets of all these steps are computed in one go beforehand. Raises
+        DivergenceError when numbers run away.
         """
         config = self.config
-        if len(self.replay) < min(config.warm_up, config.replay_size):
+        if self.replay.added < config.warm_up:
             return None
         self.optimizer.learning_rate = linear(
             config.learning_rate, config.final_learning_rate, self.decisions, config.horizon
         )
         self.optimizer.clip = config.gradient_clip
-        self.loss = self._learn_from(self.replay, config.batch_size, config.updates)
+        self.loss, self.mean_q = self._learn_from(self.replay, config.batch_size, config.updates)
         if config.success_pass and len(self.successes) >= config.success_batch_size:
-            self._learn_from(self.successes, config.success_batch_size, config.updates)
+            self._learn_from(self.successes, config.success_batch_size, config.updates, follow=False)
         return self.loss
 
-    def _learn_from(self, memory: ReplayBuffer, batch_size: int, updates: int) -> float:
+    def _learn_from(
+        self, memory: ReplayBuffer, batch_size: int, updates: int, *, follow: bool = True
+    ) -> tuple[float, float]:
+        """Take steps on minibatches of a memory; return the mean absolute error and the mean value of next states.
+
+        With `follow`, the steps count, and the target network follows.
+        """
         if isinstance(memory, PrioritisedReplayBuffer):
             memory.importance = linear(self.config.importance_exponent, 1.0, self.decisions, self.config.horizon)
         cells, rows, weights = memory.sample(batch_size * updates, self.rng)
-        if self.scale:
-            cells = cells._replace(state=self.scale(cells.state), next_state=self.scale(cells.next_state))
         if self.config.mirror and self.symmetry is not None:
             batches = MemoryCell(*(part.reshape(updates, batch_size, *part.shape[1:]) for part in cells))
-            self.symmetry.apply(batches, batch_size // 2)
-        targets = self._targets(cells)
+            mirrored = self.symmetry.apply(batches, batch_size // 2)
+            cells = MemoryCell(*(part.reshape(-1, *part.shape[2:]) for part in mirrored))
+        if self.scale:
+            cells = cells._replace(state=self.scale(cells.state), next_state=self.scale(cells.next_state))
+        targets, values = self._targets(cells)
         errors = np.empty_like(targets)
         for first in range(0, len(targets), batch_size):
             batch = slice(first, first + batch_size)
             errors[batch] = self._update(cells.state[batch], cells.action[batch], targets[batch], weights[batch])
+            if follow:
+                self._count()
         memory.surprise(rows, errors)
-        return float(np.abs(errors).mean())
+        return float(np.abs(errors).mean()), float(values.mean())
 
-    def _targets(self, cells: MemoryCell) -> Floats:
-        """Bellman targets (n,): reward + γ^steps · value of the best next action, by the target network."""
+    def _targets(self, cells: MemoryCell) -> tuple[Floats, Floats]:
+        """Bellman targets (n,), reward + γ^steps · value, and the values (n,) by the target network.
+
+        The value is that of the best action in the next state.
+        """
         size = self.config.batch_size  # what many layers make of a batch stays in the cache
         parts = (cells.next_state[first : first + size] for first in range(0, len(cells.action), size))
         value = np.concatenate([self._value(part) for part in parts])
-        self.mean_q = float(value.mean())
         discount = np.float32(self.config.discount) ** cells.steps.astype(np.float32)
         targets: Floats = cells.reward + discount * value * ~cells.terminal
-        return targets
+        return targets, value
 
     def _value(self, states: Floats) -> Floats:
         """What the target network thinks of the best action in each state, (n,)."""
@@ -216,16 +234,14 @@ class DeepQAgent:
         # Outputs have costs of their own: those of the other actions are 0.
         slope[rows, actions] = self.online.cost.derivative(chosen[:, None], targets[:, None])[:, 0] * weights
         self.online.backward_propagate(slope)
-        length = self.optimizer.step(self.online.values, self.online.gradients)
-        if not (math.isfinite(length) and np.isfinite(errors).all()):
-            raise FloatingPointError(
-                f"the error was not finite at learning step {self.train_count + 1}; "
-                f"most likely the learning rate of {self.optimizer.learning_rate:g} is too high"
-            )
+        self.optimizer.step(self.online.values, self.online.gradients, cost=float(np.dot(errors, errors)))
+        return errors
+
+    def _count(self) -> None:
+        """Count a step of the first pass; every so many, the target network follows."""
         self.train_count += 1
         if self.train_count % self.config.target_every == 0:
             self._follow()
-        return errors
 
     def change(self, config: Config) -> None:
         """Take over the live knobs of another configuration."""
@@ -249,7 +265,7 @@ class DeepQAgent:
     def take_over(self, other: DeepQAgent) -> None:
         """Go on as `other`: its networks, optimizer and counts, but not its memories."""
         self.online.values, self.target.values = other.online.values, other.target.values
-        self.optimizer.load_state(other.optimizer.state())
+        self.optimizer.load_state(other.optimizer.state(), self.online.values)
         self.decisions, self.train_count, self.scale = other.decisions, other.train_count, other.scale
 
     def save(self, folder: str | Path) -> None:
@@ -299,7 +315,7 @@ class DeepQAgent:
                 problems += [f"{name}: {problem}" for problem in error.problems]
         try:
             with np.load(folder / OPTIMIZER_FILE, allow_pickle=False) as state:
-                agent.optimizer.load_state(dict(state))
+                agent.optimizer.load_state(dict(state), agent.online.values)
         except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
             problems.append(f"{OPTIMIZER_FILE}: {error}")
         if problems:

@@ -84,10 +84,7 @@ def steps_to_fix(
         copies[1:] = augment(copies[1:], rng, Strength().times(0.5))
         batch = np.concatenate([copies, images[chosen]])
         targets = _one_hot(np.concatenate([np.full(COPIES, digit), labels[chosen]]))
-        outputs = network.forward_propagate(classifier.shaped(batch))
-        network.backward_propagate(network.cost.derivative(outputs, targets))
-        if not np.isfinite(optimizer.step(network.values, network.gradients)):
-            raise FloatingPointError("the gradient is no longer finite")
+        network.train_batch(classifier.shaped(batch), targets, optimizer)
     yield FixStep(steps, _probability(classifier, image, digit))
 
 

@@ -64,7 +64,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
             training.classifier.network.values = state["values"]
             training.average[...] = state["average"]
             known = {name.removeprefix("optimizer."): state[name] for name in state if name.startswith("optimizer.")}
-        training.optimizer.load_state(known)
+        training.optimizer.load_state(known, training.classifier.network.values)
     except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile, zlib.error) as error:
         raise ModelFormatError(folder, [f"{LAST_FILE}: {error}"]) from error
     if best.shape != training.average.shape:

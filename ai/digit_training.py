@@ -109,13 +109,10 @@ class DigitTraining:
         self.optimizer.learning_rate = rate = self.learning_rate
         for layer in network.layers:
             layer.rng = rng  # dropout's
-        with np.errstate(over="ignore", invalid="ignore"):  # the optimizer finds what is not finite
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is found by the optimizer
             outputs = network.forward_propagate(self.classifier.shaped(images))
-            loss = network.cost(outputs, targets)
-            accuracy = float((outputs.argmax(axis=1) == labels).mean())
-            network.backward_propagate(network.cost.derivative(outputs, targets))
-        if not math.isfinite(self.optimizer.step(network.values, network.gradients)):
-            raise FloatingPointError("the gradient is no longer finite; a lower learning rate may help")
+        accuracy = float((outputs.argmax(axis=1) == labels).mean())
+        loss = network.correct(outputs, targets, self.optimizer)
         self.step += 1
         # Young averages follow faster: the first weights are nothing to remember.
         keep = min(config.averaging, self.step / (self.step + 10))

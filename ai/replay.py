@@ -41,6 +41,7 @@ class ReplayBuffer:
         self.cells = _fields(self.records)
         self.start = 0  # where the oldest lies
         self.size = 0
+        self.added = 0  # ever, those that had to go included
 
     def __len__(self) -> int:
         return self.size
@@ -48,6 +49,7 @@ class ReplayBuffer:
     def add(self, cells: MemoryCell) -> Ints:
         """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
         count = len(cells.action)
+        self.added += count
         if count > self.capacity:
             cells = MemoryCell(*(np.broadcast_to(part, (count,))[-self.capacity:] if np.ndim(part) == 0
                                  else part[-self.capacity:] for part in cells))  # fmt: skip

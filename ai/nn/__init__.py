@@ -10,7 +10,7 @@ from ai.nn.folder import atomic_folder, recover_folder
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation
 from ai.nn.network import NeuralNetwork
-from ai.nn.optimizers import OPTIMIZERS, SGD, Adam, Momentum, Optimizer
+from ai.nn.optimizers import OPTIMIZERS, SGD, Adam, DivergenceError, Momentum, Optimizer
 from ai.nn.parameter import Array, Parameter
 from ai.nn.storage import ModelFormatError
 
@@ -25,6 +25,7 @@ __all__ = [
     "ConvolutionLayer",
     "Cost",
     "CostFunctions",
+    "DivergenceError",
     "DropoutLayer",
     "DuelingLayer",
     "FlattenLayer",

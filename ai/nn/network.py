@@ -152,7 +152,8 @@ class NeuralNetwork:
 
         "sequential" takes the examples in order, "random" in an order that `rng` (by default one seeded with
         0) draws anew each epoch. Without an `optimizer`, plain gradient descent at `learning_rate`; with one,
-        its own rate holds. Returns the mean cost of each epoch, batches counted as they were met.
+        its own rate holds. Returns the mean cost of each epoch, batches counted as they were met. Raises
+        DivergenceError as soon as a number is no longer finite, most often because the rate is too high.
         """
         examples, targets = np.asarray(x, self.dtype), np.asarray(y, self.dtype)
         if len(examples) != len(targets) or not len(examples):
@@ -168,14 +169,19 @@ class NeuralNetwork:
         return history
 
     def train_batch(self, x: npt.ArrayLike, y: npt.ArrayLike, optimizer: Optimizer) -> float:
-        """Take one step on one batch, and return what it cost before the step."""
+        """Take one step on one batch, and return what it cost before the step; raises as `train` does."""
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is found by the optimizer
+            return self.correct(self.forward_propagate(x), y, optimizer)
+
+    def correct(self, prediction: Array, y: npt.ArrayLike, optimizer: Optimizer) -> float:
+        """Do the second half of `train_batch`, for `prediction` as the last forward pass returned it."""
         target: Array = np.asarray(y, self.dtype)
-        prediction = self.forward_propagate(x)
         if prediction.shape != target.shape:
             raise ValueError(f"the targets have shape {target.shape}, the predictions {prediction.shape}")
-        cost = self.cost(prediction, target)
-        self.backward_propagate(self.cost.derivative(prediction, target))
-        optimizer.step(self.values, self.gradients)
+        with np.errstate(over="ignore", invalid="ignore"):
+            cost = self.cost(prediction, target)
+            self.backward_propagate(self.cost.derivative(prediction, target))
+        optimizer.step(self.values, self.gradients, cost)
         return cost
 
     def copy(self) -> Self:

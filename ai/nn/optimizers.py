@@ -11,6 +11,23 @@ import numpy.typing as npt
 from ai.nn.parameter import Array
 
 
+class DivergenceError(FloatingPointError):
+    """Learning has run away: a cost, a gradient or a step is not finite. The parameters are as before the step.
+
+    Attributes:
+        step: number of the step of its optimizer, from 1.
+        learning_rate: of that step, the most likely cause.
+
+    """
+
+    def __init__(self, what: str, optimizer: "Optimizer") -> None:
+        self.step, self.learning_rate = optimizer.steps + 1, optimizer.learning_rate
+        super().__init__(
+            f"the {what} was not finite at learning step {self.step}; "
+            f"most likely the learning rate of {self.learning_rate:g} is too high"
+        )
+
+
 class Optimizer(ABC):
     """A rule that moves parameters against their gradient.
 
@@ -19,6 +36,7 @@ class Optimizer(ABC):
     """
 
     remembers: tuple[str, ...] = ()  # names of what is kept of each parameter from step to step
+    never_negative: tuple[str, ...] = ()  # which of these no step can bring below 0
 
     def __init__(self, learning_rate: float, *, clip: float | None = None) -> None:
         self.learning_rate = learning_rate
@@ -27,41 +45,68 @@ class Optimizer(ABC):
         self.memory: dict[str, Array] = {}
         self.scratch: Array = np.empty(0)
 
-    def step(self, values: Array, gradients: Array) -> float:
+    def step(self, values: Array, gradients: Array, cost: float = 0.0) -> float:
         """Move `values`, in place, and return the length of `gradients` as they came.
 
-        Both are flat and of one size; `gradients` is shortened in place where it is clipped. A gradient that
-        is not finite would ruin the network, so it moves nothing: ask `math.isfinite` of the returned length.
-        Raises ValueError if the size is not that of the steps before.
+        Both are flat and of one size; `gradients` is shortened in place where it is clipped. `cost` is what
+        the gradient was taken of: Huber's gradient is bounded even where the cost is infinite.
+
+        Raises DivergenceError, and leaves `values` as they are, if the cost, the gradient or the step is not
+        finite, or too long for its length to be; ValueError if the size is not that of the steps before.
         """
-        with np.errstate(all="ignore"):
-            length = math.sqrt(np.dot(gradients, gradients))
+        length = _length(gradients)
+        if not math.isfinite(cost):
+            raise DivergenceError("cost", self)
         if not math.isfinite(length):
-            return length
+            raise DivergenceError("gradient", self)
         if self.scratch.shape != values.shape or self.scratch.dtype != values.dtype:
             self._prepare(values)
         if self.clip is not None and length > self.clip:
             gradients *= self.clip / length
+        with np.errstate(over="ignore", invalid="ignore"):  # found right below
+            self._fill_step(gradients, self.steps + 1)
+        if not math.isfinite(_length(self.scratch)):
+            raise DivergenceError("step", self)
+        values -= self.scratch
         self.steps += 1
-        self._move(values, gradients)
         return length
 
     def state(self) -> dict[str, npt.NDArray[Any]]:
         """Return copies of all that the next step depends on, besides the settings."""
         return {"steps": np.array(self.steps)} | {name: kept.copy() for name, kept in self.memory.items()}
 
-    def load_state(self, state: Mapping[str, npt.NDArray[Any]]) -> None:
-        """Go on from what `state` returned; raises ValueError if it is not of this kind of optimizer."""
-        steps = int(state["steps"]) if "steps" in state else -1
+    def load_state(self, state: Mapping[str, npt.NDArray[Any]], values: Array) -> None:
+        """Go on from what `state` returned, with the parameters `values` (parameters,).
+
+        Raises ValueError, and changes nothing, if the state is not of this kind of optimizer, or not one of these
+        parameters.
+        """
+        kind = type(self).__name__
+        steps = np.asarray(state.get("steps", -1))
+        if steps.shape != () or steps.dtype.kind not in "iu" or steps < 0:
+            raise ValueError(f"not a state of {kind}: it does not say after how many steps")
         names = self.remembers if steps else ()
-        if steps < 0 or set(state) != {"steps", *names}:
-            raise ValueError(f"not a state of {type(self).__name__}: it holds {sorted(state)}")
-        self.steps = steps
-        self.memory = {name: np.array(state[name]) for name in names}
-        self.scratch = np.empty(0)
+        if set(state) != {"steps", *names}:
+            raise ValueError(f"not a state of {kind}: it holds {', '.join(sorted(state))}")
+        memory = {name: self._checked(name, np.asarray(state[name]), values) for name in names}
+        self.steps, self.memory, self.scratch = int(steps), memory, np.empty(0)
+
+    def _checked(self, name: str, kept: npt.NDArray[Any], values: Array) -> Array:
+        """Return what a state keeps of each parameter as a new array of the parameters' type."""
+        if kept.dtype.kind != "f" or kept.shape != values.shape:
+            held = f"{kept.dtype.name} {list(kept.shape)}"
+            raise ValueError(f"{name} holds {held}, and should hold {values.dtype.name} {list(values.shape)}")
+        with np.errstate(over="ignore"):
+            checked: Array = kept.astype(values.dtype)
+        if not np.isfinite(checked).all():
+            raise ValueError(f"{name} holds numbers that are not finite")
+        if name in self.never_negative and (checked < 0).any():
+            raise ValueError(f"{name} holds numbers below 0, and is a sum of squares")
+        return checked
 
     @abstractmethod
-    def _move(self, values: Array, gradients: Array) -> None: ...
+    def _fill_step(self, gradients: Array, number: int) -> None:
+        """Fill `scratch` with what step `number`, from 1, takes off the parameters."""
 
     def _prepare(self, values: Array) -> None:
         if not self.memory:
@@ -78,9 +123,8 @@ class SGD(Optimizer):
     def __init__(self, learning_rate: float = 0.01, *, clip: float | None = None) -> None:
         super().__init__(learning_rate, clip=clip)
 
-    def _move(self, values: Array, gradients: Array) -> None:
+    def _fill_step(self, gradients: Array, number: int) -> None:  # noqa: ARG002 - all steps are alike
         np.multiply(gradients, self.learning_rate, out=self.scratch)
-        values -= self.scratch
 
 
 class Momentum(Optimizer):
@@ -92,12 +136,11 @@ class Momentum(Optimizer):
         super().__init__(learning_rate, clip=clip)
         self.momentum = momentum
 
-    def _move(self, values: Array, gradients: Array) -> None:
+    def _fill_step(self, gradients: Array, number: int) -> None:  # noqa: ARG002 - all steps are alike
         velocity = self.memory["velocity"]
         velocity *= self.momentum
         velocity += gradients
         np.multiply(velocity, self.learning_rate, out=self.scratch)
-        values -= self.scratch
 
 
 class Adam(Optimizer):
@@ -108,6 +151,7 @@ class Adam(Optimizer):
     """
 
     remembers = ("gradient_sum", "square_sum")
+    never_negative = ("square_sum",)
 
     def __init__(
         self,
@@ -121,10 +165,10 @@ class Adam(Optimizer):
         super().__init__(learning_rate, clip=clip)
         self.beta1, self.beta2, self.epsilon = beta1, beta2, epsilon
 
-    def _move(self, values: Array, gradients: Array) -> None:
+    def _fill_step(self, gradients: Array, number: int) -> None:
         gradient_sum, square_sum, scratch = *self.memory.values(), self.scratch
-        first = (1 - self.beta1) / (1 - self.beta1**self.steps)
-        second = math.sqrt((1 - self.beta2) / (1 - self.beta2**self.steps))
+        first = (1 - self.beta1) / (1 - self.beta1**number)
+        second = math.sqrt((1 - self.beta2) / (1 - self.beta2**number))
 
         gradient_sum *= self.beta1
         gradient_sum += gradients
@@ -136,7 +180,12 @@ class Adam(Optimizer):
         scratch += self.epsilon / second
         np.divide(gradient_sum, scratch, out=scratch)
         scratch *= self.learning_rate * first / second
-        values -= scratch
+
+
+def _length(vector: Array) -> float:
+    """Euclidean length of a flat vector; not finite where a number of it is not, or their squares overflow."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return math.sqrt(np.dot(vector, vector))
 
 
 OPTIMIZERS: dict[str, type[SGD] | type[Momentum] | type[Adam]] = {

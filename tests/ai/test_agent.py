@@ -36,7 +36,7 @@ def test_bellman_targets_by_hand():
     cell = MemoryCell(states, states, np.zeros(3, dtype=int), np.ones(3, dtype=np.float32),
                       np.array([False, True, False]), np.array([1, 1, 4]))  # fmt: skip
     values = agent.target.predict(states).max(axis=1)
-    assert agent._targets(cell) == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
+    assert agent._targets(cell)[0] == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
 
 
 def test_double_q_lets_the_online_network_pick():
@@ -46,7 +46,7 @@ def test_double_q_lets_the_online_network_pick():
     cell = MemoryCell(states, states, np.zeros(20, dtype=int), np.zeros(20, dtype=np.float32),
                       np.zeros(20, dtype=bool), np.ones(20, dtype=int))  # fmt: skip
     best = agent.online.predict(states).argmax(axis=1)
-    assert agent._targets(cell) == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
+    assert agent._targets(cell)[0] == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
 
 
 def test_an_update_moves_only_the_chosen_action_towards_its_target():
@@ -83,6 +83,18 @@ def test_nothing_is_learned_before_the_warm_up():
     agent = fed(SMALL.changed(warm_up=41))
     assert agent.learn() is None
     assert agent.train_count == 0
+
+
+def test_a_memory_that_is_pruned_below_the_warm_up_does_not_stop_learning():
+    agent = fed(SMALL.changed(warm_up=60, replay_size=100, replay_prune=90), count=56)
+    assert agent.learn() is None
+    sizes, learnt = [], []
+    for seed in range(1, 10):
+        agent.replay.add(fed(SMALL, count=20, seed=seed).replay.at(np.arange(20)))
+        sizes.append(len(agent.replay))
+        learnt.append(agent.learn() is not None)
+    assert all(learnt)
+    assert min(sizes) < 60
 
 
 def test_greedy_actions_and_random_ones():
@@ -136,40 +148,84 @@ def test_a_mirrored_memory_is_its_own_mirror_image_twice():
     rng = np.random.default_rng(0)
     states = rng.normal(size=(6, NUM_FEATURES)).astype(np.float32)
     cell = MemoryCell(states.copy(), states[::-1].copy(), np.arange(NUM_ACTIONS), np.zeros(6), np.zeros(6, bool))
-    LANDER_SYMMETRY.apply(cell, 6)
-    assert cell.action.tolist() == [0, 2, 1, 3, 5, 4]
-    assert np.array_equal(cell.state[:, 7], states[:, 8])
-    assert np.array_equal(cell.state[:, 0], -states[:, 0])
-    LANDER_SYMMETRY.apply(cell, 6)
-    assert np.array_equal(cell.state, states)
+    mirrored = LANDER_SYMMETRY.apply(cell, 6)
+    assert mirrored.action.tolist() == [0, 2, 1, 3, 5, 4]
+    assert np.array_equal(mirrored.state[:, 7], states[:, 8])
+    assert np.array_equal(mirrored.state[:, 0], -states[:, 0])
+    assert np.array_equal(mirrored.next_state, mirrored.state[::-1])
+    assert np.array_equal(cell.state, states)  # what was given stays as it is
     assert cell.action.tolist() == list(range(6))
+    again = LANDER_SYMMETRY.apply(mirrored, 6)
+    assert np.array_equal(again.state, states)
+    assert again.action.tolist() == list(range(6))
 
 
 @pytest.mark.parametrize("changes", [{}, {"prioritised": True}, {"normalise_inputs": True}])
 def test_half_of_each_batch_is_learnt_in_the_mirror(changes):
     agent = fed(SMALL.changed(mirror=True, **changes))
-    mirror = Symmetry(np.array([100, 1, 1], np.float32), np.array([2, 1, 0]), np.array([1, 0]))
-    plain = fed(SMALL.changed(mirror=False, **changes))
-    seen = []
-    for one in (agent, plain):
-        one.symmetry, original = mirror, one._update
-        one._update = lambda *batch, original=original: (
-            seen.append([part.copy() for part in batch]),
-            original(*batch),
-        )[1]
-        one.learn()
-    (states, actions, *_), (same, same_actions, *_) = seen[0], seen[2]
-    assert len(seen) == 4
-    assert states[:4] == pytest.approx(same[:4, [2, 1, 0]] * [100, 1, 1])
-    assert (states[4:] == same[4:]).all()
-    assert actions.tolist() == [*(1 - same_actions[:4]), *same_actions[4:]]
+    agent.symmetry = Symmetry(np.array([100, 1, 1], np.float32), np.array([2, 1, 0]), np.array([1, 0]))
+    agent.replay.cells.state[:] += 3  # where means are 0, it makes no difference when a state is scaled
+    if agent.scale:
+        agent.scale.watch(agent.replay.cells.state[:40] * np.array([60, 1, 1], np.float32))
+    sample, update, drawn, learnt = agent.replay.sample, agent._update, [], []
+    agent.replay.sample = lambda *how: drawn.append(sample(*how)) or drawn[0]
+    agent._update = lambda *batch: learnt.append([part.copy() for part in batch]) or update(*batch)
+    agent.learn()
+    scale = agent.scale or (lambda states: states)
+    assert len(learnt) == 2
+    for number, (states, actions, *_) in enumerate(learnt):
+        cells = drawn[0][0]
+        batch = slice(8 * number, 8 * number + 8)
+        raw, taken = cells.state[batch], cells.action[batch]
+        assert states[:4] == pytest.approx(scale(raw[:4, [2, 1, 0]] * np.array([100, 1, 1], np.float32)))
+        assert states[4:] == pytest.approx(scale(raw[4:]))
+        assert actions.tolist() == [*(1 - taken[:4]), *taken[4:]]
 
 
 def test_a_gradient_that_is_not_finite_stops_with_the_step_and_a_cause():
     agent = fed(SMALL)
     agent.online.values = np.full_like(agent.online.values, 1e30)
-    with np.errstate(all="ignore"), pytest.raises(FloatingPointError, match=r"learning step 1.*learning rate"):
+    with pytest.raises(FloatingPointError, match=r"learning step 1.*learning rate"):
         agent.learn()
+
+
+@pytest.mark.parametrize("cost", ["huber", "mse"])
+def test_an_error_that_is_not_finite_stops_learning_even_where_its_gradient_is(cost):
+    agent = fed(SMALL.changed(cost=cost))
+    agent.replay.cells.reward[:] = np.inf
+    before = agent.online.values.copy()
+    with pytest.raises(FloatingPointError, match="cost was not finite at learning step 1"):
+        agent.learn()
+    assert np.array_equal(agent.online.values, before)
+    assert agent.train_count == 0
+
+
+def fed_with_successes(config):
+    """An agent that remembers ordinary decisions, and successes whose states it values quite otherwise."""
+    agent = fed(config.changed(success_pass=True, success_batch_size=4))
+    rng = np.random.default_rng(9)
+    states = (5 + rng.normal(size=(20, 3))).astype(np.float32)
+    agent.successes.add(MemoryCell(states, states, np.zeros(20, int), np.ones(20), np.zeros(20, bool), np.ones(20)))
+    return agent
+
+
+def test_loss_and_mean_q_tell_of_all_memories_not_of_the_successes_of_the_second_pass():
+    both, first = fed_with_successes(SMALL.changed(updates=1)), fed(SMALL.changed(updates=1))
+    assert both.learn() == first.learn() == both.loss
+    assert both.mean_q == first.mean_q
+    assert both.optimizer.steps == 2 * first.optimizer.steps
+
+
+def test_the_target_counts_training_calls_and_the_second_pass_belongs_to_its_call():
+    agent = fed_with_successes(SMALL.changed(target_every=5, target_rate=1.0, updates=1))
+    first, changed = agent.target.values.copy(), []
+    for _ in range(15):
+        before = agent.target.values.copy()
+        agent.learn()
+        changed.append(not np.array_equal(agent.target.values, before))
+    assert changed == ([False] * 4 + [True]) * 3
+    assert agent.train_count == 15
+    assert not np.array_equal(agent.target.values, first)
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -196,6 +252,11 @@ def test_loading_goes_on_exactly_where_saving_stopped(tmp_path):
     assert loaded.train_count == agent.train_count
 
 
+PARAMETERS = DeepQAgent(3, 2, SMALL).online.values.size
+ADAM = {"steps": 3, "gradient_sum": np.zeros(PARAMETERS, np.float32), "square_sum": np.ones(PARAMETERS, np.float32)}
+NAN = np.full(PARAMETERS, np.nan, np.float32)
+
+
 def damaged(config):
     return {
         "missing": lambda f: (f / "config.json").unlink(),
@@ -208,6 +269,9 @@ def damaged(config):
         "no network": lambda f: (f / "online" / "config.json").unlink(),
         "no target": lambda f: next((f / "target").glob("*.npy")).write_bytes(b"x"),
         "optimizer": lambda f: (f / "optimizer.npz").write_bytes(b"PK"),
+        "an optimizer of other sizes": lambda f: np.savez(f / "optimizer.npz", **ADAM | {"square_sum": np.ones(7)}),
+        "an optimizer of NaN": lambda f: np.savez(f / "optimizer.npz", **ADAM | {"gradient_sum": NAN}),
+        "an optimizer of another kind": lambda f: np.savez(f / "optimizer.npz", steps=3, velocity=NAN),
         "half an optimizer": lambda f: (f / "optimizer.npz").write_bytes((f / "optimizer.npz").read_bytes()[:200]),
     }
 
@@ -221,3 +285,10 @@ def test_a_damaged_folder_is_named_and_refused(tmp_path, damage):
         DeepQAgent.load(folder)
     assert str(folder) in str(caught.value)
     assert caught.value.problems
+    assert ("optimizer.npz" in str(caught.value)) == ("optimizer" in damage)
+
+
+def test_an_optimizer_state_that_fits_is_taken(tmp_path):
+    fed(SMALL).save(tmp_path / "agent")
+    np.savez(tmp_path / "agent" / "optimizer.npz", **ADAM)
+    assert DeepQAgent.load(tmp_path / "agent").optimizer.steps == 3

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ai.nn import OPTIMIZERS, SGD, Adam, Momentum
+from ai.nn import OPTIMIZERS, SGD, Adam, DivergenceError, Momentum
 
 STEPS = 25
 
@@ -57,7 +57,7 @@ def test_a_state_carries_on(name):
         if step % 5 == 0:
             state = second.state()
             second = OPTIMIZERS[name](0.1)
-            second.load_state(state)
+            second.load_state(state, broken_off)
         second.step(broken_off, gradient.copy())
     np.testing.assert_array_equal(whole, broken_off)
 
@@ -76,9 +76,45 @@ def test_a_wrong_state_is_refused():
     momentum = Momentum()
     momentum.step(np.ones(3), np.ones(3))
     with pytest.raises(ValueError, match="not a state of Adam"):
-        Adam().load_state(momentum.state())
+        Adam().load_state(momentum.state(), np.ones(3))
     with pytest.raises(ValueError, match="not a state of SGD"):
-        SGD().load_state({})
+        SGD().load_state({}, np.ones(3))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"square_sum": np.ones(4)}, r"square_sum holds float64 \[4\], and should hold float32 \[3\]"),
+        ({"square_sum": np.ones((3, 1))}, "square_sum holds"),
+        ({"gradient_sum": np.array([0.0, np.nan, 0.0])}, "gradient_sum holds numbers that are not finite"),
+        ({"gradient_sum": np.array([0.0, 1e300, 0.0])}, "gradient_sum holds numbers that are not finite"),
+        ({"gradient_sum": np.array(["a", "b", "c"])}, "gradient_sum holds"),
+        ({"square_sum": np.array([1.0, -1.0, 1.0])}, "square_sum holds numbers below 0"),
+        ({"steps": np.array(-1)}, "after how many steps"),
+        ({"steps": np.array(2.5)}, "after how many steps"),
+        ({"steps": np.array([1, 2])}, "after how many steps"),
+        ({"steps": np.array("seven")}, "after how many steps"),
+        ({"velocity": np.ones(3)}, "it holds gradient_sum, square_sum, steps, velocity"),
+    ],
+)
+def test_a_damaged_state_is_refused_and_changes_nothing(change, message):
+    optimizer, values = Adam(), np.ones(3, np.float32)
+    optimizer.step(values, np.ones(3, np.float32))
+    before = optimizer.state()
+    with pytest.raises(ValueError, match=message):
+        optimizer.load_state(before | change, values)
+    for name, array in optimizer.state().items():
+        np.testing.assert_array_equal(array, before[name])
+
+
+@pytest.mark.parametrize("name", OPTIMIZERS)
+def test_a_state_of_another_precision_becomes_the_parameters_own(name):
+    optimizer, values = OPTIMIZERS[name](), np.ones(3, np.float32)
+    optimizer.step(values, np.ones(3, np.float32))
+    state = {key: array.astype(float) if array.ndim else array for key, array in optimizer.state().items()}
+    optimizer.load_state(state, values)
+    optimizer.step(values, np.ones(3, np.float32))
+    assert all(kept.dtype == np.float32 for kept in optimizer.memory.values())
 
 
 def test_another_number_of_parameters_is_refused():
@@ -102,10 +138,21 @@ def test_a_gradient_that_is_not_finite_moves_nothing(name, bad):
     optimizer, values = OPTIMIZERS[name](clip=10.0), np.ones(3)
     optimizer.step(values, np.ones(3))
     before, state = values.copy(), optimizer.state()
-    assert not math.isfinite(optimizer.step(values, np.array([1.0, bad, 1.0])))
+    with pytest.raises(DivergenceError, match=f"gradient was not finite at learning step 2; .* {optimizer.learning_rate}"):
+        optimizer.step(values, np.array([1.0, bad, 1.0]))
+    with pytest.raises(DivergenceError, match="the cost was not finite at learning step 2"):
+        optimizer.step(values, np.ones(3), cost=bad)
     np.testing.assert_array_equal(values, before)
     for key, array in optimizer.state().items():
         np.testing.assert_array_equal(array, state[key])
+
+
+@pytest.mark.parametrize("name", OPTIMIZERS)
+def test_a_step_that_would_overflow_is_not_taken(name):
+    optimizer, values = OPTIMIZERS[name](1e300), np.ones(3, np.float32)
+    with pytest.raises(DivergenceError, match="step was not finite at learning step 1; .*1e\\+300"):
+        optimizer.step(values, np.full(3, 1e10, np.float32))
+    assert (values == 1).all()
 
 
 def test_the_learning_rate_may_change():
