@@ -166,10 +166,9 @@ class GymTask:
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> GymScore:
         """Play so many episodes side by side, without exploration."""
         env = self._env(episodes, np.random.default_rng(seed))
-        observation = env.reset()
+        observation, actions = env.reset(), np.zeros(episodes, dtype=np.intp)
         while (going_on := env.outcome == GOING_ON).any():
-            actions = np.zeros(episodes, dtype=np.intp)
-            actions[going_on] = pilot.act(observation[going_on])
+            actions = np.where(going_on, pilot.act(observation, held=actions), actions)
             observation = env.step(actions).observation
         success = None if self.threshold is None else float((env.outcome == SUCCESS).mean())
         return GymScore(episodes, success, float(env.returns.mean()), float(env.returns.std()),

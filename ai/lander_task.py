@@ -81,8 +81,9 @@ def trial(
     returns: Doubles = np.zeros(episodes)
     switches = 0
     while (flying := env.outcome == Outcome.FLYING).any():
-        held, actions = env.actions, env.actions.copy()
-        actions[flying] = pilot.act(observation[flying], held=held[flying])
+        held = env.actions
+        # Asked for every slot, whether it still flies or not: each keeps its row, as a pilot with a memory needs.
+        actions = np.where(flying, pilot.act(observation, held=held), held)
         switches += int(engines_switched(held, actions).sum())
         result = env.step(actions)
         observation = result.observation

@@ -13,7 +13,10 @@ COAST: Final = 0
 
 
 class Pilot(Protocol):
-    """Whoever chooses actions."""
+    """Whoever chooses actions, for one lander or for many at once.
+
+    Row k of a call is always the same slot, ended or not: a pilot may remember what it did in each.
+    """
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now, for whom it matters."""
@@ -44,7 +47,11 @@ class ScriptedPilot:
 
 
 class LaggyPilot:
-    """Repeats its last action with probability `chance`, else asks `pilot` (Reddy et al. 2018)."""
+    """Repeats its last action with probability `chance`, else asks `pilot` (Reddy et al. 2018).
+
+    Every slot has a last action of its own, so `act` raises ValueError for another number of slots than before,
+    unless `forget` is called in between.
+    """
 
     def __init__(self, pilot: Pilot, rng: np.random.Generator, chance: float = 0.8) -> None:
         self.pilot, self.rng, self.chance = pilot, rng, chance
@@ -53,13 +60,15 @@ class LaggyPilot:
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
         """Actions (n,) for observations (n, 9)."""
         fresh = self.pilot.act(observation, held=held)
-        if self._last is None or self._last.shape != fresh.shape:
+        if self._last is None:
             self._last = fresh
+        if self._last.shape != fresh.shape:
+            raise ValueError(f"the last actions are those of {self._last.size} slots, and here are {fresh.size}")
         self._last = np.where(self.rng.random(fresh.shape) < self.chance, self._last, fresh)
         return self._last
 
     def forget(self) -> None:
-        """Begin a new flight with no action to repeat."""
+        """Begin new flights with no action to repeat."""
         self._last = None
 
 
