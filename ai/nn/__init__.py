@@ -12,7 +12,7 @@ from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Lay
 from ai.nn.network import NeuralNetwork
 from ai.nn.optimizers import OPTIMIZERS, SGD, Adam, DivergenceError, Momentum, Optimizer
 from ai.nn.parameter import Array, Parameter
-from ai.nn.storage import ModelFormatError
+from ai.nn.storage import ModelFormatError, register_layer
 
 __all__ = [
     "OPTIMIZERS",
@@ -40,5 +40,6 @@ __all__ = [
     "Parameter",
     "atomic_folder",
     "recover_folder",
+    "register_layer",
     "softmax",
 ]

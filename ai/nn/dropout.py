@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ai.nn.layers import Layer
+from ai.nn.layers import HalvedLayer
 from ai.nn.parameter import Array
 
 
-class DropoutLayer(Layer):
+class DropoutLayer(HalvedLayer):
     """Sets each value to 0 with probability `rate` while training, and divides the others by 1 - rate.
 
     After Srivastava et al. 2014, inverted: sums keep their mean, so that `predict` has nothing to do. What is

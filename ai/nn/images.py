@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.nn.correlation import Correlation
-from ai.nn.layers import FullyConnectedLayer, ImageShape, Layer, checked_size, constant
+from ai.nn.layers import FullyConnectedLayer, HalvedLayer, ImageShape, Layer, checked_size, constant
 from ai.nn.parameter import Array
 
 
@@ -118,7 +118,7 @@ class ConvolutionLayer(FullyConnectedLayer):
         return (pixels + 2 * self.padding - self.kernel) // self.stride + 1
 
 
-class MaxPoolingLayer(Layer):
+class MaxPoolingLayer(HalvedLayer):
     """The largest of each `size` x `size` pixels, channel by channel; what does not fill a square is left out.
 
     On the way back the error goes to that one pixel: of equal ones to the first, row by row.
@@ -178,7 +178,7 @@ class MaxPoolingLayer(Layer):
         return [images[:, row : rows : self.size, column : columns : self.size] for row, column in squares]
 
 
-class FlattenLayer(Layer):
+class FlattenLayer(HalvedLayer):
     """Images as rows of numbers, (batch, height · width · channels), for fully connected layers.
 
     The numbers stay where they are in memory, so within an example the height varies fastest.

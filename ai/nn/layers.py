@@ -21,8 +21,11 @@ ImageShape = tuple[int, int, int]  # height, width, channels
 class Layer(ABC):
     """One step of a network, on arrays of shape (batch, values), or images (batch, height, width, channels).
 
-    `forward_propagate` and `backward_propagate` write into arrays that are kept while the batch size stays
-    the same, so what they return lasts until their next call. `predict` returns a new array, or its input where
+    A layer of your own has `forward_propagate`, `backward_propagate` and `predict`; if it learns, `shapes` and
+    `initial_value`; if it is to be saved and copied, `settings` and `ai.nn.register_layer`.
+
+    What `forward_propagate` and `backward_propagate` return lasts until their next call: they may write into
+    arrays that are kept while the batch size stays the same. `predict` returns a new array, or its input where
     there is nothing to compute, and also takes one example without the batch axis.
     """
 
@@ -33,12 +36,33 @@ class Layer(ABC):
     initialisation: str | None = "constant"  # None: as suits the activation that follows
     rng: np.random.Generator | None = None
     dtype: npt.DTypeLike = np.float32
+    joined = False  # whether it belongs to a network
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """What the layer learns, drawn when first asked for: by then its network and neighbours are known."""
-        values = {name: self._start(name).astype(self.dtype) for name in self.shapes}
+        values = {name: np.asarray(self.initial_value(name), self.dtype) for name in self.shapes}
+        for name, value in values.items():
+            if value.shape != tuple(self.shapes[name]):
+                raise ValueError(f"{name} begins with shape {value.shape}, and is said to have {self.shapes[name]}")
         return tuple(Parameter(name, value, np.zeros_like(value)) for name, value in values.items())
+
+    def initial_value(self, name: str) -> Array:
+        """Return the first value of a parameter, of the shape that `shapes` tells; draw it from `rng`."""
+        raise NotImplementedError(f"{type(self).__name__} does not say how {name} begins")
+
+    def join(self, rng: np.random.Generator, dtype: npt.DTypeLike) -> None:
+        """Become a part of one network, which computes in `dtype`; a layer without an `rng` gets one of the network's.
+
+        Raises ValueError if it is part of one already: a network's parameters lie in its own flat vector.
+        """
+        if self.joined:
+            raise ValueError(f"this {type(self).__name__} belongs to a network already; make another, or copy that one")
+        self.joined, self.rng, self.dtype = True, self.rng or rng.spawn(1)[0], np.dtype(dtype)
+        if "parameters" in vars(self):  # drawn before, perhaps in another precision
+            self.parameters = tuple(
+                Parameter(each.name, each.value.astype(dtype), each.gradient.astype(dtype)) for each in self.parameters
+            )
 
     def arguments(self) -> dict[str, Any]:
         """Return what the constructor needs to make such a layer again."""
@@ -56,24 +80,40 @@ class Layer(ABC):
         """Return a function that predicts one example (values,); `values` are the parameters in one flat view."""
         return self.predict
 
+    @abstractmethod
+    def backward_propagate(self, output_error: Array) -> Array:
+        """Fill the parameters' gradients and return the input error, both of the last forward pass."""
+
+    def fill_gradients(self, output_error: Array) -> None:
+        """Fill the gradients alone: all that is asked of the lowest layer."""
+        self.backward_propagate(output_error)
+
+    def input_error(self, output_error: Array) -> Array:
+        """Return the input error, and leave the gradients as they are."""
+        before = [parameter.gradient.copy() for parameter in self.parameters]
+        error = self.backward_propagate(output_error)
+        for parameter, gradient in zip(self.parameters, before, strict=True):
+            parameter.gradient[...] = gradient
+        return error
+
+
+class HalvedLayer(Layer):
+    """A layer with two ways back that can be gone apart, so that nothing is computed that nobody asks for."""
+
     def backward_propagate(self, output_error: Array) -> Array:
         """Fill the parameters' gradients and return the input error, both of the last forward pass."""
         self.fill_gradients(output_error)
         return self.input_error(output_error)
 
-    def fill_gradients(self, output_error: Array) -> None:  # noqa: B027 - most layers have no parameters
-        """Do the first half of `backward_propagate`, which is all that the lowest layer is asked for."""
+    def fill_gradients(self, output_error: Array) -> None:
+        """Fill the gradients alone: nothing, where there are no parameters."""
 
     @abstractmethod
     def input_error(self, output_error: Array) -> Array:
-        """Do the second half of `backward_propagate`."""
-
-    def _start(self, name: str) -> Array:
-        """Return the first value of a parameter."""
-        raise NotImplementedError(name)
+        """Return the input error alone."""
 
 
-class FullyConnectedLayer(Layer):
+class FullyConnectedLayer(HalvedLayer):
     """Each output is a weighted sum of all inputs, plus a bias: y = x W + b.
 
     `initialisation` is "glorot" or "he"; by default it suits the activation that follows in the network.
@@ -118,7 +158,7 @@ class FullyConnectedLayer(Layer):
         """Return x W + b, (batch, outputs)."""
         weights, bias = self.parameters
         self.input = np.asarray(input_data, self.dtype)
-        if len(self.output) != len(input_data):
+        if len(self.output) != len(input_data) or self.output.dtype != self.dtype:
             self.output = np.empty((len(input_data), bias.value.size), self.dtype)
             self.error = np.empty(self.input.shape, self.dtype)
         self.input.dot(weights.value, self.output)
@@ -159,7 +199,8 @@ class FullyConnectedLayer(Layer):
         output_error.dot(self.parameters[0].value.T, self.error)
         return self.error
 
-    def _start(self, name: str) -> Array:
+    def initial_value(self, name: str) -> Array:
+        """Return zeros for the bias, and weights drawn as `initialisation` says."""
         if name == "bias":
             return np.zeros(self.shapes[name])
         draw = INITIALISATIONS[self.initialisation or "glorot"]
@@ -177,11 +218,10 @@ class DuelingLayer(FullyConnectedLayer):
         super().__init__(inputs, outputs, **options)
         self.shapes = {"weights": (inputs, outputs + 1), "bias": (outputs + 1,)}
 
-    @cached_property
+    @property
     def mixture(self) -> Array:
-        """What makes Q-values of the streams, (1 + outputs, outputs)."""
-        identity = np.eye(self.shapes["bias"][0] - 1)
-        return np.vstack([np.ones(len(identity)), identity - 1 / len(identity)]).astype(self.dtype)
+        """Matrix that makes Q-values of the streams, (1 + outputs, outputs)."""
+        return _mixture(self.shapes["bias"][0] - 1, np.dtype(self.dtype))
 
     def forward_propagate(self, input_data: Array) -> Array:
         """Return Q, (batch, outputs)."""
@@ -195,8 +235,8 @@ class DuelingLayer(FullyConnectedLayer):
 
     def row_step(self, values: Array) -> Callable[[Array], Array]:
         """Return Q of one example (inputs,)."""
-        streams = super().row_step(values)
-        return lambda input_data: streams(input_data).dot(self.mixture)
+        streams, mixture = super().row_step(values), self.mixture
+        return lambda input_data: streams(input_data).dot(mixture)
 
     def fill_gradients(self, output_error: Array) -> None:
         """Set the gradients of both streams' weights and biases."""
@@ -207,7 +247,7 @@ class DuelingLayer(FullyConnectedLayer):
         return super().input_error(output_error.dot(self.mixture.T))
 
 
-class ActivationLayer(Layer):
+class ActivationLayer(HalvedLayer):
     """An elementwise function: `ActivationLayer(*ActivationFunctions.use_tanh())`, or a pair of your own.
 
     A plain pair (function, derivative), both of the input, works too, but cannot be saved.
@@ -241,7 +281,7 @@ class ActivationLayer(Layer):
         return self.error
 
 
-class LayerNormalisation(Layer):
+class LayerNormalisation(HalvedLayer):
     """Each example to mean 0 and variance 1 over its values, then a learned gain and bias (Ba et al. 2016).
 
     Means are products with a constant vector, because BLAS sums rows several times faster than `mean` does.
@@ -263,7 +303,7 @@ class LayerNormalisation(Layer):
     def forward_propagate(self, input_data: Array) -> Array:
         """Return the normalised batch, (batch, size)."""
         gain, bias = self.parameters
-        if len(self.output) != len(input_data):
+        if len(self.output) != len(input_data) or self.output.dtype != self.dtype:
             buffers = np.empty((5, *input_data.shape), self.dtype)
             self.output, self.centred, self.stretch, self.error, self.scratch = buffers
         self.inverse_deviation = self._centre(np.asarray(input_data, self.dtype), self.centred)
@@ -308,7 +348,8 @@ class LayerNormalisation(Layer):
     def _average(self) -> Array:
         return constant(self.size, 1 / self.size, np.dtype(self.dtype))
 
-    def _start(self, name: str) -> Array:
+    def initial_value(self, name: str) -> Array:
+        """Return gains of 1 and biases of 0."""
         return (np.ones if name == "gain" else np.zeros)(self.shapes[name])
 
 
@@ -337,6 +378,14 @@ def constant(size: int, value: float, dtype: np.dtype[Any]) -> Array:
     vector: Array = np.full(size, value, dtype)
     vector.setflags(write=False)
     return vector
+
+
+@lru_cache(maxsize=64)
+def _mixture(outputs: int, dtype: np.dtype[Any]) -> Array:
+    identity = np.eye(outputs)
+    mixture: Array = np.vstack([np.ones(outputs), identity - 1 / outputs]).astype(dtype)
+    mixture.setflags(write=False)
+    return mixture
 
 
 def _ones(size: int, dtype: npt.DTypeLike) -> Array:

@@ -41,13 +41,12 @@ class NeuralNetwork:
         self.dtype = np.dtype(dtype)
 
     def add_layer(self, layer: Layer) -> Self:
-        """Append a layer; raises ValueError if it does not fit the one before."""
+        """Append a layer; raises ValueError if it does not fit the one before, or belongs to a network already."""
         check_fit(self.layers, layer)
+        layer.join(self.rng, self.dtype)
         if isinstance(layer, ActivationLayer):
             for before in self.layers:
                 before.initialisation = before.initialisation or layer.activation.initialisation
-        layer.rng = layer.rng or self.rng.spawn(1)[0]
-        layer.dtype = self.dtype
         self.layers.append(layer)
         for name in ("_flat", "_row_steps"):  # made anew when needed
             self.__dict__.pop(name, None)

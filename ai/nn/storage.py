@@ -21,6 +21,7 @@ from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Lay
 from ai.nn.parameter import Array, Parameter
 
 T = TypeVar("T")
+L = TypeVar("L", bound=Layer)
 
 FORMAT = "tranquility network"
 VERSION = 1
@@ -35,6 +36,17 @@ LAYERS: dict[str, type[Layer]] = {
     "MaxPoolingLayer": MaxPoolingLayer,
     "FlattenLayer": FlattenLayer,
 }
+
+
+def register_layer(kind: type[L]) -> type[L]:
+    """Let networks with layers of your own kind be saved and loaded, under the name of the class.
+
+    Takes the class and returns it, so it may stand above it as a decorator. What the constructor needs is named in
+    the class's `settings`. Raises ValueError for a name that another kind has.
+    """
+    if LAYERS.setdefault(kind.__name__, kind) is not kind:
+        raise ValueError(f"there is another kind of layer called {kind.__name__}")
+    return kind
 
 
 class ModelFormatError(ValueError):
@@ -59,6 +71,9 @@ def write_network(folder: Path, cost: Cost, layers: list[Layer], dtype: npt.DTyp
 
 
 def _write_layer(folder: Path, index: int, layer: Layer) -> dict[str, Any]:
+    name = type(layer).__name__
+    if LAYERS.get(name) is not type(layer):
+        raise ValueError(f"layer {index}, a {name}, could not be loaded again: tell ai.nn.register_layer of its class")
     arrays = {}
     for parameter in layer.parameters:
         if not np.isfinite(parameter.value).all():
@@ -68,7 +83,7 @@ def _write_layer(folder: Path, index: int, layer: Layer) -> dict[str, Any]:
         shape, dtype = list(parameter.value.shape), parameter.value.dtype.name
         arrays[parameter.name] = {"file": file, "shape": shape, "dtype": dtype}
     settings = {name: _described(value) for name, value in layer.arguments().items()}
-    return {"type": type(layer).__name__, **settings, "arrays": arrays}
+    return {"type": name, **settings, "arrays": arrays}
 
 
 def _described(value: object) -> object:

@@ -135,6 +135,29 @@ def test_a_layer_alone_returns_its_input_error(name):
 
 
 @pytest.mark.parametrize("name", LAYER_ROWS)
+def test_a_layer_that_was_used_in_one_precision_serves_a_network_of_another(name):
+    used, fresh = LAYER_ROWS[name](), LAYER_ROWS[name]()
+    x = examples_of(used, BATCH, 7).astype(np.float32)
+    used.forward_propagate(x)
+    used.backward_propagate(used.predict(x))
+    values = [parameter.value.copy() for parameter in used.parameters]
+    networks = [NeuralNetwork(*CostFunctions.use_mse(), dtype=np.float64).add_layer(one) for one in (used, fresh)]
+    for parameter, value in zip(used.parameters, values, strict=True):
+        np.testing.assert_array_equal(parameter.value, value)
+        assert parameter.value.dtype == np.float64
+    results = []
+    for network in networks:
+        network.values = np.concatenate([np.zeros(0), *(value.ravel() for value in values)])
+        output = network.forward_propagate(x).copy()
+        network.backward_propagate(output)
+        error = network.input_gradient(x, output)
+        results.append((output, network.gradients, error))
+    for one, other in zip(*results, strict=True):
+        assert one.dtype == np.float64
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("name", LAYER_ROWS)
 def test_the_way_back_to_the_input(name):
     network = network_with(LAYER_ROWS[name]())
     x, error = examples(network, BATCH, 9), np.random.default_rng(10).normal(size=(BATCH, 2))
@@ -324,12 +347,13 @@ def test_glorot_bound():
     assert weights.std() == pytest.approx(bound / np.sqrt(3), rel=0.02)
 
 
-@pytest.mark.parametrize("between", [[], [LayerNormalisation(200)]])
+@pytest.mark.parametrize("normalised", [False, True])
 @pytest.mark.parametrize("activation", ["relu", "leaky_relu"])
-def test_rectifiers_get_he_weights(activation, between):
-    network = NeuralNetwork(*CostFunctions.use_mse())
-    for layer in (FullyConnectedLayer(300, 200), *between, ActivationLayer(*ACTIVATION_ROWS[activation])):
-        network.add_layer(layer)
+def test_rectifiers_get_he_weights(activation, normalised):
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(300, 200))
+    if normalised:
+        network.add_layer(LayerNormalisation(200))
+    network.add_layer(ActivationLayer(*ACTIVATION_ROWS[activation]))
     network.add_layer(FullyConnectedLayer(200, 100)).add_layer(ActivationLayer(*ACTIVATION_ROWS["tanh"]))
     network.add_layer(ActivationLayer(*ACTIVATION_ROWS["relu"]))
     dense = [layer for layer in network.layers if isinstance(layer, FullyConnectedLayer)]

@@ -8,11 +8,15 @@ from ai.nn import (
     ActivationLayer,
     Adam,
     CostFunctions,
+    DivergenceError,
     DuelingLayer,
     FullyConnectedLayer,
+    Layer,
     LayerNormalisation,
     NeuralNetwork,
+    register_layer,
 )
+from ai.nn.storage import LAYERS
 
 XOR_X = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
 XOR_Y = np.array([[0], [1], [1], [0]])
@@ -94,6 +98,105 @@ def test_training_prints_nothing(capsys):
 def test_wrong_arguments_are_named(change, message):
     with pytest.raises(ValueError, match=message):
         small_network().train(**({"x": XOR_X, "y": XOR_Y} | change))
+
+
+@pytest.mark.parametrize("epochs", [1, 100])
+@pytest.mark.parametrize("rate", [5.0, 1e30])
+def test_numbers_that_run_away_end_the_training_and_no_infinite_weight_stays(rate, epochs):
+    """A linear network at rate 5 overshoots more at each step; the very last step is checked as well."""
+    rng = np.random.default_rng(0)
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(4, 1))
+    x = rng.normal(size=(200, 4))
+    with pytest.raises(DivergenceError, match="learning step .* the learning rate of") as caught:
+        network.train(x, x.sum(axis=1, keepdims=True), epochs=epochs, batch_size=4, learning_rate=rate)
+    assert caught.value.learning_rate == rate
+    assert 1 <= caught.value.step <= 50
+    assert f"learning step {caught.value.step};" in str(caught.value)
+    assert np.isfinite(network.values).all()
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_targets_that_are_not_finite_are_found_though_the_gradient_of_huber_is(bad):
+    network = small_network(cost=CostFunctions.use_huber())
+    before = network.values.copy()
+    with pytest.raises(DivergenceError, match="cost was not finite at learning step 1"):
+        network.train(XOR_X, np.where(XOR_Y == 1, bad, 0.0))
+    np.testing.assert_array_equal(network.values, before)
+
+
+def test_a_layer_belongs_to_one_network():
+    layer = FullyConnectedLayer(2, 2)
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(layer)
+    for other in (network, NeuralNetwork(*CostFunctions.use_mse())):
+        with pytest.raises(ValueError, match="FullyConnectedLayer belongs to a network already"):
+            other.add_layer(layer)
+    network.values = np.arange(6.0)
+    assert len(network.layers) == 1
+    np.testing.assert_array_equal(layer.weights, [[0, 1], [2, 3]])
+
+
+class Gain(Layer):
+    """A custom layer with no more than the contract asks: each value times a number of its own."""
+
+    settings = ("inputs",)
+
+    def __init__(self, inputs):
+        self.inputs = self.outputs = inputs
+        self.shapes = {"gain": (inputs,)}
+
+    def initial_value(self, name):
+        return self.rng.uniform(0.5, 1.5, self.inputs)
+
+    def forward_propagate(self, input_data):
+        self.input = input_data
+        return input_data * self.parameters[0].value
+
+    def backward_propagate(self, output_error):
+        self.parameters[0].gradient[...] = (self.input * output_error).sum(axis=0)
+        return output_error * self.parameters[0].value
+
+    def predict(self, input_data):
+        return input_data * self.parameters[0].value
+
+
+@pytest.mark.parametrize("place", [0, 1])
+def test_a_custom_layer_learns_wherever_it_stands(place):
+    network = NeuralNetwork(*CostFunctions.use_mse(), dtype=np.float64)
+    for layer in (Gain(2), FullyConnectedLayer(2, 2))[:: 1 - 2 * place]:
+        network.add_layer(layer)
+    gain = network.layers[place].parameters[0]
+    before, y = gain.value.copy(), 3.0 * XOR_X
+    history = network.train(XOR_X, y, epochs=200, batch_size=4, learning_rate=0.05)
+    assert history[-1] < 0.01 * history[0]
+    assert (gain.value != before).all()
+    output = network.forward_propagate(XOR_X).copy()
+    network.backward_propagate(network.cost.derivative(output, 0 * y))
+    step, gradients = 1e-6, network.gradients.copy()
+    gain.value[0] += step
+    above = network.cost(network.predict(XOR_X), 0 * y)
+    gain.value[0] -= 2 * step
+    assert gain.gradient[0] == pytest.approx((above - network.cost(network.predict(XOR_X), 0 * y)) / (2 * step))
+    gain.value[0] += step
+    error = network.input_gradient(XOR_X, np.ones((4, 2)))
+    both = network.layers[0 if place else 1].weights * (gain.value if place else gain.value[:, None])
+    np.testing.assert_allclose(error, np.tile(both.sum(axis=1), (4, 1)))
+    np.testing.assert_array_equal(network.gradients, gradients)
+
+
+def test_a_custom_layer_is_saved_once_it_is_registered(tmp_path, monkeypatch):
+    monkeypatch.setattr("ai.nn.storage.LAYERS", LAYERS.copy())
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(Gain(2)).add_layer(FullyConnectedLayer(2, 1))
+    with pytest.raises(ValueError, match="layer 0, a Gain, could not be loaded again: tell ai.nn.register_layer"):
+        network.save(tmp_path / "model")
+    assert not (tmp_path / "model").exists()
+    assert register_layer(Gain) is register_layer(Gain) is Gain
+    network.save(tmp_path / "model")
+    loaded = NeuralNetwork.load(tmp_path / "model")
+    assert type(loaded.layers[0]) is Gain
+    np.testing.assert_array_equal(loaded.predict(XOR_X), network.predict(XOR_X))
+    np.testing.assert_array_equal(network.copy().predict(XOR_X), network.predict(XOR_X))
+    with pytest.raises(ValueError, match="another kind of layer called Gain"):
+        register_layer(type("Gain", (Gain,), {}))
 
 
 def test_layers_have_to_fit():
