@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import astuple, dataclass
 from typing import Any, Final
 
-from ai.knobs import Knobs, knob
+from ai.knobs import Knobs, is_number, knob, shown
 from ai.nn import OPTIMIZERS
 from ai.nn.activations import ACTIVATIONS
 from ai.rewards import RewardWeights
@@ -98,7 +97,7 @@ class Config(Knobs):
         """Say what is wrong with the values."""
         problems = super().problems()
         if not _pays(self.weights):
-            problems.append(f"weights are finite numbers, one for each part of the reward, not {self.weights!r}")
+            problems.append(f"weights are finite numbers, one for each part of the reward, not {shown(self.weights)}")
         if not problems and self.replay_prune > self.replay_size:
             problems.append(f"replay_prune is at most replay_size, {self.replay_size}, not {self.replay_prune}")
         return problems
@@ -111,9 +110,7 @@ class Config(Knobs):
 
 def _pays(weights: Any) -> bool:
     """Whether these are weights of a reward that can be reckoned with."""
-    return isinstance(weights, RewardWeights) and all(
-        isinstance(weight, int | float) and math.isfinite(weight) for weight in astuple(weights)
-    )
+    return isinstance(weights, RewardWeights) and all(map(is_number, astuple(weights)))
 
 
 PRESETS: Final[dict[str, Config]] = {

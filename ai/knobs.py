@@ -6,10 +6,13 @@ A field's metadata hold a sentence of help, its group, its range, and whether it
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import Field, asdict, dataclass, field, fields, replace
-from typing import Any, Self
+from dataclasses import Field, asdict, dataclass, field, fields, is_dataclass, replace
+from sys import float_info
+from typing import Any, Final, Self
 
 import numpy as np
+
+SHOWN: Final = 80  # letters of a wrong value in a message
 
 
 def knob(
@@ -46,6 +49,8 @@ class Knobs:
     """Choices whose fields are all `knob`s; a value out of range raises ValueError, with all that is wrong."""
 
     def __post_init__(self) -> None:
+        for item in fields(self):  # a number of NumPy's is as good as a plain one, but no file takes it
+            object.__setattr__(self, item.name, _plain(getattr(self, item.name)))
         if problems := self.problems():
             raise ValueError("; ".join(problems))
 
@@ -80,23 +85,47 @@ class Knobs:
 
 def field_problem(item: Field[Any], value: Any) -> str | None:
     """Say what is wrong with a field's value, if anything."""
-    described = item.metadata
+    name, kind, described = item.name, str(item.type), item.metadata
     if described["choices"] and value not in described["choices"]:
-        return f"{item.name} is one of {', '.join(described['choices'])}, not {value!r}"
-    if isinstance(value, bool) != (item.type == "bool"):
-        return f"{item.name} is {'' if item.type == 'bool' else 'not '}a yes or no, and was {value!r}"
-    if item.type == "int" and not isinstance(value, int | np.integer):
-        return f"{item.name} is a whole number, not {value!r}"
-    several = str(item.type).startswith("tuple")
+        return f"{name} is one of {', '.join(described['choices'])}, not {shown(value)}"
+    if kind == "str" and not isinstance(value, str):
+        return f"{name} is a text, not {shown(value)}"
+    if isinstance(value, bool) != (kind == "bool"):
+        return f"{name} is {'' if kind == 'bool' else 'not '}a yes or no, and was {shown(value)}"
+    several = kind.startswith("tuple")
     if isinstance(value, tuple) != several:
-        return f"{item.name} is {'' if several else 'not '}a list of numbers, and was {value!r}"
-    if described["low"] is not None:
-        numbers = value if isinstance(value, tuple) else (value,)
-        if not numbers or not all(
-            isinstance(n, int | float) and described["low"] <= n <= described["high"] for n in numbers
-        ):
-            return f"{item.name} lies between {described['low']:g} and {described['high']:g}, not {value!r}"
+        return f"{name} is {'' if several else 'not '}a list of numbers, and was {shown(value)}"
+    numbers = value if isinstance(value, tuple) else (value,)
+    if "int" in kind and not all(isinstance(number, int) and is_number(number) for number in numbers):
+        return f"{name} is {'a list of whole numbers' if several else 'a whole number'}, not {shown(value)}"
+    if described["low"] is not None and not (
+        numbers and all(is_number(number) and described["low"] <= number <= described["high"] for number in numbers)
+    ):
+        return f"{name} lies between {described['low']:g} and {described['high']:g}, not {shown(value)}"
     return None
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is one finite plain number that a float can hold; a yes or no is none."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and -float_info.max <= value <= float_info.max
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it: shortened, whatever a file may hold."""
+    try:
+        text = repr(value)
+    except ValueError:  # an int of more than some 4,000 digits
+        return "a number of very many digits"
+    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
+
+
+def _plain(value: Any) -> Any:
+    """Return a number of NumPy's as a plain one, in a tuple or a dataclass as well; all else as it is."""
+    if isinstance(value, tuple):
+        return tuple(map(_plain, value))
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **{item.name: _plain(getattr(value, item.name)) for item in fields(value)})
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def nearest_preset(given: Mapping[str, Any], presets: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

@@ -82,6 +82,8 @@ class LanderEnv(Craft):
     ) -> None:
         if num_envs < 1 or frame_skip < 1:
             raise ValueError(f"num_envs and frame_skip start from 1, not {num_envs} and {frame_skip}")
+        if not (isinstance(spawn, Curriculum) or (isinstance(spawn, str) and spawn in SPAWNS)):
+            raise ValueError(f"spawn is one of {', '.join(SPAWNS)}, or a Curriculum, not {spawn!r}")
         super().__init__(num_envs, params, ground or Ground.flat(params), conditions)
         self.frame_skip, self.limits, self.weights = frame_skip, limits, weights or RewardWeights()
         self.spawn = spawn

@@ -1,5 +1,7 @@
+import json
 from dataclasses import fields
 
+import numpy as np
 import pytest
 
 from ai.config import PRESETS, Config
@@ -46,11 +48,38 @@ def test_classic_is_the_agent_first_described():
         ({"n_step": True}, "n_step is not a yes or no"),
         ({"hidden": ()}, "hidden lies between"),
         ({"spawn": "mars"}, "spawn is one of"),
+        ({"hidden": (64.5, 64)}, r"hidden is a list of whole numbers, not \(64.5, 64\)"),
+        ({"hidden": (64.0,)}, "hidden is a list of whole numbers"),
+        ({"hidden": (True,)}, "hidden is a list of whole numbers"),
+        ({"hidden": (np.True_, 8)}, "hidden is a list of whole numbers"),
+        ({"hidden": ("64",)}, "hidden is a list of whole numbers"),
+        ({"hidden": (64, 0)}, "hidden lies between"),
+        ({"num_envs": np.float64(4.5)}, "num_envs is a whole number"),
+        ({"num_envs": np.True_}, "num_envs is not a yes or no"),
+        ({"learning_rate": np.float32("inf")}, "learning_rate lies between"),
+        ({"learning_rate": "fast"}, "learning_rate lies between"),
+        ({"horizon": 10**400}, r"horizon is a whole number, not 1000+…"),
+        ({"horizon": 10**5000}, "horizon is a whole number, not a number of very many digits"),
+        ({"env": None}, "env is a text, not None"),
+        ({"env": 5}, "env is a text"),
+        ({"spawn": "x" * 100_000}, "spawn is one of .*x{20}…$"),
+        ({"weights": RewardWeights(time=True)}, "weights are finite numbers"),
+        ({"weights": RewardWeights(time=10**400)}, "weights are finite numbers"),
     ],
 )
 def test_a_setting_out_of_range_is_named(changes, message):
     with pytest.raises(ValueError, match=message):
         Config().changed(**changes)
+
+
+def test_numbers_of_numpy_are_plain_numbers():
+    given = {"num_envs": np.int64(8), "learning_rate": np.float32(0.5), "double": np.False_,
+             "hidden": (np.int32(16), 8), "weights": RewardWeights(time=np.float32(-0.5), switch=np.int64(0))}  # fmt: skip
+    plain = {"num_envs": 8, "learning_rate": 0.5, "double": False, "hidden": (16, 8),
+             "weights": RewardWeights(time=-0.5, switch=0)}  # fmt: skip
+    config = Config().changed(**given)
+    assert config == Config().changed(**plain)
+    assert Config.from_json(json.loads(json.dumps(config.to_json()))) == config
 
 
 def test_unknown_settings_are_named():

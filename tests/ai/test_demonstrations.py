@@ -95,7 +95,7 @@ def test_an_agent_learns_from_demonstrations_alone(landings, preset):
 
     before = agreement()
     assert agent.learn() is not None
-    assert agent.train_count == 2 * agent.config.updates  # the second pass is over the successes
+    assert agent.optimizer.steps == 2 * agent.config.updates  # the second pass is over the successes
     for _ in range(150):
         agent.learn()
     assert agreement() != before

@@ -272,6 +272,9 @@ def test_the_curriculum_follows_landings():
     env.reset()
     assert env.position[0].tolist() == [0.0, 12.0]
     assert env.stage == 1
+    for unknown in ("mars", "", None, ["random"]):
+        with pytest.raises(ValueError, match="spawn is one of fixed, higher"):
+            LanderEnv(2, 0, unknown)
     with pytest.raises(ValueError, match="rising thresholds"):
         Curriculum(((0, "fixed"), (0, "random")))
 
