@@ -8,6 +8,7 @@ from typing import Literal, Self
 import numpy as np
 import numpy.typing as npt
 
+from ai.nn.budget import check_budget
 from ai.nn.costs import Cost, CostFunction
 from ai.nn.dropout import DropoutLayer
 from ai.nn.folder import atomic_folder
@@ -41,8 +42,9 @@ class NeuralNetwork:
         self.dtype = np.dtype(dtype)
 
     def add_layer(self, layer: Layer) -> Self:
-        """Append a layer; raises ValueError if it does not fit the one before."""
+        """Append a layer; raises ValueError if it does not fit the one before, or the network gets too large."""
         check_fit(self.layers, layer)
+        check_budget(self.layers, layer)
         if isinstance(layer, ActivationLayer):
             for before in self.layers:
                 before.initialisation = before.initialisation or layer.activation.initialisation
