@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from ai.nn.files import beside, brief, read_json
+from ai.nn.lock import take_folder
 
 CONFIG = "config.json"  # what every model's folder holds
 OLD: Final = ".old"  # the end of the name of a folder that was moved aside for a new one
@@ -89,6 +90,27 @@ def atomic_folder(target: str | Path, kind: Kind = NETWORK) -> Iterator[Path]:
 def check_folder(target: str | Path, kind: Kind = NETWORK) -> None:
     """Raise the OSError that `atomic_folder` would begin with, long before there is anything to write."""
     _begin(target, kind)[1].rmdir()
+
+
+@contextmanager
+def claimed_folder(target: str | Path, kind: Kind) -> Iterator[None]:
+    """Let nobody else train into a folder while the block lasts, game or command.
+
+    Raises, before there is anything to write, BlockingIOError if somebody does, and the OSError that `atomic_folder`
+    would begin with.
+    """
+    with take_folder(target):
+        check_folder(target, kind)
+        yield
+
+
+def free_folder(target: Path) -> Path:
+    """Return a name near a target, with a number behind it, that nothing has yet."""
+    number, path = 2, target.with_name(f"{target.name} 2")
+    while os.path.lexists(path):
+        number += 1
+        path = target.with_name(f"{target.name} {number}")
+    return path
 
 
 def recover_folder(target: str | Path) -> None:
