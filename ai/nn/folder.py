@@ -82,7 +82,7 @@ def atomic_folder(target: str | Path, kind: Kind = NETWORK) -> Iterator[Path]:
         recover_folder(target)
         shutil.rmtree(new, ignore_errors=True)
         raise
-    for old in _aside(target):
+    for old in moved_aside(target):
         if not any(old.iterdir()) or not kind.stranger(old):
             shutil.rmtree(old, ignore_errors=True)
 
@@ -117,7 +117,7 @@ def recover_folder(target: str | Path) -> None:
     """Put the old folder back if a save was stopped between its two renames. Call it before reading."""
     with suppress(OSError, ValueError):
         path = Path(os.path.realpath(target))
-        if not os.path.lexists(path) and (aside := _aside(path)):
+        if not os.path.lexists(path) and (aside := moved_aside(path)):
             max(aside, key=lambda old: old.stat().st_mtime).rename(path)
 
 
@@ -172,8 +172,8 @@ def _swap(new: Path, target: Path) -> None:
             return
 
 
-def _aside(target: Path) -> list[Path]:
-    """Return the folders that were moved aside for a target."""
+def moved_aside(target: Path) -> list[Path]:
+    """Return the folders that were moved aside for a target and not deleted yet."""
     return [path for path in target.parent.glob(f".{_literal(target.name)}*{OLD}")
             if aside_for(path) == target.name and path.is_dir() and not path.is_symlink()]  # fmt: skip
 
