@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import json
-import zlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -27,7 +25,10 @@ from ai.nn import (
     recover_folder,
 )
 from ai.nn.activations import ACTIVATIONS
+from ai.nn.budget import WIDEST
 from ai.nn.costs import COSTS
+from ai.nn.files import brief, count_of, inside, read_arrays, read_json
+from ai.nn.folder import NETWORK, Kind
 from ai.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
 from ai.scaling import RunningScale
 from ai.schedule import linear
@@ -36,6 +37,10 @@ FORMAT: Final = "tranquility agent"
 VERSION: Final = 1
 AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
+LAST: Final = "last"  # in the folder of a run: the agent to go on with
+_ALONE: Final = Kind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
+KIND: Final = Kind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
+_SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
 @dataclass(frozen=True)
@@ -273,7 +278,7 @@ class DeepQAgent:
 
         Raises OSError if the disk does not take it, FileExistsError if the folder holds something else.
         """
-        with atomic_folder(folder) as temporary:
+        with atomic_folder(folder, KIND) as temporary:
             self.write(temporary)
 
     def write(self, folder: Path) -> None:
@@ -291,32 +296,43 @@ class DeepQAgent:
         (folder / AGENT_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
     @classmethod
-    def load(cls, folder: str | Path, rng: np.random.Generator | None = None) -> DeepQAgent:
-        """Read what `save` wrote. Raises ModelFormatError, which names everything that is wrong."""
+    def load(
+        cls, folder: str | Path, rng: np.random.Generator | None = None, *, env: str | None = None
+    ) -> DeepQAgent:
+        """Read what `save` wrote. Raises ModelFormatError, which names everything that is wrong.
+
+        A file never has code imported: an agent for an environment "module:Name" is refused, unless the caller
+        names that same `env`.
+        """
         folder = Path(folder)
         recover_folder(folder)
         described = _read_description(folder)
         try:
             config = Config.from_json(described["config"])
-            agent = cls(int(described["features"]), int(described["actions"]), config, rng)
-            agent.decisions, agent.train_count = int(described["decisions"]), int(described["train_count"])
+            _check_env(config.env, env)
+            agent = cls(count_of(described["features"], 1, WIDEST), count_of(described["actions"], 1, WIDEST), config, rng)
+            agent.decisions, agent.train_count = count_of(described["decisions"]), count_of(described["train_count"])
             if agent.scale:
                 agent.scale.load(described["scale"])
-        except (KeyError, TypeError, ValueError) as error:
-            raise ModelFormatError(folder, [f"{AGENT_FILE}: {error!r}"]) from error
+        except (KeyError, TypeError, ValueError, ArithmeticError) as error:
+            said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else brief(error)
+            raise ModelFormatError(folder, [f"{AGENT_FILE}: {said}"]) from error
         problems = []
         for name in ("online", "target"):
             try:
-                network = NeuralNetwork.load(folder / name)
-                if network.values.shape != agent.online.values.shape:
+                network = NeuralNetwork.load(inside(folder, name))
+                if _sizes(network) != _sizes(agent.online):
                     raise ModelFormatError(folder / name, ["its sizes are not those of the agent's settings"])
                 setattr(agent, name, network)
             except ModelFormatError as error:
                 problems += [f"{name}: {problem}" for problem in error.problems]
+            except OSError as error:
+                problems.append(f"{name}: {error.strerror or error}")
         try:
-            with np.load(folder / OPTIMIZER_FILE, allow_pickle=False) as state:
-                agent.optimizer.load_state(dict(state), agent.online.values)
-        except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
+            agent.optimizer.load_state(_read_state(inside(folder, OPTIMIZER_FILE), agent), agent.online.values)
+        except OSError as error:
+            problems.append(f"{OPTIMIZER_FILE}: {error.strerror or error}")
+        except (ValueError, KeyError) as error:
             problems.append(f"{OPTIMIZER_FILE}: {error}")
         if problems:
             raise ModelFormatError(folder, problems)
@@ -337,13 +353,42 @@ def build_network(num_features: int, num_actions: int, config: Config, rng: np.r
     return network.add_layer(head(inputs, num_actions, scale=config.output_scale))
 
 
+def _check_env(env: str, named: str | None) -> None:
+    """Raise ValueError for an environment whose name would have code imported, unless it was named by the user."""
+    if not isinstance(env, str) or (":" in env and env != named):
+        raise ValueError(
+            f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "
+            "if you trust it, name it yourself with --env"
+        )
+
+
+def _sizes(network: NeuralNetwork) -> list[Any]:
+    """Everything that two networks must have in common to stand for each other."""
+    return [network.dtype, *((type(layer), dict(layer.shapes)) for layer in network.layers)]
+
+
+def _read_state(path: Path, agent: DeepQAgent) -> dict[str, Any]:
+    """Read an optimizer's arrays; raises OSError, or ValueError for others than such an optimizer has."""
+    values, remembers = agent.online.values, agent.optimizer.remembers
+
+    def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+        steps = name == "steps" and shape == () and dtype.kind in "iu"
+        if not steps and not (name in remembers and shape == values.shape and dtype.kind == "f" and dtype.itemsize <= 8):
+            raise ValueError(f"{name} is no state of {type(agent.optimizer).__name__} of {len(values):,} parameters")
+
+    return read_arrays(path, len(remembers) * values.size * 8 + _SLACK, expect)
+
+
 def _read_description(folder: Path) -> dict[str, Any]:
     try:
-        described = json.loads((folder / AGENT_FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        described = read_json(inside(folder, AGENT_FILE))
+    except OSError as error:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {error.strerror or error}"]) from error
+    except ValueError as error:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
     if not isinstance(described, dict) or described.get("format") != FORMAT:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: this is no {FORMAT}"])
     if described.get("version") != VERSION:
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: version {described.get('version')!r}, not {VERSION}"])
+        said = brief(repr(described.get("version")), 40)
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: version {said}, not {VERSION}"])
     return described

@@ -41,6 +41,7 @@ def add_commands(commands: Any) -> None:
 
     evaluate = commands.add_parser("evaluate", help="measure how well a network does")
     evaluate.add_argument("--model", type=Path, required=True, metavar="DIR")
+    evaluate.add_argument("--env", metavar="NAME", help="the environment, where its name is module:Name")
     evaluate.add_argument("--episodes", type=int, help="default: 1000 flights, or 100 episodes of another environment")
     evaluate.add_argument("--seed", type=int, default=0)
     evaluate.add_argument("--spawn", help="random or hard (default: random)")
@@ -49,7 +50,9 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.runs import TrainingClock, resume_run, save_run
+    from ai.agent import KIND
+    from ai.nn.folder import claimed_folder
+    from ai.runs import resume_run
     from ai.training import Training
 
     if arguments.resume is None and arguments.output is None:
@@ -58,11 +61,25 @@ def _train(arguments: argparse.Namespace) -> int:
         return fail("say when to stop: --seconds S or --decisions N")
     output = arguments.output or arguments.resume
     try:
-        resumed = resume_run(arguments.resume) if arguments.resume else None
+        resumed = resume_run(arguments.resume, env=arguments.env) if arguments.resume else None
         training = resumed or Training(_config(arguments), arguments.seed)
         training.validation_episodes = arguments.validation or training.validation_episodes
     except (ValueError, ImportError) as error:
         return fail(str(error))
+    try:
+        with claimed_folder(output, KIND):
+            return _train_into(output, training, arguments)
+    except FileExistsError as error:
+        return fail(str(error))
+    except OSError as error:
+        return fail(f"could not write to {output}: {error.strerror or error}")
+
+
+def _train_into(output: Path, training: Training, arguments: argparse.Namespace) -> int:
+    """Train, and keep the network in a folder that nobody else trains into."""
+    from ai.nn.folder import free_folder
+    from ai.runs import TrainingClock, save_run
+
     clock = TrainingClock(arguments.seconds, arguments.decisions)
     try:
         _advance(training, clock, output)
@@ -72,6 +89,10 @@ def _train(arguments: argparse.Namespace) -> int:
     except OSError as error:
         return fail(f"could not write to {output}: {error.strerror or error}")
     try:
+        save_run(training, output, final=True)
+    except FileExistsError as error:  # something else was put there meanwhile, and neither is to be lost
+        print(error, file=sys.stderr)
+        output = free_folder(output)
         save_run(training, output, final=True)
     except OSError as error:
         return fail(f"could not write to {output}: {error.strerror or error}")
@@ -128,8 +149,10 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     if spawn not in SPAWNS:
         return fail(f"--spawn is one of {', '.join(SPAWNS)}, not {spawn}")
     try:
-        agent = DeepQAgent.load(arguments.model)
+        agent = DeepQAgent.load(arguments.model, env=arguments.env)
         task = task_of(agent.config)
+        if (agent.num_features, agent.num_actions) != (task.num_features, task.num_actions):
+            raise ValueError(f"the network in {arguments.model} is not made for {agent.config.env}")
     except (ModelFormatError, ValueError, ImportError) as error:
         return fail(str(error))
     episodes = episodes or task.test_episodes

@@ -20,6 +20,8 @@ from ai.env import Bools, Floats
 from ai.ground import hilly
 from ai.lander import NUM_ACTIONS, LanderEnv, Outcome
 from ai.memory import NStep
+from ai.nn.files import MOST as LARGEST
+from ai.nn.files import brief, read_json, write_text
 from ai.pilots import Pilot
 from ai.replay import MemoryCell
 from ai.spawns import SPAWNS
@@ -42,11 +44,11 @@ class Demonstration:
     pad: int = 0  # number of the pad landed on
 
     def __post_init__(self) -> None:
-        whole = (self.seed, self.begins, self.pad, *self.actions)
-        if not all(isinstance(number, int) and number >= 0 for number in whole):
-            raise ValueError("seed, steps and actions of a demonstration are whole numbers from 0")
-        if self.spawn not in SPAWNS or not 0 < len(self.actions) <= _LONGEST or max(self.actions) >= NUM_ACTIONS:
-            raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {self.spawn!r}")
+        whole = (self.seed, self.begins, self.pad, *self.actions, *(() if self.ground is None else (self.ground,)))
+        if not all(isinstance(number, int) and number >= 0 for number in whole) or self.pad > LARGEST:
+            raise ValueError("seeds, steps, pad and actions of a demonstration are whole numbers from 0")
+        if not isinstance(self.spawn, str) or self.spawn not in SPAWNS or not 0 < len(self.actions) <= _LONGEST or max(self.actions) >= NUM_ACTIONS:
+            raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {brief(repr(self.spawn), 40)}")
 
 
 def takeover(hands: Sequence[bool]) -> int:
@@ -119,26 +121,27 @@ def taught(config: Config) -> Config:
 def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
     """Keep the newest demonstrations in a file, whole or not at all. Raises OSError if the disk won't have it."""
     kept = [asdict(demonstration) for demonstration in demonstrations[-MOST:]]
-    temporary = path.with_name(path.name + ".part")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary.write_text(json.dumps({"format": FORMAT, "version": VERSION, "flights": kept}) + "\n", encoding="utf-8")
-    temporary.replace(path)
+    write_text(path, json.dumps({"format": FORMAT, "version": VERSION, "flights": kept}) + "\n")
 
 
 def read(path: Path) -> list[Demonstration]:
     """Read what `write` wrote, oldest first; nothing if there is no file yet.
 
-    Raises ValueError, which names the file and what is wrong with it, and OSError if it can't be read.
+    Of more than there can be, those are the newest. Raises ValueError, which names the file and what is wrong with
+    it, and OSError if it can't be read.
     """
     try:
-        described = json.loads(path.read_text(encoding="utf-8"))
+        described = read_json(path)
         if described["format"] != FORMAT or described["version"] != VERSION:
             raise ValueError(f"this is no {FORMAT}, version {VERSION}")
-        return [Demonstration(**flight | {"actions": tuple(flight["actions"])}) for flight in described["flights"]]
+        flights = described["flights"]
+        if not isinstance(flights, list):
+            raise ValueError("flights is to be a list")
+        return [Demonstration(**flight | {"actions": tuple(flight["actions"])}) for flight in flights[-MOST:]]
     except FileNotFoundError:
         return []
     except (ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path}: {error}") from error
+        raise ValueError(f"{path}: {brief(error)}") from error
 
 
 def _stream(seed: int) -> np.random.Generator:

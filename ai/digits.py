@@ -13,7 +13,9 @@ from ai.ink import SIDE, Image, Stages, preprocess, preprocess_strokes, stages
 from ai.mnist import MnistError, load_mnist, load_part
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.costs import softmax
-from ai.nn.folder import CONFIG
+from ai.nn.files import brief, inside, read_json
+from ai.nn.folder import CONFIG, Kind
+from ai.nn.folder import NETWORK as NETWORK_KIND
 
 __all__ = [
     "DigitClassifier", "Image", "MnistError", "Stages", "load_mnist", "load_part", "preprocess",
@@ -24,6 +26,7 @@ DIGITS_FILE: Final = CONFIG  # of a classifier's folder; its network is in a fol
 NETWORK: Final = "network"
 FORMAT: Final = "tranquility digits"
 VERSION: Final = 1
+KIND: Final = Kind(FORMAT, ("training.json", "last.npz"), {NETWORK: NETWORK_KIND})
 DIGITS: Final = 10
 _BATCH: Final = 250  # images that a large network reads at a time: more only need more memory
 
@@ -73,7 +76,7 @@ class DigitClassifier:
 
         Raises what `NeuralNetwork.save` raises.
         """
-        with atomic_folder(folder) as temporary:
+        with atomic_folder(folder, KIND) as temporary:
             self.write(temporary, **described)
 
     def write(self, folder: Path, **described: Any) -> None:
@@ -87,7 +90,10 @@ class DigitClassifier:
         """Read what `save` wrote; raises ModelFormatError, which names what is wrong."""
         folder = Path(folder)
         read_description(folder)
-        network = NeuralNetwork.load(folder / NETWORK)
+        try:
+            network = NeuralNetwork.load(inside(folder, NETWORK))
+        except OSError as error:
+            raise ModelFormatError(folder, [f"{NETWORK}: {error.strerror or error}"]) from error
         try:
             classifier = cls(network)
             if classifier.predict(np.zeros((1, SIDE, SIDE))).shape != (1, DIGITS):
@@ -102,11 +108,14 @@ def read_description(folder: str | Path) -> dict[str, Any]:
     folder = Path(folder)
     recover_folder(folder)
     try:
-        described = json.loads((folder / DIGITS_FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        described = read_json(inside(folder, DIGITS_FILE))
+    except OSError as error:
+        raise ModelFormatError(folder, [f"{DIGITS_FILE}: {error.strerror or error}"]) from error
+    except ValueError as error:
         raise ModelFormatError(folder, [f"{DIGITS_FILE}: {error}"]) from error
     if not isinstance(described, dict) or described.get("format") != FORMAT:
         raise ModelFormatError(folder, [f"{DIGITS_FILE}: this is no {FORMAT!r}"])
     if described.get("version") != VERSION:
-        raise ModelFormatError(folder, [f"{DIGITS_FILE}: version {described.get('version')!r}, not {VERSION}"])
+        said = brief(repr(described.get("version")), 40)
+        raise ModelFormatError(folder, [f"{DIGITS_FILE}: version {said}, not {VERSION}"])
     return described

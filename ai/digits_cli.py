@@ -40,7 +40,8 @@ def add_commands(commands: Any) -> None:
 def _train(arguments: argparse.Namespace) -> int:
     from ai.digit_runs import resume_digit_run, save_digit_run
     from ai.digit_training import DigitTraining
-    from ai.nn.folder import check_folder
+    from ai.digits import KIND
+    from ai.nn.folder import claimed_folder
 
     output = arguments.output or arguments.resume
     if output is None:
@@ -54,9 +55,9 @@ def _train(arguments: argparse.Namespace) -> int:
     except ValueError as error:
         return fail(str(error))
     try:
-        check_folder(output)
-        _advance(training, arguments.seconds, output)
-        described = save_digit_run(training, output, final=True)
+        with claimed_folder(output, KIND):
+            _advance(training, arguments.seconds, output)
+            described = save_digit_run(training, output, final=True)
     except FloatingPointError as error:
         return fail(f"training stopped: {error}. What was kept at the last epoch is in {output}.")
     except FileExistsError as error:

@@ -12,6 +12,7 @@ from ai.agent import Symmetry
 from ai.config import Config
 from ai.env import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.pilots import Pilot
+from ai.task import checked_score
 
 if TYPE_CHECKING:
     import gymnasium
@@ -175,8 +176,8 @@ class GymTask:
                         float(env.lengths.mean()))  # fmt: skip
 
     def read_score(self, values: dict[str, Any]) -> GymScore:
-        """Read what `GymScore.to_json` gave."""
-        return GymScore(**values)
+        """Read what `GymScore.to_json` gave; raises ValueError for anything else."""
+        return GymScore(**checked_score(values, ("success",)))
 
 
 def _gymnasium() -> Any:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import json
-import zlib
 from copy import copy
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Final
-from zipfile import BadZipFile
 
 import numpy as np
 
 from ai.env import Doubles, Floats
 from ai.nn import ModelFormatError
+from ai.nn.files import brief, count_of, inside, number_of, parse_json, read_arrays
+from ai.nn.files import described as array_said
 from ai.rewards import REWARDS
+from ai.scaling import RunningScale
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
@@ -26,6 +27,9 @@ HISTORY_FILE: Final = "history.npz"
 CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200
 _VERSION: Final = 1
+_MOST_TEXT: Final = 1 << 22  # letters of what is said of the arrays
+_MOST_VALUES: Final = 1 << 26  # numbers in all checkpoints together: 256 MB
+_MOST_COLUMNS: Final = 1000
 
 
 @dataclass(frozen=True)
@@ -189,15 +193,17 @@ class History:
     @classmethod
     def read(cls, folder: str | Path) -> History:
         """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
-        file = Path(folder) / HISTORY_FILE
         history = cls()
         try:
-            with np.load(file, allow_pickle=False) as arrays:
-                history._restore(json.loads(str(arrays["described"])), arrays["points"], arrays["values"])
+            arrays = read_arrays(inside(folder, HISTORY_FILE), _MOST_VALUES * 4 + _MOST_TEXT * 8, _expect)
+            history._restore(parse_json(str(arrays["described"])), arrays["points"], arrays["values"])
         except FileNotFoundError:
             return cls()
-        except (OSError, ValueError, KeyError, TypeError, EOFError, MemoryError, BadZipFile, zlib.error) as error:
-            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error or type(error).__name__}"]) from error
+        except OSError as error:
+            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error.strerror or error}"]) from error
+        except (ValueError, KeyError, TypeError, ArithmeticError) as error:
+            said = f"{brief(error.args[0])} is missing" if isinstance(error, KeyError) else error
+            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {said}"]) from error
         return history
 
     def _restore(self, described: dict[str, Any], points: Doubles, values: Floats) -> None:
@@ -206,7 +212,7 @@ class History:
             raise ValueError(f"version {described['version']!r}, not {_VERSION}")
         if points.ndim != 2 or points.shape[1] != len(described["columns"]) or len(points) > CAPACITY:
             raise ValueError(f"points of shape {points.shape}")
-        self._length, self._stride, self._told = len(points), int(described["stride"]), int(described["told"])
+        self._length, self._stride, self._told = len(points), *map(count_of, (described["stride"], described["told"]))
         if self._stride < 1 or self._told < self._length:
             raise ValueError(f"{self._length} points of {self._told}, at a stride of {self._stride}")
         # By name, so that a run from before a part was added can still be looked at.
@@ -217,8 +223,43 @@ class History:
         if not np.isfinite(values).all():
             raise ValueError("checkpoints that are not finite")
         self.checkpoints = [
-            Checkpoint(**told, values=row.astype(np.float32))
+            _checkpoint(told, row.astype(np.float32))
             for told, row in zip(described["checkpoints"], values, strict=True)
         ]
-        self.alterations = [Alteration(**told) for told in described["alterations"]]
-        self.validations = [Validation(**told) for told in described["validations"]]
+        self.alterations = [_alteration(told) for told in described["alterations"]]
+        self.validations = [_validation(told) for told in described["validations"]]
+
+
+def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+    """Raise ValueError for an array that no history has."""
+    fits = {
+        "described": shape == () and dtype.kind == "U" and dtype.itemsize <= 4 * _MOST_TEXT,
+        "points": len(shape) == 2 and shape[0] <= CAPACITY and 0 <= shape[1] <= _MOST_COLUMNS and dtype == np.float64,
+        "values": len(shape) == 2 and 0 <= shape[0] <= MOST_CHECKPOINTS and 0 <= shape[1]
+        and shape[0] * shape[1] <= _MOST_VALUES and dtype == np.float32,
+    }  # fmt: skip
+    if not fits.get(name):
+        raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
+
+
+def _checkpoint(told: dict[str, Any], values: Floats) -> Checkpoint:
+    """Read what is said of a checkpoint; raises KeyError, TypeError or ValueError for nonsense."""
+    scale = told["scale"]
+    if scale is not None:
+        RunningScale(len(scale["mean"])).load(scale)
+    return Checkpoint(
+        float(number_of(told["seconds"])), count_of(told["decisions"]), float(number_of(told["success"])), values, scale
+    )
+
+
+def _alteration(told: dict[str, Any]) -> Alteration:
+    if not isinstance(told["name"], str):
+        raise ValueError(f"{brief(repr(told['name']), 40)} is no name of a knob")
+    return Alteration(count_of(told["decisions"]), told["name"], told["before"], told["after"])
+
+
+def _validation(told: dict[str, Any]) -> Validation:
+    return Validation(
+        count_of(told["decisions"]), float(number_of(told["success"])), float(number_of(told["mean_return"])),
+        bool(told["best"]),
+    )  # fmt: skip

@@ -25,6 +25,7 @@ from ai.lander import (
 from ai.pilots import Pilot
 from ai.schedule import linear
 from ai.spawns import Curriculum
+from ai.task import checked_score
 
 LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
 
@@ -134,8 +135,8 @@ class LanderTask:
         return evaluate(pilot, episodes, seed, "random", self.config.frame_skip)
 
     def read_score(self, values: dict[str, Any]) -> Evaluation:
-        """Read what `Evaluation.to_json` gave."""
-        return Evaluation(**values)
+        """Read what `Evaluation.to_json` gave; raises ValueError for anything else."""
+        return Evaluation(**checked_score(values, ("mean_time", "mean_fuel")))
 
 
 def _action_chances(config: Config) -> Floats:

@@ -9,17 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from ai.agent import DeepQAgent
+from ai.agent import KIND, LAST, DeepQAgent
 from ai.config import LANDER, PRESETS
 from ai.gym_task import gym_config
 from ai.history import History
 from ai.knobs import nearest_preset
 from ai.nn import ModelFormatError, atomic_folder
+from ai.nn.files import count_of, inside, number_of, read_json
 from ai.task import TEST_SEED
 from ai.training import Progress, Training
 
 TRAINING_FILE: Final = "training.json"
-LAST: Final = "last"
 CHECKPOINT_SECONDS: Final = 20.0
 
 
@@ -62,7 +62,7 @@ class Snapshot:
 
     def save(self, folder: str | Path) -> None:
         """Write it, whole or not at all; raises OSError if the disk does not take it."""
-        with atomic_folder(folder) as temporary:
+        with atomic_folder(folder, KIND) as temporary:
             self.best.write(temporary)
             self.last.write(temporary / LAST)
             if self.history is not None:
@@ -101,19 +101,36 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
     kept.save(folder)
 
 
-def resume_run(folder: str | Path) -> Training:
-    """Go on from what `save_run` kept, with an empty memory; raises ModelFormatError for anything else."""
+def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
+    """Go on from what `save_run` kept, with an empty memory; raises ModelFormatError for anything else.
+
+    `env` is the environment as the user names it, without which "module:Name" is refused: see `DeepQAgent.load`.
+    """
     folder = Path(folder)
-    best, last = DeepQAgent.load(folder), DeepQAgent.load(folder / LAST)
+    best = DeepQAgent.load(folder, env=env)
     try:
-        described = json.loads((folder / TRAINING_FILE).read_text(encoding="utf-8"))
-        training = Training(last.config, int(described["seed"]))
+        last = DeepQAgent.load(inside(folder, LAST), env=env)
+        described = read_json(inside(folder, TRAINING_FILE))
+    except OSError as error:
+        raise ModelFormatError(folder, [f"{Path(error.filename or LAST).name}: {error.strerror or error}"]) from error
+    except ModelFormatError:
+        raise
+    except ValueError as error:
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error}"]) from error
+    try:
+        training = Training(last.config, count_of(described["seed"], most=10**40))
+        for agent in (best, last):
+            if (agent.num_features, agent.num_actions) != (training.task.num_features, training.task.num_actions):
+                raise ValueError(f"its network is not made for {last.config.env}")
         if described["best"] is not None:
+            if best.network.values.shape != training.agent.network.values.shape:
+                raise ValueError("the best network and the last one are of different sizes")
             training.best = training.task.read_score(described["best"])
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
-        training.episodes, training.env.landings = int(described["episodes"]), int(described["landings"])
-        training.seconds = float(described["seconds"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error!r}"]) from error
+        training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
+        training.seconds = float(number_of(described["seconds"]))
+    except (KeyError, TypeError, ValueError, ArithmeticError) as error:
+        said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error
     training.agent.take_over(last)
     return training

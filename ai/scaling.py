@@ -7,6 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.env import Doubles, Floats
+from ai.nn.files import count_of
 
 REACH: Final = 10.0  # spreads from the mean: what lies further out is cut off
 
@@ -41,9 +42,10 @@ class RunningScale:
     def load(self, values: dict[str, Any]) -> None:
         """Take over what `to_json` gave; raises KeyError, TypeError or ValueError for anything else."""
         mean, squares = (np.array(values[name], dtype=float) for name in ("mean", "squares"))
-        if mean.shape != self.mean.shape or squares.shape != mean.shape or not np.isfinite(mean + squares).all():
+        finite = np.isfinite(mean).all() and np.isfinite(squares).all() and (squares >= 0).all()
+        if mean.shape != self.mean.shape or squares.shape != mean.shape or not finite:
             raise ValueError(f"the scale of observations needs {len(self.mean)} finite means and squares")
-        self.count, self.mean, self.squares = int(values["count"]), mean, squares
+        self.count, self.mean, self.squares = count_of(values["count"]), mean, squares
         self._refresh()
 
     def _refresh(self) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from ai.agent import Symmetry
 from ai.config import LANDER, Config
 from ai.env import Env, Floats
+from ai.nn.files import brief, number_of
 from ai.pilots import Pilot
 
 VALIDATION_SEED = 1_000_003  # episodes that choose the best checkpoint
@@ -67,7 +68,16 @@ class Task(Protocol):
         """Measure a pilot over so many episodes, which follow from `seed`."""
 
     def read_score(self, values: dict[str, Any]) -> Score:
-        """Read what a score's `to_json` gave; raises TypeError for anything else."""
+        """Read what a score's `to_json` gave; raises TypeError or ValueError for anything else."""
+
+
+def checked_score(values: Any, may_be_none: tuple[str, ...]) -> dict[str, Any]:
+    """Return the values of a score from a file; raises ValueError if they are not finite numbers by name."""
+    if not isinstance(values, dict):
+        raise ValueError(f"{brief(repr(values), 40)} is no score")
+    return {
+        name: value if value is None and name in may_be_none else number_of(value) for name, value in values.items()
+    }
 
 
 def task_of(config: Config) -> Task:

@@ -13,16 +13,14 @@ from typing import Final
 
 import platformdirs
 
-from ai.nn.folder import recover_folder
+from ai.nn.files import beside
+from ai.nn.folder import NEW, STALE, aside_for, recover_folder
 from game import texts
 
 UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
 TRASH: Final = ".trash"
 LONGEST_NAME: Final = 40
-OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
-_NEW: Final = ".new"  # and one that it has not finished
 _TRASH_KEPT: Final = 8
-_STALE: Final = 3600.0  # seconds after which nobody will finish it any more
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
 
 
@@ -179,9 +177,9 @@ class Collection:
         Raises OSError if the folder can't be looked into.
         """
         for path in list(self.folder.iterdir()):
-            if path.name.endswith(OLD) and path.name[0] == "." and path.name[1] != ".":
-                recover_folder(self.folder / path.name[1 : -len(OLD)])
-            elif path.name.endswith(_NEW) and path.name[0] == "." and time.time() - path.stat().st_mtime > _STALE:
+            if (name := aside_for(path)) and name[0] != ".":
+                recover_folder(self.folder / name)
+            elif path.name.endswith(NEW) and path.name[0] == "." and time.time() - path.stat().st_mtime > STALE:
                 shutil.rmtree(path, ignore_errors=True)
 
     def _thrown(self) -> list[Path]:
@@ -214,8 +212,7 @@ def _same(name: str) -> str:
 
 def _copy(source: Path, target: Path) -> None:
     """Copy a folder whole or not at all."""
-    partial = target.with_name(f".{target.name}{_NEW}")
-    shutil.rmtree(partial, ignore_errors=True)
+    partial = beside(target, NEW)
     try:
         shutil.copytree(source, partial)
         partial.rename(target)

@@ -6,10 +6,10 @@ read. Nothing in it can do more than be flown again.
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any, Final
 
 from ai.lander import NUM_ACTIONS, Outcome
 from ai.missions import MISSIONS
+from ai.nn.files import brief, parse_json, read_text, write_text
 from ai.spawns import SPAWNS
 from game import texts
 from game.flight import Hand, Recording
@@ -27,6 +28,7 @@ VERSION: Final = 3
 _READS: Final = (1, 2, 3)  # the first knew no change of gravity, the second no rules of missions
 _LONGEST: Final = 120 * 60  # physics steps of a flight
 _LARGEST: Final = 1_000_000  # bytes
+_LONGEST_NAME: Final = 255  # letters, as in the name of a file
 _MOST: Final = 32_503_680_000  # of any figure; in seconds the year 3000, up to which every system knows dates
 
 
@@ -75,11 +77,12 @@ class Entry:
         if not all(isinstance(figure, (int, float)) and 0 <= figure < _MOST for figure in figures):
             raise ValueError("a figure is no positive number")
         if self.outcome not in Outcome.__members__ or self.human > 1:
-            raise ValueError(f"no flight ends as {self.outcome!r}, {self.human} of it by hand")
-        if not all(isinstance(word, str) for word in (self.network, self.course, self.file)):
+            raise ValueError(f"no flight ends as {brief(repr(self.outcome), 40)}, {self.human} of it by hand")
+        words = (self.network, self.course, self.file)
+        if not all(isinstance(word, str) and len(word) <= _LONGEST_NAME for word in words):
             raise ValueError("a name is no text")
         counts = (self.alone, self.pads, self.score, self.medal, self.rules)
-        if not all(isinstance(count, int) and count >= 0 for count in counts):
+        if not all(isinstance(count, int) and 0 <= count < _MOST for count in counts):
             raise ValueError("a count is no whole number")
         if Path(self.file).name != self.file:
             raise ValueError("a file has no plain name")
@@ -117,27 +120,22 @@ class Record:
 def read(path: Path) -> Record:
     """Read a flight. Raises ValueError, which names the file and what is wrong with it."""
     try:
-        if path.stat().st_size > _LARGEST:
-            raise ValueError(texts.FLIGHT_TOO_LARGE)
-        return from_text(path.read_text(encoding="utf-8"))
+        return from_text(read_text(path, _LARGEST))
     except FileNotFoundError as error:
         raise ValueError(texts.GONE.format(name=path.name)) from error
     except OSError as error:
-        raise ValueError(f"{path.name}: {error.strerror or error}") from error
-    except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
+        said = texts.FLIGHT_TOO_LARGE if error.errno == errno.EFBIG else error.strerror or error
+        raise ValueError(f"{path.name}: {said}") from error
+    except (ValueError, KeyError, TypeError, AttributeError, ArithmeticError) as error:
         raise ValueError(texts.FLIGHT_DAMAGED.format(name=path.name, problem=_said(error))) from error
 
 
 def write(path: Path, record: Record) -> None:
-    """Write a flight whole or not at all; not flushed to the disk, which would take frames. Raises OSError."""
-    temporary = path.with_name(f".{path.name}.part")
-    try:
-        temporary.write_text(to_text(record), encoding="utf-8")
-        temporary.replace(path)
-    except BaseException:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
+    """Write a flight whole or not at all, in place of none that is there; not flushed, which would take frames.
+
+    Raises FileExistsError if the name is taken, and OSError if the disk won't have it.
+    """
+    write_text(path, to_text(record), flush=False, new=True)
 
 
 def to_text(record: Record) -> str:
@@ -153,7 +151,7 @@ def to_text(record: Record) -> str:
 
 def from_text(text: str) -> Record:
     """Read what `to_text` wrote; raises ValueError, KeyError or TypeError for anything else."""
-    values = json.loads(text)
+    values = parse_json(text)
     if values["format"] != FORMAT or values["version"] not in _READS:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION))
     seed, spawn, pads, mission = values["seed"], values["spawn"], values["pads"], values["mission"]
@@ -197,4 +195,4 @@ def _unpacked(text: str) -> list[str]:
 
 
 def _said(error: Exception) -> str:
-    return texts.FLIGHT_LACKS.format(name=error.args[0]) if isinstance(error, KeyError) else str(error)
+    return texts.FLIGHT_LACKS.format(name=brief(error.args[0], 40)) if isinstance(error, KeyError) else brief(error)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from ai.config import LANDER
-from ai.nn.folder import recover_folder
+from ai.nn.files import count_of, inside, number_of, read_json
+from ai.nn.folder import moved_aside, recover_folder
+from ai.nn.lock import Lock, lock_of, take
 from ai.runs import LAST, TRAINING_FILE
 from game import texts
-from game.collection import OLD, UNSAVED, Collection, LibraryError, reason
-from game.lock import Lock, take
+from game.collection import UNSAVED, Collection, LibraryError, reason
 from game.networks import PARTS, PLAYERS
 
 _GAMES: Final = 16  # that may train at the same time
@@ -60,7 +60,7 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
         if missing:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
-        described = json.loads(file.read_text(encoding="utf-8"))
+        described = read_json(inside(folder, TRAINING_FILE))
         if described["env"] != LANDER:
             return SavedRun(name, folder, saved, problem=texts.RUN_ELSEWHERE.format(env=described["env"]))
         last = (folder / LAST).is_dir()
@@ -75,9 +75,9 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
 def _figures(described: dict[str, Any]) -> dict[str, Any]:
     success = described["best"]["success"] if described["best"] else None  # a young run has not been tried yet
     return {
-        "preset": str(described["preset"]), "changes": len(described["changes"]), "seed": int(described["seed"]),
-        "decisions": int(described["decisions"]), "seconds": float(described["seconds"]),
-        "success": None if success is None else float(success),
+        "preset": str(described["preset"]), "changes": len(described["changes"]),
+        "seed": count_of(described["seed"], most=10**40), "decisions": count_of(described["decisions"]),
+        "seconds": float(number_of(described["seconds"])), "success": None if success is None else float(number_of(success)),
     }  # fmt: skip
 
 
@@ -129,7 +129,7 @@ class Library(Collection):
         self.release()
         places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
         for place in [*filter(_was_used, places), *places]:
-            self._lock = take(place.with_name(f"{place.name}.lock"))
+            self._lock = take(lock_of(place))
             if self._lock:
                 self.unsaved = place
                 if (left := self.rescued()) or not _was_used(place):
@@ -168,4 +168,4 @@ def _claims(path: Path, hidden: bool = False) -> bool:
 
 
 def _was_used(place: Path) -> bool:
-    return place.exists() or place.with_name(f".{place.name}{OLD}").exists()
+    return place.exists() or bool(moved_aside(place))

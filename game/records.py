@@ -14,6 +14,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
+from ai.nn.files import parse_json, read_end
 from game import flight_file, texts
 from game.collection import free_path
 from game.flight import Flight
@@ -24,6 +25,7 @@ FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"
 RECENT: Final = 100  # flights whose files are kept whatever they came to
 BEST: Final = 5  # and the best landings of each course
+_LARGEST: Final = 16_000_000  # bytes of the logbook that are read, the last ones: 50,000 flights
 _SLACK: Final = 25  # files too many before they are looked through
 RECENT_OWN: Final = 10  # flights by the person alone that their skill is told by
 
@@ -68,10 +70,8 @@ class Records:
         entry = describe(flight, when, **more)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            path = free_path(self.folder, f"{datetime.fromtimestamp(when):%Y-%m-%d %H.%M.%S.%f}"[:-3], ".json")
-            entry = replace(entry, file=path.name)
             x, y, angle = flight.poses.now[0].tolist()
-            flight_file.write(path, Record(flight.recording, entry, (x, y, angle)))
+            entry = self._write(Record(flight.recording, entry, (x, y, angle)))
             self._append(entry)
             self._make_room()
         except OSError as error:
@@ -82,7 +82,7 @@ class Records:
         """Return the logbook, oldest first; lines that make no sense are counted in `problem` and left alone."""
         self.problem, found, damaged = "", [], 0
         try:
-            text = self.logbook.read_text(encoding="utf-8", errors="replace")
+            text = read_end(self.logbook, _LARGEST).decode(errors="replace")
         except FileNotFoundError:
             return []
         except OSError as error:
@@ -90,8 +90,8 @@ class Records:
             return []
         for line in text.splitlines():
             try:
-                found.append(Entry(**json.loads(line)))
-            except (ValueError, TypeError, RecursionError):
+                found.append(Entry(**parse_json(line)))
+            except (ValueError, TypeError):
                 damaged += bool(line.strip())
         if damaged:
             self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self.logbook)
@@ -115,6 +115,16 @@ class Records:
             self.problem = texts.NOT_DELETED.format(name=name, reason=error.strerror or error)
             return False
         return True
+
+    def _write(self, record: Record) -> Entry:
+        """Write a flight under a name that nothing else has, not even of another game's; return its line."""
+        moment = f"{datetime.fromtimestamp(record.entry.when):%Y-%m-%d %H.%M.%S.%f}"[:-3]
+        while True:
+            path = free_path(self.folder, moment, ".json")
+            entry = replace(record.entry, file=path.name)
+            with suppress(FileExistsError):
+                flight_file.write(path, replace(record, entry=entry))
+                return entry
 
     def _append(self, entry: Entry) -> None:
         """Add a line; one that a killed game has left unfinished must not swallow it."""

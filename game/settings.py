@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
-from dataclasses import asdict, dataclass, field, fields
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Final
 
+from ai.nn.files import parse_json, read_text, write_text
 from game import texts
 
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
+_LARGEST: Final = 1_000_000  # bytes
 # What shares of its gravity, and of time's own pace, a flight can be given.
 GRAVITY_SHARES: Final = (0.6, 1.4)
 PACES: Final = (0.5, 1.0)
+
+
+_NEVER: Final = object()  # equal to nothing that a setting can be
 
 
 @dataclass
@@ -46,11 +51,12 @@ class Settings:
     tutored: bool = False  # whether the first flight has been offered
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
     unread: bool = field(default=False, compare=False)  # whether there is a file that could not be read; not kept
+    known: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)  # what was last on the disk; not kept
 
     def to_dict(self) -> dict[str, Any]:
         """Return what the file holds."""
-        values = asdict(self)
-        del values["unread"]
+        values = asdict(replace(self, known={}))
+        del values["unread"], values["known"]
         return {**values.pop("unknown"), **values}
 
     @classmethod
@@ -58,11 +64,12 @@ class Settings:
         """Take every value of the right kind; the others keep their defaults."""
         settings = cls()
         known = {each.name: each.metadata.get("limits", (0.0, 1.0)) for each in fields(cls)}
-        del known["unknown"], known["unread"]
+        del known["unknown"], known["unread"], known["known"]
         for name in known.keys() & values.keys():
             if _fits(values[name], getattr(settings, name), known[name]):
                 setattr(settings, name, values[name])
         settings.unknown = {name: value for name, value in values.items() if name not in known}
+        settings.known = settings.to_dict()
         return settings
 
 
@@ -84,30 +91,48 @@ class SettingsFile:
     def load(self) -> Settings:
         """Read the settings. A damaged file is kept aside under another name, never overwritten."""
         try:
-            values = json.loads(self.path.read_text(encoding="utf-8"))
-            if not isinstance(values, dict):
-                raise ValueError("not a table of settings")
+            return Settings.from_dict(self._read())
         except FileNotFoundError:
-            return Settings()
-        except (ValueError, RecursionError):
+            return Settings.from_dict({})
+        except ValueError:
             self._set_aside()
-            return Settings()
+            return Settings.from_dict({})
         except OSError as error:
             self.problem = texts.SETTINGS_UNREADABLE.format(reason=error.strerror, name=DAMAGED_NAME)
             return Settings(unread=True)
-        return Settings.from_dict(values)
+
+    def _read(self) -> dict[str, Any]:
+        """Return what the file holds; raises OSError or ValueError."""
+        values = parse_json(read_text(self.path, _LARGEST))
+        if not isinstance(values, dict):
+            raise ValueError("not a table of settings")
+        return values
 
     def save(self, settings: Settings) -> bool:
-        """Write the settings whole or not at all; a file that could not be read is put aside first."""
+        """Write the settings whole or not at all; a file that could not be read is put aside first.
+
+        Only what was changed since they were last on the disk: what another game has chosen meanwhile stays.
+        """
         try:
             if settings.unread and os.path.lexists(self.path):
                 self.path.replace(self.path.with_name(DAMAGED_NAME))
             settings.unread = False
-            write_atomically(self.path, json.dumps(settings.to_dict(), indent=2) + "\n")
+            values = settings.to_dict()
+            kept = self._others(settings) | {
+                name: value for name, value in values.items() if settings.known.get(name, _NEVER) != value
+            }
+            write_text(self.path, json.dumps(values | kept, indent=2) + "\n")
+            settings.known = values
         except OSError as error:
             self.problem = texts.SETTINGS_NOT_SAVED.format(reason=error.strerror)
             return False
         return True
+
+    def _others(self, settings: Settings) -> dict[str, Any]:
+        """Return what the file holds by now, if it is one that these settings were read from or written to."""
+        with suppress(OSError, ValueError):
+            return self._read() if settings.known else {}
+        return {}
 
     def _set_aside(self) -> None:
         aside = self.path.with_name(DAMAGED_NAME)
@@ -117,23 +142,3 @@ class SettingsFile:
         except OSError:
             self.problem = texts.SETTINGS_DAMAGED_HERE
 
-
-def write_atomically(path: Path, text: str) -> None:
-    """Write a file whole: a temporary one beside it, flushed to the disk, then renamed.
-
-    Raises:
-        OSError: the folder cannot be written, or the disk is full; an older file is still whole.
-
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    temporary = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise

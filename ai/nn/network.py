@@ -8,6 +8,7 @@ from typing import Literal, Self
 import numpy as np
 import numpy.typing as npt
 
+from ai.nn.budget import check_budget
 from ai.nn.costs import Cost, CostFunction
 from ai.nn.dropout import DropoutLayer
 from ai.nn.folder import atomic_folder
@@ -41,8 +42,12 @@ class NeuralNetwork:
         self.dtype = np.dtype(dtype)
 
     def add_layer(self, layer: Layer) -> Self:
-        """Append a layer; raises ValueError if it does not fit the one before, or belongs to a network already."""
+        """Append a layer.
+
+        Raises ValueError if it does not fit the one before, belongs to a network already, or makes this one too large.
+        """
         check_fit(self.layers, layer)
+        check_budget(self.layers, layer)
         layer.join(self.rng, self.dtype)
         if isinstance(layer, ActivationLayer):
             for before in self.layers:

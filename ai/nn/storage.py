@@ -4,7 +4,7 @@ The reasons are in docs/adr/0004-models-are-folders.md.
 """
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from inspect import signature
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,9 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.nn.activations import ACTIVATIONS, Activation
+from ai.nn.budget import MOST_LAYERS, check_budget
 from ai.nn.costs import COSTS, Cost
 from ai.nn.dropout import DropoutLayer
-from ai.nn.folder import CONFIG, recover_folder
+from ai.nn.files import brief, inside, read_array, read_json
+from ai.nn.folder import CONFIG, NETWORK, recover_folder
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, check_fit
 from ai.nn.parameter import Array, Parameter
@@ -23,8 +25,9 @@ from ai.nn.parameter import Array, Parameter
 T = TypeVar("T")
 L = TypeVar("L", bound=Layer)
 
-FORMAT = "tranquility network"
+FORMAT = NETWORK.format
 VERSION = 1
+_NAMED = 20  # problems that a message names
 DTYPES = ("float32", "float64")
 LAYERS: dict[str, type[Layer]] = {
     "FullyConnectedLayer": FullyConnectedLayer,
@@ -53,9 +56,10 @@ class ModelFormatError(ValueError):
     """A folder is not a model that can be read; `problems` lists all that is wrong with it."""
 
     def __init__(self, folder: str | Path, problems: list[str]) -> None:
-        super().__init__("\n  - ".join([f"no readable model in {folder}:", *problems]))
+        more = [f"and {len(problems) - _NAMED:,} more"] if len(problems) > _NAMED else []
+        self.problems = [*map(brief, problems[:_NAMED]), *more]
+        super().__init__("\n  - ".join([f"no readable model in {folder}:", *self.problems]))
         self.folder = Path(folder)
-        self.problems = problems
 
 
 def write_network(folder: Path, cost: Cost, layers: list[Layer], dtype: npt.DTypeLike) -> None:
@@ -110,28 +114,49 @@ def read_network(folder: str | Path) -> tuple[Cost, list[Layer], str]:
     if dtype not in DTYPES:
         problems.append(f"{CONFIG}: dtype is {dtype!r}, not one of {', '.join(DTYPES)}")
     cost = _attempt(problems, f"{CONFIG}: cost", _named, COSTS, config.get("cost"))
-    descriptions = config.get("layers")
+    layers = _read_layers(problems, config.get("layers"))
+    if layers is not None:
+        for index, (layer, description) in enumerate(zip(layers, config["layers"], strict=True)):
+            if layer is not None:
+                _read_parameters(problems, folder, index, layer, description, dtype)
+    if problems or cost is None:
+        raise ModelFormatError(folder, problems)
+    return cost, [layer for layer in layers or () if layer is not None], str(dtype)
+
+
+def _read_layers(problems: list[str], descriptions: Any) -> list[Layer | None] | None:
+    """Make the layers without their parameters, None for each that can't be; None for more than there can be."""
     if not isinstance(descriptions, list):
         problems.append(f"{CONFIG}: layers is to be a list")
-        descriptions = []
-    layers: list[Layer] = []
+        return None
+    if len(descriptions) > MOST_LAYERS:
+        problems.append(f"{CONFIG}: a network has at most {MOST_LAYERS} layers, not {len(descriptions):,}")
+        return None
+    layers: list[Layer | None] = []
     for index, description in enumerate(descriptions):
         where = f"{CONFIG}: layer {index}"
         layer = _attempt(problems, where, _make_layer, description)
-        if layer is None:
-            continue
-        _attempt(problems, where, check_fit, layers, layer)
+        if layer is not None:
+            before = [one for one in layers if one is not None]
+            _attempt(problems, where, check_fit, before, layer)
+            found = len(problems)
+            _attempt(problems, where, check_budget, before, layer)
+            if len(problems) > found:
+                return None
         layers.append(layer)
-        arrays = {
-            name: _attempt(problems, where, _read_array, folder, description, name, f"{dtype} {list(shape)}")
-            for name, shape in layer.shapes.items()
-        }
-        layer.parameters = tuple(
-            Parameter(name, array, np.zeros_like(array)) for name, array in arrays.items() if array is not None
-        )
-    if problems or cost is None:
-        raise ModelFormatError(folder, problems)
-    return cost, layers, str(dtype)
+    return layers
+
+
+def _read_parameters(
+    problems: list[str], folder: Path, index: int, layer: Layer, description: Any, dtype: object
+) -> None:
+    read = {
+        name: _attempt(problems, f"{CONFIG}: layer {index}", _read_parameter, folder, description, name, shape, dtype)
+        for name, shape in layer.shapes.items()
+    }
+    layer.parameters = tuple(
+        Parameter(name, array, np.zeros_like(array)) for name, array in read.items() if array is not None
+    )
 
 
 def _attempt(problems: list[str], where: str, read: Callable[..., T], *arguments: object) -> T | None:
@@ -150,18 +175,18 @@ def _attempt(problems: list[str], where: str, read: Callable[..., T], *arguments
 def _read_config(folder: Path) -> dict[str, Any]:
     if not folder.is_dir():
         raise ValueError("this is a file, not a folder" if folder.exists() else "there is no such folder")
-    config = json.loads((folder / CONFIG).read_text(encoding="utf-8"))
+    config = read_json(inside(folder, CONFIG))
     if not isinstance(config, dict) or config.get("format") != FORMAT:
         raise ValueError(f"does not say that this is a {FORMAT!r}")
     if config.get("version") != VERSION:
-        raise ValueError(f"format version {config.get('version')!r}; this program reads version {VERSION}")
+        raise ValueError(f"format version {brief(repr(config.get('version')), 40)}; this program reads version {VERSION}")
     return config
 
 
 def _make_layer(description: Any) -> Layer:
     name = _required(description, "type")
     if name not in LAYERS:
-        raise ValueError(f"unknown type {name!r}; known are {', '.join(LAYERS)}")
+        raise ValueError(f"unknown type {brief(repr(name), 40)}; known are {', '.join(LAYERS)}")
     kind = LAYERS[name]
     settings = {setting: _required(description, setting) for setting in kind.settings}
     if "activation" in settings:
@@ -173,7 +198,7 @@ def _named(table: Mapping[str, Callable[..., T]], description: Any) -> T:
     """Return the cost or activation of a description such as {"name": "huber", "delta": 1.0}."""
     name = _required(description, "name")
     if name not in table:
-        raise ValueError(f"unknown name {name!r}; known are {', '.join(table)}")
+        raise ValueError(f"unknown name {brief(repr(name), 40)}; known are {', '.join(table)}")
     make = table[name]
     return make(**{option: _required(description, option) for option in signature(make).parameters})
 
@@ -184,23 +209,18 @@ def _required(description: Any, name: str) -> Any:
     return description[name]
 
 
-def _read_array(folder: Path, description: Any, name: str, wanted: str) -> Array:
-    """Return a parameter whose dtype and shape, as in "float32 [9, 128]", are as wanted."""
+def _read_parameter(folder: Path, description: Any, name: str, shape: Sequence[int], dtype: Any) -> Array:
+    """Return a parameter; raises OSError or ValueError if it is not as the layer wants it and as the folder says."""
     entry = _required(_required(description, "arrays"), name)
     file = _required(entry, "file")
-    if Path(file).name != file:
-        raise ValueError(f"{name}: {file!r} is not a file of this folder")
-    try:
-        # Mapped, a header that promises more than the file holds is an error, not an allocation.
-        array = np.lib.format.open_memmap(folder / file, mode="r")
-    except OSError:
-        raise  # names the file itself
-    except Exception as error:
-        raise ValueError(f"{file}: {error}") from error
-    said = f"{entry.get('dtype')} {entry.get('shape')}"
-    held = f"{array.dtype.name} {list(array.shape)}"
-    if not said == held == wanted:
-        raise ValueError(f"{file} holds {held}, is said to hold {said}, and should hold {wanted}")
+    if not isinstance(file, str) or Path(file).name != file:
+        raise ValueError(f"{name}: {brief(repr(file), 60)} is not a file of this folder")
+    if dtype not in DTYPES:
+        raise ValueError(f"{file} cannot be read as {brief(repr(dtype), 40)}")
+    said = {key: entry.get(key) for key in ("shape", "dtype")}
+    if said != {"shape": list(shape), "dtype": dtype}:
+        raise ValueError(f"{file} is said to hold {brief(said, 60)}, and should hold {dtype} {list(shape)}")
+    array: Array = read_array(inside(folder, file), tuple(shape), dtype)
     if not np.isfinite(array).all():
         raise ValueError(f"{file} holds numbers that are not finite")
-    return np.array(array, order="C")
+    return array

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import time
 from contextlib import suppress
@@ -11,6 +10,7 @@ from typing import Final
 
 from ai.digit_fix import Fixed, FixStep, fix
 from ai.ink import Image
+from ai.nn.files import read_json
 from game import texts
 from game.digits import PATIENCE
 from game.digits.shelf import shelf
@@ -115,5 +115,5 @@ def _accuracy(folder: Path) -> float | None:
     """Return the accuracy on the test images that a network's folder tells of, if it does."""
     for file in ("config.json", "training.json"):
         with suppress(OSError, ValueError, KeyError, TypeError):
-            return float(json.loads((folder / file).read_text(encoding="utf-8"))["test"])
+            return float(read_json(folder / file)["test"])
     return None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +11,7 @@ from ai.digit_config import DigitConfig
 from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, Kept, Score, live_digits
 from ai.digit_runs import LAST_FILE, TRAINING_FILE
 from ai.messages import Refused, Save
+from ai.nn.files import read_json
 from ai.nn.folder import CONFIG, recover_folder
 from game import texts
 from game.collection import UNSAVED, Collection, LibraryError
@@ -102,7 +102,7 @@ class Pupil(Learner):
         if self.alive:
             return preset, seconds, part
         with suppress(OSError, ValueError, KeyError, TypeError):
-            said = json.loads((self.unsaved / TRAINING_FILE).read_text(encoding="utf-8"))
+            said = read_json(self.unsaved / TRAINING_FILE)
             preset, seconds = str(said["preset"]), float(said["seconds"])
             known = said.get("test", said["held_out"])
             part = part if known is None else float(known)

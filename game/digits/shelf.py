@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any, Final
 
 from ai.digit_runs import TRAINING_FILE
 from ai.digits import DIGITS_FILE, NETWORK
+from ai.nn.files import read_json
 from game import texts
 
 NAMES: Final = ("modern", "classic")  # of the shipped ones
@@ -42,7 +42,7 @@ class Shelved:
         """What its small file says of how well it reads; empty if that is not known."""
         described: dict[str, Any] = {}
         with suppress(OSError, ValueError, TypeError):
-            described |= json.loads((self.folder / TRAINING_FILE).read_text(encoding="utf-8"))
+            described |= read_json(self.folder / TRAINING_FILE)
         for key, words in (("test", texts.SHELF_TESTED), ("held_out", texts.SHELF_HELD_OUT)):
             with suppress(KeyError, TypeError, ValueError):
                 return words.format(part=float(described[key]))

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from game.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile, write_atomically
+from ai.nn.files import write_text
+from game.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
 
 DAMAGED = [
     b"",
@@ -95,7 +96,7 @@ def test_a_file_that_cannot_be_read_is_put_aside_and_never_overwritten(tmp_path:
     file.save(Settings(model="precious"))
     locked = PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     with monkeypatch.context() as patch:
-        patch.setattr(Path, "read_text", raising(locked))
+        patch.setattr("game.settings.read_text", raising(locked))
         settings = file.load()
         assert "Permission denied" in file.problem
     with monkeypatch.context() as patch:
@@ -118,7 +119,7 @@ def raising(error: OSError):
 
 
 def test_writing_leaves_no_temporary_file(tmp_path: Path):
-    write_atomically(tmp_path / "a.txt", "one")
-    write_atomically(tmp_path / "a.txt", "two")
+    write_text(tmp_path / "a.txt", "one")
+    write_text(tmp_path / "a.txt", "two")
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
     assert (tmp_path / "a.txt").read_text() == "two"

@@ -23,6 +23,7 @@ from ai.nn import (
     NeuralNetwork,
     atomic_folder,
 )
+from ai.nn.folder import NETWORK, Kind
 from ai.nn.storage import LAYERS
 
 X = np.random.default_rng(0).normal(size=(7, 3))
@@ -338,9 +339,10 @@ def test_somebodys_files_are_never_replaced(tmp_path):
 
 
 def test_a_folder_may_hold_networks_in_folders(tmp_path):
+    kind = Kind("agent", folders={"network": NETWORK})
     for seed in (1, 2):
-        with atomic_folder(tmp_path / "agent") as folder:
+        with atomic_folder(tmp_path / "agent", kind) as folder:
             every_layer(seed).save(folder / "network")
-            (folder / "config.json").write_text("{}")
+            (folder / "config.json").write_text('{"format": "agent"}')
     loaded = NeuralNetwork.load(tmp_path / "agent" / "network")
     np.testing.assert_array_equal(loaded.values, every_layer(2).values)

@@ -1,0 +1,277 @@
+"""Reading files that anybody may have written, within bounds; and writing text files whole or not at all.
+
+Nothing that a file claims costs memory or time before it is checked: a reader opens ordinary files only, so that a
+pipe cannot let it wait; looks at the size first; and compares the header of every array with what is expected before
+it makes room for the numbers. What the system refuses, and what is no ordinary file or too large, is an OSError; what
+makes no sense is a ValueError. Messages are short, whatever the file says.
+"""
+
+import errno
+import json
+import math
+import os
+import secrets
+import stat
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Any, BinaryIO, Final
+
+import numpy as np
+import numpy.typing as npt
+
+SMALL: Final = 4_000_000  # bytes; what a person may read is smaller
+DEPTH: Final = 32  # lists in lists that a JSON file of ours may have
+MOST: Final = 2**53  # of anything that is counted: up to here, floats know every whole number
+_DIGITS: Final = 40  # of a whole number; a seed of 128 bits has 39
+_CHUNK: Final = 1 << 20  # bytes read at a time
+_DIRECTORY: Final = 1 << 16  # bytes that a zip archive's list of its members may take
+_END: Final = 22  # bytes at the end of a zip archive that say where that list is
+_FLAGS: Final = sum(getattr(os, name, 0) for name in ("O_RDONLY", "O_NONBLOCK", "O_CLOEXEC", "O_NOCTTY", "O_BINARY"))
+_BROKEN: Final = (EOFError, MemoryError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
+
+Expect = Callable[[str, tuple[int, ...], np.dtype[Any]], None]  # raises ValueError for an array not expected
+
+
+def brief(text: object, most: int = 200) -> str:
+    """Return a text in at most so many letters, the end left out."""
+    said = str(text)
+    return said if len(said) <= most else said[: most - 1] + "…"
+
+
+# Bytes and text
+
+
+def open_file(path: str | Path, most: int | None = None) -> BinaryIO:
+    """Open an ordinary file of at most so many bytes for reading; raises OSError for anything else."""
+    try:
+        descriptor = os.open(path, _FLAGS)
+    except ValueError as error:
+        raise OSError(errno.EINVAL, "no file can have such a name", str(path)) from error
+    try:
+        said = os.fstat(descriptor)
+        if not stat.S_ISREG(said.st_mode):
+            raise OSError(errno.EINVAL, "is not an ordinary file", str(path))
+        if most is not None and said.st_size > most:
+            raise _too_large(path, most)
+        return os.fdopen(descriptor, "rb")
+    except BaseException:
+        os.close(descriptor)
+        raise
+
+
+def read_bytes(path: str | Path, most: int = SMALL) -> bytes:
+    """Return what a file of at most so many bytes holds; raises OSError."""
+    with open_file(path, most) as file:
+        held = file.read(most + 1)
+    if len(held) > most:  # it has grown, or lies about its size as the system's own files do
+        raise _too_large(path, most)
+    return held
+
+
+def read_end(path: str | Path, most: int) -> bytes:
+    """Return the last bytes of a file, at most so many; raises OSError."""
+    with open_file(path) as file:
+        file.seek(max(0, file.seek(0, os.SEEK_END) - most))
+        return file.read(most)
+
+
+def read_text(path: str | Path, most: int = SMALL) -> str:
+    """Return the text in a file of at most so many bytes; raises OSError, or ValueError if it is no UTF-8."""
+    return read_bytes(path, most).decode("utf-8")
+
+
+def inside(folder: str | Path, name: str) -> Path:
+    """Return the path of a part of a folder; raises OSError if a link there leads out of the folder."""
+    path = Path(folder) / name
+    if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
+        raise OSError(errno.ELOOP, "is a link that leads out of its folder", str(path))
+    return path
+
+
+def _too_large(path: str | Path, most: int) -> OSError:
+    return OSError(errno.EFBIG, f"is larger than the {most:,} bytes that there can be", str(path))
+
+
+# JSON
+
+
+def read_json(path: str | Path, most: int = SMALL, *, depth: int = DEPTH) -> Any:
+    """Return what a JSON file says; raises OSError, or ValueError as `parse_json` does."""
+    return parse_json(read_text(path, most), depth=depth)
+
+
+def parse_json(text: str, *, depth: int = DEPTH) -> Any:
+    """Return what a JSON text says.
+
+    Raises ValueError for what is no JSON, is nested more deeply, or has numbers that are not finite or endless.
+    """
+    try:
+        value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+    except RecursionError as error:
+        raise ValueError("is nested too deeply") from error
+    level = _containers([value])
+    for _ in range(depth):
+        if not level:
+            return value
+        level = _containers(part for each in level for part in (each.values() if isinstance(each, dict) else each))
+    raise ValueError("is nested too deeply")
+
+
+def _containers(values: Iterable[Any]) -> list[Any]:
+    return [value for value in values if isinstance(value, dict | list)]
+
+
+def _whole(digits: str) -> int:
+    if len(digits) > _DIGITS:
+        raise ValueError(f"{brief(digits, 20)} is too large a number")
+    return int(digits)
+
+
+def _finite(digits: str) -> float:
+    number = float(digits)
+    if not math.isfinite(number):
+        raise ValueError(f"{brief(digits, 20)} is no finite number")
+    return number
+
+
+def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
+    """Return a whole number that a file has given; raises ValueError if it is none, or out of range."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise ValueError(f"{brief(repr(value), 40)} is no whole number from {least:,} to {most:,}")
+    return value
+
+
+def number_of(value: Any) -> float:
+    """Return a finite number that a file has given, as it is; raises ValueError if it is none."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < math.inf:
+        raise ValueError(f"{brief(repr(value), 40)} is no finite number")
+    return value
+
+
+# Arrays
+
+
+def read_array(path: str | Path, shape: tuple[int, ...], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+    """Return the array of an `.npy` file, which is to have this shape and dtype: C-ordered, of this machine.
+
+    Raises OSError, or ValueError if it holds another, or more or fewer bytes.
+    """
+    wanted, name = np.dtype(dtype), Path(path).name
+
+    def expect(_: str, held: tuple[int, ...], kind: np.dtype[Any]) -> None:
+        if (held, kind.name) != (shape, wanted.name):
+            raise ValueError(f"{name} holds {described(held, kind)}, and should hold {described(shape, wanted)}")
+
+    with open_file(path, math.prod(shape) * wanted.itemsize + _CHUNK) as file:
+        return _read_member(file, name, expect)
+
+
+def described(shape: tuple[int, ...], dtype: np.dtype[Any]) -> str:
+    """Describe an array, as in "float32 [9, 128]"."""
+    return brief(f"{dtype.name} {list(shape)}", 60)
+
+
+def read_arrays(path: str | Path, most: int, expect: Expect) -> dict[str, npt.NDArray[Any]]:
+    """Return the arrays of an `.npz` file of at most so many bytes, by name.
+
+    `expect` is asked about each by its name, shape and dtype before room is made for it, and raises ValueError for
+    what should not be there. Raises OSError, or ValueError for members that are encrypted, packed in a way that
+    NumPy does not use, there twice, or longer than they say.
+    """
+    try:
+        with open_file(path, most) as file:
+            _check_directory(file)
+            with zipfile.ZipFile(file) as archive:
+                members = archive.infolist()
+                found = {member.filename.removesuffix(".npy"): _unpack(archive, member, expect) for member in members}
+    except _BROKEN as error:
+        raise ValueError(f"is damaged: {brief(error) or type(error).__name__}") from error
+    if len(found) != len(members):
+        raise ValueError("holds two arrays of one name")
+    return found
+
+
+def _check_directory(file: BinaryIO) -> None:
+    """Raise ValueError for an archive that does not end as NumPy's do, or whose list of members is a long one."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - _END - 20))
+    locator, end = file.read(20), file.read()
+    if size < _END + 20 or end[:4] != b"PK\5\6" or end[-2:] != b"\0\0" or locator[:4] == b"PK\6\7":
+        raise ValueError("is no archive of arrays, or only a part of one")
+    if int.from_bytes(end[12:16], "little") > _DIRECTORY:
+        raise ValueError("holds too many arrays")
+
+
+def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, expect: Expect) -> npt.NDArray[Any]:
+    name = brief(member.filename.removesuffix(".npy"), 60)
+    if member.flag_bits & 1:
+        raise ValueError(f"{name} is encrypted")
+    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ValueError(f"{name} is packed in an unknown way")
+    with archive.open(member) as file:
+        return _read_member(file, name, expect)
+
+
+def _read_member(file: IO[bytes], name: str, expect: Expect) -> npt.NDArray[Any]:
+    """Read one array in NumPy's format, all that a file holds; see `read_arrays`."""
+    shape, fortran, dtype = _read_header(file, name)
+    expect(name, shape, dtype)
+    if dtype.hasobject:
+        raise ValueError(f"{name} holds objects, not numbers")
+    flat = np.empty(math.prod(shape), dtype)
+    room = memoryview(flat.view(np.uint8)) if flat.nbytes else memoryview(b"")
+    filled = 0
+    while part := file.read(min(_CHUNK, len(room) - filled + 1)):
+        if filled + len(part) > len(room):
+            raise ValueError(f"{name} is longer than it says")
+        room[filled : filled + len(part)] = part
+        filled += len(part)
+    if filled < len(room):
+        raise ValueError(f"{name} ends after {filled:,} of {len(room):,} bytes")
+    array = flat.reshape(shape, order="F" if fortran else "C")
+    return np.ascontiguousarray(array, dtype.newbyteorder("=")).reshape(shape)
+
+
+def _read_header(file: IO[bytes], name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    try:
+        version = np.lib.format.read_magic(file)
+        reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}[version]
+        return reader(file)
+    except OSError:
+        raise
+    except Exception as error:  # a header is Python's own notation, and damage to it can surface as anything
+        raise ValueError(f"{name} begins as no array does: {brief(error, 100)}") from error
+
+
+# Writing
+
+
+def beside(path: Path, suffix: str) -> Path:
+    """Return a name beside a path that nothing else has: hidden, and with a suffix that says what it is."""
+    return path.with_name(f".{path.name}.{secrets.token_hex(4)}{suffix}")
+
+
+def write_text(path: Path, text: str, *, flush: bool = True, new: bool = False) -> None:
+    """Write a file whole or not at all, by way of another beside it; with `flush`, wait until it is on the disk.
+
+    Folders are made if need be. With `new`, a file that is there is never replaced: FileExistsError. Raises OSError
+    if the disk does not take it; an older file is then still whole.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = beside(path, ".part")
+    try:
+        with temporary.open("x", encoding="utf-8") as file:
+            file.write(text)
+            if flush:
+                file.flush()
+                os.fsync(file.fileno())
+        if new:
+            path.open("x").close()  # whoever makes the file has the name
+        temporary.replace(path)
+    except BaseException:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        raise
