@@ -298,7 +298,7 @@ class DeepQAgent:
             except ModelFormatError as error:
                 problems += [f"{name}: {problem}" for problem in error.problems]
         try:
-            with np.load(folder / OPTIMIZER_FILE, allow_pickle=False) as state:
+            with (folder / OPTIMIZER_FILE).open("rb") as opened, np.load(opened, allow_pickle=False) as state:
                 agent.optimizer.load_state(dict(state))
         except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
             problems.append(f"{OPTIMIZER_FILE}: {error}")

@@ -60,7 +60,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
     if not (folder / LAST_FILE).exists():
         raise ModelFormatError(folder, ["the run is finished: there is nothing to go on with"])
     try:
-        with np.load(folder / LAST_FILE, allow_pickle=False) as state:
+        with (folder / LAST_FILE).open("rb") as opened, np.load(opened, allow_pickle=False) as state:
             training.classifier.network.values = state["values"]
             training.average[...] = state["average"]
             known = {name.removeprefix("optimizer."): state[name] for name in state if name.startswith("optimizer.")}

@@ -192,7 +192,7 @@ class History:
         file = Path(folder) / HISTORY_FILE
         history = cls()
         try:
-            with np.load(file, allow_pickle=False) as arrays:
+            with file.open("rb") as opened, np.load(opened, allow_pickle=False) as arrays:
                 history._restore(json.loads(str(arrays["described"])), arrays["points"], arrays["values"])
         except FileNotFoundError:
             return cls()

@@ -1,4 +1,4 @@
-"""What every exhibit of the gallery is made of: a room, coloured bodies, and words that live with them."""
+"""What every exhibit of the gallery is made of: a room, bodies with their sprites, and words that live with them."""
 
 from __future__ import annotations
 
@@ -7,25 +7,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from engine import DT, Body, Polygon, Shape, World
+from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.shapes import Point
 from engine.vector import Array
 from game.grip import Grip
-from game.ui.tokens import FAINT, MUTE, Colour
 
 # How much of the view's width can be seen above the ground without meeting the words at the top.
 CLEAR: Final = 0.35
 _WALL: Final = 4.0
 _WALL_HEIGHT: Final = 200.0
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A body, the shape it is seen as, in the body's own frame, and its colour."""
-
-    body: Body
-    shape: Shape
-    colour: Colour
+_FIXED, _BOXES, _DISCS = range(3)  # layers
 
 
 @dataclass(frozen=True)
@@ -57,7 +48,7 @@ class Exhibit:
     Attributes:
         width: metres across the view.
         weightless: whether there is no gravity, whatever was chosen.
-        pieces: everything that is seen.
+        sprites: everything that is seen, by the keys of `game.world.bodies`.
         bodies: what forces can move.
         rules: lines at known heights or places, as start and end in metres.
         touched: by body, (bodies,), whether a hand has moved it, or it has met one that a hand had moved.
@@ -70,7 +61,7 @@ class Exhibit:
     def __init__(self, gravity: float) -> None:
         self.gravity = 0.0 if self.weightless else gravity
         self.world = World((0.0, -self.gravity))
-        self.pieces: list[Piece] = []
+        self.sprites: list[Sprite] = []
         self.bodies: list[Body] = []
         self.rules: list[tuple[tuple[float, float], tuple[float, float]]] = []
         self.steps = 0
@@ -126,17 +117,15 @@ class Exhibit:
             self.touched[met] = True
             met = pairs[self.touched[pairs].any(axis=1)]
 
-    def add(self, shape: Shape, position: Point, colour: Colour = MUTE, **physics: Any) -> Body:
-        """Put a body in that is seen; `physics` is whatever `World.add` takes besides."""
+    def add(self, shape: Shape, position: Point, image: str, **physics: Any) -> Body:
+        """Put a body in that is seen, its shape's middle at its position; `physics` is what `World.add` takes."""
         body = self.world.add(shape, position, **physics)
-        self.pieces.append(Piece(body, self.world.shapes[-1], colour))
+        disc = isinstance(shape, Circle)
+        layer = _FIXED if body.static else _DISCS if disc else _BOXES
+        self.sprites.append(Sprite(body, image, extent(shape), layer))
         if not body.static:
             self.bodies.append(body)
         return body
-
-    def add_fixed(self, shape: Shape, position: Point) -> Body:
-        """Put a body in that nothing can move."""
-        return self.add(shape, position, FAINT, static=True)
 
     # What can be measured in every exhibit
 
@@ -173,6 +162,14 @@ class Exhibit:
             return 0.0
         rows = np.all([(contacts.body == body.index).any(axis=1) for body in bodies], axis=0)
         return float(contacts.impulse[:2, rows].sum()) / DT
+
+
+def extent(shape: Shape) -> tuple[float, float]:
+    """Return how wide and how high a shape is, in metres."""
+    if isinstance(shape, Circle):
+        return 2 * shape.radius, 2 * shape.radius
+    wide, high = np.ptp(shape.vertices, axis=0).tolist()
+    return wide, high
 
 
 def height(body: Body) -> float:

@@ -10,7 +10,6 @@ import numpy as np
 from engine import Body, Circle, Polygon
 from game import texts
 from game.exhibits.exhibit import Exhibit, Label, height, speed
-from game.ui.tokens import EMBER, INK, MUTE
 
 # Below the ground line, where names of columns stand; points become metres by an exhibit's width.
 _BELOW: Final = -0.014
@@ -33,13 +32,14 @@ class Slopes(Exhibit):
         slope = math.radians(self.degrees)
         left, right = -11.0, 5.0
         top = (right - left) * math.tan(slope)
-        corners = np.array([(left, 0.0), (right, 0.0), (left, top)])
-        self.slope = self.add_fixed(Polygon(corners), (0.0, 0.0))
+        middle = np.array([(left + right) / 2, top / 2])
+        corners = np.array([(left, 0.0), (right, 0.0), (left, top)]) - middle
+        self.slope = self.add(Polygon(corners), middle, "slope", static=True)
         along, away = np.array([-math.cos(slope), math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
         self.boxes: list[Body] = []
         for number, friction in enumerate(self.frictions):
             place = np.array([right, 0.0]) + (3.4 + 3.3 * number) * along + self.size[1] / 2 * away
-            box = self.add(Polygon.box(*self.size), place, angle=-slope, friction=friction)
+            box = self.add(Polygon.box(*self.size), place, "box", angle=-slope, friction=friction)
             self.boxes.append(box)
         self.places = [box.position[0].copy() for box in self.boxes]
         self.slid: set[float] = set()
@@ -99,7 +99,7 @@ class Bounce(Exhibit):
         for number, restitution in enumerate(self.restitutions):
             x = self._column(number)
             place = (x, self.drop + self.radius)
-            self.balls.append(self.add(Circle(self.radius), place, EMBER, restitution=restitution))
+            self.balls.append(self.add(Circle(self.radius), place, "ember disc", restitution=restitution))
             if restitution:
                 self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
         self.peaks = np.zeros(len(self.balls))
@@ -171,9 +171,9 @@ class DragRace(Exhibit):
         """Hang the discs up in a row."""
         self.discs: list[Body] = []
         for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
-            colour = MUTE if not linear + quadratic else INK if linear else EMBER
+            image = "disc" if not linear + quadratic else "bright disc" if linear else "ember disc"
             disc = self.add(
-                Circle(_DISC * math.sqrt(mass)), (self._lane(number), self.top), colour,
+                Circle(_DISC * math.sqrt(mass)), (self._lane(number), self.top), image,
                 mass=mass, linear_drag=linear, quadratic_drag=quadratic,
             )  # fmt: skip
             self.discs.append(disc)

@@ -10,7 +10,6 @@ import numpy as np
 from engine import DT, Body, Circle, Polygon
 from game import texts
 from game.exhibits.exhibit import CLEAR, Exhibit, Label, height, speed
-from game.ui.tokens import EMBER, INK, MUTE
 
 _MOVES: Final = 0.05  # metres a second
 
@@ -34,7 +33,7 @@ class Impacts(Exhibit):
         pitch = 2 * self.radius + self.gap
         for number, rail in enumerate(self.rails):
             if rail:
-                self.add_fixed(Polygon.box(self.width, 0.12), (0.0, rail - 0.06))
+                self.add(Polygon.box(self.width, 0.12), (0.0, rail - 0.06), "rail", static=True)
             strikers = [self._disc(-7.0 - pitch * k, rail, self.pace) for k in reversed(range(number + 1))]
             self.discs.append(strikers + [self._disc(pitch * k, rail, 0.0) for k in range(self.row)])
         self.energy_at_first = self.kinetic_energy
@@ -65,8 +64,8 @@ class Impacts(Exhibit):
         return [body for body in self.bodies if low <= height(body) < high]
 
     def _disc(self, x: float, rail: float, pace: float) -> Body:
-        colour = EMBER if pace else MUTE
-        disc = self.add(Circle(self.radius), (x, rail + self.radius), colour, friction=0.0, restitution=1.0)
+        image = "ember disc" if pace else "disc"
+        disc = self.add(Circle(self.radius), (x, rail + self.radius), image, friction=0.0, restitution=1.0)
         disc.velocity = (pace, 0.0)
         return disc
 
@@ -87,15 +86,15 @@ class Spin(Exhibit):
         self.rules.append(((-self.width / 2, ceiling), (self.width / 2, ceiling)))
         middle = ceiling / 2
         self.turning = [
-            self.add(Circle(0.7), (-11.4, middle), EMBER, restitution=0.8),
-            self.add(Polygon.box(2.2, 2.2), (-7.6, middle), MUTE, restitution=0.8),
-            self.add(Polygon.box(3.6, 0.5), (-2.8, middle), INK, restitution=0.8),
+            self.add(Circle(0.7), (-11.4, middle), "ember disc", restitution=0.8),
+            self.add(Polygon.box(2.2, 2.2), (-7.6, middle), "box", restitution=0.8),
+            self.add(Polygon.box(3.6, 0.5), (-2.8, middle), "bright box", restitution=0.8),
         ]
         for body in self.turning:
             body.angular_velocity = self.momentum / body.inertia
         bar = Polygon.box(0.5, 3.0)
         self.pushed = [False, False]
-        self.bars = [self.add(bar, (3.4, y), MUTE, restitution=0.8) for y in (middle + 2.6, middle - 2.4)]
+        self.bars = [self.add(bar, (3.4, y), "box", restitution=0.8) for y in (middle + 2.6, middle - 2.4)]
 
     def prepare(self) -> None:
         """Push both bars alike: one in the middle, one near its end."""

@@ -29,7 +29,7 @@ from game.ui.pointer import Pointer
 from game.ui.sky import NightSky
 from game.ui.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
 from game.ui.widgets import Choice
-from game.world.bodies import Outlines, body_at, draw_contacts, draw_grip
+from game.world.bodies import Outlines, draw_contacts, draw_grip
 
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)
@@ -85,7 +85,7 @@ class Physics:
     def restart(self) -> None:
         """Build the exhibit anew."""
         self.exhibit = EXHIBITS[self._names[self._chosen]](GRAVITIES[self._gravity])
-        self._outlines = Outlines(self.exhibit.pieces)
+        self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
         self._tempo.begin()
         self.step_time = 0.0
@@ -174,8 +174,8 @@ class Physics:
         assert self._context is not None
         if not self._context.controls.mouse_in_use and not self._hand.typing:
             return None
-        piece = body_at(self.exhibit.pieces, self._poses, self._place(self._mouse), 0.0)
-        return piece.body.index if piece else None
+        body = self._outlines.body_at(self._poses, self._place(self._mouse), 0.0)
+        return body.index if body else None
 
     def _point(self, event: pygame.event.Event) -> bool:
         """Take hold of a body, pull it, let go; false if the mouse means something else."""
@@ -191,10 +191,10 @@ class Physics:
             return False
         place = self._place(self._mouse)
         reach = _REACH * self.exhibit.width / VIEW_SIZE[0]
-        piece = body_at(self.exhibit.pieces, self._poses, place, reach)
-        if piece:
-            self.grip = Grip(piece.body, place)
-        return piece is not None
+        body = self._outlines.body_at(self._poses, place, reach)
+        if body:
+            self.grip = Grip(body, place)
+        return body is not None
 
     def _pause(self) -> Transition:
         from game.scenes.pause import Pause
