@@ -60,7 +60,7 @@ def load_part(part: str, folder: str | Path = FOLDER) -> tuple[Images, Labels]:
     count, images_sum, labels_sum = PARTS[part]
     path = Path(folder) / f"{part}.npz"
     try:
-        with np.load(path, allow_pickle=False) as arrays:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as arrays:
             pixels, labels = arrays["images"], arrays["labels"]
     except FileNotFoundError as error:
         raise MnistError(f"MNIST: {path} is missing; install the program again") from error

@@ -9,7 +9,14 @@ from engine.body import Body
 
 @dataclass(frozen=True)
 class Sprite:
-    """`image` is a key for whoever draws, `size` its width and height in metres, higher layers lie on top."""
+    """What is to be drawn where a body is, turned as the body is.
+
+    Attributes:
+        image: key of a picture in a table of whoever draws; the engine has none.
+        size: width and height of the picture in metres, its middle at the body's position.
+        layer: higher ones lie on top.
+
+    """
 
     body: Body
     image: str

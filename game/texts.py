@@ -213,65 +213,96 @@ INPUTS: Final = (
 # The gallery of physics
 PHYSICS_TITLE: Final = "Physics"
 # The word for an exhibit, the law it shows, and that law in figures.
-EXHIBITS: Final = {
+# Title, law, and what is measured, by the state the exhibit is in
+EXHIBITS: Final[dict[str, tuple[str, str, dict[str, str]]]] = {
     "stack": (
         "Stack",
         "The lowest contact carries all that stands on it. Throw the ball at a column, and see.",
-        "{count:.0f} boxes of 1 kg weigh {weight:.1f} N; the ground pushes back with {push:.1f} N.",
+        {
+            "begun": "A column of {count:.0f} boxes of 1 kg weighs {weight:.1f} N.",
+            "standing": "A column of {count:.0f} boxes of 1 kg weighs {weight:.1f} N; the ground pushes back under it "
+            "with {push:.1f} N.",
+            "fallen": "No column stands. {count:.0f} bodies weigh {weight:.1f} N; the ground pushes back with "
+            "{push:.1f} N.",
+        },
     ),
     "heap": (
         "Heap",
         "A hundred bodies fall, and every impact and every rub turns some of their energy into heat.",
-        "Of {first:.0f} J of height and motion, {left:.0f} J are left.",
+        {
+            "untouched": "Of {first:.0f} J of height and motion, {left:.0f} J are left.",
+            "touched": "{first:.0f} J of height and motion at first, {left:.0f} J now: your hand has added or "
+            "taken some.",
+        },
     ),
     "slopes": (
         "Slopes",
         "A box slides where the slope is steeper than its friction holds: tan θ > μ.",
-        "tan {degrees:.0f}° = {tangent:.2f}; {slid:.0f} of 5 have slid.",
+        {"": "tan {degrees:.0f}° = {tangent:.2f}; {slid:.0f} of 5 have slid by themselves."},
     ),
     "bounce": (
         "Bounce",
         "A ball comes back to e² of the height it fell from.",
-        "{restitution:.2f}² · {drop:.0f} m = {expected:.2f} m; that ball came back to {peak:.2f} m.",
+        {
+            "falling": "e = {restitution:.2f}: {restitution:.2f}² · {drop:.0f} m = {expected:.2f} m. "
+            "That ball has not bounced yet.",
+            "rising": "e = {restitution:.2f}: {restitution:.2f}² · {drop:.0f} m = {expected:.2f} m. "
+            "That ball is on its way up, at {peak:.2f} m.",
+            "measured": "e = {restitution:.2f}: {restitution:.2f}² · {drop:.0f} m = {expected:.2f} m. "
+            "That ball came back to {peak:.2f} m.",
+            "touched": "e = {restitution:.2f}: {restitution:.2f}² · {drop:.0f} m = {expected:.2f} m. "
+            "Your hand moved that ball before it was measured.",
+        },
     ),
     "impacts": (
         "Impacts",
         "Equal discs hand on their momentum whole: as many leave the row as have struck it.",
-        "Nothing is lost when e = 1: {first:.1f} J at first, {now:.1f} J now.",
+        {
+            "untouched": "Nothing is lost when e = 1: {first:.1f} J at first, {now:.1f} J now.",
+            "touched": "{first:.1f} J at first, {now:.1f} J now: your hand has added or taken some.",
+        },
     ),
     "drag": (
         "Drag race",
         "Drag grows with speed until it carries the weight; from there on a fall is even.",
-        "Linear, 1 kg: m·g / c = {terminal:.2f} m/s; it falls at {speed:.2f} m/s.",
+        {
+            "falling": "Linear drag, 1 kg: m·g / c = {terminal:.2f} m/s. That disc falls at {speed:.2f} m/s.",
+            "landed": "Linear drag, 1 kg: m·g / c = {terminal:.2f} m/s. That disc fell at {speed:.2f} m/s in the end.",
+            "touched": "Linear drag, 1 kg: m·g / c = {terminal:.2f} m/s. Your hand moved that disc on its way down.",
+        },
     ),
     "spin": (
         "Spin",
-        "Free of gravity, what turns goes on turning; a push beside the middle moves and turns alike.",
-        "{impulse:.1f} N·s gives both bars J / m = {pace:.2f} m/s; at {reach:.1f} m, r·J / I = {spin:.2f} rad/s too.",
+        "Free of gravity, what turns goes on turning; a push beside the middle both moves and turns.",
+        {
+            "": "A push of {impulse:.1f} N·s gives a bar J / m = {pace:.2f} m/s; {reach:.1f} m beside its middle, also "
+            "r·J / I = {spin:.2f} rad/s.",
+        },
     ),
 }
 SLOPE_LABEL: Final = "{tangent:.2f} {sign} {friction:.2f}"
+SLOPE_FRICTION: Final = "μ = {friction:.2f}"
 BOUNCE_COLUMN: Final = "e = {restitution:.2f}"
 BOUNCE_MARK: Final = "{expected:.2f} m"
 BOUNCE_PEAK: Final = "{expected:.2f} m, was {peak:.2f}"
 DRAG_SPEED: Final = "{speed:.2f} m/s"
 DRAG_LANES: Final = {
     "none": "no drag",
-    "linear": "linear, {mass:.0f} kg, up to {terminal:.2f} m/s",
-    "quadratic": "quadratic, {mass:.0f} kg, up to {terminal:.2f} m/s",
+    "linear": "linear, {mass:.0f} kg → {terminal:.2f} m/s",
+    "quadratic": "quadratic, {mass:.0f} kg → {terminal:.2f} m/s",
 }
-IMPACTS_RAIL: Final = "{struck} struck  ·  {moving} move  ·  {momentum:.1f} kg·m/s"
-SPIN_TURNING: Final = "ω {spin:.2f} rad/s  ·  I·ω {momentum:.2f}"
-SPIN_BARS: Final = (
-    "pushed in the middle: {pace:.2f} m/s, {spin:.2f} rad/s",
-    "pushed near its end: {pace:.2f} m/s, {spin:.2f} rad/s",
-)
+IMPACTS_RAIL: Final = "{sent} in motion at first  ·  {moving} now  ·  {momentum:.1f} kg·m/s"
+SPIN_TURNING: Final = ("ω {spin:.2f} rad/s", "I·ω {momentum:.2f} kg·m²/s")  # one below the other
+SPIN_BARS: Final = ("pushed in the middle: {motion}", "pushed near its end: {motion}")
+SPIN_BARS_BEFORE: Final = ("to be pushed in the middle", "to be pushed near its end")
+SPIN_MOTION: Final = "{pace:.2f} m/s, {spin:.2f} rad/s"
 PHYSICS_GRAVITY: Final = "Gravity"
-PHYSICS_GRAVITIES: Final = ("moon 1.62", "Earth 9.81")
+PHYSICS_GRAVITIES: Final = ("moon 1.62 m/s²", "Earth 9.81 m/s²")
+PHYSICS_WEIGHTLESS: Final = "none"
 PHYSICS_CONTACTS: Final = "Contacts"
 PHYSICS_CONTACTS_WORDS: Final = ("hidden", "drawn")
 PHYSICS_STOPPED: Final = "Stopped"
-PHYSICS_DRAG: Final = "Take hold of anything with the mouse."
+PHYSICS_DRAG: Final = "Take hold of anything that can move with the mouse."
 PHYSICS_HAND: Final = "{key}: a hand to take hold of things"
 BODIES: Final = "BODIES"
 CONTACT_POINTS: Final = "CONTACTS"
@@ -304,6 +335,7 @@ LIBRARY_NOT_IMPORTED: Final = "{name} could not be copied here: {reason}"
 LIBRARY_NOT_KEPT: Final = "{name} could not be kept: {reason}"
 
 # Charts, the reward strip and the drawing of the network
+CHART_LOG: Final = ("log", "scale")  # beside the axis, one below the other
 CHART_SECONDS: Final = "{:.0f} s"
 CHART_EMPTY: Final = "nothing to show yet"
 NET_EMPTY: Final = "Units that light up, and weights that grow: once it learns."

@@ -1,10 +1,25 @@
-"""Property tests draw the same examples every time: a suite that passed passes again. One thread each is enough."""
+"""Tests run in another order each time, and say in which.
+
+Property tests draw the same examples every time: a suite that passed passes again. One thread each is enough.
+"""
+
+import signal
+
+import pytest
 
 from main import limit_threads
 
 limit_threads()
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell has what runs in its background ignore it
 
 from hypothesis import settings  # noqa: E402
 
 settings.register_profile("same", derandomize=True)
 settings.load_profile("same")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Say how to run them in this order again; `-q` hides what pytest-randomly says of it."""
+    seed = config.getoption("randomly_seed", None)
+    if seed is not None:
+        terminalreporter.write_line(f"the same order again: --randomly-seed={seed}")

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+PROGRAM = [ROOT / "main.py", ROOT / "tranquility" / "__main__.py"]
 STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
@@ -74,12 +75,13 @@ def test_ai_stands_on_the_engine_and_the_network_library(path):
 
 
 def test_only_the_game_imports_pygame():
-    others = [ROOT / "main.py", *modules("engine"), *modules("ai")]
+    others = [*PROGRAM, *modules("engine"), *modules("ai")]
     assert not [name_of(path) for path in others if {name.split(".")[0] for name in imports(path)} & PYGAME]
 
 
 def test_main_imports_the_game_only_when_it_is_played():
-    assert not [name for name in imports(ROOT / "main.py", everywhere=False) if is_within(name, {"game"})]
+    for path in PROGRAM:
+        assert not [name for name in imports(path, everywhere=False) if is_within(name, {"game"})]
 
 
 def loaded_by(names, suspects):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from game.exhibits.exhibit import Exhibit, Label, Piece
+from game.exhibits.exhibit import Exhibit, Label
 from game.exhibits.falls import Bounce, DragRace, Slopes
 from game.exhibits.momentum import Impacts, Spin
 from game.exhibits.piles import Heap, Stack
@@ -21,4 +21,4 @@ EXHIBITS: Final[dict[str, Callable[[float], Exhibit]]] = {
     "spin": Spin,
 }
 
-__all__ = ["EXHIBITS", "Exhibit", "Label", "Piece"]
+__all__ = ["EXHIBITS", "Exhibit", "Label"]

@@ -1,4 +1,4 @@
-"""What every exhibit of the gallery is made of: a room, coloured bodies, and words that live with them."""
+"""What every exhibit of the gallery is made of: a room, bodies with their sprites, and words that live with them."""
 
 from __future__ import annotations
 
@@ -7,24 +7,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from engine import DT, Body, Polygon, Shape, World
+from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.shapes import Point
 from engine.vector import Array
-from game.ui.tokens import FAINT, MUTE, Colour
+from game.grip import Grip
 
 # How much of the view's width can be seen above the ground without meeting the words at the top.
 CLEAR: Final = 0.35
 _WALL: Final = 4.0
 _WALL_HEIGHT: Final = 200.0
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A body, the shape it is seen as, in the body's own frame, and its colour."""
-
-    body: Body
-    shape: Shape
-    colour: Colour
+_FIXED, _BOXES, _DISCS = range(3)  # layers
 
 
 @dataclass(frozen=True)
@@ -49,14 +41,17 @@ class Label:
 class Exhibit:
     """One law of the engine, in a room of its own: a floor at y = 0, and walls at the edges of the view.
 
-    A subclass builds its bodies in `build` and says in `figures` what the law predicts and what is measured.
+    A subclass builds its bodies in `build` and says in `figures` what the law predicts and what is measured. Which
+    sentence quotes them depends on its `state`: one that was true before an impact, or before a hand came in, may
+    not be so after it.
 
     Attributes:
         width: metres across the view.
         weightless: whether there is no gravity, whatever was chosen.
-        pieces: everything that is seen.
+        sprites: everything that is seen, by the keys of `game.world.bodies`.
         bodies: what forces can move.
         rules: lines at known heights or places, as start and end in metres.
+        touched: by body, (bodies,), whether a hand has moved it, or it has met one that a hand had moved.
 
     """
 
@@ -66,7 +61,7 @@ class Exhibit:
     def __init__(self, gravity: float) -> None:
         self.gravity = 0.0 if self.weightless else gravity
         self.world = World((0.0, -self.gravity))
-        self.pieces: list[Piece] = []
+        self.sprites: list[Sprite] = []
         self.bodies: list[Body] = []
         self.rules: list[tuple[tuple[float, float], tuple[float, float]]] = []
         self.steps = 0
@@ -75,10 +70,16 @@ class Exhibit:
         for x in (-side, side):
             self.world.add(Polygon.box(_WALL, _WALL_HEIGHT), (x, _WALL_HEIGHT / 2), static=True)
         self.build()
+        self.touched = np.zeros(self.world.state.pose.shape[1], dtype=bool)
 
     def build(self) -> None:
         """Put the bodies in."""
         raise NotImplementedError
+
+    @property
+    def state(self) -> str:
+        """Which of the exhibit's sentences in `texts.EXHIBITS` is true now."""
+        return ""
 
     def figures(self) -> dict[str, float]:
         """Return what the exhibit's live line quotes, by the names it has there."""
@@ -94,24 +95,37 @@ class Exhibit:
     def observe(self) -> None:
         """Measure what is to be measured after a step."""
 
-    def step(self) -> None:
-        """Let 1/60 s pass."""
+    def step(self, grip: Grip | None = None) -> None:
+        """Let 1/60 s pass, in which a hand may pull at a body."""
         self.prepare()
+        if grip:
+            grip.pull()
+            self.touched[grip.body.index] = True
         self.world.step()
         self.steps += 1
+        self._hand_on_touch()
         self.observe()
 
-    def add(self, shape: Shape, position: Point, colour: Colour = MUTE, **physics: Any) -> Body:
-        """Put a body in that is seen; `physics` is whatever `World.add` takes besides."""
+    def _hand_on_touch(self) -> None:
+        """Note which bodies have met one that a hand has moved; floor and walls hand nothing on."""
+        contacts = self.world.contacts
+        if contacts is None or not self.touched.any():
+            return
+        pairs = contacts.body[self.world.params.dynamic[contacts.body].all(axis=1)]
+        met = pairs[self.touched[pairs].any(axis=1)]
+        while not self.touched[met].all():
+            self.touched[met] = True
+            met = pairs[self.touched[pairs].any(axis=1)]
+
+    def add(self, shape: Shape, position: Point, image: str, **physics: Any) -> Body:
+        """Put a body in that is seen, its shape's middle at its position; `physics` is what `World.add` takes."""
         body = self.world.add(shape, position, **physics)
-        self.pieces.append(Piece(body, self.world.shapes[-1], colour))
+        disc = isinstance(shape, Circle)
+        layer = _FIXED if body.static else _DISCS if disc else _BOXES
+        self.sprites.append(Sprite(body, image, extent(shape), layer))
         if not body.static:
             self.bodies.append(body)
         return body
-
-    def add_fixed(self, shape: Shape, position: Point) -> Body:
-        """Put a body in that nothing can move."""
-        return self.add(shape, position, FAINT, static=True)
 
     # What can be measured in every exhibit
 
@@ -141,13 +155,21 @@ class Exhibit:
         contacts = self.world.contacts
         return int(contacts.manifold.valid.sum()) if contacts else 0
 
-    def push_between(self, a: Body, b: Body) -> float:
-        """Newtons with which two bodies pressed on each other in the last step."""
+    def push(self, *bodies: Body) -> float:
+        """Newtons with which two bodies pressed on each other in the last step, or all that met a single one on it."""
         contacts = self.world.contacts
         if contacts is None:
             return 0.0
-        rows = (np.sort(contacts.body, axis=1) == sorted((a.index, b.index))).all(axis=1)
+        rows = np.all([(contacts.body == body.index).any(axis=1) for body in bodies], axis=0)
         return float(contacts.impulse[:2, rows].sum()) / DT
+
+
+def extent(shape: Shape) -> tuple[float, float]:
+    """Return how wide and how high a shape is, in metres."""
+    if isinstance(shape, Circle):
+        return 2 * shape.radius, 2 * shape.radius
+    wide, high = np.ptp(shape.vertices, axis=0).tolist()
+    return wide, high
 
 
 def height(body: Body) -> float:

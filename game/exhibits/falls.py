@@ -10,10 +10,13 @@ import numpy as np
 from engine import Body, Circle, Polygon
 from game import texts
 from game.exhibits.exhibit import Exhibit, Label, height, speed
-from game.ui.tokens import EMBER, INK, MUTE
 
 # Below the ground line, where names of columns stand; points become metres by an exhibit's width.
 _BELOW: Final = -0.014
+_TOUCH: Final = 0.005  # metres between a body and the floor at which it has come down
+_SLID: Final = 0.1  # metres from its place at which a box has slid
+_DISC: Final = 0.42  # metres, the radius of a disc of 1 kg
+_WALL: Final = 0.1  # of a normal that points up by less, the face is a wall
 
 
 class Slopes(Exhibit):
@@ -29,36 +32,56 @@ class Slopes(Exhibit):
         slope = math.radians(self.degrees)
         left, right = -11.0, 5.0
         top = (right - left) * math.tan(slope)
-        corners = np.array([(left, 0.0), (right, 0.0), (left, top)])
-        self.slope = self.add_fixed(Polygon(corners), (0.0, 0.0))
+        middle = np.array([(left + right) / 2, top / 2])
+        corners = np.array([(left, 0.0), (right, 0.0), (left, top)]) - middle
+        self.slope = self.add(Polygon(corners), middle, "slope", static=True)
         along, away = np.array([-math.cos(slope), math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
         self.boxes: list[Body] = []
         for number, friction in enumerate(self.frictions):
             place = np.array([right, 0.0]) + (3.4 + 3.3 * number) * along + self.size[1] / 2 * away
-            box = self.add(Polygon.box(*self.size), place, angle=-slope, friction=friction)
+            box = self.add(Polygon.box(*self.size), place, "box", angle=-slope, friction=friction)
             self.boxes.append(box)
         self.places = [box.position[0].copy() for box in self.boxes]
+        self.slid: set[float] = set()
+
+    def observe(self) -> None:
+        """Note which boxes have left their places without a hand's help, by their coefficients."""
+        for box, place, friction in zip(self.boxes, self.places, self.frictions, strict=True):
+            if not self.touched[box.index] and np.hypot(*(box.position[0] - place)) > _SLID:
+                self.slid.add(friction)
 
     def figures(self) -> dict[str, float]:
         """Return the slope, its tangent, and how many boxes it has set in motion."""
         tangent = math.tan(math.radians(self.degrees))
-        return {"degrees": self.degrees, "tangent": tangent, "slid": len(self.slid())}
-
-    def slid(self) -> set[float]:
-        """Coefficients of the boxes that are no longer where they were."""
-        moved = [np.hypot(*(box.position[0] - place)) > 0.1 for box, place in zip(self.boxes, self.places, strict=True)]
-        return {friction for friction, far in zip(self.frictions, moved, strict=True) if far}
+        return {"degrees": self.degrees, "tangent": tangent, "slid": len(self.slid)}
 
     def labels(self) -> list[Label]:
-        """Say by each box how steep it lies, and whether that is too steep for it."""
+        """Say by each box how steep the ground is that it lies on, and whether that is too steep for it."""
         labels = []
         for box, friction in zip(self.boxes, self.frictions, strict=True):
-            lean = (float(box.angle[0]) + math.pi / 4) % (math.pi / 2) - math.pi / 4  # on whichever side it lies
-            tangent = abs(math.tan(lean))
+            tangent = self.steepness(box)
+            if tangent is None:
+                labels.append(Label(texts.SLOPE_FRICTION.format(friction=friction), (0.45, 1.0), box))
+                continue
             sign = ">" if tangent > friction else "<"
             text = texts.SLOPE_LABEL.format(tangent=tangent, sign=sign, friction=friction)
             labels.append(Label(text, (0.45, 1.0), box, within=tangent <= friction))
         return labels
+
+    def steepness(self, box: Body) -> float | None:
+        """tan θ of the ground that a box lies flat on; None in the air, on an edge, or on something that can move."""
+        if not self.steps:
+            return math.tan(math.radians(self.degrees))
+        contacts = self.world.contacts
+        if contacts is None:
+            return None
+        rows = np.flatnonzero((contacts.body == box.index).any(axis=1)).tolist()
+        if len(rows) != 1:
+            return None
+        (row,) = rows
+        right, up = np.abs(contacts.manifold.normal[row])
+        fixed = not self.world.params.dynamic[contacts.body[row]].all()
+        return float(right / up) if fixed and contacts.manifold.valid[row].all() and up > _WALL else None
 
 
 class Bounce(Exhibit):
@@ -68,6 +91,7 @@ class Bounce(Exhibit):
     drop = 6.0
     radius = 0.4
     restitutions = (0.0, 0.25, 0.5, 0.75, 1.0)
+    which = 3  # the ball that the live line is about
 
     def build(self) -> None:
         """Hang up the balls, and mark where each will come back to."""
@@ -75,21 +99,35 @@ class Bounce(Exhibit):
         for number, restitution in enumerate(self.restitutions):
             x = self._column(number)
             place = (x, self.drop + self.radius)
-            self.balls.append(self.add(Circle(self.radius), place, EMBER, restitution=restitution))
+            self.balls.append(self.add(Circle(self.radius), place, "ember disc", restitution=restitution))
             if restitution:
                 self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
         self.peaks = np.zeros(len(self.balls))
-        self.bounced = np.zeros(len(self.balls), dtype=bool)
+        self.bounced, self.rising, self.measured = np.zeros((3, len(self.balls)), dtype=bool)
 
     def observe(self) -> None:
-        """Note how high each ball has come since it first touched the floor."""
-        bottom = np.array([height(ball) for ball in self.balls]) - self.radius
-        self.bounced |= bottom <= 0.005
-        self.peaks = np.maximum(self.peaks, np.where(self.bounced, bottom, 0.0))
+        """Follow each ball down, up again, and to its first peak, as long as no hand interferes."""
+        index = [ball.index for ball in self.balls]
+        bottom = self.world.state.pose[0, index, 1] - self.radius
+        upward = self.world.state.velocity[0, index, 1] > 0
+        followed = ~self.touched[index] & ~self.measured
+        self.measured |= followed & self.rising & ~upward
+        self.bounced |= followed & (bottom <= _TOUCH)
+        self.rising = followed & self.bounced & upward
+        self.peaks = np.maximum(self.peaks, np.where(self.rising, bottom, 0.0))
+
+    @property
+    def state(self) -> str:
+        """How far the ball with e = 0.75 has come."""
+        if self.measured[self.which]:
+            return "measured"
+        if self.touched[self.balls[self.which].index]:
+            return "touched"
+        return "rising" if self.rising[self.which] else "falling"
 
     def figures(self) -> dict[str, float]:
-        """Return what the ball with e = 0.75 should come back to, and what it came back to."""
-        which = 3
+        """Return what the ball with e = 0.75 should come back to, and how high it has come."""
+        which = self.which
         restitution = self.restitutions[which]
         return {
             "restitution": restitution,
@@ -105,7 +143,7 @@ class Bounce(Exhibit):
             x, expected = self._column(number), restitution**2 * self.drop
             labels.append(Label(texts.BOUNCE_COLUMN.format(restitution=restitution), (x, _BELOW * self.width)))
             if restitution:
-                words = texts.BOUNCE_PEAK if self.bounced[number] else texts.BOUNCE_MARK
+                words = texts.BOUNCE_PEAK if self.measured[number] else texts.BOUNCE_MARK
                 text = words.format(expected=expected, peak=self.peaks[number])
                 labels.append(Label(text, (x + 2.0, expected - 0.02)))
         return labels
@@ -119,6 +157,7 @@ class DragRace(Exhibit):
 
     width = 40.0
     top = 13.0
+    which = 1  # the disc that the live line is about
     # Name of the column, mass, linear drag in kg/s, quadratic drag in kg/m.
     lanes = (
         ("none", 1.0, 0.0, 0.0),
@@ -132,12 +171,30 @@ class DragRace(Exhibit):
         """Hang the discs up in a row."""
         self.discs: list[Body] = []
         for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
-            colour = MUTE if not linear + quadratic else INK if linear else EMBER
+            image = "disc" if not linear + quadratic else "bright disc" if linear else "ember disc"
             disc = self.add(
-                Circle(0.42 * math.sqrt(mass)), (self._lane(number), self.top), colour,
+                Circle(_DISC * math.sqrt(mass)), (self._lane(number), self.top), image,
                 mass=mass, linear_drag=linear, quadratic_drag=quadratic,
             )  # fmt: skip
             self.discs.append(disc)
+        self.landed = False
+        self.speed = 0.0
+
+    def observe(self) -> None:
+        """Follow the light disc with linear drag down to the floor, as long as no hand interferes."""
+        disc = self.discs[self.which]
+        if self.landed or self.touched[disc.index]:
+            return
+        self.landed = height(disc) - _DISC <= _TOUCH
+        if not self.landed:
+            self.speed = speed(disc)
+
+    @property
+    def state(self) -> str:
+        """How far that disc has come."""
+        if self.landed:
+            return "landed"
+        return "touched" if self.touched[self.discs[self.which].index] else "falling"
 
     def terminal(self, number: int) -> float:
         """Metres a second at which drag carries the weight; infinite without drag."""
@@ -147,8 +204,8 @@ class DragRace(Exhibit):
         return math.sqrt(mass * self.gravity / quadratic) if quadratic else math.inf
 
     def figures(self) -> dict[str, float]:
-        """Return the weight of the light disc with linear drag, its terminal speed, and its speed."""
-        return {"terminal": self.terminal(1), "speed": speed(self.discs[1])}
+        """Return the terminal speed of the light disc with linear drag, and how fast it falls, or fell at last."""
+        return {"terminal": self.terminal(self.which), "speed": self.speed}
 
     def labels(self) -> list[Label]:
         """Put a gauge beside each disc, the terminal speed marked; name the lanes."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
 
 from engine import DT, Body, Circle, Polygon
 from game import texts
-from game.exhibits.exhibit import CLEAR, Exhibit, Label, speed
-from game.ui.tokens import EMBER, INK, MUTE
+from game.exhibits.exhibit import CLEAR, Exhibit, Label, height, speed
 
 _MOVES: Final = 0.05  # metres a second
 
@@ -33,28 +33,39 @@ class Impacts(Exhibit):
         pitch = 2 * self.radius + self.gap
         for number, rail in enumerate(self.rails):
             if rail:
-                self.add_fixed(Polygon.box(self.width, 0.12), (0.0, rail - 0.06))
+                self.add(Polygon.box(self.width, 0.12), (0.0, rail - 0.06), "rail", static=True)
             strikers = [self._disc(-7.0 - pitch * k, rail, self.pace) for k in reversed(range(number + 1))]
             self.discs.append(strikers + [self._disc(pitch * k, rail, 0.0) for k in range(self.row)])
         self.energy_at_first = self.kinetic_energy
+
+    @property
+    def state(self) -> str:
+        """Whether the energy is all that there was at first."""
+        return "touched" if self.touched.any() else "untouched"
 
     def figures(self) -> dict[str, float]:
         """Return the kinetic energy at first and now."""
         return {"first": self.energy_at_first, "now": self.kinetic_energy}
 
     def labels(self) -> list[Label]:
-        """Count over each rail those that struck and those that move."""
+        """Count over each rail those that moved at first and those on it that move now, wherever they came from."""
         labels = []
-        for number, (rail, discs) in enumerate(zip(self.rails, self.discs, strict=True)):
+        for number, rail in enumerate(self.rails):
+            discs = self.on_rail(number)
             moving = sum(speed(disc) > _MOVES for disc in discs)
             momentum = sum(float(disc.velocity[0, 0]) * disc.mass for disc in discs)
-            text = texts.IMPACTS_RAIL.format(struck=number + 1, moving=moving, momentum=abs(momentum))
+            text = texts.IMPACTS_RAIL.format(sent=number + 1, moving=moving, momentum=abs(momentum))
             labels.append(Label(text, (9.6, rail + 1.5)))
         return labels
 
+    def on_rail(self, number: int) -> list[Body]:
+        """Return the discs between this rail and the one above it."""
+        low, high = self.rails[number], self.rails[number - 1] if number else math.inf
+        return [body for body in self.bodies if low <= height(body) < high]
+
     def _disc(self, x: float, rail: float, pace: float) -> Body:
-        colour = EMBER if pace else MUTE
-        disc = self.add(Circle(self.radius), (x, rail + self.radius), colour, friction=0.0, restitution=1.0)
+        image = "ember disc" if pace else "disc"
+        disc = self.add(Circle(self.radius), (x, rail + self.radius), image, friction=0.0, restitution=1.0)
         disc.velocity = (pace, 0.0)
         return disc
 
@@ -75,19 +86,23 @@ class Spin(Exhibit):
         self.rules.append(((-self.width / 2, ceiling), (self.width / 2, ceiling)))
         middle = ceiling / 2
         self.turning = [
-            self.add(Circle(0.7), (-11.4, middle), EMBER, restitution=0.8),
-            self.add(Polygon.box(2.2, 2.2), (-7.6, middle), MUTE, restitution=0.8),
-            self.add(Polygon.box(3.6, 0.5), (-2.8, middle), INK, restitution=0.8),
+            self.add(Circle(0.7), (-11.4, middle), "ember disc", restitution=0.8),
+            self.add(Polygon.box(2.2, 2.2), (-7.6, middle), "box", restitution=0.8),
+            self.add(Polygon.box(3.6, 0.5), (-2.8, middle), "bright box", restitution=0.8),
         ]
         for body in self.turning:
             body.angular_velocity = self.momentum / body.inertia
         bar = Polygon.box(0.5, 3.0)
-        self.bars = [self.add(bar, (3.4, y), MUTE, restitution=0.8) for y in (middle + 2.6, middle - 2.4)]
+        self.pushed = [False, False]
+        self.bars = [self.add(bar, (3.4, y), "box", restitution=0.8) for y in (middle + 2.6, middle - 2.4)]
 
     def prepare(self) -> None:
         """Push both bars alike: one in the middle, one near its end."""
-        if self.steps == self.push_at:
-            for bar, offset in zip(self.bars, (0.0, self.reach), strict=True):
+        if self.steps != self.push_at:
+            return
+        self.pushed = [not self.touched[bar.index] for bar in self.bars]  # one that was moved is not where it was
+        for bar, offset, still in zip(self.bars, (0.0, self.reach), self.pushed, strict=True):
+            if still:
                 bar.apply_force((self.impulse / DT, 0.0), bar.position[0] + (0.0, offset))
 
     def figures(self) -> dict[str, float]:
@@ -103,9 +118,16 @@ class Spin(Exhibit):
         """Say how fast each turns, and how fast the bars go."""
         labels = []
         for body, momentum in zip(self.turning, self.angular_momenta(), strict=True):
-            text = texts.SPIN_TURNING.format(spin=float(body.angular_velocity[0]), momentum=momentum)
-            labels.append(Label(text, (0.0, -2.35), body))
-        for bar, text in zip(self.bars, texts.SPIN_BARS, strict=True):
-            pace, spin = speed(bar), float(np.abs(bar.angular_velocity[0]))
-            labels.append(Label(text.format(pace=pace, spin=spin), (0.0, -1.95), bar))
+            spin = round(float(body.angular_velocity[0]), 2) + 0.0  # never -0.00
+            for line, text in enumerate(texts.SPIN_TURNING):
+                words = text.format(spin=spin, momentum=round(momentum, 2) + 0.0)
+                labels.append(Label(words, (0.0, -2.35 - 0.4 * line), body))
+        waiting = self.steps <= self.push_at
+        for number, bar in enumerate(self.bars):
+            motion = texts.SPIN_MOTION.format(pace=speed(bar), spin=float(np.abs(bar.angular_velocity[0])))
+            if self.pushed[number]:
+                motion = texts.SPIN_BARS[number].format(motion=motion)
+            elif waiting and not self.touched[bar.index]:
+                motion = texts.SPIN_BARS_BEFORE[number]
+            labels.append(Label(motion, (0.0, -1.95), bar))
         return labels

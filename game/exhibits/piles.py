@@ -8,9 +8,10 @@ import numpy as np
 
 from engine import Body, Circle, Polygon
 from game.exhibits.exhibit import Exhibit
-from game.ui.tokens import EMBER, INK, MUTE
 
 _SEED: Final = 3
+_SETTLED: Final = 60  # steps in which impulses that begin at nothing have come to carry ten boxes
+_SQUARE: Final = 0.1  # radians, and of a box's side, by which one in a column may be off
 
 
 class Stack(Exhibit):
@@ -29,16 +30,40 @@ class Stack(Exhibit):
             count = self.base - level
             for number in range(count):
                 self._box(6.4 + 1.05 * self.box * (number - (count - 1) / 2), (level + 0.5) * self.box)
-        self.ball = self.add(Circle(0.7), (-10.5, 0.7), EMBER, mass=4.0, friction=0.6, restitution=0.2)
+        self.ball = self.add(Circle(0.7), (-10.5, 0.7), "ember disc", mass=4.0, friction=0.6, restitution=0.2)
+
+    @property
+    def state(self) -> str:
+        """Whether there is still a column, of two boxes at least, once it has settled under its weight."""
+        if self.steps < _SETTLED and not self.touched.any():
+            return "begun"
+        return "standing" if len(self.standing()) > 1 else "fallen"
 
     def figures(self) -> dict[str, float]:
-        """Return the weight of a column, and what its lowest contact carries."""
-        lowest = self.columns[0][0]
-        weight = self.high * lowest.mass * self.gravity
-        return {"count": self.high, "weight": weight, "push": self.push_between(self.floor, lowest)}
+        """Return the weight of the highest column and what its lowest contact carries, or all of both."""
+        standing = self.standing()
+        if len(standing) > 1:
+            weighed, push = standing, self.push(self.floor, standing[0])
+        else:
+            weighed, push = self.bodies, self.push(self.floor)
+        weight = self.gravity * sum(body.mass for body in weighed)
+        return {"count": len(weighed), "weight": weight, "push": push}
+
+    def standing(self) -> list[Body]:
+        """Return the boxes of the highest column, as far as each lies squarely on the one below."""
+        return max((column[: self._height(column)] for column in self.columns), key=len)
+
+    def _height(self, column: list[Body]) -> int:
+        """How many boxes of a column, from the ground up, are still where they were put, or moved as one."""
+        x, y, angle = self.world.state.pose[0, [box.index for box in column]].T
+        lean = np.abs((angle + np.pi / 4) % (np.pi / 2) - np.pi / 4)
+        level = np.abs(y - self.box * (np.arange(len(column)) + 0.5))
+        aside = np.abs(np.diff(x, prepend=x[0]))
+        moved = (lean > _SQUARE) | (np.maximum(level, aside) > _SQUARE * self.box)
+        return int(moved.argmax()) if moved.any() else len(column)
 
     def _box(self, x: float, y: float) -> Body:
-        return self.add(Polygon.box(self.box, self.box), (x, y), friction=0.6)
+        return self.add(Polygon.box(self.box, self.box), (x, y), "box", friction=0.6)
 
 
 class Heap(Exhibit):
@@ -57,12 +82,17 @@ class Heap(Exhibit):
             y = 1.0 + 1.26 * row
             angle = rng.uniform(0, 2 * np.pi)
             if rng.random() < 0.4:
-                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), (x, y), EMBER, angle=angle, friction=0.5)
+                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), (x, y), "ember disc", angle=angle, friction=0.5)
             else:
                 wide, tall = rng.uniform(0.55, 0.95, 2)
-                colour = INK if rng.random() < 0.15 else MUTE
-                self.add(Polygon.box(wide, tall), (x, y), colour, angle=angle, friction=0.5)
+                image = "bright box" if rng.random() < 0.15 else "box"
+                self.add(Polygon.box(wide, tall), (x, y), image, angle=angle, friction=0.5)
         self.at_first = self.energy
+
+    @property
+    def state(self) -> str:
+        """Whether the energy that is not there now can only have turned into heat."""
+        return "touched" if self.touched.any() else "untouched"
 
     def figures(self) -> dict[str, float]:
         """Return the energy at first, and what is left of it."""

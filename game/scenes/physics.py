@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -28,7 +29,7 @@ from game.ui.pointer import Pointer
 from game.ui.sky import NightSky
 from game.ui.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
 from game.ui.widgets import Choice
-from game.world.bodies import Outlines, body_at, draw_contacts, draw_grip
+from game.world.bodies import Outlines, draw_contacts, draw_grip
 
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)
@@ -71,9 +72,10 @@ class Physics:
         tabs = pygame.Rect(*_TABS, math.ceil(_width(words, TEXT)), 24)
         self._tabs = self._form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
         self._hand = self._form.add(Pointer(manager, _ROOM, self._point, hold=texts.POINTER_GRIP))
-        self._add_row(0, texts.PHYSICS_GRAVITY, texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity)
-        self._speeds = self._add_row(1, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
-        self._contacts = self._add_row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)
+        self._gravities: list[Choice] = []  # one, or none where there is no gravity
+        speeds = self._row(1, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
+        contacts = self._row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)
+        self._speeds, self._contacts = self._form.add(speeds), self._form.add(contacts)
         self.restart()
 
     def exit(self) -> None:
@@ -83,11 +85,12 @@ class Physics:
     def restart(self) -> None:
         """Build the exhibit anew."""
         self.exhibit = EXHIBITS[self._names[self._chosen]](GRAVITIES[self._gravity])
-        self._outlines = Outlines(self.exhibit.pieces)
+        self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
         self._tempo.begin()
         self.step_time = 0.0
         self.grip = None
+        self._offer_gravity()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Take hold, stop, step, choose, pause."""
@@ -154,9 +157,7 @@ class Physics:
 
     def _step(self) -> None:
         before = self._now()
-        if self.grip:
-            self.grip.pull()
-        self.exhibit.step()
+        self.exhibit.step(self.grip)
         spent = self._now() - before
         self.step_time += (spent - self.step_time) * (_SMOOTHING if self.step_time else 1.0)
         self._poses_before, self._poses = self._poses, self.exhibit.poses
@@ -173,8 +174,8 @@ class Physics:
         assert self._context is not None
         if not self._context.controls.mouse_in_use and not self._hand.typing:
             return None
-        piece = body_at(self.exhibit.pieces, self._poses, self._place(self._mouse), 0.0)
-        return piece.body.index if piece else None
+        body = self._outlines.body_at(self._poses, self._place(self._mouse), 0.0)
+        return body.index if body else None
 
     def _point(self, event: pygame.event.Event) -> bool:
         """Take hold of a body, pull it, let go; false if the mouse means something else."""
@@ -190,10 +191,10 @@ class Physics:
             return False
         place = self._place(self._mouse)
         reach = _REACH * self.exhibit.width / VIEW_SIZE[0]
-        piece = body_at(self.exhibit.pieces, self._poses, place, reach)
-        if piece:
-            self.grip = Grip(piece.body, place)
-        return piece is not None
+        body = self._outlines.body_at(self._poses, place, reach)
+        if body:
+            self.grip = Grip(body, place)
+        return body is not None
 
     def _pause(self) -> Transition:
         from game.scenes.pause import Pause
@@ -202,11 +203,20 @@ class Physics:
 
     # Choices
 
-    def _add_row(self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]) -> Choice:
+    def _offer_gravity(self) -> None:
+        """Have a row of gravities where the exhibit has any."""
+        if bool(self._gravities) is not self.exhibit.weightless:
+            return
+        row = partial(self._row, 0, texts.PHYSICS_GRAVITY, texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity)
+        offered = [] if self.exhibit.weightless else [row()]
+        self._form.replace([*self._gravities, self._speeds], [*offered, self._speeds])
+        self._gravities = offered
+
+    def _row(self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]) -> Choice:
         x, y, pitch = _ROWS
         box = pygame.Rect(x, y + row * pitch, math.ceil(_LABEL_WIDTH + _width(words, SMALL)), _ROW_HEIGHT)
         manager = self._form.manager
-        return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
+        return Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL)
 
     def _choose_exhibit(self, index: int) -> None:
         self._chosen = index
@@ -236,7 +246,12 @@ class Physics:
         canvas.text(texts.PHYSICS_TITLE, (MARGIN, 38), size=SMALL, colour=MUTE)
         _, law, live = texts.EXHIBITS[self._names[self._chosen]]
         canvas.text(law, (MARGIN, 112), size=TEXT)
-        write_figures(canvas, live.format(**self.exhibit.figures()), (MARGIN, 136), size=SMALL + 1)
+        sentence = live[self.exhibit.state].format(**self.exhibit.figures())
+        write_figures(canvas, sentence, (MARGIN, 136), size=SMALL + 1)
+        if self.exhibit.weightless:
+            x, y, _ = _ROWS
+            for part, left in ((texts.PHYSICS_GRAVITY, x), (texts.PHYSICS_WEIGHTLESS, x + _LABEL_WIDTH)):
+                canvas.text(part, (left, y + _ROW_HEIGHT // 2 + 0.36 * SMALL), size=SMALL, colour=MUTE)
         hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
         self._form.draw(canvas)
         assert self._context is not None
@@ -268,7 +283,7 @@ class Physics:
         exhibit = self.exhibit
         return [
             hud.Readout(texts.BODIES, str(len(exhibit.bodies)), ""),
-            hud.Readout(texts.CONTACT_POINTS, str(exhibit.contact_count), ""),
+            hud.Readout(texts.CONTACT_POINTS, str(exhibit.contact_count) if exhibit.steps else "–", ""),
             hud.Readout(texts.KINETIC_ENERGY, f"{exhibit.kinetic_energy:.1f}", "J"),
             hud.Readout(texts.STEP_TIME, f"{1e3 * self.step_time:.1f}", "ms"),
         ]

@@ -236,6 +236,9 @@ class Chart:
                 if number in (0, len(lines) - 1):
                     text = plotting.round_number(self._value(float(value)))
                     sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES, tabular=True)
+        if self._log:
+            for word, y in zip(texts.CHART_LOG, (plot.centery - 2, plot.centery + 9), strict=True):
+                sheet.text(word, (plot.right + 6, y), size=_AXES_SIZE, colour=_AXES)
         ends: tuple[tuple[float, Align], ...] = ((plot.x, "left"), (plot.right, "right"))
         for (x, align), told in zip(ends, self._told, strict=False):
             place = (x, plot.bottom + 15)

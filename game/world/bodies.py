@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import repeat
 from typing import Final
@@ -10,13 +11,12 @@ from typing import Final
 import numpy as np
 import pygame
 
-from engine import DT, Circle, Polygon, World
+from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.vector import Array, dot, right_of, rotate
-from game.exhibits import Piece
 from game.render import View
 from game.ui import shapes
 from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN, INK, NET, NIGHT1, Colour
+from game.ui.tokens import EMBER, FAINT, HUMAN, INK, MUTE, NET, NIGHT1, Colour
 from game.world.paint import mix
 
 _MARK: Final = (0.45, 0.82)  # of a disc's radius, from and to, so that its turning is seen
@@ -27,39 +27,97 @@ _LIT: Final = 0.45
 _NORMAL: Final = 6.0
 _PER_WEIGHT: Final = 4.0
 _LONGEST: Final = 64.0
-_Shades = Callable[[Piece, tuple[Colour, Colour, Colour]], tuple[Colour, Colour, Colour]]
+_Colours = tuple[Colour, Colour, Colour]  # of the edge, the inside, and the mark that shows the turning
+_Shades = Callable[[int, _Colours], _Colours]  # of a body, by its index
 _Paint = Callable[[tuple[int, int]], pygame.Surface]
 
 
-class Outlines:
-    """The corners of every piece, kept in one array, so that all are turned and placed at once."""
+@dataclass(frozen=True)
+class Picture:
+    """What is drawn for an image key: corners in units of a sprite's size, none for a disc, and a colour."""
 
-    def __init__(self, pieces: Sequence[Piece]) -> None:
-        self.pieces = pieces
-        discs = [piece for piece in pieces if isinstance(piece.shape, Circle)]
-        angular = [piece for piece in pieces if not isinstance(piece.shape, Circle)]
-        self._discs = [(piece, _colours(piece.colour, _FILL)) for piece in discs]
-        self._disc_bodies = np.array([piece.body.index for piece in discs], dtype=int)
-        self._radii = [piece.shape.radius for piece in discs if isinstance(piece.shape, Circle)]
-        outlines = [piece.shape.vertices for piece in angular if isinstance(piece.shape, Polygon)]
-        lengths = [len(outline) for outline in outlines]
-        self._corners = np.concatenate([np.empty((0, 2)), *outlines])
-        self._body = np.repeat([piece.body.index for piece in angular], lengths).astype(int)
+    corners: tuple[tuple[float, float], ...]
+    colour: Colour
+
+    def outline(self, size: tuple[float, float]) -> Shape:
+        """Return the picture's outline at a sprite's size in metres."""
+        return Polygon(np.array(self.corners) * size) if self.corners else Circle(size[0] / 2)
+
+
+_SQUARE: Final = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+_WEDGE: Final = ((-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5))
+# One row a picture, by the image key that sprites have
+PICTURES: Final[dict[str, Picture]] = {
+    "rail": Picture(_SQUARE, FAINT),
+    "slope": Picture(_WEDGE, FAINT),
+    "box": Picture(_SQUARE, MUTE),
+    "bright box": Picture(_SQUARE, INK),
+    "disc": Picture((), MUTE),
+    "bright disc": Picture((), INK),
+    "ember disc": Picture((), EMBER),
+}
+
+
+class Outlines:
+    """Sprites to be drawn, layer upon layer. Raises KeyError for an image that is not in `PICTURES`."""
+
+    def __init__(self, sprites: Sequence[Sprite]) -> None:
+        self.shapes = [(sprite.body, PICTURES[sprite.image].outline(sprite.size)) for sprite in sprites]
+        layers = sorted({sprite.layer for sprite in sprites})
+        self._layers = [_Layer([sprite for sprite in sprites if sprite.layer == layer]) for layer in layers]
+
+    def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool) -> None:
+        """Draw every sprite at its body's pose (bodies, 3); that of body `lit` brighter, and in amber if `held`."""
+        for layer in self._layers:
+            layer.draw(canvas, view, poses, lit, held)
+
+    def body_at(self, poses: Array, place: Array, reach: float) -> Body | None:
+        """Return the body that can be moved and is seen at a place in metres, or is within `reach` of it."""
+        best, nearest = None, reach
+        for body, shape in self.shapes:
+            if body.static:
+                continue
+            x, y, angle = poses[body.index]
+            local = rotate(place - (x, y), np.cos(-angle), np.sin(-angle))
+            if isinstance(shape, Circle):
+                gap = float(np.hypot(*local)) - shape.radius
+            else:
+                gap = float(dot(shape.normals, local - shape.vertices).max())
+            if gap < nearest:
+                best, nearest = body, gap
+        return best
+
+
+class _Layer:
+    """The corners of every sprite of a layer, kept in one array, so that all are turned and placed at once."""
+
+    def __init__(self, sprites: Sequence[Sprite]) -> None:
+        shapes = [PICTURES[sprite.image].outline(sprite.size) for sprite in sprites]
+        rows = [(sprite.body.index, _colours(PICTURES[sprite.image].colour, _FILL)) for sprite in sprites]
+        discs = [(row, shape.radius) for row, shape in zip(rows, shapes, strict=True) if isinstance(shape, Circle)]
+        self._discs = [row for row, _ in discs]
+        self._radii = [radius for _, radius in discs]
+        self._disc_bodies = np.array([index for index, _ in self._discs], dtype=int)
+        angular = [(row, shape.vertices) for row, shape in zip(rows, shapes, strict=True) if isinstance(shape, Polygon)]
+        lengths = [len(outline) for _, outline in angular]
+        self._corners = np.concatenate([np.empty((0, 2)), *(outline for _, outline in angular)])
+        self._body = np.repeat([index for (index, _), _ in angular], lengths).astype(int)
         ends = np.cumsum(lengths, dtype=int)
         self._angular = [
-            (piece, _colours(piece.colour, _FILL), start, end)
-            for piece, start, end in zip(angular, (ends - lengths).tolist(), ends.tolist(), strict=True)
+            (row, start, end)
+            for (row, _), start, end in zip(angular, (ends - lengths).tolist(), ends.tolist(), strict=True)
         ]
 
     def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool) -> None:
-        """Draw every piece at its pose (bodies, 3); the one of body `lit` brighter, and in amber if `held`."""
+        """Draw the layer as `Outlines.draw` does."""
 
-        def shades(piece: Piece, colours: tuple[Colour, Colour, Colour]) -> tuple[Colour, Colour, Colour]:
-            if piece.body.index != lit:
+        def shades(index: int, colours: _Colours) -> _Colours:
+            if index != lit:
                 return colours
             return _colours(HUMAN if held else mix(colours[0], INK, 0.6), _LIT)
 
-        self._draw_angular(canvas, view, poses, shades)
+        if self._angular:
+            self._draw_angular(canvas, view, poses, shades)
         if self._discs:
             self._draw_discs(canvas, view, poses[self._disc_bodies], shades)
 
@@ -69,9 +127,9 @@ class Outlines:
         pixels = view.pixels(places)
         width = max(1, canvas.px(_EDGE))
         surface = canvas.surface
-        for piece, colours, start, end in self._angular:
-            edge, fill, _ = shades(piece, colours)
-            # Piece by piece: thousands of pairs alive at once would set Python's garbage collector going.
+        for (index, colours), start, end in self._angular:
+            edge, fill, _ = shades(index, colours)
+            # One by one: thousands of pairs alive at once would set Python's garbage collector going.
             corners = pixels[start:end].tolist()
             pygame.draw.polygon(surface, fill, corners)
             _draw_edge(surface, edge, corners, width)
@@ -80,7 +138,7 @@ class Outlines:
         """Draw discs at `poses` (discs, 3), and on each the mark that shows its turning."""
         width = max(1, canvas.px(_EDGE))
         middles = view.pixels(poses[:, :2])
-        colours = [shades(piece, colours) for piece, colours in self._discs]
+        colours = [shades(index, colours) for index, colours in self._discs]
         radii = [round(4 * radius * view.pixels_per_metre) / 4 for radius in self._radii]
         paints = [
             _half_steps(partial(_disc, radius, edge, fill, width))
@@ -129,25 +187,7 @@ def draw_grip(canvas: Canvas, start: tuple[float, float], end: tuple[float, floa
     canvas.dot(end, 2.0, HUMAN)
 
 
-def body_at(pieces: Sequence[Piece], poses: Array, place: Array, reach: float) -> Piece | None:
-    """Return the piece that can be moved and covers a place in metres, or is within `reach` of it."""
-    best, nearest = None, reach
-    for piece in pieces:
-        if piece.body.static:
-            continue
-        x, y, angle = poses[piece.body.index]
-        local = rotate(place - (x, y), np.cos(-angle), np.sin(-angle))
-        shape = piece.shape
-        if isinstance(shape, Circle):
-            gap = float(np.hypot(*local)) - shape.radius
-        else:
-            gap = float(dot(shape.normals, local - shape.vertices).max())
-        if gap < nearest:
-            best, nearest = piece, gap
-    return best
-
-
-def _colours(edge: Colour, share: float) -> tuple[Colour, Colour, Colour]:
+def _colours(edge: Colour, share: float) -> _Colours:
     """Of the edge, the inside, and the mark that shows the turning."""
     return edge, mix(NIGHT1, edge, share), mix(NIGHT1, edge, 0.75)
 

@@ -24,6 +24,7 @@ _FIRELIGHT: Final = 0.35  # what a craft's own fire adds by night
 def draw_craft(
     canvas: Canvas,
     view: View,
+    image: str,
     pose: Doubles,
     thrust: Doubles,
     blue: float,
@@ -32,9 +33,9 @@ def draw_craft(
     floor: float = math.inf,
     light: float = 1.0,
 ) -> None:
-    """Draw a lander and its fire, which ends at the pixel row `floor`; `light` is what falls on it besides.
+    """Draw a lander by its image key, and its fire, which ends at the pixel row `floor`.
 
-    A lander drawn smaller than it is still stands on its feet.
+    `light` is what falls on it besides; `size` 1 is true to scale, and one drawn smaller still stands on its feet.
     """
     surface = canvas.surface
     x, y, angle = pose.tolist()
@@ -55,7 +56,7 @@ def draw_craft(
         canvas.glow(spot, 2.3 * metre / scale, fire, 0.42 * main)
         fire_kind = NET_PLUME if blue > 0.5 else HUMAN_PLUME
         _burn(surface, fire_kind, metre, angle, main, flicker // 2, nozzle, floor)
-    craft, corner = art.sprite(view.painted_per_metre * size, angle, (middle_x, middle_y), scaling(view))
+    craft, corner = art.turned(image, view.painted_per_metre * size, angle, (middle_x, middle_y), scaling(view))
     surface.blit(shaded(craft, light + _FIRELIGHT * max(main, *jets)), corner)
     for side, force in enumerate(jets):
         if force > 0.06:

@@ -16,12 +16,15 @@ import pygame
 
 from ai.env import Doubles
 from ai.lander import FOOT_CENTRE, FOOT_SIZE
+from engine import Sprite
 from game.ui.tokens import Colour
 from game.world.sheet import fitted
 
 Corner = tuple[float, float]
 
 REACH: Final = 1.45  # metres from the centre of mass to the tips of the feet, and a little
+SIZE: Final = (2 * REACH, 2 * REACH)  # metres across and up a picture of the lander, true to scale
+LANDER, WRECK = "lander", "wreck"  # image keys of sprites
 ANTENNA_TIP: Final = (0.16, 1.16)
 NOZZLE: Final = (0.0, -0.66)
 JETS: Final = ((-0.56, 0.60), (0.56, 0.60))  # the left-hand and the right-hand one
@@ -48,6 +51,18 @@ class Facet:
     facing: tuple[float, float, float] = (0.0, 0.0, 1.0)
     width: float = 0.0  # of a line through the corners; 0 fills
     gloss: float = 1.0
+
+
+@dataclass(frozen=True)
+class Finish:
+    """How the facets are lit: by what share of the light there is, and whether their edges catch the sun."""
+
+    light: float
+    rim: bool
+
+
+# One row a picture, by the image key that sprites have
+PICTURES: Final = {LANDER: Finish(1.0, rim=True), WRECK: Finish(0.42, rim=False)}
 
 
 def _mirrored(facet: Facet) -> Facet:
@@ -156,19 +171,20 @@ _RIMS: Final = (
 )
 
 
-def sprite(
-    pixels_per_metre: float,
-    angle: float,
-    middle: tuple[float, float] = (0.0, 0.0),
-    ratio: float = 1.0,
-    wreck: bool = False,
+def share(sprite: Sprite) -> float:
+    """Return how large a sprite is drawn, of what is true to scale."""
+    return sprite.size[0] / SIZE[0]
+
+
+def turned(
+    image: str, pixels_per_metre: float, angle: float, middle: tuple[float, float] = (0.0, 0.0), ratio: float = 1.0
 ) -> tuple[pygame.Surface, tuple[int, int]]:
-    """Return the lander turned by `angle`, and the corner that brings its centre of mass to `middle` in pixels.
+    """Return a picture turned by `angle`, and the corner that brings its centre of mass to `middle` in pixels.
 
     It is painted at so many pixels per metre and then scaled by `ratio`.
     """
     degrees = round(math.degrees(angle)) % 360
-    return fitted(lambda halves: painted(pixels_per_metre, degrees, halves, wreck), ratio, middle)
+    return fitted(lambda halves: painted(pixels_per_metre, degrees, halves, image), ratio, middle)
 
 
 def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[tuple[pygame.Surface, tuple[int, int]]]:
@@ -190,19 +206,20 @@ def _packed(pixels_per_metre: float, degrees: int) -> pygame.Surface:
     return picture
 
 
-def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool = False) -> pygame.Surface:
-    """Return the lander at a size and angle, its middle moved right and down by so many half pixels, 0 or 1."""
+def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str = LANDER) -> pygame.Surface:
+    """Return a picture at a size and angle, its middle moved right and down by so many half pixels, 0 or 1."""
     paint = _paint if pixels_per_metre < _LARGE else _paint_large
-    return paint(pixels_per_metre, degrees, halves, wreck)
+    return paint(pixels_per_metre, degrees, halves, image)
 
 
 @lru_cache(maxsize=192)  # a seventh of a megabyte each, and more in a large window
-def _paint_large(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool) -> pygame.Surface:
-    return _paint.__wrapped__(pixels_per_metre, degrees, halves, wreck)
+def _paint_large(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str) -> pygame.Surface:
+    return _paint.__wrapped__(pixels_per_metre, degrees, halves, image)
 
 
 @lru_cache(maxsize=512)  # a twentieth of one at most: in an hour of play, all that fit in are there
-def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck: bool) -> pygame.Surface:
+def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str) -> pygame.Surface:
+    finish = PICTURES[image]
     half = math.ceil(REACH * pixels_per_metre) + 2
     side = 2 * half + 1
     factor = _FACTOR if pixels_per_metre < _LARGE else _FACTOR // 2
@@ -213,13 +230,13 @@ def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wreck
     middle = [factor * (half + 0.5 + part / 2) for part in halves]
     placed = _CORNERS @ np.array(((math.cos(turn), -math.sin(turn)), (math.sin(turn), math.cos(turn)))).T
     places = (placed * (scale, -scale) + middle).tolist()
-    colours = _lit(turn, 0.42 if wreck else 1.0)
+    colours = _lit(turn, finish.light)
     for facet, (start, stop), colour in zip(FACETS, _SPANS, colours, strict=True):
         if facet.width:
             _strut(sheet, colour, places[start], places[stop - 1], facet.width * scale)
         else:
             pygame.draw.polygon(sheet, colour, places[start:stop])
-    if not wreck:
+    if finish.rim:
         _paint_rim(sheet, turn, scale, middle)
     return pygame.transform.smoothscale(sheet, (side, side))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from typing import Final
 
@@ -11,6 +12,7 @@ import pygame
 
 from ai.env import Bools, Doubles
 from ai.lander import LanderEnv, Outcome
+from engine import Sprite
 from game.flight import surface_height
 from game.render import View
 from game.ui.canvas import Canvas
@@ -61,6 +63,7 @@ class Stage:
         self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between in passing
         self.flash = np.zeros(count, np.intp)
         self.jolt = 0.0
+        self._lander = Sprite(env.lander, art.LANDER, art.SIZE)
         self._wreck: Wreck | None = None
         self._flicker = 0
         self._down = np.zeros(2, bool)
@@ -139,33 +142,41 @@ class Stage:
 
     # One lander in full
 
+    def sprite(self, slot: int = 0, size: float = 1.0) -> Sprite:
+        """Return what is drawn for a slot's lander; `size` 1 is true to scale."""
+        sprite = self._lander if self._wreck is None else self._wreck.sprite
+        image = art.WRECK if self._env.outcome[slot] == Outcome.CRASHED else art.LANDER
+        return replace(sprite, image=image, size=(size * sprite.size[0], size * sprite.size[1]))
+
     def draw_lander(
         self, canvas: Canvas, view: View, pose: Doubles, slot: int = 0, size: float = 1.0, alpha: float = 1.0
     ) -> None:
         """Draw one lander with everything around it but dust; `size` 1 is true to scale."""
-        wrecked = self._env.outcome[slot] == Outcome.CRASHED
+        sprite = self.sprite(slot, size)
         if self._wreck is not None:
             pose = self._wreck.pose(alpha)
         x, y, angle = pose.tolist()
         self._draw_shadow(canvas, view, x, y, angle)
         self._draw_ground_light(canvas, view, x, y, angle, slot)
         floor = float(view.pixels((x, surface_height(self._env, x)))[1]) + 2
-        if wrecked:
-            self._draw_wreck(canvas, view, pose, slot, size)
+        if sprite.image == art.WRECK:
+            self._draw_wreck(canvas, view, sprite, pose, slot)
         else:
             draw_craft(
-                canvas, view, pose, self.thrust[slot], float(self.blue[slot]), self._flicker, size, floor, self._light
-            )
+                canvas, view, sprite.image, pose, self.thrust[slot], float(self.blue[slot]), self._flicker,
+                art.share(sprite), floor, self._light,
+            )  # fmt: skip
         self._draw_flash(canvas, view, x, y, slot)
 
-    def _draw_wreck(self, canvas: Canvas, view: View, pose: Doubles, slot: int, size: float) -> None:
+    def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
         """Draw what a crash has left, dark; where it does not tumble, it sags to the side it leans to."""
         x, y, angle = pose.tolist()
         if self._wreck is None:
             sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
             y, angle = y - 0.16 * sag, angle + 0.16 * sag * (1 if angle >= 0 else -1)
+        size = art.share(sprite)
         middle = view.pixels(stand(x, y, angle, size)).tolist()
-        craft = art.sprite(view.painted_per_metre * size, angle, (middle[0], middle[1]), scaling(view), wreck=True)
+        craft = art.turned(sprite.image, view.painted_per_metre * size, angle, (middle[0], middle[1]), scaling(view))
         canvas.surface.blit(shaded(craft[0], self._light), craft[1])
 
     # A swarm, small and in one go, each standing on its feet; `shown` is a mask (n,)

@@ -17,6 +17,7 @@ from game.ui.canvas import Canvas
 from game.ui.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
 from game.world.backdrop import Backdrop
 from game.world.craft import draw_craft, draw_crowd, draw_fires
+from game.world.lander import LANDER
 from game.world.pad import draw_pad
 from game.world.paths import Trails
 
@@ -120,7 +121,7 @@ class LearningSwarm:
         assert self.sight is not None
         steer = int(self.sight.action[slot]) % 3
         thrust = np.array([self._burning()[slot], steer == 2, steer == 1], dtype=float)
-        draw_craft(canvas, view, pose, thrust, 1.0, self._frame, min(1.0, 1.5 * size))
+        draw_craft(canvas, view, LANDER, pose, thrust, 1.0, self._frame, min(1.0, 1.5 * size))
         x, y = view.points(pose[:2]).tolist()
         if word:
             y -= 30 * min(1.0, 1.5 * size)

@@ -8,7 +8,8 @@ import numpy as np
 
 from ai.env import Doubles
 from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
-from engine import Polygon, World
+from engine import Polygon, Sprite, World
+from game.world.lander import SIZE, WRECK
 
 _STEPS: Final = 420  # after which it lies still, whatever it does
 _STILL: Final = 0.05  # m/s and rad/s
@@ -20,6 +21,10 @@ class Wreck:
     """The craft of one slot from the moment it crashed; `step` once for every step of 1/60 s.
 
     Gravity, hills and pads are the flight's own, the pads where they were in that moment.
+
+    Attributes:
+        sprite: how the body that tumbles is drawn.
+
     """
 
     def __init__(self, env: LanderEnv, slot: int, rng: np.random.Generator) -> None:
@@ -34,6 +39,7 @@ class Wreck:
         )  # fmt: skip
         for pad in env.ground.build(self._world, restitution=0.25, friction=0.7):
             pad.position = pad.position + np.array([float(env.pad_shift[slot]), 0.0])
+        self.sprite = Sprite(self._body, WRECK, SIZE)
         self._body.velocity = env.velocity[slot] + np.array([0.0, _HOP * blow])
         self._body.angular_velocity = env.angular_velocity[slot] + _SPIN * blow * rng.uniform(-1.0, 1.0)
         self._steps = self._rest = 0

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from game import texts
 from game.ui import plotting, typeface
 from game.ui.canvas import Canvas
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
@@ -344,6 +345,20 @@ def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_the
     assert heights[0] - heights[1] == pytest.approx(heights[1] - heights[2])
     assert chart.read(2.0) == "100"
     assert chart._runs[0].last() == 2.0
+
+
+def test_a_log_axis_says_so(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    write = Canvas.text
+    monkeypatch.setattr(
+        Canvas, "text", lambda self, string, *a, **k: written.append(string) or write(self, string, *a, **k)
+    )
+    for log in (False, True):
+        written.clear()
+        chart = Chart((40, 40, 172, 112), "LOSS", log=log)
+        chart.set([Series(np.arange(4.0), [1.0, 10.0, 100.0, 20.0], "this run", smooth=False)], (0, 3))
+        chart.draw(canvas)
+        assert (texts.CHART_LOG[0] in written) is log
 
 
 def test_a_new_window_size_is_drawn_at_once(canvas: Canvas) -> None:

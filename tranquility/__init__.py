@@ -1,0 +1,1 @@
+"""The one name that an installed Tranquility owns: in a wheel, everything else lies in this folder."""

@@ -1,0 +1,82 @@
+"""Open the game, or run one of its commands without a window: `tranquility`, `python -m tranquility`.
+
+Modules are imported as `engine`, `ai` and `game`. In a checkout these folders lie beside this one. In an installed
+wheel they lie within it, so the wheel owns one top-level name; `find_own_folders` makes the imports work there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+
+
+def limit_threads() -> None:
+    """Let linear algebra use one thread; call it before NumPy is imported, or it has no effect.
+
+    The matrices are small: a second thread only gets in the way, of the window most of all.
+    """
+    for library in ("OPENBLAS", "OMP", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+
+def find_own_folders() -> None:
+    """Put the folders of this copy first on the path, before anything else that is called `ai` or `game`.
+
+    Only for this process and those it starts: multiprocessing's `spawn` hands the path on.
+    """
+    own = Path(__file__).resolve().parent
+    folder = str(own if (own / "engine").is_dir() else own.parent)
+    if sys.path[:1] != [folder]:
+        sys.path.insert(0, folder)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run `tranquility` with these arguments and return the exit code."""
+    limit_threads()
+    find_own_folders()
+    arguments = _parser().parse_args(argv)
+    try:
+        if arguments.run is not None:
+            return int(arguments.run(arguments))
+        return _open_game(arguments)
+    except KeyboardInterrupt:
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="tranquility", description="Land on the moon by hand, by network, or share the stick."
+    )
+    parser.set_defaults(run=None)
+    parser.add_argument("--version", action="version", version=_version())
+    parser.add_argument("--user-dir", type=Path, metavar="DIR", help="where settings and networks are kept")
+    screen = parser.add_mutually_exclusive_group()
+    screen.add_argument("--windowed", dest="full_screen", action="store_false", default=None)
+    screen.add_argument("--fullscreen", dest="full_screen", action="store_true", default=None)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    for module in ("game.cli", "ai.cli", "ai.digits_cli", "ai.copilot_cli"):
+        if find_spec(module) is not None:
+            import_module(module).add_commands(commands)
+    return parser
+
+
+def _version() -> str:
+    try:
+        return f"Tranquility {version('tranquility')}"
+    except PackageNotFoundError:
+        return "Tranquility, from a checkout"
+
+
+def _open_game(arguments: argparse.Namespace) -> int:
+    from game.start import play
+
+    return play(arguments.user_dir, arguments.full_screen)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
