@@ -91,5 +91,5 @@ def decide(
 
 def in_points(values: Floats, reward_scale: float) -> Floats:
     """Return a network's values as points of reward: it learns from rewards times `reward_scale`."""
-    points: Floats = values / np.float32(reward_scale)
+    points: Floats = values / values.dtype.type(reward_scale)
     return points

@@ -92,12 +92,17 @@ class History:
 
     `history["success"]` is a column of the points, (n,); `history.parts` (n, len(PARTS)). Both are views: they
     are as the run was when asked for, until the next `append`.
+
+    Attributes:
+        reward_scale: what a point of reward is in the unit of `history["mean_q"]`, which is the network's own.
+
     """
 
     def __init__(self) -> None:
         self.checkpoints: list[Checkpoint] = []
         self.alterations: list[Alteration] = []
         self.validations: list[Validation] = []
+        self.reward_scale = 1.0
         self._table: Doubles = np.empty((CAPACITY, len(_COLUMN)))
         self._length = 0
         self._stride = 1  # how many points told for one kept
@@ -172,7 +177,8 @@ class History:
     def write(self, folder: Path) -> None:
         """Write the history into a run's folder; raises OSError if the disk does not take it."""
         described = {
-            "version": _VERSION, "columns": list(_COLUMN), "stride": self._stride, "told": self._told,
+            "version": _VERSION, "columns": list(_COLUMN), "reward_scale": self.reward_scale,
+            "stride": self._stride, "told": self._told,
             "alterations": [asdict(alteration) for alteration in self.alterations],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
@@ -193,7 +199,9 @@ class History:
         history = cls()
         try:
             with np.load(file, allow_pickle=False) as arrays:
-                history._restore(json.loads(str(arrays["described"])), arrays["points"], arrays["values"])
+                described = json.loads(str(arrays["described"]))
+                history._restore(described, arrays["points"], arrays["values"])
+            history.reward_scale = float(described.get("reward_scale") or _scale_beside(file))
         except FileNotFoundError:
             return cls()
         except (OSError, ValueError, KeyError, TypeError, EOFError, MemoryError, BadZipFile, zlib.error) as error:
@@ -222,3 +230,12 @@ class History:
         ]
         self.alterations = [Alteration(**told) for told in described["alterations"]]
         self.validations = [Validation(**told) for told in described["validations"]]
+
+
+def _scale_beside(file: Path) -> float:
+    """Return the reward scale of the network beside a history from before it told its own; 1 if there is none."""
+    try:
+        scale = json.loads(file.with_name("config.json").read_text(encoding="utf-8"))["config"]["reward_scale"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return 1.0
+    return scale if isinstance(scale, float) and scale > 0 else 1.0

@@ -14,7 +14,7 @@ from game.ui.canvas import Canvas
 from game.ui.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.ui.tokens import INK, LABEL, LINE, MUTE, SMALL, TEXT
 
-PANEL: Final = pygame.Rect(964, 84, 280, 476)
+PANEL: Final = pygame.Rect(964, 84, 280, 504)
 _COVER: Final = 0.92  # landers fly past behind it, and its small words are to be read all the same
 _LEFT: Final = 20  # of what stands on the panel, from its corner
 _VALUES: Final = 62  # the first line of the values, from its top

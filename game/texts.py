@@ -198,7 +198,7 @@ MIND_TITLE: Final = "What the network thinks"
 MIND_SCRIPTED_TITLE: Final = "What the pilot does"
 MIND_SCRIPTED_FLOWN: Final = "flown: {action}"
 # A decision of a network: what it expects, in points of reward, and why its action is flown, in two lines
-Q_EXPECTED: Final = "expected score from here"
+Q_EXPECTED: Final = "expected score"
 Q_ADVANTAGE: Final = "advantage"
 Q_UNIT: Final = "points"
 Q_BEST: Final = "best"
@@ -321,6 +321,7 @@ NET_ALL: Final = "{total} units"
 NET_SOME: Final = "{shown} of {total}"
 NET_UNIT: Final = "layer {layer}, unit {unit}"
 NET_VALUE: Final = "value"
+NET_POINTS: Final = "value, points"
 NET_BIAS: Final = "bias"
 NET_DAMAGED: Final = ": damaged"
 # What blue edges and orange ones mean
@@ -558,7 +559,7 @@ TRAIN_CHARTS: Final = {
     "success": "LANDED, %",
     "mean_return": "RETURN",
     "loss": "LOSS",
-    "mean_q": "MEAN Q",
+    "mean_q": "MEAN Q, POINTS",
     "epsilon": "EXPLORATION ε",
     "stage": "STAGE",
 }

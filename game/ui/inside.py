@@ -105,6 +105,7 @@ class Inside:
             return  # of a run that has just been replaced
         network.values = insight.values
         network.gradients[:] = insight.gradients
+        self._view.output_scale = config.reward_scale
         self._view.set(network, insight.observation)
         self._cut.append(bool(np.linalg.norm(insight.gradients) >= _CUT * config.gradient_clip))
         self._seen.append(insight.observation)

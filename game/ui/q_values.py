@@ -77,7 +77,8 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
     """Draw the expected score, a bar for each action on the fixed scale, and the scale; `top` is the first baseline."""
     track = (left + _NAME, width - _NAME - _FIGURE)
     canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE)
-    canvas.text(signed(values.expected), (left + width, top), size=TEXT, align="right", tabular=True)
+    canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)
+    canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right")
     for action in range(len(ACTION_NAMES)):
         _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
     _draw_axis(canvas, left, top + _AXIS, width)
@@ -92,11 +93,11 @@ def _draw_row(canvas: Canvas, values: QValues, action: int, left: float, y: floa
     flown, feasible = action == values.flown, values.feasible[action]
     alpha = 1.0 if feasible or flown else 0.5
     colour = INK if flown else MUTE
-    canvas.text(ACTION_NAMES[action], (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 14)
+    canvas.text(ACTION_NAMES[action], (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20)
     loss = values.loss(action)
     fraction = values.fraction(loss)
     tone = NET if flown else mix(FAINT, NET, 0.45 if feasible else 0.12)
-    canvas.bar((x, y - _BAR / 2, track, _BAR), fraction, tone)
+    canvas.bar((x, y - 1, track, _BAR), fraction, tone)
     if flown:
         canvas.marker("triangle", (x - 8, y), 6, NET)
     if loss > SPAN:  # beyond the scale
@@ -127,7 +128,7 @@ def decision_words(decision: Decision) -> Sequence[str]:
         return texts.VALUES_DAMAGED
     if not decision.kept[0]:
         return texts.Q_BEST_FLOWN
-    names = {"kept": ACTION_NAMES[int(decision.action[0])], "best": ACTION_NAMES[int(decision.best[0])]}
+    names = {"kept": ACTION_NAMES[int(decision.action[0])].capitalize(), "best": ACTION_NAMES[int(decision.best[0])]}
     return [line.format(margin=f"{decision.margin:.3g}", **names) for line in texts.Q_KEPT]
 
 
@@ -140,4 +141,5 @@ def behind(loss: float) -> str:
     """Write how many points less than the best an action is worth, in as many digits as tell it from nothing."""
     if not math.isfinite(loss):
         return "–"
-    return f"−{loss:.{1 if loss >= 0.95 else 2}f}"
+    figure = f"{loss:.{1 if loss >= 0.95 else 2}f}"
+    return figure if float(figure) == 0 else f"−{figure}"

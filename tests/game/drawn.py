@@ -87,13 +87,13 @@ def _place(drawn: Drawn, word: str) -> tuple[float, float]:
 def _beside(drawn: Drawn, word: str) -> str:
     x, y = _place(drawn, word)
     right = [(left, string) for string, left, line in drawn.texts if line == y and left > x]
-    return max(right)[1]
+    return min(right)[1]
 
 
 def _row(drawn: Drawn, name: str) -> Row:
     x, y = _place(drawn, name)
     middle = y - 4
-    (fraction,) = {part for left, line, part in drawn.bars if math.isclose(line, middle, abs_tol=0.01) and left > x}
+    (fraction,) = {part for left, line, part in drawn.bars if math.isclose(line, middle, abs_tol=1.0) and left > x}
     marked = any(shape == "triangle" and line == middle and left > x for shape, left, line in drawn.markers)
     beyond = any(end[1] == middle and start[1] == middle - 4 for start, end in drawn.lines)
     return Row(_beside(drawn, name), fraction, marked, beyond)

@@ -1,4 +1,4 @@
-"""What Watch and the co-pilot's panel draw is what was decided, over whole flights of the networks that come with it."""
+"""Watch and the co-pilot's panel draw what was decided, over whole flights of the networks that come with the game."""
 
 import re
 from collections.abc import Callable
@@ -20,8 +20,8 @@ from game.mind import draw_mind
 from game.scenes.watch import Watch
 from game.ui.canvas import Canvas
 from game.ui.q_values import SPAN
-from tests.game.driver import Driver
 from tests.game.drawn import Drawn, Panel, number, read_panel
+from tests.game.driver import Driver
 
 MODELS = Path(__file__).parents[2] / "models" / "lander"
 NETWORKS = ("modern", "classic")
