@@ -27,6 +27,7 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.pick import Pick
+from game.ui.standing import rate_colour
 from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
 from game.ui.widget import OnPress
 from game.ui.widgets import Choice
@@ -342,7 +343,12 @@ class Watch:
             return
         share = f"{100 * landed / (landed + lost):.0f}"
         figure = canvas.text(
-            share, (MARGIN - 1, 118), size=FIGURE, weight="light", tabular=True, colour=canvas.palette.good
+            share,
+            (MARGIN - 1, 118),
+            size=FIGURE,
+            weight="light",
+            tabular=True,
+            colour=rate_colour(canvas.palette, float(share)),
         )
         canvas.text(texts.WATCH_LANDED, (figure.right + 6, 118), size=SMALL, colour=MUTE)
         counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)

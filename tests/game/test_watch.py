@@ -14,6 +14,8 @@ from game.render import Camera
 from game.scenes.runs import Runs
 from game.scenes.watch import Watch
 from game.settings import SettingsFile
+from game.ui.canvas import Canvas
+from game.ui.standing import draw_standing
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]
@@ -251,3 +253,22 @@ def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
     assert scene(watching) is watch
     watching.frames(5)
     assert watch._camera.view(1.0) == Camera().view(1.0)
+
+
+@pytest.mark.parametrize(("landed", "good"), [(0, False), (5, False), (8, True)])
+def test_only_a_rate_of_success_has_its_colour(
+    watching: Driver, monkeypatch: pytest.MonkeyPatch, landed: int, good: bool
+):
+    watch = scene(watching)
+    watch.swarm.landed, watch.swarm.lost = landed, 10 - landed
+    colours: dict[str, object] = {}
+
+    def text(_: Canvas, string: str, *__: object, **looks: object) -> pygame.FRect:
+        colours[string] = looks.get("colour")
+        return pygame.FRect()
+
+    monkeypatch.setattr(Canvas, "text", text)
+    watch._draw_counts(watching.app.canvas)
+    draw_standing(watching.app.canvas, (0, 0), "", "", f"{10 * landed}.00", "", drop=0, room=100)
+    for figure in (f"{10 * landed}", f"{10 * landed}.00"):
+        assert (colours[figure] == watching.app.canvas.palette.good) == good
