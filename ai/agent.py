@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.config import Config
+from ai.decision import Decision, decide
 from ai.env import Bools, Floats, Ints, StepResult
 from ai.memory import Episodes, NStep
 from ai.nn import (
@@ -130,19 +131,24 @@ class DeepQAgent:
         values: Floats = self.network.predict(self.scale(observation) if self.scale else observation)
         return values
 
-    def act(self, observation: Floats, epsilon: float | Floats = 0.0, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, features): the best, or with chance `epsilon` a random one.
+    def decide(self, observation: Floats, *, held: Ints | None = None) -> Decision:
+        """Choose actions for observations (n, features), and say by what.
 
-        `epsilon` is one number, or (n,) to let some slots explore more than others. Of the actions `held` (n,)
-        until now, those are kept that are worth as much as the best but for `config.steadiness`: engines that
-        flicker between two actions of nearly equal worth are no joy to watch.
+        Of the actions `held` (n,) until now, those are kept that are worth as much as the best but for
+        `config.steadiness`: engines that flicker between two actions of nearly equal worth are no joy to watch.
         """
+        observation, config = np.atleast_2d(observation), self.config
         values = self.q_values(observation)
-        actions: Ints = values.argmax(axis=1)
-        if held is not None and self.config.steadiness > 0.0:
-            rows = np.arange(len(actions))
-            actions = np.where(values[rows, held] >= values[rows, actions] - self.config.steadiness, held, actions)
+        return decide(observation, values, held, steadiness=config.steadiness, reward_scale=config.reward_scale)
+
+    def act(self, observation: Floats, epsilon: float | Floats = 0.0, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, features): those of `decide`, or with chance `epsilon` random ones.
+
+        `epsilon` is one number, or (n,) to let some slots explore more than others.
+        """
+        actions = self.decide(observation, held=held).action
         if np.any(epsilon):
+            actions = actions.copy()
             explore = self.rng.random(len(actions)) < epsilon
             chances = self.action_chances
             actions[explore] = self.rng.choice(self.num_actions, int(explore.sum()), p=chances)

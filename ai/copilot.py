@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
+from functools import cached_property
 from typing import Any, Final, Protocol
 
 import numpy as np
 
 from ai.agent import DeepQAgent
 from ai.config import Config
+from ai.decision import in_points
 from ai.env import Bools, Doubles, Floats, Ints
 from ai.lander import NUM_ACTIONS
 from ai.pilots import COAST
@@ -44,23 +46,46 @@ class Rule(IntEnum):
     HANDS_OFF = 4  # the co-pilot's, because nothing is pressed
 
 
-@dataclass(frozen=True)
-class Decision:
-    """One shared decision, and all that explains it."""
+@dataclass(frozen=True, eq=False)
+class SharedDecision:
+    """One decision of a pilot and a co-pilot, and all that explains it."""
 
+    observation: Floats  # (n, pads, 9) that it was made on
     action: Ints  # (n,) what is flown
     pilot: Ints  # (n,) what the pilot asked for
     best: Ints  # (n,) what the co-pilot would do
     rule: Ints  # (n,) of Rule
     values: Floats  # (n, pads, 6) what each action is worth on the way to each pad
+    meant: Floats  # (n, pads, 6) the same, with the likeliest pad's in place of those that can't be meant
     feasible: Bools  # (n, 6) which actions the pilot could have had
     likely: Doubles  # (n, pads) how likely it is that each pad is meant
+    assist: float  # how much the co-pilot helped, 0 to 1
+    mode: Mode  # and when it stepped in
+    reward_scale: float  # what a point of reward is in the unit of `values`
+
+    @cached_property
+    def points(self) -> Floats:
+        """Values (n, pads, 6) in points of reward."""
+        return in_points(self.values, self.reward_scale)
+
+    @property
+    def gain(self) -> Floats:
+        """Points of reward that the co-pilot's action brings more than the pilot's, for every pad at least, (n,)."""
+        rows = np.arange(len(self.action))
+        more: Floats = (self.meant[rows, :, self.best] - self.meant[rows, :, self.pilot]).min(axis=1)
+        return in_points(more, self.reward_scale)
 
     @property
     def overridden(self) -> Bools:
         """Whether something else is flown than the pilot asked for, (n,)."""
         overridden: Bools = self.action != self.pilot
         return overridden
+
+
+def guardian_margin(assist: Any) -> Any:
+    """Points of reward that the guardian's action must bring more than the pilot's, by assist (n,), 0 to 1."""
+    with np.errstate(divide="ignore"):
+        return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
 
 
 class CoPilot:
@@ -121,7 +146,7 @@ class CoPilot:
         decision = self.decide(observation, pilot_action)
         return decision.action, decision.overridden
 
-    def decide(self, observation: Floats, pilot_action: Any) -> Decision:
+    def decide(self, observation: Floats, pilot_action: Any) -> SharedDecision:
         """Do what `share` does, and say why."""
         observation = np.atleast_2d(observation)
         if observation.ndim == 2:
@@ -143,7 +168,8 @@ class CoPilot:
         rule = feasible[rows, candidates].argmax(axis=0)
         action = candidates[rule, rows]
         rule[(pilot == COAST) & (action != pilot)] = Rule.HANDS_OFF
-        return Decision(action, pilot, best, rule, values, feasible, likely)
+        return SharedDecision(observation, action, pilot, best, rule, values, meant, feasible, likely,
+                              self.assist, self.mode, self.reward_scale)  # fmt: skip
 
     def _read(self, values: Floats, pilot: Ints, away: Floats) -> tuple[Doubles, Floats]:
         """Return how likely each pad is meant, (n, pads), and the values with the likeliest's where a pad is not."""
@@ -173,8 +199,7 @@ class CoPilot:
         rows = np.arange(len(pilot))
         gain = (values - values[rows, :, pilot][:, :, None]).min(axis=1)
         best = gain.argmax(axis=1)
-        with np.errstate(divide="ignore"):
-            margin = GUARDIAN_MARGIN * self.reward_scale * (1.0 - assist) / assist
+        margin = guardian_margin(assist) * self.reward_scale
         feasible = np.zeros(gain.shape, dtype=bool)
         feasible[rows, best] = True
         feasible[rows, pilot] = gain[rows, best] <= margin

@@ -12,7 +12,7 @@ import numpy as np
 
 from ai.env import Doubles, Floats
 from ai.nn import ModelFormatError
-from ai.nn.files import brief, count_of, inside, number_of, parse_json, read_arrays
+from ai.nn.files import brief, count_of, inside, number_of, parse_json, read_arrays, read_json
 from ai.nn.files import described as array_said
 from ai.rewards import REWARDS
 from ai.scaling import RunningScale
@@ -96,12 +96,17 @@ class History:
 
     `history["success"]` is a column of the points, (n,); `history.parts` (n, len(PARTS)). Both are views: they
     are as the run was when asked for, until the next `append`.
+
+    Attributes:
+        reward_scale: what a point of reward is in the unit of `history["mean_q"]`, which is the network's own.
+
     """
 
     def __init__(self) -> None:
         self.checkpoints: list[Checkpoint] = []
         self.alterations: list[Alteration] = []
         self.validations: list[Validation] = []
+        self.reward_scale = 1.0
         self._table: Doubles = np.empty((CAPACITY, len(_COLUMN)))
         self._length = 0
         self._stride = 1  # how many points told for one kept
@@ -176,7 +181,8 @@ class History:
     def write(self, folder: Path) -> None:
         """Write the history into a run's folder; raises OSError if the disk does not take it."""
         described = {
-            "version": _VERSION, "columns": list(_COLUMN), "stride": self._stride, "told": self._told,
+            "version": _VERSION, "columns": list(_COLUMN), "reward_scale": self.reward_scale,
+            "stride": self._stride, "told": self._told,
             "alterations": [asdict(alteration) for alteration in self.alterations],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
@@ -196,7 +202,10 @@ class History:
         history = cls()
         try:
             arrays = read_arrays(inside(folder, HISTORY_FILE), _MOST_VALUES * 4 + _MOST_TEXT * 8, _expect)
-            history._restore(parse_json(str(arrays["described"])), arrays["points"], arrays["values"])
+            described = parse_json(str(arrays["described"]))
+            history._restore(described, arrays["points"], arrays["values"])
+            scale = described.get("reward_scale")
+            history.reward_scale = _scale_beside(folder) if scale is None else _above_zero(scale)
         except FileNotFoundError:
             return cls()
         except OSError as error:
@@ -263,3 +272,17 @@ def _validation(told: dict[str, Any]) -> Validation:
         count_of(told["decisions"]), float(number_of(told["success"])), float(number_of(told["mean_return"])),
         bool(told["best"]),
     )  # fmt: skip
+
+
+def _scale_beside(folder: str | Path) -> float:
+    """Return the reward scale of the network beside a history from before it told its own; 1 if there is none."""
+    try:
+        return _above_zero(read_json(inside(folder, "config.json"))["config"]["reward_scale"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return 1.0
+
+
+def _above_zero(scale: Any) -> float:
+    if not number_of(scale) > 0:
+        raise ValueError(f"a reward scale of {brief(repr(scale), 40)} is not above 0")
+    return float(scale)

@@ -118,6 +118,7 @@ class _LiveRun:
         if not isinstance(training.env, LanderEnv):
             raise ValueError(f"only landers can be looked into, not {training.config.env}")
         self.training, self.history, self.env = training, history, training.env
+        history.reward_scale = training.config.reward_scale
         training.witness = self._see
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
         self._trial: _Trial | None = None

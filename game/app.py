@@ -96,7 +96,7 @@ class App:
         steps = self._steps.advance(time_now - self._last)
         self._last = time_now
         for _ in range(steps):
-            self._notes.update()
+            self._notes.update(self.canvas)
             self._guarded(self.scenes.update)
             self.context.sound.update()
         if self.scenes.running and not self.window.minimised and time_now >= self._settled:

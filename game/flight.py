@@ -9,21 +9,22 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ai.decision import Decision
 from ai.env import Bools, Doubles, Floats, Ints
 from ai.ground import Ground, hilly
 from ai.lander import LanderEnv, Outcome
 from ai.missions import STARTS
 from ai.pilots import COAST
 from game.cockpit.hands import OWN, Hands
-from game.networks import Flyer, Thinker
+from game.networks import Flyer, Thinker, decide
 
 if TYPE_CHECKING:
-    from ai.copilot import CoPilot, Decision
+    from ai.copilot import CoPilot, SharedDecision
 
 # A network decides every so many physics steps, in training and here.
 DECISION_STEPS: Final = 4
 # Steps that an ended flight of a swarm stays to be seen.
-_REST_STEPS: Final = 75
+REST_STEPS: Final = 75
 _PROFILE_REACH: Final = 30.0  # metres to both sides of which the ground's height is kept
 _PROFILE_STEP: Final = 0.02
 
@@ -94,7 +95,7 @@ class Flight:
     Attributes:
         copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
         decision: the latest one of the co-pilot's; None while it does not share the stick.
-        sensed: what a network that flies alone made its latest decision on, (1, 9); None before the first.
+        alone: the latest one of the network that flies alone; None while none does.
         asked: the action that the hands asked for in the last step.
         overridden: whether something else was flown than hands on the stick asked for.
 
@@ -121,10 +122,9 @@ class Flight:
         self.recording = Recording(seed, spawn, pads, mission=mission)
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
-        self.decision: Decision | None = None
-        self.sensed: Floats | None = None
+        self.decision: SharedDecision | None = None
+        self.alone: Decision | None = None
         self._hands = Hands(hands, seed, DECISION_STEPS)
-        self._chosen = COAST
         self._held_for = self._yours = 0
         self.copilot: CoPilot | None = None
         self.change_network(network)
@@ -188,7 +188,7 @@ class Flight:
     def change_network(self, network: Flyer | None) -> None:
         """Let another network take the stick from here on, or share it; without one, the person has it."""
         self.network = network
-        self._held_for, self.decision = 0, None
+        self._held_for, self.decision, self.alone = 0, None, None
         if network is None:
             self.hand = Hand.HUMAN
         before, self.copilot = self.copilot, None
@@ -207,7 +207,7 @@ class Flight:
         if self.over or (self.network is None and self.hand is Hand.HUMAN):
             return False
         self.hand = Hand.NETWORK if self.hand is Hand.HUMAN else Hand.HUMAN
-        self._held_for, self.decision = 0, None  # who takes over decides at once
+        self._held_for, self.decision, self.alone = 0, None, None  # who takes over decides at once
         return True
 
     def step(self, held: int) -> None:
@@ -243,12 +243,11 @@ class Flight:
         return action, Hand.HUMAN if action == self.asked != COAST else Hand.NETWORK
 
     def _ask_network(self) -> int:
-        if self._held_for == 0:
+        if self.alone is None or self._held_for == 0:
             assert self.network is not None
-            self.sensed = self.env.observe()
-            self._chosen = int(self.network.act(self.sensed, held=self.env.actions)[0])
+            self.alone = decide(self.network, self.env.observe(), self.env.actions)
         self._held_for = (self._held_for + 1) % DECISION_STEPS
-        return self._chosen
+        return int(self.alone.action[0])
 
     def _ask_copilot(self) -> int:
         """Share a decision every few steps, and at once when something else is asked for: no tap is too short."""
@@ -280,6 +279,8 @@ class Swarm:
         since_end: steps each flight has been over, 0 while it flies.
         landed, lost: flights ended so since the start.
         fresh: slots whose flight began with the last step.
+        decision: the latest one of each slot, which is the one that is flown.
+        decided: how many each slot has taken.
 
     """
 
@@ -291,22 +292,21 @@ class Swarm:
         self.since_end: Ints = np.zeros(count, dtype=np.intp)
         self.landed = self.lost = 0
         self.fresh: Bools = np.ones(count, dtype=bool)
-        self._actions: Ints = np.zeros(count, dtype=np.intp)
-        self._slots: Ints = np.arange(count)
+        self.decision = decide(flyer, self.observation, np.zeros(count, dtype=np.intp))
+        self.decided: Ints = np.ones(count, dtype=np.intp)
+        self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; in turns at first
         self._step = 0
 
     def step(self) -> Bools:
         """Fly 1/60 s, and begin anew where a flight has been over for a while. Returns who just ended."""
-        self.fresh = self.since_end >= _REST_STEPS
+        self.fresh = self.since_end >= REST_STEPS
         if self.fresh.any():
             self.observation = self.env.reset(self.fresh)
             self.since_end[self.fresh] = 0
-            self._actions[self.fresh] = 0
-        due = self._slots[-self._step % DECISION_STEPS :: DECISION_STEPS]  # in turns, for frames of equal cost
-        if len(due):
-            self._actions[due] = self.flyer.act(self.observation[due], held=self._actions[due])
+        self._decide(np.flatnonzero(self.fresh | ((self._age == DECISION_STEPS) & (self.since_end == 0))))
+        self._age += self.since_end == 0
         self._step += 1
-        self.env.fly(self._actions)
+        self.env.fly(self.decision.action)
         self.observation = self.env.observe()
         outcome = self.env.outcome
         over = outcome != Outcome.FLYING
@@ -317,6 +317,15 @@ class Swarm:
         self.lost += int(ended.sum()) - landed
         self.poses.take(self.fresh)
         return ended
+
+    def _decide(self, due: Ints) -> None:
+        """Let the flyer decide for the slots that are due, in turns, for frames of equal cost."""
+        if not len(due):
+            return
+        held = np.where(self.fresh, COAST, self.decision.action)[due]
+        self.decision = self.decision.updated(due, decide(self.flyer, self.observation[due], held))
+        self.decided[due] += 1
+        self._age[due] = 0
 
 
 def surface_height(env: LanderEnv, x: float) -> float:

@@ -34,7 +34,6 @@ from game.ui.tokens import (
     VIEW_SIZE,
     Colour,
 )
-from game.world.paint import mix
 
 # Four columns on the left, two on the right: the pad stands in the middle.
 COLUMNS: Final = (64.0, 186.0, 308.0, 430.0, 1002.0, 1124.0)
@@ -50,7 +49,6 @@ _WORDS: Final = (180.0, 66.0)
 _FIGURES: Final = Kept(64)
 _LITTLE_TIME: Final = 5.0
 _PLENTY_OF_TIME: Final = 120.0
-BAR_ROW: Final = 24  # from one bar of several to the next
 
 
 @dataclass(frozen=True)
@@ -166,16 +164,6 @@ def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None
     canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
     canvas.text(large, (MARGIN, 58), size=TEXT)
     canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
-
-
-def draw_bars(canvas: Canvas, values: Sequence[float], top: float, left: float, width: float, best: int) -> None:
-    """Draw values 0 to 1 as bars beside their names, the best one in the network's colour and marked."""
-    for number, value in enumerate(values):
-        y = top + BAR_ROW * number
-        chosen = number == best
-        canvas.bar((left + 96, y - 1.5, width - 96, 3), value, NET if chosen else mix(FAINT, NET, 0.42))
-        if chosen:
-            canvas.marker("triangle", (left + 88, y), 6, NET)
 
 
 def draw_centred_bars(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol, runtime_checkable
 
+from ai.decision import Decision
 from ai.env import Floats, Ints
 from ai.lander import NUM_ACTIONS, NUM_FEATURES
 from game import texts
@@ -27,10 +28,21 @@ class Flyer(Protocol):
 
 @runtime_checkable
 class Thinker(Flyer, Protocol):
-    """A flyer that can say what it thinks of every action."""
+    """A flyer that can say what it thinks of every action, and what it decides by that."""
 
     def q_values(self, observation: Floats) -> Floats:
         """Values (n, 6) for observations (n, 9)."""
+
+    def decide(self, observation: Floats, *, held: Ints | None = None) -> Decision:
+        """Do what `act` does, and say by what."""
+
+
+def decide(flyer: Flyer, observation: Floats, held: Ints) -> Decision:
+    """Let a flyer decide for observations (n, 9), `held` (n,) the actions until now; once, to be flown and shown."""
+    if isinstance(flyer, Thinker):
+        return flyer.decide(observation, held=held)
+    action = flyer.act(observation, held=held)
+    return Decision(observation, action, action)
 
 
 @dataclass(frozen=True)

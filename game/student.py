@@ -122,6 +122,7 @@ class Student(Learner):
                     self.history.append(message)
                 case Begun(config, seed, _):
                     self.config, self.seed, self.begun = config, seed, True
+                    self.history.reward_scale = config.reward_scale
                 case Saved(folder, problem):
                     told = texts.TRAIN_NOT_SAVED.format(problem=problem) if problem else texts.TRAIN_SAVED
                     if folder != self.library.unsaved or problem:

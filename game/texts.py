@@ -191,12 +191,21 @@ WATCH_STOPPED: Final = "Stopped"
 HINT_STOP: Final = "stop"
 HINT_GO: Final = "go on"
 HINT_STEP: Final = "one step"
+HINT_DECISION: Final = "one decision"
 HINT_RESTART: Final = "new starts"
 HINT_NEXT_LANDER: Final = "next lander"
 MIND_TITLE: Final = "What the network thinks"
-MIND_VALUE: Final = "what it expects from here"
 MIND_SCRIPTED_TITLE: Final = "What the pilot does"
-MIND_SCRIPTED: Final = "Written rules: it weighs nothing up."
+MIND_SCRIPTED_FLOWN: Final = "flown: {action}"
+# A decision of a network: what it expects, in points of reward, and why its action is flown, in two lines
+Q_EXPECTED: Final = "expected score"
+Q_ADVANTAGE: Final = "advantage"
+Q_UNIT: Final = "points"
+Q_BEST: Final = "best"
+Q_BEST_FLOWN: Final = ("The best action is flown.", "")
+Q_KEPT: Final = ("{kept} is kept: as good as the", "best ({best}) within {margin} points.")
+Q_WEIGHS_NOTHING: Final = ("Written rules: it weighs nothing up.", "")
+VALUES_DAMAGED: Final = ("Its values are not numbers:", "this network is damaged.")
 MIND_INPUTS: Final = "WHAT IT SENSES"
 INPUTS: Final = (
     "across",
@@ -344,6 +353,7 @@ NET_ALL: Final = "{total} units"
 NET_SOME: Final = "{shown} of {total}"
 NET_UNIT: Final = "layer {layer}, unit {unit}"
 NET_VALUE: Final = "value"
+NET_POINTS: Final = "value, points"
 NET_BIAS: Final = "bias"
 NET_DAMAGED: Final = ": damaged"
 # What blue edges and orange ones mean
@@ -581,7 +591,7 @@ TRAIN_CHARTS: Final = {
     "success": "LANDED, %",
     "mean_return": "RETURN",
     "loss": "LOSS",
-    "mean_q": "MEAN Q",
+    "mean_q": "MEAN Q, POINTS",
     "epsilon": "EXPLORATION ε",
     "stage": "STAGE",
 }
@@ -684,6 +694,7 @@ DIGITS_EMPTY: Final = "Draw something"
 DIGITS_EMPTY_HOW: Final = "With the mouse, a pen or a finger."
 DIGITS_SURE: Final = "sure, {percent}"
 DIGITS_LIKELY: Final = "probably, {percent}"
+DIGITS_DISPUTED: Final = "disputed, {percent}"
 DIGITS_UNSURE: Final = "not sure"
 DIGITS_OR: Final = "or a {digit}, {percent}"
 DIGITS_EITHER: Final = "a {digit}, {percent}, or a {other}, {other_percent}?"
@@ -703,7 +714,8 @@ DIGITS_MEASURING: Final = "Measuring …"
 DIGITS_NOT_MEASURED: Final = "Not measured: {problem}"
 DIGITS_HINT: Final = "Switch a step off, and see what the networks then read of digits drawn anywhere."
 DIGITS_FIX_HOW: Final = "Wrong? Tap the right digit."
-DIGITS_FIXING: Final = "Learning it in the background …"
+DIGITS_FIXING: Final = "Learning that this is a {digit} …"
+DIGITS_FIXING_NOW: Final = "{percent} now"
 DIGITS_FIXED: Final = "A {digit} with {now} now, with {before} before."
 DIGITS_FIX_COST: Final = "Test images it reads: {before:.2%} → {after:.2%}"
 DIGITS_FIX_NEEDLESS: Final = "It is sure of a {digit} already."
@@ -824,19 +836,22 @@ OVERRIDE_TURNS: Final = "{engine}, not {other}"
 ENGINE_MAIN: Final = "main"
 ENGINES_STEER: Final = ("", "left", "right")
 # What became of the person's action, by ai.copilot.Rule: a title, and why, in two lines
+INSIGHT_BELOW: Final = "{asked} is {loss} points below the best,"
 INSIGHT_WHY: Final = {
-    "PILOT": ("Yours is flown", "{asked}: worth {worth} % of the best,", "and {assist} % is good enough."),
-    "PILOT_MAIN": ("It steers for you", "{asked}: worth {worth} % of the best,", "not {assist} %. Main is yours."),
-    "PILOT_STEER": ("It sees to main", "{asked}: worth {worth} % of the best,", "not {assist} %. You steer."),
-    "COPILOT": ("It does this one", "{asked}: worth {worth} % of the best,", "not {assist} %, and nothing near it is."),
+    "PILOT": ("Yours is flown", INSIGHT_BELOW, "and {allowed} points are good enough."),
+    "PILOT_MAIN": ("It steers for you", INSIGHT_BELOW, "more than {allowed}. Main is yours."),
+    "PILOT_STEER": ("It sees to main", INSIGHT_BELOW, "more than {allowed}. You steer."),
+    "COPILOT": ("It does this one", INSIGHT_BELOW, "more than {allowed}. Its neighbours are, too."),
     "HANDS_OFF": ("Hands off: it flies", "Touch anything, and you have", "the stick again."),
-    "ALONE": ("It flies alone", "It keeps to what it does while", "nothing else is clearly better."),
 }
-INSIGHT_GUARDIAN: Final = {
-    True: "{points} points worse than its {best}.",
-    False: "{points} points from its {best}: too little.",
-}
-INSIGHT_SAME: Final = "It would do the same."
+INSIGHT_ALONE: Final = "It flies alone"
+INSIGHT_BEFORE: Final = "{title}, a moment ago"
+INSIGHT_SAME: Final = "{asked} is the best there is."
+INSIGHT_SAME_GOOD: Final = "{asked} is as good as any."
+INSIGHT_EVERY_PAD: Final = "more than {allowed}. For every pad: {flown}."
+INSIGHT_ANOTHER: Final = "and right for another pad, perhaps yours."
+INSIGHT_WORSE: Final = "{asked} is {loss} points below its {best},"
+INSIGHT_MARGIN: Final = {True: "more than {allowed}.", False: "and it lets {allowed} points pass."}
 INSIGHT_MEANT: Final = "WHICH PAD YOU SEEM TO MEAN"
 PAD_NAMES: Final = {1: "wide  ×1", 3: "narrow  ×3", 5: "tiny  ×5"}
 SHARE_COPILOT: Final = "co-pilot {percent} %"

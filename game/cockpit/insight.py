@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles, Floats
 from ai.ground import Ground
 from ai.lander import ACTION_NAMES, NUM_ACTIONS
 from ai.pilots import COAST
@@ -15,144 +15,170 @@ from game import hud, texts
 from game.flight import Flight, Hand
 from game.networks import Thinker
 from game.ui.canvas import Canvas
-from game.ui.kept import Kept
+from game.ui.q_values import HEIGHT, QValues, decision_words, draw_q_values
 from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIEW_SIZE
 from game.world.paint import mix
 
-PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 64 - 244, 84, 264, 336)
+if TYPE_CHECKING:
+    from ai.copilot import SharedDecision
+
+PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 36 - 280, 84, 280, 388)
 _PADS_HIGH: Final = 102  # what the rows of three pads add
 _LEFT: Final = 20  # of what stands on the panel, from its corner
 _WIDTH: Final = PANEL.width - 40
-_TRACK: Final = (_LEFT + 96, _WIDTH - 96)
-_FIRST: Final = 64
-_ROW: Final = 24
-_WHY: Final = _FIRST + 6 * _ROW
+_VALUES: Final = 62  # the first line of the values, from its top
+_WHY: Final = _VALUES + int(HEIGHT) + 20
 _PADS: Final = _WHY + 114  # the first pad's row
-_EASE: Final = 0.35
+_PAD_BAR: Final = (_LEFT + 96, _WIDTH - 96)
 _STAYS: Final = 50  # steps that the word on an override is kept, to be read
+
+Why = tuple[str, str, str]  # a title, and two lines
 
 
 class Insight:
-    """Follows a flight that is shared, or that a network flies; `shown` while there is something to explain."""
+    """Follows a flight that is shared, or that a network flies; `shown` while there is something to explain.
+
+    Attributes:
+        values: what is drawn of the decision that is flown; None before the first.
+        why: whose action it became, and why: a title and two lines.
+
+    """
 
     def __init__(self, ground: Ground) -> None:
         self.shown = False
+        self.values: QValues | None = None
+        self.why: Why = ("", "", "")
         self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
-        self._bars: Doubles = np.zeros(NUM_ACTIONS)
-        self._wanted: Doubles = np.zeros(NUM_ACTIONS)
-        self._feasible: Bools = np.ones(NUM_ACTIONS, dtype=bool)
         self._likely: list[float] = []
-        self._asked: int | None = None
-        self._flown, self._threshold = COAST, 0.0
-        self._why: tuple[str, str, str] = ("", "", "")
-        self._kept = 0
+        self._override: Why | None = None  # why the latest one was, as long as that is still to be read
+        self._stays = 0
         self._seen: object = None
-        self._words = Kept()
 
     def follow(self, flight: Flight) -> None:
         """Note the step just flown."""
         if flight.over:
             return
-        self.shown = flight.shared or (flight.hand is Hand.NETWORK and isinstance(flight.network, Thinker))
-        self._kept = max(0, self._kept - 1)
-        if flight.hand is Hand.NETWORK:
-            self._watch(flight)
-        elif flight.decision is not None and flight.decision is not self._seen:
-            self._explain(flight)
-        self._bars += _EASE * (self._wanted - self._bars)
-
-    def _watch(self, flight: Flight) -> None:
-        """Ask a network that flies alone what it thinks, whenever it has decided."""
-        if not isinstance(flight.network, Thinker) or flight.sensed is None or flight.sensed is self._seen:
+        self._stays = max(0, self._stays - 1)
+        if not self._stays:
+            self._override = None
+        alone = flight.hand is Hand.NETWORK and isinstance(flight.network, Thinker)
+        decision = flight.alone if alone else flight.decision if flight.shared else None
+        self.shown = decision is not None
+        if decision is None or decision is self._seen:
             return
-        self._seen = flight.sensed
-        self._wanted = _worth(flight.network.q_values(flight.sensed)[0])
-        self._feasible[:], self._threshold, self._asked = True, 0.0, None
-        self._flown, self._likely = flight.recording.actions[-1], []
-        self._why, self._kept = texts.INSIGHT_WHY["ALONE"], 0
-
-    def _explain(self, flight: Flight) -> None:
-        from ai.copilot import Mode, Rule
-
-        decision, copilot = flight.decision, flight.copilot
-        assert decision is not None
-        assert copilot is not None
         self._seen = decision
-        values = decision.values[0, int(flight.env.target[0])]
-        self._wanted = _worth(values)
-        self._feasible = decision.feasible[0]
+        if decision is flight.alone:
+            self.values, self._likely = QValues.of(flight.alone), []
+            first, second = decision_words(flight.alone)
+            self.why, self._override = (texts.INSIGHT_ALONE, first, second), None
+        elif flight.decision is not None:
+            self._explain(flight.decision, int(flight.env.target[0]))
+
+    def _explain(self, decision: SharedDecision, pad: int) -> None:
+        """Show a shared decision, by what actions are worth on the way to one of the pads."""
+        from ai.copilot import Rule
+
         self._likely = decision.likely[0].tolist()
-        asked, best, self._flown = int(decision.pilot[0]), int(decision.best[0]), int(decision.action[0])
-        self._asked = None if asked == COAST else asked
-        guards = copilot.mode is Mode.GUARDIAN
-        if guards and asked != COAST:  # which compares what is asked for with its own, and nothing else
-            self._feasible = (np.arange(NUM_ACTIONS) != asked) | decision.feasible[0]
-        self._threshold = 0.0 if guards else 1.0 if asked == COAST else copilot.assist
-        rule = Rule.HANDS_OFF if asked == COAST else Rule(int(decision.rule[0]))
-        if rule is Rule.PILOT and self._kept:
-            return  # there is more to be read about the override before
-        title, first, second = texts.INSIGHT_WHY[rule.name]
-        if guards and asked != COAST:
-            points = float(values[best] - values[asked]) / copilot.reward_scale
-            changed = rule is not Rule.PILOT
-            second = texts.INSIGHT_SAME if asked == best else texts.INSIGHT_GUARDIAN[changed].format(
-                points=f"{points:.1f}", best=ACTION_NAMES[best])  # fmt: skip
-        words = {"asked": ACTION_NAMES[asked].capitalize(), "worth": round(100 * float(self._wanted[asked])),
-                 "assist": round(100 * copilot.assist)}  # fmt: skip
-        self._why = (title, first.format(**words), second.format(**words))
-        self._kept = _STAYS if rule not in (Rule.PILOT, Rule.HANDS_OFF) else 0
+        self.values = shared_values(decision, pad)
+        self.why = why(decision, self.values)
+        if self.values.asked is None:
+            self._override = None
+        elif int(decision.rule[0]) != Rule.PILOT:
+            self._override, self._stays = self.why, _STAYS
 
     def draw(self, canvas: Canvas, share: float) -> None:
         """Draw the panel; `share` is the person's share of the flight so far."""
         pads = self._likely if len(self._likely) > 1 else []
         lower, left, top = _PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
-        surest = max(pads, default=0.0)
-        shows = self._flown, self._feasible.tobytes(), tuple(chance == surest for chance in pads)
-        box = (PANEL.left, top, PANEL.width, PANEL.height + lower)
-        self._words.draw(canvas, box, shows, lambda sheet: self._paint_words(sheet, pads))
-        for action in range(NUM_ACTIONS):
-            self._draw_bar(canvas, action)
-        if 0.0 < self._threshold < 1.0:
-            x, y = PANEL.left + _TRACK[0] + self._threshold * _TRACK[1], top + _FIRST
-            canvas.line((x, y - 9), (x, y + 5 * _ROW + 9), MUTE)
-            canvas.marker("triangle_down", (x, y - 13), 6, INK, 0.8)
-        title, *lines = self._why
-        canvas.text(title, (left, top + _WHY + 26), colour=NET if self._kept else INK)
-        for number, line in enumerate(lines):
-            canvas.text(line, (left, top + _WHY + 48 + 18 * number), size=SMALL, colour=MUTE)
-        for number, chance in enumerate(pads):
-            bar = (PANEL.left + _TRACK[0], top + _PADS + 22 * number - 1.5, _TRACK[1], 3)
-            canvas.bar(bar, chance, HUMAN if chance == surest else mix(FAINT, HUMAN, 0.45))
+        canvas.panel((PANEL.left, top, PANEL.width, PANEL.height + lower))
+        canvas.text(texts.MIND_TITLE, (left, top + 34))
+        if self.values is not None:
+            draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
+        canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
+        self._draw_why(canvas, left, top + _WHY + 26)
+        if pads:
+            self._draw_pads(canvas, pads)
         hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share, texts.SHARE_COPILOT)
 
-    def _draw_bar(self, canvas: Canvas, action: int) -> None:
-        x, y = PANEL.left + _TRACK[0], PANEL.top + _FIRST + _ROW * action
-        flown, good = action == self._flown, bool(self._feasible[action])
-        value = float(self._bars[action])
-        colour = NET if flown else mix(FAINT, NET, 0.45 if good else 0.12)
-        canvas.bar((x, y - 1.5, _TRACK[1], 3), value, colour)
-        if action == self._asked:
-            canvas.dot((x + value * _TRACK[1], y), 4, HUMAN)
+    def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
+        """Say whose action it became; the latest override stays to be read for a moment, and is said to be past."""
+        title, *lines = self._override or self.why
+        if self._override not in (None, self.why):
+            title = texts.INSIGHT_BEFORE.format(title=title)
+        canvas.text(title, (left, top), colour=NET if self._override else INK, room=_WIDTH)
+        for number, line in enumerate(lines):
+            canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 
-    def _paint_words(self, canvas: Canvas, pads: list[float]) -> None:
-        """Draw the panel and the words on it that seldom change."""
-        canvas.panel((0, 0, PANEL.width, PANEL.height + (_PADS_HIGH if pads else 0)))
-        canvas.text(texts.MIND_TITLE, (_LEFT, 34))
-        for action, name in enumerate(ACTION_NAMES):
-            flown, good = action == self._flown, bool(self._feasible[action])
-            canvas.text(name, (_LEFT, _FIRST + _ROW * action + 4), size=SMALL, colour=INK if flown else MUTE,
-                        alpha=1.0 if good or flown else 0.5)  # fmt: skip
-        canvas.line((_LEFT, _WHY), (_LEFT + _WIDTH, _WHY), LINE)
-        if pads:
-            canvas.text(texts.INSIGHT_MEANT, (_LEFT, _PADS - 20), size=LABEL, colour=MUTE, weight="medium")
-            for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
-                colour = INK if chance == max(pads) else MUTE
-                canvas.text(name, (_LEFT, _PADS + 22 * number + 4), size=SMALL, colour=colour)
+    def _draw_pads(self, canvas: Canvas, pads: Sequence[float]) -> None:
+        left, top, surest = PANEL.left + _LEFT, PANEL.top + _PADS, max(pads)
+        canvas.text(texts.INSIGHT_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium")
+        for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
+            y, likeliest = top + 22 * number, chance == surest
+            canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
+            bar = (PANEL.left + _PAD_BAR[0], y - 1.5, _PAD_BAR[1], 3)
+            canvas.bar(bar, chance, HUMAN if likeliest else mix(FAINT, HUMAN, 0.45))
 
 
-def _worth(values: Floats) -> Doubles:
-    """Return values (6,) above the least, as shares of the most."""
-    above = values - values.min()
-    most = float(above.max())
-    shares: Doubles = above / most if most > 0 and np.isfinite(most) else np.zeros(NUM_ACTIONS)
-    return shares
+def shared_values(decision: SharedDecision, pad: int) -> QValues:
+    """Return what there is to show of a shared decision for one lander, on the way to one of the pads."""
+    from ai.copilot import Mode, guardian_margin
+
+    points, asked = decision.points[0, pad], int(decision.pilot[0])
+    feasible, allowed = decision.feasible[0], None
+    if asked != COAST and decision.mode is Mode.GUARDIAN:  # it compares what is asked for with its own, nothing else
+        feasible = (np.arange(NUM_ACTIONS) != asked) | feasible
+        allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
+    elif asked != COAST:
+        allowed = (1.0 - decision.assist) * float(np.ptp(points))
+    return QValues(tuple(points.tolist()), int(decision.action[0]), None if asked == COAST else asked,
+                   tuple(feasible.tolist()), allowed)  # fmt: skip
+
+
+def why(decision: SharedDecision, values: QValues) -> Why:
+    """Say whose action it became, and why, by the figures that decided it."""
+    from ai.copilot import Mode, Rule
+
+    rule, asked = Rule(int(decision.rule[0])), values.asked
+    if asked is None:
+        return texts.INSIGHT_WHY[Rule.HANDS_OFF.name]
+    title, *lines = texts.INSIGHT_WHY[rule.name]
+    if not values.readable:
+        return title, *texts.VALUES_DAMAGED
+    name = ACTION_NAMES[asked].capitalize()
+    if decision.mode is Mode.GUARDIAN:
+        return title, *_guarded(decision, name)
+    loss, allowed = values.loss(asked), values.allowed or 0.0
+    if rule is Rule.PILOT and loss == 0.0:
+        return title, texts.INSIGHT_SAME.format(asked=name), ""
+    if rule is Rule.PILOT and loss > allowed * (1 + 1e-5):  # by what it is worth on the way to another pad
+        return title, texts.INSIGHT_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.INSIGHT_ANOTHER
+    less, most = _told_apart(loss, allowed)
+    if rule is Rule.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
+        lines[1] = texts.INSIGHT_EVERY_PAD
+    flown = ACTION_NAMES[values.flown]
+    first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)
+    return title, first, second
+
+
+def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
+    """Say by how much a guardian's own action is better, whichever pad is meant, and whether that is much."""
+    from ai.copilot import guardian_margin
+
+    asked, best = int(decision.pilot[0]), int(decision.best[0])
+    if asked == best:
+        return texts.INSIGHT_SAME.format(asked=name), ""
+    gain, margin = float(decision.gain[0]), guardian_margin(decision.assist)
+    if gain <= 0.0:
+        return texts.INSIGHT_SAME_GOOD.format(asked=name), ""
+    less, most = _told_apart(gain, margin)
+    first = texts.INSIGHT_WORSE.format(asked=name, loss=less, best=ACTION_NAMES[best])
+    return first, texts.INSIGHT_MARGIN[gain > margin].format(allowed=most)
+
+
+def _told_apart(one: float, other: float) -> tuple[str, str]:
+    """Write two figures in so many digits that what is more also reads as more."""
+    for digits in range(1, 5):
+        words = f"{one:.{digits}f}", f"{other:.{digits}f}"
+        if words[0] != words[1] or one == other:
+            break
+    return words

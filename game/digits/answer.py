@@ -106,7 +106,8 @@ def _draw_chosen(canvas: Canvas, reading: Reading, name: str) -> None:
     if verdict is Verdict.SURE:
         _draw_verdict(canvas, "check", texts.DIGITS_SURE.format(percent=share), canvas.palette.good)
     else:
-        _draw_verdict(canvas, "ring", texts.DIGITS_LIKELY.format(percent=share), INK)
+        words = texts.DIGITS_LIKELY if verdict is Verdict.LIKELY else texts.DIGITS_DISPUTED
+        _draw_verdict(canvas, "ring", words.format(percent=share), INK)
     if probabilities[second] >= 0.005:
         words = texts.DIGITS_OR.format(digit=second, percent=second_share)
         canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE)
@@ -139,7 +140,8 @@ def draw_fix(canvas: Canvas, fixing: Fixing, *, same: bool) -> None:
 def _fix_lines(fixing: Fixing, same: bool) -> tuple[str, str]:
     step, fixed = fixing.step, fixing.fixed
     if fixing.busy:
-        return texts.DIGITS_FIXING, percent(step.probability) if step else ""
+        now = percent(step.probability) if step else ""
+        return texts.DIGITS_FIXING.format(digit=fixing.digit), now and texts.DIGITS_FIXING_NOW.format(percent=now)
     if fixing.problem and same:
         return texts.DIGITS_NOT_FIXED, fixing.problem
     if fixed is None or not same:

@@ -25,6 +25,7 @@ class Fixing:
     Every fix is a folder of its own and none is ever thrown away but by `undo`.
 
     Attributes:
+        digit: what the fix that goes on teaches, or the last one taught; None before the first.
         step: how the fix that goes on stands; None before its first word, and between fixes.
         networks: all there are, by name.
         fixed: what the last fix has done, until the next begins or it is undone.
@@ -37,6 +38,7 @@ class Fixing:
         self.refresh()
         self._worker: Worker | None = None
         self.name = ""
+        self.digit: int | None = None
         self.step: FixStep | None = None
         self.fixed: Fixed | None = None
         self.problem = ""
@@ -66,7 +68,7 @@ class Fixing:
         if self.busy:
             return False
         self.step = self.fixed = None
-        self.name, self.problem = name, ""
+        self.name, self.digit, self.problem = name, digit, ""
         network, folder = self.networks[name], source or self.folder(name)
         number = int(network.fixed()[-1].name) + 1 if network.fixed() else 1
         self._worker = Worker(fix, folder, image, digit, network.fixes / f"{number:04}", before=_accuracy(folder))

@@ -31,6 +31,7 @@ class Verdict(Enum):
     EMPTY = auto()
     SURE = auto()
     LIKELY = auto()
+    DISPUTED = auto()  # another network reads another digit
     UNSURE = auto()
 
 
@@ -62,11 +63,13 @@ class Reading:
         ink = float(self.stages.centred.sum())
         if ink == 0 or name not in self.probabilities:
             return Verdict.EMPTY
-        surest = float(self.probabilities[name].max())
+        surest = round(float(self.probabilities[name].max()), 2)  # as it is written beside the verdict
         if surest < LIKELY or not LEAST_INK < ink < MOST_INK:
             return Verdict.UNSURE
         agreed = len({int(values.argmax()) for values in self.probabilities.values()}) == 1
-        return Verdict.SURE if surest >= SURE and agreed else Verdict.LIKELY
+        if not agreed:
+            return Verdict.DISPUTED
+        return Verdict.SURE if surest >= SURE else Verdict.LIKELY
 
 
 @dataclass(frozen=True, eq=False)

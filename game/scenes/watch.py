@@ -9,14 +9,15 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.decision import Decision
 from ai.env import Bools, Doubles
 from ai.lander import Outcome
 from game import framing, hud, networks, texts
 from game.clock import STEP, Tempo
 from game.context import Context
 from game.controls import Command, translate
-from game.flight import Swarm
-from game.mind import PANEL, Mind
+from game.flight import DECISION_STEPS, REST_STEPS, Swarm
+from game.mind import PANEL, draw_mind
 from game.render import Camera, Clear, View
 from game.scene import Pop, Push, Transition
 from game.settings import Settings
@@ -26,6 +27,7 @@ from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.pick import Pick
+from game.ui.standing import rate_colour
 from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
 from game.ui.widget import OnPress
 from game.ui.widgets import Choice
@@ -102,7 +104,7 @@ class Watch:
                 return self._pause()
             case Command.STEP:
                 self.stopped = True
-                self._fly()
+                self._fly_to_the_next_decision()
             case Command.RETRY:
                 self._begin_anew()
             case Command.NEXT | Command.PREVIOUS as command:
@@ -143,10 +145,15 @@ class Watch:
         self._stage.draw_swarm(canvas, view, poses, others, self._size)
         self._draw_shown(canvas, view, poses[self.shown])
         self._stage.draw_dust(canvas, view, between)
-        self._mind.draw(canvas)
+        draw_mind(canvas, self.decision)
         self._draw_words(canvas)
 
     # What flies
+
+    @property
+    def decision(self) -> Decision:
+        """The decision that the shown lander flies."""
+        return self.swarm.decision.of(self.shown)
 
     def _begin(self) -> None:
         assert self._network.flyer is not None
@@ -159,7 +166,6 @@ class Watch:
         self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._set_up_camera()
-        self._mind = Mind()
         self._tempo.begin()
         self.shown = min(self.shown, count - 1)
 
@@ -179,9 +185,18 @@ class Watch:
         ended = swarm.step()
         self._stage.follow(np.ones(swarm.env.num_envs, bool), ended)
         self._trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
-        self._mind.follow(swarm.flyer, swarm.observation[self.shown], int(swarm.env.actions[self.shown]))
         if swarm.env.num_envs == 1 and not self._settings.reduced_motion:
             framing.follow(self._camera, swarm.env, clear=_CLEAR)
+
+    def _fly_to_the_next_decision(self) -> None:
+        """Fly until the shown lander has decided anew; where it rests after its flight, the others go on meanwhile."""
+        swarm, slot = self.swarm, self.shown
+        alone = not np.delete(swarm.since_end == 0, slot).any()
+        before = swarm.decided[slot]
+        for _ in range(REST_STEPS + DECISION_STEPS if alone else DECISION_STEPS):
+            self._fly()
+            if swarm.decided[slot] != before:
+                return
 
     def _show(self, slot: int) -> None:
         self.shown = slot
@@ -314,7 +329,7 @@ class Watch:
                 word(Command.HANDOVER) if pad else self._context.controls.key(pygame.K_SPACE),
                 texts.HINT_GO if self.stopped else texts.HINT_STOP,
             ),
-            (word(Command.STEP), texts.HINT_STEP),
+            (word(Command.STEP), texts.HINT_DECISION),
             (word(Command.RETRY), texts.HINT_RESTART),
             (word(Command.PAUSE), texts.HINT_PAUSE),
         ]
@@ -328,7 +343,12 @@ class Watch:
             return
         share = f"{100 * landed / (landed + lost):.0f}"
         figure = canvas.text(
-            share, (MARGIN - 1, 118), size=FIGURE, weight="light", tabular=True, colour=canvas.palette.good
+            share,
+            (MARGIN - 1, 118),
+            size=FIGURE,
+            weight="light",
+            tabular=True,
+            colour=rate_colour(canvas.palette, float(share)),
         )
         canvas.text(texts.WATCH_LANDED, (figure.right + 6, 118), size=SMALL, colour=MUTE)
         counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)

@@ -8,6 +8,8 @@ from typing import Final
 
 import numpy as np
 
+from ai.decision import in_points
+from ai.env import Doubles
 from ai.history import Alteration, Checkpoint, History
 from ai.live import REVERTED, TAUGHT
 from game import texts
@@ -24,7 +26,7 @@ _CHARTS: Final = (
     ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),
     ("mean_return", (436, 456, 360, 128), None, "{:.0f}"),
     ("loss", (40, 594, 172, 112), None, "{:.3g}"),
-    ("mean_q", (234, 594, 172, 112), None, "{:.2f}"),
+    ("mean_q", (234, 594, 172, 112), None, "{:.1f}"),
     ("epsilon", (428, 594, 172, 112), (0.0, 1.0), "{:.2f}"),
     ("stage", (622, 594, 174, 112), (0.0, 3.0), "{:.0f}"),
 )
@@ -93,12 +95,18 @@ class Board:
 
 
 def _series(name: str, runs: Runs) -> list[Series]:
-    factor = 100.0 if name == "success" else 1.0
     return [
-        Series(run["seconds"], factor * run[name], title, colour, dash, smooth=name not in _STEPPED)
+        Series(run["seconds"], _shown(run, name), title, colour, dash, smooth=name not in _STEPPED)
         for (title, run), (colour, dash) in zip(runs, RUN_STYLES, strict=False)
         if len(run)
     ]
+
+
+def _shown(run: History, name: str) -> Doubles:
+    """Return a column as a chart shows it: shares in percent, values in points of reward."""
+    if name == "mean_q":
+        return in_points(run[name], run.reward_scale)
+    return 100.0 * run[name] if name == "success" else run[name]
 
 
 def _ticks(history: History) -> list[Tick]:

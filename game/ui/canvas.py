@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
 from copy import copy
 from typing import Final, Literal
 
@@ -104,6 +106,16 @@ class Canvas:
     def cover(self, area: pygame.Rect) -> None:
         """Note that something to be read is there, in pixels."""
         self._covered.append(area)
+
+    @contextmanager
+    def unnoted(self) -> Iterator[None]:
+        """Draw without noting what is there to be read."""
+        covered = self._covered
+        self._covered = deque(maxlen=0)
+        try:
+            yield
+        finally:
+            self._covered = covered
 
     def turn_page(self) -> None:
         """Begin a new frame: no link is left, and skies keep their stars from where the last one had words."""

@@ -56,7 +56,8 @@ class Inside:
         self._strip = Strip(_STRIP)
         self._picture = _NETWORK
         width = typeface.width(texts.TRAIN_CLOSER, SMALL, "regular")
-        form.add(Choice(form.manager, (_ROW.left, _ROW.top, _ROW.width - width - 20, _ROW.height), "",
+        self._on_closer = on_closer
+        self._heading = form.add(Choice(form.manager, (_ROW.left, _ROW.top, _ROW.width - width - 20, _ROW.height), "",
                         texts.TRAIN_INSIDE, 0, self._turn, size=SMALL))  # fmt: skip
         self._closer = form.add(Word(form.manager, (_ROW.right - width, _ROW.top, width, _ROW.height),
                                      texts.TRAIN_CLOSER, on_closer, size=SMALL))  # fmt: skip
@@ -89,6 +90,7 @@ class Inside:
         self.large = large
         self._closer.label = texts.TRAIN_CLOSER_BACK if large else texts.TRAIN_CLOSER
         self._view.place(_LARGE if large else _SMALL)
+        self._heading.index = _PAID if large else self._picture  # beside the large network, the panel has the other
         box = (_LEFT, 88, 400, 28)
         index = SHOWN.index(self._view.show)
         if not large:
@@ -105,6 +107,7 @@ class Inside:
             return  # of a run that has just been replaced
         network.values = insight.values
         network.gradients[:] = insight.gradients
+        self._view.output_scale = config.reward_scale
         self._view.set(network, insight.observation)
         self._cut.append(bool(np.linalg.norm(insight.gradients) >= _CUT * config.gradient_clip))
         self._seen.append(insight.observation)
@@ -143,6 +146,8 @@ class Inside:
 
     def _turn(self, index: int) -> None:
         self._picture = index
+        if self.large:  # it is asked for the network where that is small
+            self._on_closer()
 
     def _show(self, index: int) -> None:
         self._view.show = SHOWN[index]

@@ -46,6 +46,7 @@ class NetView:
     def __init__(self, box: pygame.typing.RectLike, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> None:
         self.box = pygame.FRect(box)
         self.inputs, self.outputs = tuple(inputs), tuple(outputs)
+        self.output_scale = 1.0  # what a point of reward is in the unit of the network's outputs
         self.plan: Plan | None = None
         self.edges: list[Edge] = []
         self.redraws = 0  # how often the sheets were drawn
@@ -128,6 +129,10 @@ class NetView:
         unit = int(self.columns[number].units[place])
         names = self._names(number)
         return names[unit] if unit < len(names) else texts.NET_UNIT.format(layer=number, unit=unit + 1)
+
+    def _unit(self, number: int) -> float:
+        """What the numbers of a column's units are divided by to be shown: outputs are shown in points of reward."""
+        return self.output_scale if number == len(self.columns) - 1 else 1.0
 
     def _names(self, number: int) -> tuple[str, ...]:
         return self.inputs if number == 0 else self.outputs if number == len(self.columns) - 1 else ()
@@ -308,7 +313,7 @@ class NetView:
             x, y = centres[place][0] + shift, centres[place][1] + 0.36 * size - (7 if values else 0)
             signs.text(names[unit], (x, y), size=size, colour=NET if place == best else MUTE, align=align)
             if values:
-                figure = _figure(float(column.values[place]))
+                figure = _figure(float(column.values[place]) / self._unit(number))
                 signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
         shown = len(column.units)
         if shown < column.total or not names:
@@ -341,9 +346,11 @@ class NetView:
 
     def _draw_tooltip(self, canvas: Canvas, number: int, place: int) -> None:
         column = self.columns[number]
-        rows = [Row(texts.NET_VALUE, plotting.compact(float(column.values[place])))]
+        unit, last = self._unit(number), number == len(self.columns) - 1
+        words = texts.NET_POINTS if last and self.outputs else texts.NET_VALUE
+        rows = [Row(words, plotting.compact(float(column.values[place]) / unit))]
         if column.bias is not None:
-            rows.append(Row(texts.NET_BIAS, plotting.compact(float(column.bias[place]))))
+            rows.append(Row(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
         head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
         draw_tooltip(canvas, self._centres[number][place], self.box, [head], rows)
 

@@ -1,4 +1,4 @@
-"""Short messages near the top of the window, where no screen has figures or choices of its own."""
+"""Short messages over any screen, where they hide nothing that is to be read or pressed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from game.ui.tokens import FAINT, INK, SMALL, VIEW_SIZE
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
 _LONGEST: Final = 150
-_TOP: Final = 68
+_HEIGHT: Final = 32
+_TOPS: Final = (68, 640, 104, 24, 600, 140, 560, 176, 520, 212, 480, 248, 440)  # where it may stand, the best first
 _COVER: Final = 0.96  # it comes over whatever is there
 
 
@@ -20,25 +21,40 @@ class Notes:
     def __init__(self) -> None:
         self._text = ""
         self._left = 0
+        self._top = _TOPS[0]
 
     def show(self, text: str) -> None:
         """Show a message in place of the last one."""
         if len(text) > _LONGEST:  # the end of a path or a reason says the most
             text = text[: _LONGEST // 3] + " … " + text[-_LONGEST * 2 // 3 :]
-        self._text, self._left = text, _STEPS_SHOWN
+        self._text, self._left, self._top = text, _STEPS_SHOWN, _TOPS[0]
 
-    def update(self) -> None:
-        """Let 1/60 s pass."""
+    def update(self, canvas: Canvas) -> None:
+        """Let 1/60 s pass; move to where it hides the least of the words, widgets and panels of the last picture."""
         self._left = max(0, self._left - 1)
+        if not self._left:
+            return
+        covered = {top: self._covers(canvas, top) for top in _TOPS}
+        if covered[self._top] > min(covered.values()):
+            self._top = min(_TOPS, key=covered.__getitem__)
+
+    def _box(self, canvas: Canvas, top: float) -> tuple[float, float, float, float]:
+        width = canvas.text_width(self._text, size=SMALL)
+        return VIEW_SIZE[0] / 2 - width / 2 - 16, top, width + 32, _HEIGHT
+
+    def _covers(self, canvas: Canvas, top: float) -> int:
+        """Return how many pixels of what is to be read it would hide there."""
+        place = canvas.rect(*self._box(canvas, top))
+        return sum(place.clip(area).w * place.clip(area).h for area in canvas.words)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the message, if there is one."""
         if not self._left:
             return
         alpha = min(1.0, self._left / _STEPS_FADING)
-        width = canvas.text_width(self._text, size=SMALL)
-        middle = VIEW_SIZE[0] / 2
-        box = (middle - width / 2 - 16, _TOP, width + 32, 32)
-        canvas.panel(box, _COVER * alpha)
-        canvas.outline(box, 8, FAINT, alpha=alpha)
-        canvas.text(self._text, (middle, _TOP + 20), size=SMALL, colour=INK, align="centre", alpha=alpha)
+        box = self._box(canvas, self._top)
+        with canvas.unnoted():  # it gives way to the page, not to itself
+            canvas.panel(box, _COVER * alpha)
+            canvas.outline(box, 8, FAINT, alpha=alpha)
+            middle = (VIEW_SIZE[0] / 2, self._top + 20)
+            canvas.text(self._text, middle, size=SMALL, colour=INK, align="centre", alpha=alpha)

@@ -7,7 +7,7 @@ from typing import Final
 from game import texts
 from game.ui.canvas import Canvas, Point
 from game.ui.prose import wrapped
-from game.ui.tokens import FIGURE, MUTE, SMALL, TITLE
+from game.ui.tokens import FIGURE, INK, MUTE, SMALL, TITLE, Colour, Palette
 from game.worker import State
 
 _LEADING: Final = 17.0
@@ -20,6 +20,11 @@ def start_word(state: State | None) -> str:
     return texts.TRAIN_RESUME if state is State.PAUSED else texts.TRAIN_START
 
 
+def rate_colour(palette: Palette, percent: float) -> Colour:
+    """Return the colour of a rate of success: that of success only where most attempts do succeed."""
+    return palette.good if percent > 50 else INK
+
+
 def draw_standing(
     canvas: Canvas, corner: Point, title: str, line: str, figure: str, words: str, *, drop: float, room: float
 ) -> None:
@@ -28,8 +33,9 @@ def draw_standing(
     canvas.text(title, corner, size=TITLE)
     canvas.text(line, (left, top + 22), size=SMALL, colour=MUTE, tabular=True, room=room)
     if figure:
+        colour = rate_colour(canvas.palette, float(figure))
         end = canvas.text(figure, (left - 1, top + drop), size=FIGURE, weight="light", tabular=True,
-                          colour=canvas.palette.good).right  # fmt: skip
+                          colour=colour).right  # fmt: skip
         canvas.text(words, (end + 8, top + drop), size=SMALL, colour=MUTE)
 
 

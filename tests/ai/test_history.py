@@ -189,3 +189,20 @@ def test_parts_of_a_reward_that_came_later_or_are_gone_do_no_harm(tmp_path):
     again = History.read(tmp_path)
     assert np.array_equal(again["success"], history["success"])
     assert not again[PARTS[-1]].any()
+
+
+def test_a_history_tells_in_which_unit_its_values_are_and_an_older_one_takes_it_from_its_network(tmp_path):
+    history = full_history()
+    history.reward_scale = 0.1
+    history.write(tmp_path)
+    assert History.read(tmp_path).reward_scale == 0.1
+    with np.load(tmp_path / HISTORY_FILE) as arrays:
+        older = dict(arrays)
+    described = json.loads(str(older["described"]))
+    del described["reward_scale"]
+    np.savez(tmp_path / HISTORY_FILE, **(older | {"described": np.array(json.dumps(described))}))
+    assert History.read(tmp_path).reward_scale == 1.0
+    (tmp_path / "config.json").write_text(json.dumps({"config": {"reward_scale": 0.01}}))
+    read = History.read(tmp_path)
+    assert read.reward_scale == 0.01
+    assert read["mean_q"].tolist() == history["mean_q"].tolist()

@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pygame
 import pytest
@@ -6,6 +8,7 @@ from ai.agent import build_network
 from ai.config import Config
 from ai.lander import ACTION_NAMES, FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
+from game import texts
 from game.ui.canvas import Canvas
 from game.ui.netplan import Plan, steady_choice, strongest_edges
 from game.ui.netview import NetView
@@ -280,3 +283,26 @@ def test_a_network_of_another_size_takes_its_place_while_a_unit_is_looked_at(can
     view.set(network_of(hidden=(3,)), OBSERVATION)
     play(view, canvas, 20)
     assert [column.total for column in view.columns] == [9, 3, 6]
+
+
+def test_outputs_are_told_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -> None:
+    network = network_of()
+    values = network.predict(np.atleast_2d(OBSERVATION))[0]
+    view = NetView(LARGE, FEATURE_NAMES, ACTION_NAMES)
+    view.output_scale = 0.01
+    view.set(network, OBSERVATION)
+    written: list[str] = []
+    real = Canvas.text
+
+    def text(self: Canvas, string: str, *args: Any, **kinds: Any) -> pygame.FRect:
+        written.append(string)
+        return real(self, string, *args, **kinds)
+
+    monkeypatch.setattr(Canvas, "text", text)
+    play(view, Canvas(pygame.Surface((1280, 720))))
+    for value in (values / np.float32(0.01)).tolist():
+        assert f"{value:.2f}".replace("-", "\u2212") in written
+    view.hover(view._centres[-1][0])
+    written.clear()
+    play(view, Canvas(pygame.Surface((1280, 720))))
+    assert texts.NET_POINTS in written

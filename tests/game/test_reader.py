@@ -1,11 +1,18 @@
 from itertools import product
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import pygame
 import pytest
 
 from ai.ink import redrawn
+from game import texts
 from game.assets import MODELS_DIR
-from game.digits.reader import Reader, Switches, Verdict
+from game.digits.answer import draw_answer, draw_fix
+from game.digits.fixing import Fixing
+from game.digits.reader import Reader, Reading, Switches, Verdict
+from game.ui.canvas import Canvas
 
 
 @pytest.fixture(scope="module")
@@ -56,4 +63,40 @@ def test_two_networks_have_to_agree_to_be_sure(reader: Reader):
     reading = reader.read(Switches().prepare(redrawn([ring]), np.zeros((9, 9))))
     assert reading.verdict("modern") is Verdict.SURE
     reading.probabilities["classic"] = np.roll(reading.probabilities["classic"], 1)
-    assert reading.verdict("modern") is Verdict.LIKELY
+    assert reading.verdict("modern") is Verdict.DISPUTED
+
+
+def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest.MonkeyPatch):
+    ring = 100 + 60 * np.stack([np.cos(np.linspace(0, 6.3, 60)), 1.3 * np.sin(np.linspace(0, 6.3, 60))], axis=1)
+    stages = reader.read(Switches().prepare(redrawn([ring]), np.zeros((9, 9)))).stages
+    canvas = Canvas(pygame.Surface((1280, 720)))
+    said: dict[str, list[float]] = {}
+
+    def text(_: Canvas, string: str, *__: object, **___: object) -> pygame.FRect:
+        word, _, share = string.partition(", ")
+        if share.endswith("%") and not word.startswith("or"):
+            said.setdefault(word, []).append(float(share.removesuffix(" %")))
+        return pygame.FRect()
+
+    monkeypatch.setattr(Canvas, "text", text)
+    for other in (0, 1):
+        for share in np.linspace(0.5, 0.9999, 400):
+            values = np.full(10, (1 - share) / 9)
+            values[0] = share
+            draw_answer(canvas, Reading(stages, {"modern": values, "classic": np.eye(10)[other]}), "modern")
+    sure, probably = (said[form.partition(",")[0]] for form in (texts.DIGITS_SURE, texts.DIGITS_LIKELY))
+    assert max(probably) < min(sure)
+    assert said[texts.DIGITS_DISPUTED.partition(",")[0]]  # where they disagree, it is called neither
+
+
+def test_the_digit_that_is_being_learnt_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    fixing = Fixing(tmp_path, MODELS_DIR)
+    written: list[str] = []
+    monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.append(string) or pygame.FRect())
+    monkeypatch.setattr("game.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda: None))
+    for digit in (7, 3):
+        assert fixing.begin("modern", np.zeros((28, 28), np.float32), digit)
+        written.clear()
+        draw_fix(Canvas(pygame.Surface((1280, 720))), fixing, same=True)
+        assert texts.DIGITS_FIXING.format(digit=digit) in written
+        fixing.close()

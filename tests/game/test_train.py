@@ -29,6 +29,7 @@ from game.scenes.play import Play
 from game.scenes.train import Train
 from game.student import Student
 from game.ui import focus
+from game.ui.inside import Inside
 from game.ui.netview import NetView
 from game.ui.scrubber import Scrubber
 from game.ui.widget import Widget
@@ -211,18 +212,28 @@ def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
     train.wait(lambda: scene.inside._network is not None)
     train.click((1060, 530))
     assert scene.inside.large
+    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[1]  # for that is what the panel shows now
     train.click((150, 102))
     assert scene.inside._view.show == "activations"
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
     assert not scene.inside.large
+    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
     scene._form.focus(scene.inside._closer)
     train.key(pygame.K_RETURN)
     assert scene.inside.large
     train.key(pygame.K_RETURN)
     assert not scene.inside.large
     assert scene._form.focused is scene.inside._closer
+    train.key(pygame.K_RETURN)
+    train.click((900, 441))  # the heading of the small network
+    assert not scene.inside.large
+    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
+
+
+def shown_heading(inside: Inside) -> str:
+    return str(inside._heading.options[inside._heading.index])
 
 
 PAD = {

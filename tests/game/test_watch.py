@@ -8,11 +8,14 @@ import pytest
 from ai.agent import DeepQAgent
 from ai.config import Config
 from game.context import Context
+from game.flight import DECISION_STEPS
 from game.library import Library
 from game.render import Camera
 from game.scenes.runs import Runs
 from game.scenes.watch import Watch
 from game.settings import SettingsFile
+from game.ui.canvas import Canvas
+from game.ui.standing import draw_standing
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]
@@ -33,17 +36,50 @@ def steps(driver: Driver) -> int:
     return scene(driver).swarm._step
 
 
-def test_space_stops_and_a_period_goes_one_step(watching: Driver):
+def test_space_stops_and_a_period_goes_one_decision(watching: Driver):
     watching.frames(5)
     watching.key(pygame.K_SPACE)
-    before = steps(watching)
+    swarm = scene(watching).swarm
+    before, decided = steps(watching), swarm.decided[0]
     watching.frames(10)
     assert steps(watching) == before
-    watching.keys(pygame.K_PERIOD, pygame.K_PERIOD)
-    assert steps(watching) == before + 2
+    start = swarm.env.position[0].copy()
+    sensed = []
+    for press in range(12):
+        watching.key(pygame.K_PERIOD)
+        assert swarm.decided[0] == decided + press + 1
+        sensed.append(scene(watching).decision.observation[0])
+    assert steps(watching) <= before + 12 * DECISION_STEPS
+    assert len(np.unique(sensed, axis=0)) == 12
+    assert np.hypot(*(swarm.env.position[0] - start)) > 0.5  # a viewer sees that it moved
     watching.key(pygame.K_SPACE)
     watching.frames(5)
-    assert steps(watching) > before + 4
+    assert steps(watching) > before + 12 * DECISION_STEPS
+
+
+def test_one_step_leads_from_the_end_of_a_flight_to_the_first_decision_of_the_next(watching: Driver):
+    watch = scene(watching)
+    watch.stopped = True
+    while watch.swarm.since_end[0] == 0:
+        watch.swarm.step()
+    last = watch.decision
+    watching.key(pygame.K_PERIOD)
+    assert watch.swarm.since_end[0] == 0
+    assert watch.decision.observation[0, 1] > last.observation[0, 1] + 1.0
+    assert watch.swarm.env.actions[0] == watch.decision.action[0]
+
+
+def test_another_number_of_landers_while_stopped_shows_what_they_will_fly(watching: Driver):
+    watching.frames(30)
+    watching.keys(pygame.K_SPACE, pygame.K_DOWN, pygame.K_RIGHT)
+    watch = scene(watching)
+    assert watch.stopped
+    assert watch.swarm.env.num_envs == 16
+    assert steps(watching) == 0
+    shown = watch.decision
+    assert np.array_equal(shown.observation[0], watch.swarm.env.observe()[0])
+    watch.swarm.step()
+    assert watch.swarm.env.actions[0] == shown.action[0]
 
 
 @pytest.mark.parametrize(
@@ -83,9 +119,9 @@ def test_the_mouse_chooses_words_and_landers(watching: Driver):
 def test_a_gamepad_stops_steps_and_chooses(watching: Driver):
     watching.button(pygame.CONTROLLER_BUTTON_Y)
     assert scene(watching).stopped
-    before = steps(watching)
+    before = scene(watching).swarm.decided[0]
     watching.button(pygame.CONTROLLER_BUTTON_RIGHTSTICK)
-    assert steps(watching) == before + 1
+    assert scene(watching).swarm.decided[0] == before + 1
     watching.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     watching.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
     assert scene(watching).swarm.env.num_envs == 16
@@ -217,3 +253,22 @@ def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
     assert scene(watching) is watch
     watching.frames(5)
     assert watch._camera.view(1.0) == Camera().view(1.0)
+
+
+@pytest.mark.parametrize(("landed", "good"), [(0, False), (5, False), (8, True)])
+def test_only_a_rate_of_success_has_its_colour(
+    watching: Driver, monkeypatch: pytest.MonkeyPatch, landed: int, good: bool
+):
+    watch = scene(watching)
+    watch.swarm.landed, watch.swarm.lost = landed, 10 - landed
+    colours: dict[str, object] = {}
+
+    def text(_: Canvas, string: str, *__: object, **looks: object) -> pygame.FRect:
+        colours[string] = looks.get("colour")
+        return pygame.FRect()
+
+    monkeypatch.setattr(Canvas, "text", text)
+    watch._draw_counts(watching.app.canvas)
+    draw_standing(watching.app.canvas, (0, 0), "", "", f"{10 * landed}.00", "", drop=0, room=100)
+    for figure in (f"{10 * landed}", f"{10 * landed}.00"):
+        assert (colours[figure] == watching.app.canvas.palette.good) == good

@@ -6,6 +6,7 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.decision import Decision, decide
 from ai.lander import PARAMS, Outcome
 from game import networks, texts
 from game.cockpit.overrides import difference
@@ -30,7 +31,10 @@ class Wants:
         return np.tile(np.array([0, 6, 0, 10, 0, 0], np.float32), (len(observation), 1))
 
     def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.q_values(observation).argmax(axis=1)
+        return self.decide(observation, held=held).action
+
+    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
+        return decide(observation, self.q_values(observation), held)
 
 
 @pytest.fixture(autouse=True)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from ai.decision import Decision, decide
 from game.cockpit.insight import Insight
 from game.flight import Flight
 
@@ -12,7 +13,10 @@ class Wavers:
         return np.sin(1e4 * observation[:, :1] * np.arange(1, 7)).astype(np.float32)
 
     def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.q_values(observation).argmax(axis=1)
+        return self.decide(observation, held=held).action
+
+    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
+        return decide(observation, self.q_values(observation), held)
 
 
 @pytest.mark.parametrize("before", range(8))
@@ -29,6 +33,7 @@ def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(bef
         insight.follow(flight)
         flown = flight.recording.actions[-1]
         assert insight.shown
-        assert insight._flown == insight._wanted.argmax() == flown
+        assert insight.values is not None
+        assert insight.values.flown == np.argmax(insight.values.points) == flown
         seen.add(flown)
     assert len(seen) > 1

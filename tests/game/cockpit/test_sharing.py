@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from ai.copilot import Mode
+from ai.decision import Decision, decide
 from ai.lander import Outcome
 from game.cockpit.hands import HANDS, OWN, Hands
 from game.flight import DECISION_STEPS, Flight, Hand, surface_height
@@ -23,7 +24,10 @@ class Wants:
         return np.tile(self.values, (len(observation), 1))
 
     def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.q_values(observation).argmax(axis=1)
+        return self.decide(observation, held=held).action
+
+    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
+        return decide(observation, self.q_values(observation), held)
 
 
 class Falls(Wants):

@@ -1,0 +1,56 @@
+"""The charts of runs whose networks count in different units."""
+
+import numpy as np
+import pytest
+
+from ai.config import PRESETS, Config
+from ai.history import COLUMNS, History, Point
+from ai.live import live
+from ai.messages import Begun
+from game import texts
+from game.student import Student
+from game.ui.board import Board
+from game.ui.chart import Chart, Series
+
+
+def run(config: Config, points: float) -> History:
+    """A run whose network hopes for so many points of reward, as it tells of it."""
+    history = History()
+    history.reward_scale = config.reward_scale
+    for second in range(20):
+        values = dict.fromkeys(COLUMNS, 1.0) | {"seconds": float(second), "mean_q": points * config.reward_scale}
+        history.append(Point(**values))
+    return history
+
+
+def test_mean_q_is_drawn_in_points_of_reward_whatever_the_networks_count_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: dict[str, list[Series]] = {}
+    monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: series}))
+    board = Board()
+    runs = [(name, run(PRESETS[name], 80.0)) for name in ("modern", "classic")]
+    assert runs[0][1]["mean_q"][0] != runs[1][1]["mean_q"][0]
+    for _ in range(24):
+        board.look(runs)
+    assert len(drawn[texts.TRAIN_CHARTS["mean_q"]]) == 2
+    for series in drawn[texts.TRAIN_CHARTS["mean_q"]]:
+        np.testing.assert_allclose(series.y, 80.0, rtol=1e-6)
+
+
+@pytest.mark.parametrize("preset", ["modern", "classic"])
+def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config = PRESETS[preset].changed(num_envs=1, hidden=(4,))
+    session = live(config, 0, keep=tmp_path / "run")
+    told = next(session)
+    for _ in range(3):
+        next(session)
+    session.close()
+    assert History.read(tmp_path / "run").reward_scale == config.reward_scale
+
+    class Tells:
+        def poll(self) -> tuple[object, ...]:
+            return tuple(message for message in told if isinstance(message, Begun))
+
+    student = Student.__new__(Student)
+    student.history, student._worker = History(), Tells()  # type: ignore[assignment]
+    student.poll()
+    assert student.history.reward_scale == config.reward_scale

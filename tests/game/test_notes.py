@@ -1,0 +1,51 @@
+"""Notes stand where they hide nothing that is to be read or pressed."""
+
+from collections.abc import Callable
+
+import pygame
+import pytest
+
+from game.scene import Push, Scene
+from game.scenes.choices import ChoicesScene
+from game.scenes.dialog import Naming
+from game.scenes.digits import Digits
+from game.scenes.logbook import Logbook
+from game.scenes.menu import Menu
+from game.scenes.missions import Missions
+from game.scenes.pause import Pause
+from game.scenes.play import Play
+from game.scenes.runs import Runs
+from game.scenes.settings import SettingsScene
+from game.scenes.watch import Watch
+from tests.game.driver import Driver
+
+Open = Callable[..., Driver]
+NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
+
+
+def scenes() -> dict[str, Scene]:
+    return {
+        "menu": Menu(), "settings": SettingsScene(), "logbook": Logbook(), "missions": Missions(), "runs": Runs(),
+        "digits": Digits(), "play": Play(seed=1), "watch": Watch(seed=1), "pause": Pause(Menu()),
+        "choices": Play(seed=1), "naming": Menu(),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", scenes())
+def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, name: str):
+    driver = open_game(scenes()[name])
+    driver.frames(3)
+    if name == "choices":
+        driver.key(pygame.K_c)
+        assert isinstance(driver.top, ChoicesScene)
+    if name == "naming":
+        driver.app.scenes.apply(Push(Naming(driver.top, "What shall it be called?", "one", lambda _: "")))
+    driver.frames(3)
+    driver.app.context.note(NOTE)
+    driver.frames(2)
+    notes, canvas = driver.app._notes, driver.app.canvas
+    place = canvas.rect(*notes._box(canvas, notes._top))
+    written = [area for area in canvas._covered if area.colliderect(place)]
+    assert not written, (notes._top, written)
+    driver.frames(30)
+    assert place == canvas.rect(*notes._box(canvas, notes._top))  # and it stays there
