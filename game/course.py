@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import date
-from math import ceil
 from typing import Final
 
 from ai.lander import Cause, LanderEnv, Outcome
@@ -186,7 +185,7 @@ class Flown(Course):
         if medal == 3:
             return texts.MEDAL_GOLD
         fuel, seconds = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
-        words = [text.format(ceil(10 * much - 1e-9) / 10) for much, text in
+        words = [text.format(much) for much, text in
                  ((fuel, texts.MEDAL_LESS_FUEL), (seconds, texts.MEDAL_LESS_TIME)) if much > 0]  # fmt: skip
         return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=texts.AND.join(words))
 

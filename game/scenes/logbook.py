@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.rules import tenths
 from game import texts
 from game.context import Context
 from game.controls import Command
@@ -231,7 +232,7 @@ def _row(entry: Entry) -> tuple[str, ...]:
     by = texts.LOGBOOK_YOU if entry.alone else texts.LOGBOOK_SHARED if entry.human > 0 else texts.LOGBOOK_NETWORK
     if entry.practice or entry.outdated:
         by = texts.PRACTICE if entry.practice else texts.LOGBOOK_OUTDATED
-    return when, course, texts.OUTCOMES[entry.outcome][0], f"{entry.seconds:.1f} s", points, by
+    return when, course, texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s", points, by
 
 
 def _course(entry: Entry) -> str:

@@ -17,7 +17,7 @@ from game.course import Flown
 from game.flight import Flight, Hand
 from game.flight_file import Record
 from game.hud import Card, flight_readouts
-from game.outcomes import landing_score
+from game.outcomes import flight_figures, landing_score
 from game.records import Records
 from game.scenes.logbook import Logbook
 from game.scenes.missions import Missions
@@ -60,6 +60,24 @@ def test_a_medal_is_for_little_fuel_and_little_time_together():
     assert mission.medal(mission.gold[0], mission.gold[1] + 0.1) == 2
     assert mission.medal(mission.silver[0], mission.silver[1]) == 2
     assert mission.medal(mission.silver[0] + 0.1, 1.0) == 1
+
+
+@pytest.mark.parametrize("name", MISSIONS)
+def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_much(name: str):
+    mission = MISSIONS[name]
+    for medal, (most_fuel, longest) in ((3, mission.gold), (2, mission.silver)):
+        flight = Flight(0, None, mission=name)
+        env = flight.env
+        for steps in range(round(600 * most_fuel) - 90, round(600 * most_fuel) + 91):  # of a jet, a 600th each
+            env.main_steps[:], env.side_steps[:], env.steps[:] = 0, steps, round(60 * (longest - 1))
+            figures = dict((label, float(value)) for label, value, _ in flight_figures(env))
+            kept = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
+            assert kept == (figures[texts.FUEL] <= most_fuel)
+        env.side_steps[:] = 0
+        for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
+            env.steps[:] = steps
+            figures = dict((label, float(value)) for label, value, _ in flight_figures(env))
+            assert (mission.medal(0.0, float(env.time[0])) >= medal) == (figures[texts.TIME] <= longest)
 
 
 def recorded(name: str) -> Record:
@@ -133,7 +151,7 @@ def test_the_card_says_what_the_next_medal_asks():
 
     assert said(3.0, 7.0) == texts.MEDAL_GOLD
     assert said(3.5, 7.0) == "Gold asks for 0.4 s less fuel."
-    assert said(3.0, 8.02) == "Gold asks for 0.1 s less time."
+    assert said(3.0, 8.1) == "Gold asks for 0.1 s less time."
     assert said(5.0, 13.5) == "Silver asks for 0.8 s less fuel and 1.5 s less time."
 
 
