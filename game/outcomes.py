@@ -16,10 +16,20 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
     title, reason = texts.OUTCOMES[outcome.name]
     if outcome is Outcome.CRASHED:
         reason = crash_reason(env, slot)
+    elif outcome is Outcome.OUT_OF_BOUNDS:
+        reason = reason.format(where=_where_left(env, slot))
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
     advice = texts.ADVICE.get(Cause(int(env.cause[slot])).name, "")
     return Card(outcome is Outcome.LANDED, title, reason, flight_figures(env, slot), human, advice)
+
+
+def _where_left(env: LanderEnv, slot: int) -> str:
+    """Say which edge of the area a lander has crossed; heights are above the pad, as the read-out has them."""
+    limits = env.limits
+    if env.position[slot, 1] > limits.ceiling:
+        return texts.LEFT_AT_THE_TOP.format(height=float(env.altitude[slot]))
+    return texts.LEFT_AT_THE_SIDE.format(width=limits.half_width)
 
 
 def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str], ...]:

@@ -123,7 +123,7 @@ class Insight:
         for number, chance in enumerate(pads):
             bar = (PANEL.left + _TRACK[0], top + _PADS + 22 * number - 1.5, _TRACK[1], 3)
             canvas.bar(bar, chance, HUMAN if chance == surest else mix(FAINT, HUMAN, 0.45))
-        hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share, texts.SHARE_COPILOT)
+        hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share)
 
     def _draw_bar(self, canvas: Canvas, action: int) -> None:
         x, y = PANEL.left + _TRACK[0], PANEL.top + _FIRST + _ROW * action

@@ -209,7 +209,8 @@ class Logbook:
         self._charts.draw(canvas)
         self._form.draw(canvas)
         y = _FIRST_VERB + 22 + _LINE * (len(self._verbs) - 1)  # below the verbs, of which Back is one
-        for line in wrapped(canvas, self._why_gone, SMALL, _WIDTH) if self._why_gone else []:
+        bar = texts.NOT_COUNTED[self.chosen.bar] if self.chosen and self.chosen.bar else ""
+        for line in [line for text in (bar, self._why_gone) if text for line in wrapped(canvas, text, SMALL, _WIDTH)]:
             canvas.text(line, (_LEFT, y), size=SMALL, colour=MUTE)
             y += 19
         self._draw_hints(canvas)
@@ -240,10 +241,8 @@ def _draw_totals(canvas: Canvas, sums: Totals) -> None:
 def _row(entry: Entry) -> tuple[str, ...]:
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
     course = _course(entry)
-    points = f"{entry.score}" if entry.landed else "–"
-    by = texts.LOGBOOK_YOU if entry.alone else texts.LOGBOOK_SHARED if entry.human > 0 else texts.LOGBOOK_NETWORK
-    if entry.practice or entry.outdated:
-        by = texts.PRACTICE if entry.practice else texts.LOGBOOK_OUTDATED
+    points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score) if entry.landed else "–"
+    by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
     return when, course, texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s", points, by
 
 

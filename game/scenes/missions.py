@@ -152,7 +152,8 @@ class Missions:
         best = self._best.get(name)
         title = f"{icon(name)}   {(_TOLD.get(name) or texts.MISSIONS[name])[0]}"
         if name == FIRST.name:
-            return title, "", ""
+            assert self._context is not None
+            return title, texts.TUTORIAL_FLOWN if self._context.settings.first_flown else "–", ""
         if best is None:
             return title, "–", ""
         if name == _DAILY:
