@@ -10,6 +10,7 @@ import numpy as np
 from ai.conditions import CALM, Conditions
 from ai.ground import Ground, Pad
 from ai.lander import LIMITS, PARAMS, LanderEnv, LanderParams, Limits
+from ai.rules import tenths
 
 _OFTEN: Final = 15  # of 20 flights
 _PAD: Final = Pad(0.0, PARAMS.pad_top, PARAMS.pad_width)
@@ -21,8 +22,8 @@ class Mission:
 
     Attributes:
         start: x, y, vx, vy, angle, spin; metres from the middle of the world and above its zero, m/s, rad, rad/s.
-        gold, silver: fuel in seconds of main engine and time in seconds that a landing may take at most; any landing
-            earns bronze.
+        gold, silver: fuel in seconds of main engine and time in seconds that a landing may take at most, to a tenth,
+            as they are printed; any other landing by the pilot's own hands earns bronze.
         world: where it is: moon, mars or earth.
         night: whether nothing is seen but what shines.
         landed: how many of 20 starts near this one the network that comes with the game lands, as
@@ -62,9 +63,12 @@ class Mission:
         return next((medal for medal in (3, 2) if self.too_much(medal, fuel, seconds) == (0, 0)), 1)
 
     def too_much(self, medal: int, fuel: float, seconds: float) -> tuple[float, float]:
-        """Return how much fuel and how many seconds of a landing were too much for gold (3) or silver (2)."""
+        """Return how much fuel and how many seconds, in tenths, were too much for gold (3) or silver (2).
+
+        Both are rounded as they are printed before they are judged: who flew the printed limit has kept it.
+        """
         most_fuel, longest = self.gold if medal == 3 else self.silver
-        return max(0.0, fuel - most_fuel), max(0.0, seconds - longest)
+        return tenths(max(0.0, tenths(fuel) - most_fuel)), tenths(max(0.0, tenths(seconds) - longest))
 
 
 _AIR: Final = 0.06  # kg/m

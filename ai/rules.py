@@ -98,6 +98,11 @@ LIMITS: Final = Limits()
 PARAMS: Final = LanderParams()
 
 
+def tenths(seconds: float) -> float:
+    """Return a flight's fuel or time as it is printed and judged: to a tenth, rounded from the thousandth on disk."""
+    return round(round(seconds, 3), 1)
+
+
 def engines_switched(held: Ints, actions: Ints) -> Ints:
     """How many engines, of main and jets, go on or off between two actions, each (n,)."""
     switched: Ints = ((held >= 3) != (actions >= 3)) * 1 + ((held % 3) != (actions % 3))

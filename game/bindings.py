@@ -194,26 +194,61 @@ class Bindings:
             return True
         return code not in device.taken and not any(code in codes for codes in device.fixed.values())
 
+    def bereft(self, meaning: Meaning, code: int) -> Meaning | None:
+        """Return what would be left without any key if this one meant `meaning`; None if nothing would."""
+        owner = self._owner(meaning, code)
+        if owner is None or owner in self.device.fixed or self._left(owner, meaning, code):
+            return None
+        return owner
+
     def bind(self, meaning: Meaning, code: int) -> Meaning | None:
         """Let a key mean this, and nothing else that can be changed. Returns what has lost it, if anything has.
 
-        What has lost its only key gets those that are given up here, as far as it may have them.
+        What has lost its only key gets those that are given up here, as far as it may have them. Raises ValueError
+        where it may have none of them: nothing is ever left without a key.
         """
-        given_up = self.table[meaning]
-        loser = next((other for other, codes in self.table.items() if code in codes and other is not meaning), None)
-        self.table[meaning] = (code,)
+        if (poor := self.bereft(meaning, code)) is not None:
+            raise ValueError(f"{poor.name} would be left without any key")
+        loser = self._owner(meaning, code)
         if loser is not None:
-            left = _without(self.table[loser], {code})
-            self.table[loser] = left or tuple(each for each in given_up if self.may(loser, each))
+            self.table[loser] = self._left(loser, meaning, code)
+        self.table[meaning] = (code,)
         self._index()
         return loser
 
+    def _owner(self, meaning: Meaning, code: int) -> Meaning | None:
+        """Return what else has that key, of all that can be changed."""
+        return next((other for other, codes in self.table.items() if code in codes and other is not meaning), None)
+
+    def _left(self, loser: Meaning, meaning: Meaning, code: int) -> tuple[int, ...]:
+        """Return the keys of `loser` once `meaning` has taken one from it, and given up its own."""
+        left = _without(self.table[loser], {code})
+        return left or tuple(each for each in self.table[meaning] if each != code and self.may(loser, each))
+
     def reset(self, meaning: Meaning | None = None) -> None:
-        """Give one meaning, or all of them, back what the game comes with; others let go of those keys."""
-        again = self.device.standard if meaning is None else {meaning: self.device.standard[meaning]}
-        back = {code for codes in again.values() for code in codes}
-        self.table = {other: _without(codes, back) for other, codes in self.table.items()} | dict(again)
+        """Give one meaning, or all of them, back what the game comes with.
+
+        Others let go of those keys; what would be left without any gets its own back, too.
+        """
+        if meaning is None:
+            self.table = dict(self.device.standard)
+        else:
+            self._restore([meaning])
         self._index()
+
+    def _restore(self, meanings: list[Meaning]) -> None:
+        """Reset meanings, and whatever is left without a key by that: at most once each, for their own keys differ."""
+        for meaning in meanings:
+            own = self.device.standard[meaning]
+            for other, codes in self.table.items():
+                if other is not meaning and not set(codes).isdisjoint(own):
+                    self.table[other] = _without(codes, own)
+                    meanings += [other] * self._lacks(other)
+            self.table[meaning] = own
+
+    def _lacks(self, meaning: Meaning) -> bool:
+        """Whether something that comes with a key is left without any."""
+        return bool(self.device.standard[meaning]) and not self.codes(meaning)
 
     def to_dict(self) -> dict[str, list[str]]:
         """Return what differs from what the game comes with, in words for the settings file."""
@@ -235,6 +270,7 @@ class Bindings:
             taken.update(self.table[meaning])
         for meaning in self.table.keys() - changed:
             self.table[meaning] = _without(self.table[meaning], taken)
+        self._restore([meaning for meaning in self.table if self._lacks(meaning)])
         self._index()
 
     def _code(self, word: object) -> int | None:

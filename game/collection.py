@@ -20,7 +20,6 @@ from game import texts
 UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
 TRASH: Final = ".trash"
 LONGEST_NAME: Final = 40
-_TRASH_KEPT: Final = 8
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
 
 
@@ -68,10 +67,13 @@ def free_path(folder: Path, name: str, suffix: str = "") -> Path:
 
 
 class Collection:
-    """What lies in `folder`. Whatever cannot be done raises LibraryError and changes nothing."""
+    """What lies in `folder`. Whatever cannot be done raises LibraryError and changes nothing.
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    `most_thrown` is how many of those that were thrown away can be brought back: the latest.
+    """
+
+    def __init__(self, folder: Path, most_thrown: int = 8) -> None:
+        self.folder, self._most_thrown = folder, most_thrown
 
     def free_name(self, suggestion: str) -> str:
         """Return the suggestion as a valid name that nothing has yet, with a number behind it if need be."""
@@ -146,20 +148,35 @@ class Collection:
     # What was thrown away
 
     def throw_away(self, folder: Path, name: str) -> None:
-        """Put a folder aside, from where `undo_delete` can have it back by that name; very old ones are deleted."""
+        """Put a folder, or a file, aside, from where it can be had back by that name; very old ones are deleted."""
         trash = self.folder / TRASH
         with told(texts.NOT_DELETED, name):
             trash.mkdir(exist_ok=True)
             folder.rename(trash / f"{time.time_ns()} {name}")
-        for old in self._thrown()[:-_TRASH_KEPT]:
+        for old in self._thrown()[: -self._most_thrown]:
             with suppress(OSError):
-                old.unlink() if old.is_symlink() else shutil.rmtree(old)
+                shutil.rmtree(old) if old.is_dir() and not old.is_symlink() else old.unlink()
 
     @property
     def last_deleted(self) -> str:
         """What `undo_delete` would bring back; empty for nothing."""
         thrown = self._thrown()
         return thrown[-1].name.partition(" ")[2] if thrown else ""
+
+    @property
+    def deleted(self) -> set[str]:
+        """The names of all that could be brought back."""
+        return {path.name.partition(" ")[2] for path in self._thrown()}
+
+    def bring_back(self, name: str) -> Path:
+        """Bring back what was thrown away under that name, where nothing else has it."""
+        thrown = [path for path in self._thrown() if path.name.partition(" ")[2] == name]
+        if not thrown:
+            raise LibraryError(texts.GONE.format(name=name))
+        if self.holder(name):
+            raise LibraryError(texts.NAME_TAKEN.format(name=name))
+        with told(texts.LIBRARY_NOT_RESTORED, name):
+            return thrown[-1].rename(self.folder / name)
 
     def undo_delete(self) -> Path | None:
         """Bring back what was thrown away last, under another name if its own is taken; None if nothing was."""

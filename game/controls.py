@@ -86,6 +86,12 @@ def _command(event: pygame.event.Event, keys: Bindings, buttons: Bindings) -> Co
     return buttons.command(event.button) if event.type == pygame.CONTROLLERBUTTONDOWN else None
 
 
+def _types(event: pygame.event.Event) -> bool:
+    """Tell whether a press writes a letter: SDL numbers such keys by what they write, and others beyond all letters."""
+    held = getattr(event, "mod", 0) & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META)
+    return event.type == pygame.KEYDOWN and not held and event.key < 0x110000 and chr(event.key).isprintable()
+
+
 @dataclass
 class _Pad:
     buttons: set[int] = field(default_factory=set)
@@ -102,6 +108,7 @@ class Controls:
         keys, buttons: what the keyboard's keys and the pads' buttons mean.
         mouse_in_use: whether the mouse was touched last; no ring is drawn around what is in focus then.
         listening: whether the next press is to be bound, and commands nothing.
+        spelling: whether letters are typed into a line: a key that types one commands nothing.
         pad_name: what the pad plugged in last calls itself; empty if it was pulled out again at once.
 
     """
@@ -111,7 +118,7 @@ class Controls:
         self._keys: set[int] = set()
         self._pads: dict[int, _Pad] = {}
         self._used: int | None = None  # the pad touched last, while a pad is in use
-        self.mouse_in_use = self.listening = False
+        self.mouse_in_use = self.listening = self.spelling = False
         self.pad_name = ""
 
     @property
@@ -226,7 +233,9 @@ class Controls:
                 self._move(event)
 
     def _command(self, event: pygame.event.Event) -> Command | None:
-        return None if self.listening else _command(event, self.keys, self.buttons)
+        if self.listening or (self.spelling and _types(event)):
+            return None
+        return _command(event, self.keys, self.buttons)
 
     def _held(self, held: Held) -> bool:
         if not self._keys.isdisjoint(self.keys.codes(held)):

@@ -2,25 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import date
-from math import ceil
 from typing import Final
 
 from ai.lander import Cause, LanderEnv, Outcome
 from ai.missions import Mission
 from game import texts
 from game.controls import Controls
+from game.credit import Credit
 from game.flight import Flight, Recording
 from game.flight_file import Record
 from game.ghost import Ghost
 from game.hud import Card
 from game.networks import Flyer
-from game.render import View
+from game.render import Clear, View
+from game.settings import Settings
 from game.tape import Rerun, Tape
 from game.ui.canvas import Canvas
 
 _AFTER_OUTAGE: Final = 2.0  # seconds in which the speed of a fall without an engine can't be braked
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What a course needs to know of the moment in which it draws over the world.
+
+    Attributes:
+        alpha: how much of the way between two steps has passed.
+        controls: in whose words keys are named.
+        clear: where on the screen nothing else is said.
+        stuck: whether the craft waits for something held to be let go of.
+
+    """
+
+    alpha: float
+    controls: Controls
+    clear: Clear
+    stuck: bool = False
 
 
 class Course:
@@ -30,7 +49,8 @@ class Course:
         name: of a mission, as the logbook has it; empty for all else.
         fixed: whether there is but the one start.
         kept: whether its flights are written down.
-        counts: whether a flight says something of the pilot's skill, from its first step to its last.
+        bar: why its flights do not count as the person's own, a name of `texts.NOT_COUNTED`; empty if they may.
+        alone: whether nobody may help, or take the stick.
         next_hint: what the key for what comes next does; empty where nothing does.
         title, line: what is being flown, for the corner.
         goal: what is asked of the flight, for the corner as well.
@@ -42,7 +62,8 @@ class Course:
     name = ""
     fixed = True
     kept = True
-    counts = True
+    bar = ""
+    alone = False
     through = False
     next_hint = ""
     title = line = goal = opening = ""
@@ -55,7 +76,7 @@ class Course:
         """Begin what flies beside it."""
         return None
 
-    def card(self, card: Card, flight: Flight) -> Card:  # noqa: ARG002
+    def card(self, card: Card, flight: Flight, credit: Credit) -> Card:  # noqa: ARG002
         """Add to the card of a flight that is over."""
         return card
 
@@ -67,14 +88,26 @@ class Course:
         """Whether a flight that is over begins again by itself, without a card."""
         return False
 
+    @property
+    def waits(self) -> bool:
+        """Whether the craft hangs until the pilot touches something; or else only until all is let go of."""
+        return True
+
     def skip(self) -> None:
         """Go on with what comes next, if anything does."""
 
-    def draw(self, canvas: Canvas, view: View, flight: Flight, alpha: float, controls: Controls) -> None:
-        """Draw what belongs to it over the world, `alpha` of the way between two steps."""
+    def leave(self) -> None:
+        """Make way for free flights."""
+
+    def remember(self, settings: Settings) -> bool:  # noqa: ARG002
+        """Note in the settings what the pilot has come to; whether there was anything to be noted."""
+        return False
+
+    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: Moment) -> None:
+        """Draw what belongs to it over the world."""
 
     def medal(self, flight: Flight) -> int:  # noqa: ARG002
-        """What a flight that is over has earned: 3 for gold, 2, 1, 0 for none."""
+        """What a flight that is over earns if it counts: 3 for gold, 2, 1, 0 for none."""
         return 0
 
 
@@ -119,13 +152,14 @@ class Race(Course):
 class FlyOn(Course):
     """From a moment of a recorded flight, its first part kept as it was flown; that flight goes on as a ghost."""
 
-    counts = False
+    bar = "flown_on"
     title = texts.FLY_ON
     opening = texts.FLY_ON_BEGIN
 
     def __init__(self, tape: Tape, name: str) -> None:
         self._recording, self._step, self._name = tape.record.recording, tape.at, name
         self._moment = tape.flight.env.snapshot()
+        self.name = tape.record.recording.mission or tape.record.entry.course
         self.line = texts.FLY_ON_LINE.format(seconds=tape.at / 60)
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
@@ -168,25 +202,25 @@ class Flown(Course):
         return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
 
     def medal(self, flight: Flight) -> int:
-        """Return what the flight has earned."""
-        if flight.outcome is not Outcome.LANDED or flight.share < 1.0:
+        """Return what the flight earns if it counts."""
+        if flight.outcome is not Outcome.LANDED:
             return 0
         return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
 
-    def card(self, card: Card, flight: Flight) -> Card:
-        """Name the medal in place of points, and say what was missing for the next."""
-        medal = self.medal(flight)
+    def card(self, card: Card, flight: Flight, credit: Credit) -> Card:
+        """Name the medal in place of points, and say what was missing for the next; or why there is none."""
         if not card.good:
-            return replace(card, score="", advice=_advice(flight.env) or card.advice)
+            return replace(card, advice=_advice(flight.env) or card.advice)
+        if not credit.counts:
+            return replace(card, score=card.score if credit.bar == "practice" else texts.MEDALS[0])
+        medal = credit.medal
         return replace(card, score=texts.MEDALS[medal], medal=medal, reason=self._missing(medal, flight))
 
     def _missing(self, medal: int, flight: Flight) -> str:
-        if medal == 0:
-            return texts.MEDAL_BY_HAND
         if medal == 3:
             return texts.MEDAL_GOLD
         fuel, seconds = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
-        words = [text.format(ceil(10 * much - 1e-9) / 10) for much, text in
+        words = [text.format(much) for much, text in
                  ((fuel, texts.MEDAL_LESS_FUEL), (seconds, texts.MEDAL_LESS_TIME)) if much > 0]  # fmt: skip
         return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=texts.AND.join(words))
 
@@ -204,9 +238,10 @@ def _advice(env: LanderEnv) -> str:
 
 
 class Daily(Course):
-    """The start that everybody has on this day."""
+    """The start that everybody has on this day, without a network to help."""
 
     name = "daily"
+    alone = True
     title = texts.DAILY
 
     def __init__(self, day: date) -> None:
@@ -215,4 +250,4 @@ class Daily(Course):
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:  # noqa: ARG002
         """Begin it, on three pads among hills."""
-        return Flight(self.seed, network, pads=3)
+        return Flight(self.seed, pads=3)

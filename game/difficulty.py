@@ -27,14 +27,19 @@ class Difficulty:
 
     @property
     def practice(self) -> bool:
-        """Whether the flight is not to be counted among the best."""
-        return self.slowest != 1 or bool(self._flight.recording.gravity)
+        """Whether the flight is not to be counted among the best, or will not be once its next step is flown."""
+        return self.slowest != 1 or bool(self._flight.recording.gravity) or bool(self._eased)
 
     @property
     def words(self) -> str:
         """What differs now, or did; empty if nothing does."""
-        gravity = self._flight.recording.gravity_at(len(self._flight.recording.actions))
-        shares = ((texts.PRACTICE_GRAVITY, self._settings.gravity if self._free else gravity),
-                  (texts.PRACTICE_PACE, self._settings.pace))  # fmt: skip
-        told = [text.format(percent=round(100 * share)) for text, share in shares if share != 1]
-        return texts.DIAL_JOIN.join([texts.PRACTICE, *told]) if told or self.practice else ""
+        return texts.DIAL_JOIN.join([texts.PRACTICE, *self._eased]) if self.practice else ""
+
+    @property
+    def _eased(self) -> list[str]:
+        """What differs in the next step; once the flight is over, in its last one, and at its slowest."""
+        over, recording = self._flight.over, self._flight.recording
+        gravity = self._settings.gravity if self._free and not over else recording.gravity_at(len(recording.actions))
+        shares = ((texts.PRACTICE_GRAVITY, gravity),
+                  (texts.PRACTICE_PACE, self.slowest if over else self._settings.pace))  # fmt: skip
+        return [text.format(percent=round(100 * share)) for text, share in shares if share != 1]

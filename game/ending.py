@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from typing import Final
 
 from ai.lander import Outcome
@@ -13,7 +12,6 @@ from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Controls
 from game.course import Course
-from game.difficulty import Difficulty
 from game.flight import Flight
 from game.ghost import Ghost
 from game.networks import Network
@@ -73,16 +71,11 @@ class Ending:
             self._pace.hurry()
             self._since = _CARD_AFTER
 
-    def make_card(self, cockpit: Cockpit, difficulty: Difficulty, course: Course | None, skill: Skill,
-                  scenery: Scenery) -> None:  # fmt: skip
-        """Say how it ended."""
+    def make_card(self, cockpit: Cockpit, course: Course | None, skill: Skill, scenery: Scenery) -> None:
+        """Say how it ended; the best score so far is that of free flights."""
         self._whole = scenery.shot_of(cockpit.track.path)
-        card = cockpit.card(0 if difficulty.practice else skill.best, self._whole.view(1.0))
-        if course:
-            card = course.card(card, self._flight)
-        if difficulty.practice and (course is None or course.kept):
-            card = replace(card, score=difficulty.words)
-        self.card = card
+        card = cockpit.card(0 if course and course.name else skill.best, self._whole.view(1.0))
+        self.card = course.card(card, self._flight, cockpit.credit) if course else card
 
     def draw(
         self, canvas: Canvas, controls: Controls, course: Course | None, ghost: Ghost | None, advise: bool
@@ -96,20 +89,21 @@ class Ending:
 
 
 def write_down(
-    context: Context, flight: Flight, cockpit: Cockpit, difficulty: Difficulty, course: Course | None,
+    context: Context, flight: Flight, cockpit: Cockpit, course: Course | None,
     records: Records, skill: Skill, network: Network, hands: str,
 ) -> None:  # fmt: skip
     """Keep a flight that is over, as an example too if wished, and count it; tell the player what went wrong."""
-    practice = difficulty.practice
-    told = "" if course or practice else cockpit.keep_lesson(context.user_dir, hands)
+    credit = cockpit.credit
+    told = "" if course or credit.bar == "practice" else cockpit.keep_lesson(context.user_dir, hands)
     entry = records.keep(
         flight,
         time.time(),
-        alone=cockpit.alone(hands) and not practice and (course is None or course.counts),
+        alone=credit.counts,
+        barred=credit.bar,
         network=network.name if network.flyer else "",
         course=course.name if course else "",
-        medal=course.medal(flight) if course and not practice else 0,
-        pace=difficulty.slowest,
+        medal=credit.medal,
+        pace=credit.pace,
     )
     skill.add(entry)
     if told or records.problem:

@@ -24,8 +24,9 @@ from game.flight import Hand, Recording
 from game.settings import GRAVITY_SHARES
 
 FORMAT: Final = "tranquility flight"
-VERSION: Final = 3
-_READS: Final = (1, 2, 3)  # the first knew no change of gravity, the second no rules of missions
+VERSION: Final = 4
+# The first knew no change of gravity, the second no rules of missions, the third not why a flight does not count.
+_READS: Final = (1, 2, 3, 4)
 _LONGEST: Final = 120 * 60  # physics steps of a flight
 _LARGEST: Final = 1_000_000  # bytes
 _LONGEST_NAME: Final = 255  # letters, as in the name of a file
@@ -49,6 +50,8 @@ class Entry:
         gravity: the share of what it is there that was farthest from all of it.
         pace: how fast time passed at the slowest, as the player chose it; 1 is its own pace.
         rules: the number of the rules of its mission, as `rules_of` it was then.
+        barred: why it does not count as their own, a name of `texts.NOT_COUNTED`; empty if it does, or was flown
+            before that was written down.
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
         file: name of what it can be flown again from.
@@ -71,6 +74,7 @@ class Entry:
     gravity: float = 1.0
     pace: float = 1.0
     rules: int = 0
+    barred: str = ""
 
     def __post_init__(self) -> None:
         figures = (self.when, self.seconds, self.fuel, self.touchdown, self.human, self.gravity, self.pace)
@@ -78,7 +82,7 @@ class Entry:
             raise ValueError("a figure is no positive number")
         if self.outcome not in Outcome.__members__ or self.human > 1:
             raise ValueError(f"no flight ends as {brief(repr(self.outcome), 40)}, {self.human} of it by hand")
-        words = (self.network, self.course, self.file)
+        words = (self.network, self.course, self.file, self.barred)
         if not all(isinstance(word, str) and len(word) <= _LONGEST_NAME for word in words):
             raise ValueError("a name is no text")
         counts = (self.alone, self.pads, self.score, self.medal, self.rules)
@@ -96,6 +100,17 @@ class Entry:
     def outdated(self) -> bool:
         """Whether its mission is flown under other rules now: then it is not among the best, and its medal is past."""
         return self.rules != rules_of(self.course)
+
+    @property
+    def bar(self) -> str:
+        """Why it does not count as the person's own now, a name of `texts.NOT_COUNTED`; empty if it does."""
+        if self.outdated:
+            return "outdated"
+        if self.barred in texts.NOT_COUNTED:
+            return self.barred
+        if self.practice:
+            return "practice"
+        return "" if self.alone else "unknown"
 
     @property
     def landed(self) -> bool:

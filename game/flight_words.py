@@ -20,18 +20,21 @@ BELOW_OPENING: Final = Clear(head=196.0)  # where a craft hangs clear of the wor
 
 
 def draw_title(
-    canvas: Canvas, flight: Flight, course: Course | None, network: Network, hands: str, practice: str
+    canvas: Canvas, flight: Flight, course: Course | None, network: Network, hands: str, notice: str
 ) -> None:
-    """Say what is flown: a course by its own words, a free flight by who helps; and in `practice`, what is eased."""
+    """Say what is flown: a course by its own words, a free flight by who may take it; and why it will not count."""
     if course:
-        goal = texts.MEDAL_BY_HAND if course.goal and flight.shared else course.goal
-        hud.draw_corner(canvas, course.title, course.line, practice or goal)
-        draw_surroundings(canvas, flight.env)
-        return
+        hud.draw_corner(canvas, course.title, course.line, notice or course.goal)
+    else:
+        _draw_free_title(canvas, flight, network, hands, notice)
+    draw_surroundings(canvas, flight.env)
+
+
+def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: str, notice: str) -> None:
     flown = texts.WITH_NETWORK.format(name=network.name) if flight.network else texts.ALONE
     if hands != OWN:
         flown = texts.OTHER_HANDS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
-    hud.draw_corner(canvas, texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown, practice)
+    hud.draw_corner(canvas, texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown, notice)
 
 
 def draw_opening(canvas: Canvas, controls: Controls, course: Course | None, forecast: bool) -> None:

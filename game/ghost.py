@@ -11,6 +11,7 @@ import pygame
 
 from ai.env import Doubles
 from ai.lander import LanderEnv, Outcome
+from ai.rules import tenths
 from game import texts
 from game.flight import Flight
 from game.hud import Rival
@@ -86,8 +87,8 @@ def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
     outcome = Outcome(int(theirs.outcome[0]))
     if not (outcome is Outcome.LANDED and yours.outcome[0] == outcome):
         return texts.RIVAL_RESULTS[outcome.name]
-    behind = float(theirs.time[0] - yours.time[0])
-    if abs(behind) < 0.05:
+    behind = tenths(tenths(float(theirs.time[0])) - tenths(float(yours.time[0])))  # of the figures as they are printed
+    if behind == 0:
         return texts.RIVAL_TOGETHER
     return (texts.RIVAL_AFTER if behind > 0 else texts.RIVAL_BEFORE).format(seconds=f"{abs(behind):.1f}")
 

@@ -181,15 +181,13 @@ def draw_centred_bars(
         canvas.line((middle, y - 4), (middle, y + 4), MUTE)
 
 
-def draw_share(
-    canvas: Canvas, left: float, top: float, width: float, human: float, other: str = texts.SHARE_NETWORK
-) -> None:
-    """Say how much of a flight the person flew and how much the network."""
-    you = round(100 * human)
+def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
+    """Say how much of a flight the person flew and how much the network; of a share, neither has none."""
+    you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
     if you:
         canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
     if you < 100:
-        network = other.format(percent=100 - you)
+        network = texts.SHARE_NETWORK.format(percent=100 - you)
         canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right")
     edge = width * human
     if human > 0:
@@ -265,8 +263,7 @@ def draw_card(
     if rival:
         _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 183), width)
         top += _RIVAL_ROWS
-    shared = card.stepped_in is not None
-    draw_share(canvas, left, top + 188, width, card.human, texts.SHARE_COPILOT if shared else texts.SHARE_NETWORK)
+    draw_share(canvas, left, top + 188, width, card.human)
     if card.stepped_in:
         words = canvas.text(texts.SHARE_MOMENTS.format(times=card.stepped_in), (left + width / 2 + 8, top + 188),
                             size=SMALL, colour=MUTE, align="centre")  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ai.lander import Cause, LanderEnv, Outcome
+from ai.rules import tenths
 from game import texts
 from game.hud import Card
 
@@ -15,15 +16,26 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
     title, reason = texts.OUTCOMES[outcome.name]
     if outcome is Outcome.CRASHED:
         reason = crash_reason(env, slot)
+    elif outcome is Outcome.OUT_OF_BOUNDS:
+        reason = reason.format(where=_where_left(env, slot))
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
     advice = texts.ADVICE.get(Cause(int(env.cause[slot])).name, "")
     return Card(outcome is Outcome.LANDED, title, reason, flight_figures(env, slot), human, advice)
 
 
+def _where_left(env: LanderEnv, slot: int) -> str:
+    """Say which edge of the area a lander has crossed; heights are above the pad, as the read-out has them."""
+    limits = env.limits
+    if env.position[slot, 1] > limits.ceiling:
+        return texts.LEFT_AT_THE_TOP.format(height=float(env.altitude[slot]))
+    return texts.LEFT_AT_THE_SIDE.format(width=limits.half_width)
+
+
 def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str], ...]:
     """Return the figures of a flight that has ended: label, value, unit."""
-    figures = [(texts.TIME, f"{float(env.time[slot]):.1f}", "s"), (texts.FUEL, f"{float(env.fuel[slot]):.1f}", "s")]
+    figures = [(texts.TIME, f"{tenths(float(env.time[slot])):.1f}", "s"),
+               (texts.FUEL, f"{tenths(float(env.fuel[slot])):.1f}", "s")]  # fmt: skip
     if env.outcome[slot] in (Outcome.LANDED, Outcome.CRASHED):
         figures.append((texts.TOUCHDOWN, f"{float(env.impact[slot, 0]):.1f}", "m/s"))
     away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))
@@ -47,13 +59,14 @@ def crash_reason(env: LanderEnv, slot: int = 0) -> str:
     speed, slide, tilt = env.impact[slot].tolist()
     limits = env.limits
     value, limit = {
-        Cause.HARD: (_one_more(speed, limits.touch_speed), f"{limits.touch_speed:.1f}"),
-        Cause.SLIDING: (_one_more(slide, limits.slide_speed), f"{limits.slide_speed:.1f}"),
-        Cause.TILTED: (f"{math.degrees(tilt):.0f}", f"{math.degrees(limits.touch_tilt):.0f}"),
+        Cause.HARD: _beyond(speed, limits.touch_speed),
+        Cause.SLIDING: _beyond(slide, limits.slide_speed),
+        Cause.TILTED: _beyond(math.degrees(tilt), math.degrees(limits.touch_tilt), 0),
     }.get(cause, ("", ""))
     return texts.CAUSES[cause.name].format(value=value, limit=limit)
 
 
-def _one_more(value: float, limit: float) -> str:
-    """Write a value beyond its limit so that it does not read as the limit itself."""
-    return f"{value:.1f}" if f"{value:.1f}" != f"{limit:.1f}" else f"{value:.2f}"
+def _beyond(value: float, limit: float, places: int = 1) -> tuple[str, str]:
+    """Write a value and the limit that it is beyond, with as many places as tell them apart: two more at most."""
+    enough = next((n for n in (places, places + 1) if f"{value:.{n}f}" != f"{limit:.{n}f}"), places + 2)
+    return f"{value:.{enough}f}", f"{limit:.{enough}f}"

@@ -6,7 +6,7 @@ Nothing here raises for a bad disk or a damaged file but `read`; `problem` says 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from ai.nn.files import parse_json, read_end
 from game import flight_file, texts
-from game.collection import free_path
+from game.collection import Collection, LibraryError, free_path
 from game.flight import Flight
 from game.flight_file import Entry, Record
 from game.outcomes import landing_score
@@ -27,6 +27,7 @@ RECENT: Final = 100  # flights whose files are kept whatever they came to
 BEST: Final = 5  # and the best landings of each course
 _LARGEST: Final = 16_000_000  # bytes of the logbook that are read, the last ones: 50,000 flights
 _SLACK: Final = 25  # files too many before they are looked through
+_MOST_THROWN: Final = 50  # files thrown away that can be brought back
 RECENT_OWN: Final = 10  # flights by the person alone that their skill is told by
 
 
@@ -59,6 +60,7 @@ class Records:
     def __init__(self, user_dir: Path) -> None:
         self.folder = user_dir / FOLDER
         self.logbook = user_dir / LOGBOOK
+        self._files = Collection(self.folder, _MOST_THROWN)
         self.problem = ""
 
     def keep(self, flight: Flight, when: float, **more: Any) -> Entry:
@@ -107,14 +109,36 @@ class Records:
         """Read a flight. Raises ValueError, which names the file and what is wrong with it."""
         return flight_file.read(self.folder / name)
 
-    def forget(self, name: str) -> bool:
-        """Throw a flight's file away; the logbook keeps its line. False if that could not be done."""
+    def thrown(self) -> set[str]:
+        """Return the names of the files that were thrown away and can be brought back."""
+        return self._files.deleted
+
+    def throw_away(self, name: str) -> bool:
+        """Put a flight's file aside; the logbook keeps its line. False if that could not be done."""
+        return self._attempt(lambda: self._files.throw_away(self.folder / name, name))
+
+    def bring_back(self, name: str) -> bool:
+        """Bring a file back that was thrown away. False if that could not be done."""
+        return self._attempt(lambda: self._files.bring_back(name))
+
+    def _attempt(self, deed: Callable[[], object]) -> bool:
+        self.problem = ""
         try:
-            (self.folder / name).unlink(missing_ok=True)
-        except OSError as error:
-            self.problem = texts.NOT_DELETED.format(name=name, reason=error.strerror or error)
-            return False
-        return True
+            deed()
+        except LibraryError as error:
+            self.problem = str(error)
+        return not self.problem
+
+    def why_gone(self, entry: Entry) -> str:
+        """Say why a flight can't be flown again, in a sentence; empty if its file is there."""
+        if entry.file in self.kept():
+            return ""
+        if entry.file in self.thrown():
+            return texts.FLIGHT_THROWN
+        if not entry.file:
+            return texts.FLIGHT_NEVER_KEPT
+        older = sorted(self.kept() | {entry.file})[:-RECENT]  # a name begins with its date
+        return texts.FLIGHT_TOO_OLD if entry.file in older else texts.FLIGHT_MISSING
 
     def _write(self, record: Record) -> Entry:
         """Write a flight under a name that nothing else has, not even of another game's; return its line."""

@@ -48,7 +48,8 @@ class Settings:
     pace: float = field(default=1.0, metadata={"limits": PACES})  # how fast time passes in a flight
     keys: dict[str, Any] = field(default_factory=dict)  # what was changed, as game.bindings writes it
     buttons: dict[str, Any] = field(default_factory=dict)  # of the pads
-    tutored: bool = False  # whether the first flight has been offered
+    tutored: bool = False  # whether the first flight is offered no more: it was flown, or left out
+    first_flown: bool = False  # whether it was flown to its landing
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
     unread: bool = field(default=False, compare=False)  # whether there is a file that could not be read; not kept
     known: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)  # what was last on the disk; not kept

@@ -124,7 +124,7 @@ TIME_FLOWN: Final = "TIME"
 OUTCOMES: Final = {
     "LANDED": ("Landed", "Both feet down, and at rest."),
     "CRASHED": ("Crashed", ""),
-    "OUT_OF_BOUNDS": ("Lost", "Left the area."),
+    "OUT_OF_BOUNDS": ("Lost", "Left the area {where}."),
     "TIMED_OUT": ("Out of time", "Time ran out: {limit} s is all there is."),
 }
 CAUSES: Final = {
@@ -135,6 +135,9 @@ CAUSES: Final = {
     "SLIDING": "Slid across the ground at {value} m/s; {limit} is the limit.",
     "TILTED": "Tilted {value}° at contact; {limit}° is the limit.",
 }
+# Where a flight left the area
+LEFT_AT_THE_TOP: Final = "at the top, {height:.0f} m up"
+LEFT_AT_THE_SIDE: Final = "at the side, {width:.0f} m from its middle"
 # A word of advice on the card of a crash
 ADVICE: Final = {
     "HULL": "Level out early; below four metres, steer in short taps.",
@@ -152,9 +155,10 @@ SHARE_NETWORK: Final = "network {percent} %"
 
 # Play
 YOU_FLY: Final = "You fly"
+YOU_SHARE: Final = "You share the stick"
 NETWORK_FLIES: Final = "The network flies"
 FREE_FLIGHT: Final = "Free flight"
-WITH_NETWORK: Final = "with the {name} network"
+WITH_NETWORK: Final = "the {name} network can take over"
 ALONE: Final = "on your own"
 BEGIN: Final = "The moon waits for your first touch."
 PATH_YOURS: Final = "where you drift, hands off"
@@ -830,6 +834,8 @@ DIAL_JOIN: Final = "  ·  "
 DIAL_NEEDS: Final = "{name} can fly, but can't share the stick: it doesn't weigh actions."
 CHECK_FLIGHT: Final = "Check flight"
 CHECK_ALONE: Final = "without help: this one shows your own skill"
+WITHOUT_HELP: Final = "without help"
+FLOWN_ALONE: Final = "Nobody helps in this flight: it is yours alone."
 OVERRIDE_ADDS: Final = "+ {engine}"
 OVERRIDE_STOPS: Final = "− {engine}"
 OVERRIDE_TURNS: Final = "{engine}, not {other}"
@@ -854,7 +860,6 @@ INSIGHT_WORSE: Final = "{asked} is {loss} points below its {best},"
 INSIGHT_MARGIN: Final = {True: "more than {allowed}.", False: "and it lets {allowed} points pass."}
 INSIGHT_MEANT: Final = "WHICH PAD YOU SEEM TO MEAN"
 PAD_NAMES: Final = {1: "wide  ×1", 3: "narrow  ×3", 5: "tiny  ×5"}
-SHARE_COPILOT: Final = "co-pilot {percent} %"
 SHARE_MOMENTS: Final = "stepped in {times} ×"
 SCORE: Final = "{points} points"
 SCORE_BEST: Final = "{points} points, your best"
@@ -869,9 +874,10 @@ CHOICES_HINT: Final = "choices"
 PAUSE_CHOICES: Final = "Choices: help, pads, hands"
 CHOICES_ASSIST: Final = "Network helps"
 CHOICES_ASSIST_OFF: Final = "no"
-CHOICES_ASSIST_HELP: Final = (
-    "While you fly; let go of everything, and it flies. In flight: {less}, {more}, or the wheel."
-)
+CHOICES_ASSIST_HELP: Final = {
+    False: "Nobody helps: let go of everything, and you fall. In flight: {less}, {more}, or the wheel.",
+    True: "While you fly; let go of everything, and it flies. In flight: {less}, {more}, or the wheel.",
+}
 CHOICES_MODE: Final = "It steps in"
 CHOICES_MODES: Final = ("when yours is not as good", "only in need")
 CHOICES_MODES_HELP: Final = (
@@ -892,14 +898,14 @@ CHOICES_HANDS_HELP: Final = {
     "noisy": "Every seventh main engine and turn is another than you asked for. Let the network help.",
     "sensor": "You steer, and have no main engine: without the network's help you fall.",
 }
-CHOICES_CHECK: Final = ("Check flights", "Every fifth one without help, so that your own skill doesn't fade.")
+CHOICES_CHECK: Final = ("Check flights", "After four with help, one without, so that your own skill doesn't fade.")
 CHOICES_TEACH: Final = ("Teach it", "Your good landings are kept on this computer, for a network to learn from.")
 CHOICES_EXPLAIN: Final = ("Explain", "A panel says what the network thinks, and why it steps in.")
 CHOICES_FLY: Final = "Fly"
 CHOICES_LATER: Final = "Pads and hands change with the next flight."
 SKILL_TITLE: Final = "YOUR OWN SKILL"
-SKILL_FIGURE: Final = "landed, of the last {count} without help"
-SKILL_NONE: Final = "Flights without any help are drawn here."
+SKILL_FIGURE: Final = "landed, of the last {count} free ones that count"
+SKILL_NONE: Final = "Free flights without any help are drawn here."
 SKILL_BEST: Final = "best landing"
 SKILL_TAUGHT: Final = "landings to learn from"
 
@@ -919,18 +925,24 @@ LOGBOOK_TOTALS: Final = ("FLIGHTS", "LANDINGS", "IN THE AIR", "FUEL", "LONGEST R
 LOGBOOK_FILTERS: Final = ("all flights", "landings", "the best")
 LOGBOOK_COLUMNS: Final = ("WHEN", "WHERE", "END", "TIME", "POINTS", "FLOWN BY")
 LOGBOOK_EMPTY: Final = "Nothing yet: every flight that ends is written down here."
-LOGBOOK_SKILL: Final = "YOU LANDED, OF THE LAST 10 WITHOUT HELP"
+LOGBOOK_SKILL: Final = "YOU LANDED, OF THE LAST 10 THAT COUNT"
 LOGBOOK_FUEL: Final = "FUEL OF YOUR LANDINGS"
 LOGBOOK_FLIGHT: Final = "flight {:.0f}"
 LOGBOOK_YOU: Final = "you"
 LOGBOOK_SHARED: Final = "both"
 LOGBOOK_NETWORK: Final = "network"
-LOGBOOK_OUTDATED: Final = "older rules"
+LOGBOOK_UNCOUNTED: Final = "({points})"
 LOGBOOK_WATCH: Final = "Watch it again"
 LOGBOOK_RACE: Final = "Race its ghost"
-LOGBOOK_FORGET: Final = "Throw it away"
-LOGBOOK_FORGOTTEN: Final = "The flight was thrown away; its line in the logbook stays."
-LOGBOOK_NO_FILE: Final = "Too long ago: only the latest and the best can be flown again."
+LOGBOOK_THROW_AWAY: Final = "Throw it away"
+LOGBOOK_BRING_BACK: Final = "Bring it back"
+LOGBOOK_THROWN: Final = "The flight was thrown away, and can still be brought back; its line stays."
+LOGBOOK_BROUGHT_BACK: Final = "The flight is back."
+# Why a flight in the logbook can't be flown again
+FLIGHT_THROWN: Final = "You threw it away."
+FLIGHT_TOO_OLD: Final = "Too long ago: only the latest and the best can be flown again."
+FLIGHT_NEVER_KEPT: Final = "It could not be kept when it was flown."
+FLIGHT_MISSING: Final = "Its file is not there any more."
 COURSE_FREE: Final = {1: "one pad", 3: "three pads"}
 
 # Replay
@@ -945,7 +957,18 @@ REPLAY_HINT_TAKE: Final = "fly on"
 REPLAY_OVER: Final = "This is the end: go back a little, and fly on from there."
 REPLAY_OTHER_RULES: Final = "This flight was flown under other rules, and goes another way now."
 YOU_FLEW: Final = "You flew"
+BOTH_FLEW: Final = "You and the network flew"
 NETWORK_FLEW: Final = "The network flew"
+# Why a flight does not count as the player's own
+NOT_COUNTED: Final = {
+    "flown_on": "Not counted: it goes on from a replay.",
+    "hands": "Not counted: not flown with your own hands.",
+    "helped": "Not counted: flown with the network's help.",
+    "handed_over": "Not counted: handed over to the network.",
+    "practice": "Not counted: this is practice.",
+    "outdated": "Not counted: this mission has other rules now.",
+    "unknown": "Not counted: not flown by your own hands alone.",
+}
 
 # Courses: races, flying on, missions
 RACE: Final = "Race"
@@ -979,7 +1002,7 @@ MISSIONS_LINE: Final = "Each teaches one thing, and another flies beside you. Go
 MISSIONS_COLUMNS: Final = ("MISSION", "MEDAL", "BEST FUEL")
 MISSION_FLY: Final = "Fly it"
 MISSION_LIMIT: Final = "{fuel:.1f} s of fuel and {seconds:.1f} s at most"
-MISSION_ANY: Final = "any landing"
+MISSION_ANY: Final = "any landing by your own hand"
 MISSION_BEST: Final = "Your best: {fuel:.1f} s of fuel, {seconds:.1f} s, {points} points"
 EXPORT_AS: Final = "Save this flight as a moving picture"
 EXPORT_MORE: Final = "A GIF is small and shows anywhere; an MP4 is sharp, and the camera follows."
@@ -1016,7 +1039,7 @@ BINDINGS_NONE: Final = "–"
 BINDINGS_NO_PAD: Final = "Plug in a gamepad first."
 BINDINGS_FIXED: Final = "{key} keeps what it means in menus. Choose another."
 BINDINGS_TAKEN: Final = "It was {other}, which now has {key}."
-BINDINGS_LOST: Final = "It was {other}, which now has none."
+BINDINGS_ONLY: Final = "{key} is all that {other} has. Give that another first."
 BINDINGS_RESET: Final = "{what} is as it was."
 BINDINGS_ALL: Final = "All as it was"
 BINDINGS_ALL_RESET: Final = "Everything is as the game comes."
@@ -1038,7 +1061,6 @@ MEDAL_NEXT: Final = "{medal} asks for {less}."
 MEDAL_LESS_FUEL: Final = "{:.1f} s less fuel"
 MEDAL_LESS_TIME: Final = "{:.1f} s less time"
 MEDAL_GOLD: Final = "Both feet down, within gold's fuel and time."
-MEDAL_BY_HAND: Final = "Medals are for flights by your own hand, all the way."
 MISSION_GOAL: Final = "Gold: {fuel:.1f} s of fuel, {seconds:.1f} s of time"
 MISSION_RIVAL_LABEL: Final = "Beside you"
 MISSION_GHOSTS: Final = {"recorded": "the recorded flight", "own": "your best"}
@@ -1063,6 +1085,9 @@ PAD_RIGHT: Final = "The pad goes right, {speed:.1f} m/s"
 ENGINE_FAILS: Final = "The main engine fails in {seconds:.1f} s"
 ENGINE_DEAD: Final = "No main engine for {seconds:.1f} s"
 TANK_EMPTY: Final = "The tank is empty"
+EDGE_ABOVE: Final = "The area ends {metres:.0f} m above"
+EDGE_LEFT: Final = "The area ends {metres:.0f} m to the left"
+EDGE_RIGHT: Final = "The area ends {metres:.0f} m to the right"
 
 # The first flight. For each step: what to do, and what to say after several crashes where that is something else.
 TUTORIAL_TITLE: Final = "First flight"
@@ -1091,14 +1116,26 @@ TUTORIAL_GOOD: Final = {
     "take_back": "Yours again",
     "land": "Landed",
 }
+# The turns of a mouse, whose one button turns the craft towards the pointer, and of a stick
+TUTORIAL_POINT: Final = ("{key} with the pointer left of it", "{key} with the pointer right of it")
+TUTORIAL_POINT_EITHER: Final = "{key} with the pointer beside it"
+TUTORIAL_PUSH: Final = ("{key} to the left", "{key} to the right")
+TUTORIAL_STANDS: Final = "Let go: it comes to stand upright."
+TUTORIAL_LET_GO: Final = "Let go of everything first."
+# Why a lesson begins again, where a flight's own end does not say so
 TUTORIAL_AGAIN: Final = "Once more, from the top."
+TUTORIAL_NETWORK_LANDED: Final = "The network has landed it: now you."
+TUTORIAL_LANDED_EARLY: Final = "Landed already, with more to be learnt before."
+TUTORIAL_TOO_HIGH: Final = "Let go of  {main} : the area ends above you."
 TUTORIAL_TOO_FAST: Final = "{main}  now: too fast, so near the ground."
 TUTORIAL_TOO_TILTED: Final = "{other}  to stand upright before you touch."
-TUTORIAL_AWAY: Final = "The pad is far: lean towards it, and fire."
+TUTORIAL_AWAY: Final = "The pad is far: lean towards it with  {inward} , and fire."
 TUTORIAL_DONE: Final = "You can fly"
 TUTORIAL_DONE_REASON: Final = "That was all there is to it. The rest is practice."
 TUTORIAL_OPEN: Final = "Fly the first flight again"
 TUTORIAL_SKIP: Final = "skip this"
+TUTORIAL_LEAVE: Final = "Leave out the first flight"
+TUTORIAL_FLOWN: Final = "flown"
 TUTORIAL_ASKS: Final = "Learn to fly, one thing at a time. Leave it whenever you like."
 
 # Said on the spot, in the moment in which it happens

@@ -8,7 +8,7 @@ import pygame
 
 from game import texts
 from game.controls import Command, translate
-from game.flight import Hand
+from game.credit import Stick
 from game.settings import Settings
 from game.ui.canvas import Canvas
 from game.ui.shapes import Shape
@@ -50,19 +50,15 @@ class Dial:
                 self._turn(self._settings.assist + (_KEY_STEP if command is Command.FASTER else -_KEY_STEP))
         return True
 
-    def follow(self, hand: Hand) -> None:
-        """Let 1/60 s pass for the handle."""
-        wanted = 1.0 if hand is Hand.NETWORK else self._settings.assist
+    def follow(self, stick: Stick) -> None:
+        """Let 1/60 s pass for the handle, which stands at what acts: nothing, where nobody can share the stick."""
+        assist = self._settings.assist if stick is Stick.BOTH else 0.0
+        wanted = 1.0 if stick is Stick.NETWORK else assist
         at_once = self._settings.reduced_motion or self._dragged
         self._shown += (1.0 if at_once else _EASE) * (wanted - self._shown)
 
-    def draw(self, canvas: Canvas, hand: Hand, lamp: tuple[Shape, Colour, float]) -> None:
-        """Say who flies, behind a lamp of that shape, colour and glow, and draw the line."""
-        network = hand is Hand.NETWORK
-        text = texts.NETWORK_FLIES if network else texts.YOU_FLY
-        if self._settings.assist > 0 and not network:
-            help_ = texts.DIAL_ASSISTS[self._settings.copilot].format(percent=round(100 * self._settings.assist))
-            text += texts.DIAL_JOIN + help_
+    def draw(self, canvas: Canvas, text: str, stick: Stick, lamp: tuple[Shape, Colour, float]) -> None:
+        """Write who flies, behind a lamp of that shape, colour and glow, and draw the line."""
         draw_title(canvas, text, lamp)
         left, right = _TRACK
         for word, x, align in zip(texts.DIAL_ENDS, (left - 10, right + 10), ("right", "left"), strict=True):
@@ -72,7 +68,7 @@ class Dial:
         if reach >= 1:
             canvas.pill((left, _LINE - 1, reach, 2), NET)
         handle = (left + reach, _LINE)
-        canvas.dot(handle, 5 + self._dragged, INK if self._settings.assist > 0 or network else HUMAN)
+        canvas.dot(handle, 5 + self._dragged, HUMAN if stick is Stick.PERSON else INK)
 
     def _drag(self, x: float) -> None:
         share = (x - _TRACK[0]) / (_TRACK[1] - _TRACK[0])

@@ -98,7 +98,7 @@ class Insight:
         self._draw_why(canvas, left, top + _WHY + 26)
         if pads:
             self._draw_pads(canvas, pads)
-        hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share, texts.SHARE_COPILOT)
+        hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
         """Say whose action it became; the latest override stays to be read for a moment, and is said to be past."""

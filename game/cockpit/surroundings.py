@@ -13,6 +13,7 @@ from game.ui.tokens import INK, MARGIN, MUTE, SMALL
 
 _FIRST: Final = 98.0  # the first row, under what is asked of the flight
 _ROW: Final = 20.0
+_NEAR_EDGE: Final = 6.0  # metres before the edge of the area that it is warned of
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
 _ARROW: Final = 52.0  # points that the strongest wind is long
 _STRONGEST, _CALM = 0.6, 0.05  # m/s²
@@ -47,8 +48,20 @@ def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
         yield texts.ENGINE_DEAD.format(seconds=end - time), 0.0, True
     elif time < start < math.inf:
         yield texts.ENGINE_FAILS.format(seconds=start - time), 0.0, start - time < _SOON
+    yield from _edges(env)
     if float(env.fuel[0]) >= conditions.tank:
         yield texts.TANK_EMPTY, 0.0, True
+
+
+def _edges(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
+    """Warn of the edges of the area, which nothing in the world shows, while the flight goes there."""
+    (x, y), (across, up) = env.position[0].tolist(), env.velocity[0].tolist()
+    limits = env.limits
+    if up > 0 and (above := limits.ceiling - y) < _NEAR_EDGE:
+        yield texts.EDGE_ABOVE.format(metres=math.ceil(max(0.0, above))), 0.0, True
+    if x * across > 0 and (aside := limits.half_width - abs(x)) < _NEAR_EDGE:
+        text = texts.EDGE_RIGHT if x > 0 else texts.EDGE_LEFT
+        yield text.format(metres=math.ceil(max(0.0, aside))), 0.0, True
 
 
 def _draw_arrow(canvas: Canvas, start: tuple[float, float], push: float) -> None:

@@ -77,18 +77,18 @@ class Cell(Widget):
         return True
 
     def _bind(self, code: int) -> None:
+        """Take a key, or say why it can't be had, and wait for another."""
+        what = self._controls.pad_sign(code) if self._for_pads else key_name(code)
         if not self._bindings.may(self._meaning, code):
-            what = self._controls.pad_sign(code) if self._for_pads else key_name(code)
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
+            return
+        if poor := self._bindings.bereft(self._meaning, code):
+            self._on_change(texts.BINDINGS_ONLY.format(key=what, other=texts.BINDINGS[poor.name]))
             return
         self.stop()
         loser = self._bindings.bind(self._meaning, code)
-        if loser is None:
-            self._on_change("")
-            return
-        left = names(self._words(loser))
-        text = texts.BINDINGS_TAKEN if left else texts.BINDINGS_LOST
-        self._on_change(text.format(what=self.label, other=texts.BINDINGS[loser.name], key=left))
+        left = names(self._words(loser)) if loser else ""
+        self._on_change(texts.BINDINGS_TAKEN.format(other=texts.BINDINGS[loser.name], key=left) if loser else "")
 
     @property
     def _for_pads(self) -> bool:

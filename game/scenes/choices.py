@@ -56,8 +56,8 @@ class ChoicesScene:
         if not self._course:
             self._add_help()
             self._add_starts()
-            self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, texts.CHOICES_GRAVITY_HELP)
-        self._add_slider("pace", PACES, texts.PACE, texts.CHOICES_PACE_HELP)
+            self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, lambda: texts.CHOICES_GRAVITY_HELP)
+        self._add_slider("pace", PACES, texts.PACE, lambda: texts.CHOICES_PACE_HELP)
         toggles = {"check_flights": texts.CHOICES_CHECK, "teach": texts.CHOICES_TEACH, "explain": texts.CHOICES_EXPLAIN}
         if self._course:
             toggles = {"explain": texts.CHOICES_EXPLAIN}
@@ -72,8 +72,9 @@ class ChoicesScene:
         """Add how much the network helps, and when."""
         settings = self._context.settings
         word = self._context.controls.word
-        help_ = texts.CHOICES_ASSIST_HELP.format(less=word(Command.SLOWER), more=word(Command.FASTER))
-        self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST, help_)
+        keys = {"less": word(Command.SLOWER), "more": word(Command.FASTER)}
+        self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST,
+                         lambda: texts.CHOICES_ASSIST_HELP[settings.assist > 0].format(**keys))  # fmt: skip
         self._choice(texts.CHOICES_MODE, texts.CHOICES_MODES, _index(MODES, settings.copilot),
                      lambda index: self._changes("copilot")(MODES[index]),
                      lambda: texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)])  # fmt: skip
@@ -124,10 +125,10 @@ class ChoicesScene:
         """Where the next row goes."""
         return MARGIN, _FIRST + len(self._rows) * _ROW, _WIDTH, _ROW - 6
 
-    def _add_slider(self, name: str, limits: tuple[float, float], label: str, help_: str) -> None:
+    def _add_slider(self, name: str, limits: tuple[float, float], label: str, help_: Callable[[], str]) -> None:
         form, value = self._form, getattr(self._context.settings, name)
         slider = Slider(form.manager, self._box, label, value, limits, self._changes(name), step=0.1, figure=_percent)
-        self._rows[form.add(slider)] = lambda: help_
+        self._rows[form.add(slider)] = help_
 
     def _choice(self, label: str, words: tuple[str, ...] | list[str], index: int,
                 change: Callable[[int], None], help_: Callable[[], str]) -> None:  # fmt: skip

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 import pygame
 
+from ai.rules import tenths
 from game import texts
 from game.context import Context
 from game.controls import Command
@@ -21,6 +22,7 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
 from game.ui.pointer import Pointer
+from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.ui.widget import Widget
@@ -58,7 +60,7 @@ class Logbook:
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Leave it to the widgets; Delete throws a flight away, as elsewhere."""
         if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE and not self._form.typing:
-            self._forget()
+            self._throw_away()
             return None
         self._charts.follow(event)
         return self._form.handle_event(event)
@@ -105,7 +107,7 @@ class Logbook:
     def _reload(self) -> None:
         """Look at the disk again."""
         self._entries = self._records.entries()
-        self._kept = self._records.kept()
+        self._kept, self._thrown = self._records.kept(), self._records.thrown()
         self._line = self._records.problem or texts.LOGBOOK_PLACE.format(folder=self._records.folder)
         self._totals = totals(self._entries)
         self._plot()
@@ -134,10 +136,13 @@ class Logbook:
             chart.set([series], span)
 
     def _set_verbs(self) -> None:
+        self._why_gone = self._records.why_gone(self.chosen) if self.chosen else ""
         rows = []
         if self._replayable:
             rows = [(texts.LOGBOOK_WATCH, self._watch), (texts.LOGBOOK_RACE, self._race),
-                    (texts.LOGBOOK_FORGET, self._forget)]  # fmt: skip
+                    (texts.LOGBOOK_THROW_AWAY, self._throw_away)]  # fmt: skip
+        elif self.chosen and self.chosen.file in self._thrown:
+            rows = [(texts.LOGBOOK_BRING_BACK, self._bring_back)]
         manager = self._form.manager
         new: list[Widget] = [
             Word(manager, (_LEFT, _FIRST_VERB + number * _LINE, 220, _LINE), label, press, size=18)
@@ -172,12 +177,18 @@ class Logbook:
         record = self._read()
         return Push(race(record)) if record else None
 
-    def _forget(self) -> None:
+    def _throw_away(self) -> None:
+        if self.chosen and self._replayable:
+            self._tell(self._records.throw_away(self.chosen.file), texts.LOGBOOK_THROWN)
+
+    def _bring_back(self) -> None:
+        if self.chosen:
+            self._tell(self._records.bring_back(self.chosen.file), texts.LOGBOOK_BROUGHT_BACK)
+
+    def _tell(self, done: bool, words: str) -> None:
+        """Say what was done, or why it could not be, and show what is there now."""
         assert self._context is not None
-        if self.chosen is None or not self._replayable:
-            return
-        done = self._records.forget(self.chosen.file)
-        self._context.note(texts.LOGBOOK_FORGOTTEN if done else self._records.problem)
+        self._context.note(words if done else self._records.problem)
         self._reload()
         self._form.focus(self._list)
 
@@ -197,8 +208,11 @@ class Logbook:
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
         self._charts.draw(canvas)
         self._form.draw(canvas)
-        if self.chosen and not self._replayable:
-            canvas.text(texts.LOGBOOK_NO_FILE, (_LEFT, _FIRST_VERB + 22), size=SMALL, colour=MUTE)
+        y = _FIRST_VERB + 22 + _LINE * (len(self._verbs) - 1)  # below the verbs, of which Back is one
+        bar = texts.NOT_COUNTED[self.chosen.bar] if self.chosen and self.chosen.bar else ""
+        for line in [line for text in (bar, self._why_gone) if text for line in wrapped(canvas, text, SMALL, _WIDTH)]:
+            canvas.text(line, (_LEFT, y), size=SMALL, colour=MUTE)
+            y += 19
         self._draw_hints(canvas)
 
     def _draw_hints(self, canvas: Canvas) -> None:
@@ -227,11 +241,9 @@ def _draw_totals(canvas: Canvas, sums: Totals) -> None:
 def _row(entry: Entry) -> tuple[str, ...]:
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
     course = _course(entry)
-    points = f"{entry.score}" if entry.landed else "–"
-    by = texts.LOGBOOK_YOU if entry.alone else texts.LOGBOOK_SHARED if entry.human > 0 else texts.LOGBOOK_NETWORK
-    if entry.practice or entry.outdated:
-        by = texts.PRACTICE if entry.practice else texts.LOGBOOK_OUTDATED
-    return when, course, texts.OUTCOMES[entry.outcome][0], f"{entry.seconds:.1f} s", points, by
+    points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score) if entry.landed else "–"
+    by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
+    return when, course, texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s", points, by
 
 
 def _course(entry: Entry) -> str:

@@ -9,6 +9,7 @@ from typing import Final
 import pygame
 
 from ai.missions import FIRST, MISSIONS
+from ai.rules import tenths
 from game import flight_file, texts
 from game.context import Context
 from game.controls import Command
@@ -151,12 +152,13 @@ class Missions:
         best = self._best.get(name)
         title = f"{icon(name)}   {(_TOLD.get(name) or texts.MISSIONS[name])[0]}"
         if name == FIRST.name:
-            return title, "", ""
+            assert self._context is not None
+            return title, texts.TUTORIAL_FLOWN if self._context.settings.first_flown else "–", ""
         if best is None:
             return title, "–", ""
         if name == _DAILY:
             return title, "", texts.SCORE.format(points=best.score)
-        return title, texts.MEDALS[best.medal], f"{best.fuel:.1f} s"
+        return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
 
     # The picture
 
@@ -195,7 +197,8 @@ class Missions:
             for row, line in enumerate(wrapped(canvas, _network_words(name), SMALL, _WIDTH)):
                 canvas.text(line, (_LEFT, _NETWORK + 19 * row), size=SMALL, colour=MUTE)
         if best:
-            words = texts.MISSION_BEST.format(fuel=best.fuel, seconds=best.seconds, points=best.score)
+            fuel, seconds = tenths(best.fuel), tenths(best.seconds)
+            words = texts.MISSION_BEST.format(fuel=fuel, seconds=seconds, points=best.score)
             canvas.text(words, (_LEFT, 384), size=SMALL, colour=HUMAN)
 
     def _draw_medals(self, canvas: Canvas, name: str) -> None:

@@ -12,7 +12,8 @@ from game.cockpit.hands import HANDS, OWN
 from game.cockpit.skill import Skill
 from game.context import Context
 from game.controls import Command, translate
-from game.course import Course, Duel
+from game.course import Course, Duel, Moment
+from game.credit import Credit
 from game.difficulty import Difficulty
 from game.ending import Ending, write_down
 from game.flight import Flight, Hand
@@ -38,6 +39,7 @@ class Play:
 
     Attributes:
         flight: the flight on the screen.
+        credit: who flies it, and what it counts for.
         ending: what follows its end.
         waiting: whether it still hangs in the sky for the pilot's first touch.
 
@@ -54,6 +56,7 @@ class Play:
         self._course = Duel(rival, rival_name) if rival else course
         self._context: Context | None = None
         self.flight: Flight
+        self.credit: Credit
         self.ending: Ending
         self._scenery: Scenery
         self._pace: Pace
@@ -77,7 +80,7 @@ class Play:
         if self._course is None and self._seed is None and not context.settings.tutored:
             from game.tutorial import Tutorial
 
-            self._course, context.settings.tutored = Tutorial(), True
+            self._course = Tutorial()
         self._records = Records(context.user_dir)
         self._skill = Skill(self._records.entries())
         if self._records.problem:
@@ -155,7 +158,8 @@ class Play:
         self._scenery.draw_craft(canvas, alpha, reason=self.ending.shown == 0)
         self._cockpit.draw_beside(canvas, view, flight.poses.at(alpha)[0])
         if self._course:
-            self._course.draw(canvas, view, flight, alpha, self._controls)
+            stuck = self.waiting and not self._let_go
+            self._course.draw(canvas, view, flight, Moment(alpha, self._controls, self._cockpit.clear, stuck))
         self._draw_words(canvas)
         self.ending.draw(canvas, self._controls, self._course, self._ghost, self._settings.show_hints)
 
@@ -177,8 +181,10 @@ class Play:
             self._cockpit.follow()
         self._scenery.clear = self._cockpit.clear
         self._scenery.follow(flight.over and not was_over, self.ending.shot)
-        if self._course and (told := self._course.follow(flight)):
-            self._sound.play(told)
+        if self._course:
+            if told := self._course.follow(flight):
+                self._sound.play(told)
+            self._remember(self._course)
         if flight.over:
             self._end()
 
@@ -190,11 +196,11 @@ class Play:
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            ending.make_card(self._cockpit, self._difficulty, course, self._skill, self._scenery)
+            ending.make_card(self._cockpit, course, self._skill, self._scenery)
             if course is None or course.kept:
                 assert self._context is not None
-                write_down(self._context, self.flight, self._cockpit, self._difficulty, course, self._records,
-                           self._skill, self._network, self._hands)  # fmt: skip
+                write_down(self._context, self.flight, self._cockpit, course, self._records, self._skill,
+                           self._network, self._hands)  # fmt: skip
 
     @property
     def _held(self) -> int:
@@ -206,7 +212,8 @@ class Play:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         action = self._held
         self._let_go = self._let_go or not action
-        if self.flight.hand is Hand.NETWORK or (action and self._let_go):
+        touched = bool(action) or (self._course is not None and not self._course.waits)
+        if self.flight.hand is Hand.NETWORK or (touched and self._let_go):
             self.waiting = False
         return self.waiting
 
@@ -214,13 +221,15 @@ class Play:
         self.waiting, self._let_go = True, False
         course = self._course
         pads, self._hands = (1, OWN) if course else self._chosen()
-        self._check = check = self._settings.check_flights and self._skill.check_due and not course
+        check = course is None and self._settings.check_flights and self._skill.check_due and not self._eased
         if check:
             self._hands = OWN
-        network = None if check else self._network.flyer
+        alone = check or (course is not None and course.alone)
+        network = None if alone else self._network.flyer
         self.flight = course.flight(seed, network) if course else Flight(seed, network, pads=pads, hands=self._hands)
         self._difficulty = Difficulty(self._settings, self.flight, free=not course)
-        self._cockpit = Cockpit(self.flight, self._settings, alone=check)
+        self.credit = Credit(self.flight, self._difficulty, course, self._hands, check=check)
+        self._cockpit = Cockpit(self.flight, self._settings, self.credit)
         self._ghost = course.ghost(seed, network) if course else None
         told = not course or bool(course.opening)
         self._scenery = Scenery(
@@ -230,7 +239,7 @@ class Play:
         self._heard = FlightSound(self._sound, self.flight.env, self._pace)
         self.ending = Ending(self.flight, self._pace, self._settings.reduced_motion)
         self._readouts = hud.flight_readouts(self.flight.env)
-        self._outlook = Outlook(self.flight, None if check else self._guide)
+        self._outlook = Outlook(self.flight, None if alone else self._guide)
 
     @property
     def _guide(self) -> networks.Flyer | None:
@@ -241,6 +250,11 @@ class Play:
         """Return how many pads there are, and what hands fly, as the player wants it."""
         hands = self._settings.hands
         return 3 if self._settings.three_pads else 1, hands if hands in HANDS else OWN
+
+    @property
+    def _eased(self) -> bool:
+        """Whether the player wants other gravity or another pace than flights have: such say nothing of their skill."""
+        return self._settings.gravity != 1 or self._settings.pace != 1
 
     def _load_network(self) -> None:
         assert self._context is not None
@@ -256,8 +270,9 @@ class Play:
     def _hand_over(self) -> None:
         if self.flight.hand_over():
             self._sound.play("to_network" if self.flight.hand is Hand.NETWORK else "to_human")
-        elif self.flight.network is None and self._network.flyer is None and self._context is not None:
-            self._context.note(texts.NO_NETWORK.format(problem=self._network.problem))
+        elif self.flight.network is None and not self.flight.over and self._context is not None:
+            problem = texts.NO_NETWORK.format(problem=self._network.problem)
+            self._context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     def _name_what_lacks(self) -> None:
         """Say why turning the dial does nothing, where it does nothing."""
@@ -280,9 +295,25 @@ class Play:
     def _begin_elsewhere(self) -> None:
         if self._course:
             self._course.skip()
+            self._remember(self._course)
             if self._course.through:
                 self._course = None
         self._begin(self.flight.recording.seed if self._course and self._course.fixed else self._new_seed())
+
+    def _remember(self, course: Course) -> None:
+        """Keep what the pilot has come to in a course, as soon as they have."""
+        if course.remember(self._settings):
+            assert self._context is not None
+            self._context.apply_settings()
+
+    def _leave_course(self) -> Transition:
+        """Go over to free flights, from a pause."""
+        assert self._course is not None
+        self._course.leave()
+        self._remember(self._course)
+        self._course = None
+        self._begin(self._new_seed())
+        return Pop()
 
     @property
     def _leaves(self) -> bool:
@@ -297,6 +328,8 @@ class Play:
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
+        if self._course and self._course.next_hint:
+            words.append((texts.TUTORIAL_LEAVE, self._leave_course))
         return [*words, (texts.PAUSE_CHOICES if self._course is None else texts.PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
@@ -316,7 +349,7 @@ class Play:
         self._settings.model = name
         self._context.apply_settings()
         self._load_network()
-        if not self._check:  # which is flown alone
+        if not self.credit.alone:
             self.flight.change_network(self._network.flyer)
             self._outlook.ask(self._guide)
 
@@ -325,7 +358,7 @@ class Play:
     def _draw_words(self, canvas: Canvas) -> None:
         course = self._course
         self._cockpit.draw_top(canvas)
-        flight_words.draw_title(canvas, self.flight, course, self._network, self._hands, self._difficulty.words)
+        flight_words.draw_title(canvas, self.flight, course, self._network, self._hands, self.credit.notice)
         hud.draw_readouts(canvas, self._readouts)
         if self.waiting and not (course and not course.opening):
             flight_words.draw_opening(canvas, self._controls, course, self._outlook.asks)

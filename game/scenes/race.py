@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import time
 
+from ai.missions import MISSIONS
 from game import texts
-from game.course import FlyOn, Race
+from game.course import Flown, FlyOn, Race
 from game.flight_file import Record
 from game.scenes.play import Play
 from game.tape import Tape
 
 
 def race(record: Record) -> Play:
-    """Fly a recorded flight's start against its ghost."""
-    return Play(record.recording.seed, course=Race(record, _name(record)))
+    """Fly a recorded flight's start against its ghost; a mission's as that mission, with what it asks and earns."""
+    mission = MISSIONS.get(record.recording.mission)
+    course = Flown(mission, record, _name(record)) if mission else Race(record, _name(record))
+    return Play(record.recording.seed, course=course)
 
 
 def fly_on(record: Record, tape: Tape) -> Play:

@@ -127,6 +127,8 @@ class Entry(Widget):
     and never empty; `on_cancel` is called when it is left unchanged.
     """
 
+    spells = True
+
     def __init__(
         self,
         manager: PointsManager,

@@ -95,6 +95,7 @@ class Form:
         outcome = self._take(event)
         if outcome is None:  # another scene has a sound of its own
             self._sound(*before)
+        self._tell_spelling()
         return outcome
 
     def _take(self, event: pygame.event.Event) -> Transition | None:
@@ -133,6 +134,7 @@ class Form:
         self._show_focus()
         for widget in self.widgets:
             widget.ease(at_once=self._context.settings.reduced_motion)
+        self._tell_spelling()
         return None
 
     def draw(self, canvas: Canvas) -> None:
@@ -177,6 +179,10 @@ class Form:
             self._context.sound.play("adjust")
         elif self._pressed and focused and type(focused).press is not Widget.press:
             self._context.sound.play("choose")
+
+    def _tell_spelling(self) -> None:
+        """Let letters be letters while one of the widgets takes them, whatever else their keys are bound to."""
+        self.controls.spelling = self.typing and self.focused is not None and self.focused.spells
 
     def _show_focus(self) -> None:
         for index, widget in enumerate(self.widgets):

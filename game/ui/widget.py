@@ -58,11 +58,14 @@ class Widget(UIElement):
     Attributes:
         focused: whether the form's focus is here.
         typing: whether letters are for this widget alone, and no commands.
+        spells: whether it is letters that are typed into it.
         warmth: 0 to 1, follows `focused` gently.
         help: a sentence about it, for a screen that shows one for what is in focus.
         ringed: whether a ring is drawn around the widget in focus; not while a mouse is in use.
 
     """
+
+    spells = False
 
     def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
         super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)

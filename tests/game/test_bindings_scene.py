@@ -63,11 +63,21 @@ def test_full_screen_and_pictures_do_not_happen_while_a_key_is_waited_for(table:
     assert not (table.app.context.user_dir / "screenshots").exists()
 
 
+def test_the_only_key_of_another_is_refused_by_name_and_another_is_waited_for(table: Driver):
+    table.keys(pygame.K_RETURN, pygame.K_f)
+    table.keys(*[pygame.K_DOWN] * 3, pygame.K_RETURN, pygame.K_f)
+    assert said(table) == texts.BINDINGS_ONLY.format(key="F", other=texts.BINDINGS["MAIN"])
+    assert controls(table).listening
+    assert saved(table, "keys") == {"main": ["f"]}
+    table.key(pygame.K_h)
+    assert saved(table, "keys") == {"main": ["f"], "handover": ["h"]}
+
+
 def test_one_row_and_all_of_them_go_back(table: Driver):
     table.keys(pygame.K_RETURN, pygame.K_f, pygame.K_DOWN, pygame.K_RETURN, pygame.K_g)
     assert saved(table, "keys").keys() == {"main", "left", "mode"}
     table.keys(pygame.K_DELETE)
-    assert saved(table, "keys").keys() == {"main", "mode"}
+    assert saved(table, "keys").keys() == {"main"}  # what had changed places with it goes back as well
     table.click((410, 644))
     assert saved(table, "keys") == {}
 

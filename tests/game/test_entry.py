@@ -3,6 +3,7 @@ from collections.abc import Callable
 import pygame
 import pytest
 
+from game.bindings import Command
 from game.collection import fitting
 from game.context import Context
 from game.scene import Pop, Transition
@@ -180,6 +181,20 @@ def test_letters_are_commands_again_afterwards(page: tuple[Driver, Page]):
     game.keys(pygame.K_RETURN, pygame.K_RETURN)
     write(game, "n")
     assert (scene.commands, scene.entry.text) == ("n", "Modern 3")
+
+
+def test_a_letter_that_is_bound_to_full_screen_is_typed_and_switches_nothing(page: tuple[Driver, Page]):
+    driver, scene = page
+    context = driver.app.context
+    context.controls.keys.bind(Command.FULLSCREEN, pygame.K_f)
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_f)
+    driver.post(pygame.TEXTINPUT, text="f")
+    assert scene.entry.text == "f"
+    assert not context.settings.full_screen
+    driver.key(pygame.K_RETURN)
+    driver.key(pygame.K_f)  # which nobody types any more
+    assert context.settings.full_screen
 
 
 def test_a_pad_takes_the_suggestion_with_a(page: tuple[Driver, Page]):

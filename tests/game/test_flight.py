@@ -151,7 +151,13 @@ def test_the_card_of_a_landing_and_of_the_other_ends():
     place(flight.env, 21.9, 12, 6, 0, 0, 0)
     while not flight.over:
         flight.step(0)
-    assert outcome_card(flight.env, 1.0).reason == "Left the area."
+    assert outcome_card(flight.env, 1.0).reason == "Left the area at the side, 22 m from its middle."
+    flight = Flight(1)
+    place(flight.env, 0, 25.9, 0, 6, 0, 0)
+    while not flight.over:
+        flight.step(0)
+    height = float(flight.env.altitude[0])
+    assert outcome_card(flight.env, 1.0).reason == f"Left the area at the top, {height:.0f} m up."
     flight = Flight(1)
     flight.env.steps[:] = round(LIMITS.time * 60) - 1
     flight.step(0)
@@ -162,7 +168,14 @@ def test_a_speed_just_over_the_limit_does_not_read_as_the_limit():
     env = LanderEnv(1, 0, frame_skip=1)
     env.reset()
     env.outcome[:], env.cause[:], env.impact[:] = Outcome.CRASHED, Cause.HARD, (2.02, 0, 0)
-    assert outcome_card(env, 1.0).reason == "Touched down at 2.02 m/s; 2.0 is the limit."
+    assert outcome_card(env, 1.0).reason == "Touched down at 2.02 m/s; 2.00 is the limit."
+
+
+def test_a_lean_just_over_the_limit_does_not_read_as_the_limit_or_less():
+    env = LanderEnv(1, 0, frame_skip=1)
+    env.reset()
+    env.outcome[:], env.cause[:], env.impact[:] = Outcome.CRASHED, Cause.TILTED, (0, 0, np.radians(28.7))
+    assert outcome_card(env, 1.0).reason == "Tilted 28.7° at contact; 28.6° is the limit."
 
 
 def test_networks_are_listed_with_what_is_wrong_with_them(tmp_path: Path):

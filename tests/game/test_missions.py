@@ -8,21 +8,23 @@ from ai.agent import DeepQAgent
 from ai.lander import PARAMS, Cause, Outcome
 from ai.missions import MISSIONS
 from benchmarks.missions import fly
-from game import flight_file, flight_words, networks, texts
+from game import flight_file, networks, texts
 from game.assets import ASSETS_DIR, MODELS_DIR
-from game.cockpit.cockpit import Cockpit
 from game.cockpit.surroundings import surroundings
 from game.context import Context
 from game.course import Flown
+from game.credit import Credit
+from game.difficulty import Difficulty
 from game.flight import Flight, Hand
 from game.flight_file import Record
 from game.hud import Card, flight_readouts
-from game.outcomes import landing_score
+from game.outcomes import flight_figures, landing_score
 from game.records import Records
 from game.scenes.logbook import Logbook
 from game.scenes.missions import Missions
 from game.scenes.play import Play
 from game.scenes.replay import Replay
+from game.settings import Settings
 from game.tape import Rerun, Tape
 from game.ui.canvas import Canvas
 from tests.game.driver import Driver
@@ -60,6 +62,24 @@ def test_a_medal_is_for_little_fuel_and_little_time_together():
     assert mission.medal(mission.gold[0], mission.gold[1] + 0.1) == 2
     assert mission.medal(mission.silver[0], mission.silver[1]) == 2
     assert mission.medal(mission.silver[0] + 0.1, 1.0) == 1
+
+
+@pytest.mark.parametrize("name", MISSIONS)
+def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_much(name: str):
+    mission = MISSIONS[name]
+    for medal, (most_fuel, longest) in ((3, mission.gold), (2, mission.silver)):
+        flight = Flight(0, None, mission=name)
+        env = flight.env
+        for steps in range(round(600 * most_fuel) - 90, round(600 * most_fuel) + 91):  # of a jet, a 600th each
+            env.main_steps[:], env.side_steps[:], env.steps[:] = 0, steps, round(60 * (longest - 1))
+            figures = {label: float(value) for label, value, _ in flight_figures(env)}
+            kept = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
+            assert kept == (figures[texts.FUEL] <= most_fuel)
+        env.side_steps[:] = 0
+        for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
+            env.steps[:] = steps
+            figures = {label: float(value) for label, value, _ in flight_figures(env)}
+            assert (mission.medal(0.0, float(env.time[0])) >= medal) == (figures[texts.TIME] <= longest)
 
 
 def recorded(name: str) -> Record:
@@ -129,11 +149,13 @@ def test_the_card_says_what_the_next_medal_asks():
 
     def said(fuel: float, seconds: float) -> str:
         env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
-        return Flown(mission).card(card, flight).reason
+        course = Flown(mission)
+        credit = Credit(flight, Difficulty(Settings(), flight, free=False), course)
+        return course.card(card, flight, credit).reason
 
     assert said(3.0, 7.0) == texts.MEDAL_GOLD
     assert said(3.5, 7.0) == "Gold asks for 0.4 s less fuel."
-    assert said(3.0, 8.02) == "Gold asks for 0.1 s less time."
+    assert said(3.0, 8.1) == "Gold asks for 0.1 s less time."
     assert said(5.0, 13.5) == "Silver asks for 0.8 s less fuel and 1.5 s less time."
 
 
@@ -143,7 +165,9 @@ def test_a_mission_that_is_lost_says_what_its_own_trouble_asks():
         env = flight.env
         env.outcome[:], env.cause[:] = Outcome.CRASHED, cause
         env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
-        return Flown(MISSIONS[name]).card(Card(False, "", "", (), 1.0, advice="else"), flight).advice
+        course = Flown(MISSIONS[name])
+        credit = Credit(flight, Difficulty(Settings(), flight, free=False), course)
+        return course.card(Card(False, "", "", (), 1.0, advice="else"), flight, credit).advice
 
     assert said("tank", Cause.HARD, fuel=3.0) == texts.ADVICE_TANK
     assert said("tank", Cause.HARD, fuel=2.0) == "else"
@@ -230,16 +254,17 @@ def test_no_medal_for_what_the_network_flew_or_for_a_crash(open_game: Open):
 
 @pytest.mark.parametrize(("assist", "warned"), [(0.0, False), (0.6, True)])
 def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
-    context: Context, monkeypatch: pytest.MonkeyPatch, assist: float, warned: bool
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, assist: float, warned: bool
 ):
-    context.settings.assist = assist
-    flight = Flight(0, DeepQAgent(9, 6), mission="brake")
-    Cockpit(flight, context.settings)
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("modern", DeepQAgent(9, 6)))
+    driver = open_game(Play(0, course=Flown(MISSIONS["brake"])))
+    driver.app.context.settings.assist = assist
+    driver.key(pygame.K_r)
     written: set[str] = set()
-    monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.add(string))
-    network = networks.Network("modern", flight.network)
-    flight_words.draw_title(Canvas(pygame.Surface((320, 180))), flight, Flown(MISSIONS["brake"]), network, "own", "")
-    assert (texts.MEDAL_BY_HAND in written) is warned
+    monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.add(string) or pygame.FRect())
+    driver.frames(1)
+    assert (texts.NOT_COUNTED["helped"] in written) is warned
+    assert (play(driver)._course.goal in written) is not warned
 
 
 def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):

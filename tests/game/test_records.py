@@ -74,7 +74,7 @@ def test_flights_that_end_at_one_moment_keep_a_file_each(kept: Records):
         lambda text: "",
         lambda text: text[: len(text) // 2],
         lambda text: "[]",
-        lambda text: text.replace('"version": 3', '"version": 9'),
+        lambda text: text.replace('"version": 4', '"version": 9'),
         lambda text: text.replace('"seed": 3', '"seed": -3'),
         lambda text: text.replace('"random"', '"nowhere"'),
         lambda text: text.replace('"actions": "', '"actions": "9*1 '),
@@ -153,11 +153,42 @@ def test_old_files_make_room_but_the_best_and_the_logbook_stay(kept: Records, mo
     assert len(kept.entries()) == 16
 
 
-def test_a_flight_can_be_thrown_away_and_its_line_stays(kept: Records):
+def test_a_flight_can_be_thrown_away_and_brought_back_and_its_line_stays(kept: Records):
     line = kept.keep(fly(), NOON)
-    assert kept.forget(line.file)
+    held = (kept.folder / line.file).read_bytes()
+    assert kept.why_gone(line) == ""
+    assert kept.throw_away(line.file)
     assert kept.kept() == set()
+    assert kept.thrown() == {line.file}
+    assert kept.why_gone(line) == texts.FLIGHT_THROWN
     assert len(kept.entries()) == 1
+    assert not kept.throw_away(line.file)
+    assert kept.problem
+    assert kept.bring_back(line.file)
+    assert kept.problem == kept.why_gone(line) == ""
+    assert (kept.folder / line.file).read_bytes() == held
+    assert not kept.bring_back(line.file)
+
+
+def test_the_latest_that_were_thrown_away_can_be_brought_back(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(kept._files, "_most_thrown", 3)
+    flight = fly()
+    lines = [kept.keep(flight, NOON + second) for second in range(5)]
+    for line in lines:
+        assert kept.throw_away(line.file)
+    assert kept.thrown() == {line.file for line in lines[2:]}
+    assert [kept.why_gone(line) for line in lines[1:3]] == [texts.FLIGHT_MISSING, texts.FLIGHT_THROWN]
+
+
+def test_why_a_flight_is_gone_is_told_as_it_is(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(records, "RECENT", 3)
+    monkeypatch.setattr(records, "_SLACK", 0)
+    flight = fly(by_hand=True)
+    lines = [kept.keep(flight, NOON + second) for second in range(5)]
+    assert kept.why_gone(lines[0]) == texts.FLIGHT_TOO_OLD
+    (kept.folder / lines[4].file).unlink()
+    assert kept.why_gone(lines[4]) == texts.FLIGHT_MISSING
+    assert kept.why_gone(entry(file="")) == texts.FLIGHT_NEVER_KEPT
 
 
 def test_best_are_landings_by_hand_by_points_and_in_missions_by_fuel():
@@ -174,13 +205,13 @@ def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(k
     line = kept.keep(scripted(0, mission="earth"), NOON, course="earth", alone=True)
     assert line.rules == MISSIONS["earth"].rules == 1
     text = (kept.folder / line.file).read_text()
-    older = text.replace('"version": 3', '"version": 2').replace(',\n  "rules": 1', "")
+    older = text.replace('"version": 4', '"version": 2').replace(',\n  "rules": 1', "")
     assert older.count("rules") == 0
     (kept.folder / "older.json").write_text(older)
     before = kept.read("older.json").entry
     assert (before.outdated, line.outdated) == (True, False)
     assert best([replace(before, file="older.json"), line], most=1) == [replace(before, file="older.json"), line]
-    assert [_row(each)[-1] for each in (before, line)] == [texts.LOGBOOK_OUTDATED, texts.LOGBOOK_YOU]
+    assert [(each.bar, _row(each)[-1]) for each in (before, line)] == [("outdated", "network"), ("", "network")]
     assert _best_by_course([replace(before, fuel=0.0, medal=3, outcome="LANDED")]) == {}
     assert not entry(course="wind").outdated
     assert not entry().outdated
@@ -203,4 +234,4 @@ def test_any_recording_survives_its_file(actions: list[int], seed: int):
     recording = Recording(seed, "hard", 3, actions, hands)
     record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
     assert from_text(to_text(record)) == record
-    assert json.loads(to_text(record))["version"] == 3
+    assert json.loads(to_text(record))["version"] == 4

@@ -7,6 +7,7 @@ import pytest
 
 from ai.lander import Outcome
 from ai.pilots import ScriptedPilot
+from game import texts
 from game.context import Context
 from game.flight import Flight, Hand
 from game.flight_file import Record
@@ -14,6 +15,7 @@ from game.records import Records
 from game.scenes.logbook import Logbook
 from game.scenes.replay import Replay
 from game.tape import Rerun, Tape
+from game.ui.canvas import Canvas
 from tests.game.driver import Driver
 from tests.game.flights import NOON, fly_out, kept, scripted
 
@@ -254,12 +256,25 @@ def test_flights_are_listed_newest_first_and_filtered(book: Driver):
     assert page(book)._totals.flights == 2
 
 
-def test_a_flight_that_is_thrown_away_keeps_its_line(book: Driver):
+def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(book: Driver, monkeypatch):
+    entry = page(book).chosen
     book.key(pygame.K_DELETE)
     assert len(page(book)._shown) == 2
-    assert page(book)._verbs[0].label == "Back"
+    assert [word.label for word in page(book)._verbs] == [texts.LOGBOOK_BRING_BACK, texts.BACK]
+    assert said(book) == texts.LOGBOOK_THROWN
     book.key(pygame.K_RETURN)  # there is nothing to watch any more
     assert book.top_name == "Logbook"
+    written: list[str] = []
+    monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
+    book.frames(1)
+    assert texts.FLIGHT_THROWN in written
+    assert texts.FLIGHT_TOO_OLD not in written
+    page(book)._form.focus(page(book)._verbs[0])
+    book.key(pygame.K_RETURN)
+    assert said(book) == texts.LOGBOOK_BROUGHT_BACK
+    assert page(book).chosen == entry
+    book.key(pygame.K_RETURN)
+    assert book.top_name == "Replay"
 
 
 def test_a_damaged_flight_is_named_and_left_alone(book: Driver):
