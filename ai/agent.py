@@ -31,7 +31,7 @@ from ai.nn.activations import ACTIVATIONS
 from ai.nn.costs import COSTS
 from ai.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
 from ai.scaling import RunningScale
-from ai.schedule import linear
+from ai.schedule import importance, learning_rate
 
 FORMAT: Final = "tranquility agent"
 VERSION: Final = 1
@@ -162,9 +162,7 @@ class DeepQAgent:
         config = self.config
         if len(self.replay) < min(config.warm_up, config.replay_size):
             return None
-        self.optimizer.learning_rate = linear(
-            config.learning_rate, config.final_learning_rate, self.decisions, config.horizon
-        )
+        self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip
         self.loss = self._learn_from(self.replay, config.batch_size, config.updates)
         if config.success_pass and len(self.successes) >= config.success_batch_size:
@@ -173,7 +171,7 @@ class DeepQAgent:
 
     def _learn_from(self, memory: ReplayBuffer, batch_size: int, updates: int) -> float:
         if isinstance(memory, PrioritisedReplayBuffer):
-            memory.importance = linear(self.config.importance_exponent, 1.0, self.decisions, self.config.horizon)
+            memory.importance = importance(self.config, self.decisions)
         cells, rows, weights = memory.sample(batch_size * updates, self.rng)
         if self.scale:
             cells = cells._replace(state=self.scale(cells.state), next_state=self.scale(cells.next_state))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+import time
+from collections.abc import Callable, Generator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import fields, replace
 from itertools import repeat
@@ -22,6 +23,7 @@ from ai.lander_task import Evaluation, trial
 from ai.messages import Begun, Change, Command, Insight, Message, Refused, Revert, Save, Saved, Sight, Teach
 from ai.runs import resume_run, snapshot
 from ai.scaling import RunningScale
+from ai.schedule import InForce, in_force
 from ai.task import VALIDATION_SEED
 from ai.training import Progress, Training
 
@@ -40,21 +42,26 @@ CAREFUL: Final = 0  # the lander with the fewest random actions; the last one ha
 
 
 def live(
-    config: Config, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None
+    config: Config,
+    seed: int = 0,
+    *,
+    keep: Path | None = None,
+    resume: Path | None = None,
+    clock: Callable[[], float] = time.monotonic,
 ) -> Generator[tuple[Message, ...], Command | None, None]:
     """Train landers without end; every turn is one decision of all landers, and yields what there is to tell.
 
     The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
     without a decision, and yields the answer. The run saves itself to `keep` now and then and when it is closed.
-    With `resume`, it goes on from a saved run, with the settings, seed and history of that.
+    With `resume`, it goes on from a saved run, with the settings, seed and history of that. `clock` counts seconds.
 
     Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's, and
     FloatingPointError, which names the learning step and the likely cause, when the numbers run away.
     """
     if resume is None:
-        run = _LiveRun(Training(config, seed), History(), keep)
+        run = _LiveRun(Training(config, seed), History(), keep, clock)
     else:
-        run = _LiveRun(resume_run(resume), History.read(resume), keep)
+        run = _LiveRun(resume_run(resume), History.read(resume), keep, clock)
     try:
         told = run.begin()
         while True:
@@ -114,10 +121,13 @@ class _Trial:
 class _LiveRun:
     """A Training, what has been told of it, and where it is kept."""
 
-    def __init__(self, training: Training, history: History, keep: Path | None) -> None:
+    def __init__(
+        self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]
+    ) -> None:
         if not isinstance(training.env, LanderEnv):
             raise ValueError(f"only landers can be looked into, not {training.config.env}")
         self.training, self.history, self.env = training, history, training.env
+        training.clock = clock
         training.witness = self._see
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
         self._trial: _Trial | None = None
@@ -143,7 +153,7 @@ class _LiveRun:
     def begin(self) -> tuple[Message, ...]:
         """Say how the run begins."""
         training = self.training
-        self._told = [Begun(training.config, training.seed, training.agent.decisions), self._sight, self._insight()]
+        self._told = [Begun(training.config, training.seed, training.agent.decisions), self._sight, *self._look()]
         if not self.history.checkpoints:
             self._note(self._checkpoint(0.0))
         return self._flush()
@@ -159,7 +169,7 @@ class _LiveRun:
         self._told.append(self._sight)
         if now >= self._insight_at:
             self._insight_at = now + INSIGHT_SECONDS
-            self._told.append(self._insight())
+            self._told += self._look()
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self._note(self._point(progress))
@@ -219,6 +229,11 @@ class _LiveRun:
             agent.decisions,
         )  # fmt: skip
 
+    def _look(self) -> tuple[Insight, InForce]:
+        """What is told a few times a second, and whenever a command has changed it."""
+        training = self.training
+        return self._insight(), in_force(training.config, training.agent.decisions, training.episodes)
+
     def _point(self, progress: Progress) -> Point:
         landed, crashed, out_of_bounds, timed_out = progress.shares
         return Point(
@@ -266,6 +281,7 @@ class _LiveRun:
             return
         value = attrgetter(command.name)
         self._alter(command.name, value(before), value(self.training.config))
+        self._told.append(self._look()[1])
 
     def _teach(self, command: Teach) -> None:
         agent = self.training.agent
@@ -293,7 +309,7 @@ class _LiveRun:
             return
         self._go_back(checkpoint)
         self._alter(REVERTED, None, checkpoint.decisions)
-        self._told.append(self._insight())
+        self._told += self._look()
 
     def _go_back(self, checkpoint: Checkpoint) -> None:
         agent = self.training.agent

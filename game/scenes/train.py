@@ -118,6 +118,8 @@ class Train:
         if student.begun:
             student.begun = False
             self.knobs.set_config(student.config, student.seed)
+        if student.alive:
+            self.knobs.show_in_force(student.in_force)
         if student.alive != self._alive:
             self._alive = student.alive
             self._advice.clear()
@@ -146,8 +148,8 @@ class Train:
             return False
         self.inside.take(student.insight, student.config)
         if student.alive and len(student.history):
-            inside = self.inside
-            self._advice.follow(student.history, student.config, inside.dead_share, inside.clipped_share)
+            health = self.inside.health
+            self._advice.follow(student.history, student.config, health.dead_share, health.clipped_share)
         return True
 
     def draw(self, canvas: Canvas, alpha: float) -> None:

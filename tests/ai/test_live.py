@@ -29,6 +29,7 @@ from ai.live import (
 from ai.nn import ModelFormatError
 from ai.rewards import RewardWeights
 from ai.runs import resume_run
+from ai.schedule import exploration_of_each
 from ai.training import Training
 
 TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000, spawn="near")
@@ -138,8 +139,7 @@ def test_what_flights_earned_is_the_sum_of_its_parts(begin):
 
 
 def test_the_careful_lander_acts_at_random_the_least():
-    training = Training(TINY.changed(epsilon_spread=0.7), 0, evaluate_every=0)
-    spread = training._spread(0.3)
+    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3)
     assert spread.argmin() == CAREFUL
     assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
 
@@ -163,9 +163,9 @@ def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
 def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     run = begin()
     told_in(run, 30)
-    (answer,) = run.send(Change("learning_rate", 0.05))
+    answer, _ = run.send(Change("learning_rate", 0.05))
     assert answer == Alteration(29 * 32, "learning_rate", TINY.learning_rate, 0.05)
-    (answer,) = run.send(Change("weights.time", -1.0))
+    answer, _ = run.send(Change("weights.time", -1.0))
     assert answer == Alteration(29 * 32, "weights.time", TINY.weights.time, -1.0)
     assert of(Sight, next(run))[0].decisions == 30 * 32
 
@@ -269,7 +269,7 @@ def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
     history = History()
     for message in told_in(run, 100):
         history.append(message)
-    (change,) = run.send(Change("updates", 2))
+    change, _ = run.send(Change("updates", 2))
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
     again = begin(Config(), 99, resume=tmp_path / "run")
     first = next(again)
