@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import zlib
 from copy import copy
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar, Final
 from zipfile import BadZipFile
@@ -30,7 +30,11 @@ _VERSION: Final = 1
 
 @dataclass(frozen=True)
 class Point:
-    """How a run stood after one decision. Rates, shares and parts are of the last hundred flights."""
+    """How a run stood after one decision. Rates, shares and parts are of the last hundred flights.
+
+    What is not known is NaN: before the first flight has ended, and before the first learning step, which after a
+    resumption waits for new memories.
+    """
 
     may_thin: ClassVar = True  # of those that nobody has fetched, every other may be dropped
 
@@ -64,12 +68,17 @@ class Checkpoint:
 
 @dataclass(frozen=True)
 class Alteration:
-    """A knob that was turned during the run."""
+    """A knob that was turned during the run.
+
+    `amends` says that it takes the place of the last alteration of that name: what a drag passes through acts only
+    for a moment, and where it ends is what counts.
+    """
 
     decisions: int
     name: str
     before: Any
     after: Any
+    amends: bool = False
 
 
 @dataclass(frozen=True)
@@ -128,7 +137,7 @@ class History:
             case Checkpoint():
                 self._append_checkpoint(entry)
             case Alteration():
-                self.alterations.append(entry)
+                self._append_alteration(entry)
             case Validation():
                 self.validations.append(entry)
 
@@ -142,6 +151,14 @@ class History:
         row[: len(_NUMBERS)] = [getattr(point, name) for name in _NUMBERS]
         row[len(_NUMBERS) :] = point.parts
         self._told += 1
+
+    def _append_alteration(self, entry: Alteration) -> None:
+        if entry.amends:
+            last = next(each for each in reversed(self.alterations) if each.name == entry.name)
+            self.alterations.remove(last)
+            entry = replace(entry, before=last.before, amends=False)
+        if entry.before != entry.after:  # otherwise it is as if nobody had touched it
+            self.alterations.append(entry)
 
     def _append_checkpoint(self, checkpoint: Checkpoint) -> None:
         self.checkpoints.append(checkpoint)
@@ -173,7 +190,7 @@ class History:
         """Write the history into a run's folder; raises OSError if the disk does not take it."""
         described = {
             "version": _VERSION, "columns": list(_COLUMN), "stride": self._stride, "told": self._told,
-            "alterations": [asdict(alteration) for alteration in self.alterations],
+            "alterations": [_written(alteration) for alteration in self.alterations],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
                 {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.scale}
@@ -222,3 +239,8 @@ class History:
         ]
         self.alterations = [Alteration(**told) for told in described["alterations"]]
         self.validations = [Validation(**told) for told in described["validations"]]
+
+
+def _written(alteration: Alteration) -> dict[str, Any]:
+    """Return what a file holds of it; that it amends another one only matters on its way."""
+    return {name: value for name, value in asdict(alteration).items() if name != "amends"}

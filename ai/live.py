@@ -35,6 +35,7 @@ __all__ = [
 POINT_DECISIONS: Final = 256  # at least so many between two points
 INSIGHT_SECONDS: Final = 0.25
 KEEP_SECONDS: Final = 10.0
+TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
 TAUGHT: Final = "demonstrations"  # the name of the alteration that gives it some to learn from
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
@@ -140,6 +141,8 @@ class _LiveRun:
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._trouble = ""
+        self._began_learning = training.agent.train_count
+        self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
         self._lessons: set[Demonstration] = set()
         self._writer = ThreadPoolExecutor(max_workers=1)
         self._writing: Future[None] | None = None
@@ -235,11 +238,13 @@ class _LiveRun:
         return self._insight(), in_force(training.config, training.agent.decisions, training.episodes)
 
     def _point(self, progress: Progress) -> Point:
-        landed, crashed, out_of_bounds, timed_out = progress.shares
+        flown = 1.0 if self.training.flights.known else np.nan
+        learnt = 1.0 if self.training.agent.train_count > self._began_learning else np.nan
+        shares = [flown * share for share in progress.shares]
         return Point(
-            self.training.seconds, progress.decisions, progress.episodes, progress.success_rate,
-            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, progress.stage,
-            progress.steps_per_second, landed, crashed, out_of_bounds, timed_out, progress.parts or NOTHING_PAID,
+            self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
+            flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
+            progress.stage, progress.steps_per_second, *shares, parts=progress.parts or NOTHING_PAID,
         )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:
@@ -280,7 +285,9 @@ class _LiveRun:
             self._told.append(Refused(command, str(error)))
             return
         value = attrgetter(command.name)
-        self._alter(command.name, value(before), value(self.training.config))
+        after = value(self.training.config)
+        if after != value(before):
+            self._alter(command.name, value(before), after, self._amends(command.name, after))
         self._told.append(self._look()[1])
 
     def _teach(self, command: Teach) -> None:
@@ -299,8 +306,20 @@ class _LiveRun:
             self._change(Change("success_pass", taught(self.training.config).success_pass))
         self._alter(TAUGHT, None, used)
 
-    def _alter(self, name: str, before: Any, after: Any) -> None:
-        self._note(Alteration(self.training.agent.decisions, name, before, after))
+    def _alter(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
+        self._note(Alteration(self.training.agent.decisions, name, before, after, amends))
+
+    def _amends(self, name: str, after: Any) -> bool:
+        """Whether a knob is still being turned: a moment after the last time, or without a decision in between."""
+        now, last = self.training.clock(), self._turned_at.get(name)
+        self._turned_at[name] = now
+        if last is None:
+            return False
+        earlier = next(each for each in reversed(self.history.alterations) if each.name == name)
+        amends = now - last < TURNING_SECONDS or earlier.decisions == self.training.agent.decisions
+        if amends and earlier.before == after:  # back where it was: the mark will be gone
+            del self._turned_at[name]
+        return amends
 
     def _revert(self, command: Revert) -> None:
         checkpoint = self.history.checkpoint_at(command.decisions)

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from ai.agent import DeepQAgent
 from ai.config import LANDER, PRESETS
+from ai.flights import Flights
 from ai.gym_task import gym_config
 from ai.history import History
 from ai.knobs import nearest_preset
@@ -80,6 +81,7 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 1), "best": training.best.to_json() if training.best else None,
+        "flights": training.flights.to_json(),
     }  # fmt: skip
     return Snapshot(
         described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
@@ -113,6 +115,7 @@ def resume_run(folder: str | Path) -> Training:
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = int(described["episodes"]), int(described["landings"])
         training.seconds = float(described["seconds"])
+        training.flights.load(described.get("flights", Flights(0).to_json()))  # runs of old say nothing of them
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error!r}"]) from error
     training.agent.take_over(last)

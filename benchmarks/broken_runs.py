@@ -93,7 +93,9 @@ def cases() -> Iterator[tuple[str, Case]]:
                 kind = type(getattr(Config(), name))
                 if kind(value) != getattr(PRESETS[preset], name):
                     alone = name == "num_envs" and value == 1
-                    yield f"{preset} {name} {value:g}", Case(preset, {name: kind(value)}, 2_000 if alone else short)
+                    more = {"replay_prune": 1} if name == "replay_size" else {}
+                    yield f"{preset} {name} {value:g}", Case(preset, {name: kind(value)} | more,
+                                                             2_000 if alone else short)  # fmt: skip
 
 
 def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:

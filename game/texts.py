@@ -578,6 +578,7 @@ TRAIN_CHARTS_SHOW: Final = {
 TRAIN_THIS: Final = "this run"
 TRAIN_RUN: Final = "run {number}"
 TRAIN_CHECKPOINT: Final = "checkpoint {seconds:.0f} s"
+TRAIN_TURNED_MORE: Final = "{few} and {count} more"
 TRAIN_NO_CHECKPOINT: Final = "There is nothing to fly against yet: press Start first."
 TRAIN_KEPT: Final = "What it has learnt is kept, and offered when you come back."
 TRAIN_NOTHING: Final = "There is nothing to save yet: press Start first."

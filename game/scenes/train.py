@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import pygame
 
 from ai.config import PRESETS, Config
@@ -351,7 +352,8 @@ class Train:
             line = texts.TRAIN_FIGURES.format(
                 count=len(sight.outcome), seconds=history.points[-1][0], decisions=int(sight.decisions)
             )
-            height, share = _TITLE.height, f"{100 * history['success'][-1]:.0f}"
+            height, landed = _TITLE.height, history["success"][-1]
+            share = "" if np.isnan(landed) else f"{100 * landed:.0f}"
         for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
             canvas.panel(box, _COVER)
         draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,

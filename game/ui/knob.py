@@ -72,7 +72,7 @@ class Knob(Widget):
         """Show what the panel says."""
         self.value, self.home, self.waits, self.idle = value, home, waits, idle
         self.now = None if now is None or figure(now) == figure(value) else now
-        self.help = f"{idle}\n{self.dial.help}" if idle else self.dial.help
+        self.help = idle or self.dial.help
 
     @property
     def live(self) -> bool:
@@ -184,7 +184,7 @@ class SliderKnob(Knob):
         """Mark on the track what acts now, and write it above."""
         left, right = self.track
         x, middle = left + self._at(now) * (right - left), self.box.centery
-        canvas.line((x, middle - 4), (x, middle + 4), INK, 2)
+        canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
         self._paint_beside(canvas, texts.KNOB_NOW.format(value=figure(now)), middle - 4, x, handle)
 
     def _paint_beside(self, canvas: Canvas, words: str, baseline: float, x: float, handle: float) -> None:
