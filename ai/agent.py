@@ -32,7 +32,7 @@ from ai.nn.files import brief, count_of, inside, read_arrays, read_json
 from ai.nn.folder import NETWORK, Kind
 from ai.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
 from ai.scaling import RunningScale
-from ai.schedule import linear
+from ai.schedule import importance, learning_rate
 
 FORMAT: Final = "tranquility agent"
 VERSION: Final = 1
@@ -180,9 +180,7 @@ class DeepQAgent:
         config = self.config
         if self.replay.added < config.warm_up:
             return None
-        self.optimizer.learning_rate = linear(
-            config.learning_rate, config.final_learning_rate, self.decisions, config.horizon
-        )
+        self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip
         self.loss, self.mean_q = self._learn_from(self.replay, config.batch_size, config.updates)
         if config.success_pass and len(self.successes) >= config.success_batch_size:
@@ -197,7 +195,7 @@ class DeepQAgent:
         With `follow`, the steps count, and the target network follows.
         """
         if isinstance(memory, PrioritisedReplayBuffer):
-            memory.importance = linear(self.config.importance_exponent, 1.0, self.decisions, self.config.horizon)
+            memory.importance = importance(self.config, self.decisions)
         cells, rows, weights = memory.sample(batch_size * updates, self.rng)
         if self.config.mirror and self.symmetry is not None:
             batches = MemoryCell(*(part.reshape(updates, batch_size, *part.shape[1:]) for part in cells))

@@ -53,13 +53,13 @@ class Config(Knobs):
     warm_up: int = knob(5_000, "Memories before learning begins.", "memory", low=1, high=50_000)
     prioritised: bool = knob(False, "Replay surprising memories more often.", "memory")
     priority_exponent: float = knob(0.6, "0 replays all alike, 1 in proportion to the surprise.",
-                                    "memory", low=0.0, high=1.0)
+                                    "memory", low=0.0, high=1.0, needs="prioritised")
     importance_exponent: float = knob(0.4, "How far the bias of prioritised replay is corrected, rising to 1.",
-                                      "memory", low=0.0, high=1.0)
+                                      "memory", low=0.0, high=1.0, needs="prioritised")
     mirror: bool = knob(True, "Show half of each batch as in a mirror: free experience.", "memory", live=True)
     success_pass: bool = knob(False, "A second pass over memories of successful landings.", "memory", live=True)
     success_batch_size: int = knob(32, "How many memories the second pass learns from.",
-                                   "memory", low=4, high=512, live=True)
+                                   "memory", low=4, high=512, live=True, needs="success_pass")
 
     double: bool = knob(True, "One network chooses the next action, the other judges it.", "target", live=True)
     target_every: int = knob(1, "Learning steps between two updates of the target network.",

@@ -45,9 +45,10 @@ class DigitConfig(Knobs):
                          "learning", low=0, high=30_000)
 
     filters: tuple[int, ...] = knob((32, 64), "Filters of each convolution, each followed by pooling.",
-                                    "network", low=1, high=256, offers=((8,), (16,), (8, 16), (16, 32), (32, 64)))
+                                    "network", low=1, high=256, offers=((8,), (16,), (8, 16), (16, 32), (32, 64)),
+                                    needs="convolutions")
     convolutions: bool = knob(True, "Look at images through small windows that slide over them.", "network")
-    kernel: int = knob(5, "Pixels along a window.", "network", low=1, high=9)
+    kernel: int = knob(5, "Pixels along a window.", "network", low=1, high=9, needs="convolutions")
     hidden: tuple[int, ...] = knob((128,), "Units in each hidden layer.", "network", low=1, high=2048,
                                    offers=((32,), (128,), (512,), (100, 50), (256, 128)))
     activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
@@ -56,7 +57,8 @@ class DigitConfig(Knobs):
 
     augmentation: float = knob(1.0, "How far images are bent, slanted and turned before they are learnt from.",
                                "images", low=0.0, high=2.0, live=True)
-    original: float = knob(0.1, "Share of images that are shown as they are.", "images", low=0.0, high=1.0, live=True)
+    original: float = knob(0.1, "Share of images that are shown as they are.", "images", low=0.0, high=1.0, live=True,
+                           needs="augmentation")
     # fmt: on
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Final
+from collections.abc import Mapping
+from typing import Any, Final
 
 import numpy as np
 
@@ -27,6 +28,11 @@ class Flights:
         self._parts: deque[list[float]] = deque(maxlen=RECENT)
 
     @property
+    def known(self) -> bool:
+        """Whether any has ended."""
+        return bool(self._outcomes)
+
+    @property
     def success(self) -> float:
         """Share of the last hundred that ended well; 0 before any has ended."""
         return self.shares[SUCCESS - 1]
@@ -44,10 +50,33 @@ class Flights:
         self._outcomes.extend(result.outcome[ended].tolist())
         self._returns.extend(self.earned[ended].tolist())
         self.earned[ended] = 0.0
-        count = len(self._outcomes)
-        self.shares = tuple(self._outcomes.count(outcome + 1) / count for outcome in range(OUTCOMES))
-        self.mean_return = sum(self._returns) / count
         if self._paid is not None:
             self._parts.extend(self._paid[:, ended].T.tolist())
             self._paid[:, ended] = 0.0
+        self._sum_up()
+
+    def to_json(self) -> dict[str, list[Any]]:
+        """Return what the last hundred came to, for a file: a run that goes on goes on counting from them."""
+        return {"outcomes": [*self._outcomes], "returns": [*self._returns], "parts": [*self._parts]}
+
+    def load(self, told: Mapping[str, Any]) -> None:
+        """Take over what `to_json` gave; raises KeyError, TypeError or ValueError where it makes no sense."""
+        outcomes = [int(outcome) for outcome in told["outcomes"]]
+        returns = [float(earned) for earned in told["returns"]]
+        parts = [[float(part) for part in parts] for parts in told["parts"]]
+        if len(returns) != len(outcomes) or len(parts) not in (0, len(outcomes)) or len({*map(len, parts)}) > 1:
+            raise ValueError("the last flights have outcomes, returns and parts of different numbers")
+        if not np.isfinite([*returns, *(part for each in parts for part in each)]).all():
+            raise ValueError("the last flights have returns that are no numbers")
+        self._outcomes.extend(outcomes)
+        self._returns.extend(returns)
+        self._parts.extend(parts)
+        if outcomes:
+            self._sum_up()
+
+    def _sum_up(self) -> None:
+        count = len(self._outcomes)
+        self.shares = tuple(self._outcomes.count(outcome + 1) / count for outcome in range(OUTCOMES))
+        self.mean_return = sum(self._returns) / count
+        if self._parts:
             self.parts = tuple(np.mean(self._parts, axis=0).tolist())

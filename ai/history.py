@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from copy import copy
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
@@ -34,7 +34,11 @@ _MOST_COLUMNS: Final = 1000
 
 @dataclass(frozen=True)
 class Point:
-    """How a run stood after one decision. Rates, shares and parts are of the last hundred flights."""
+    """How a run stood after one decision. Rates, shares and parts are of the last hundred flights.
+
+    What is not known is NaN: before the first flight has ended, and before the first learning step, which after a
+    resumption waits for new memories.
+    """
 
     may_thin: ClassVar = True  # of those that nobody has fetched, every other may be dropped
 
@@ -68,12 +72,17 @@ class Checkpoint:
 
 @dataclass(frozen=True)
 class Alteration:
-    """A knob that was turned during the run."""
+    """A knob that was turned during the run.
+
+    `amends` says that it takes the place of the last alteration of that name: what a drag passes through acts only
+    for a moment, and where it ends is what counts.
+    """
 
     decisions: int
     name: str
     before: Any
     after: Any
+    amends: bool = False
 
 
 @dataclass(frozen=True)
@@ -137,7 +146,7 @@ class History:
             case Checkpoint():
                 self._append_checkpoint(entry)
             case Alteration():
-                self.alterations.append(entry)
+                self._append_alteration(entry)
             case Validation():
                 self.validations.append(entry)
 
@@ -151,6 +160,14 @@ class History:
         row[: len(_NUMBERS)] = [getattr(point, name) for name in _NUMBERS]
         row[len(_NUMBERS) :] = point.parts
         self._told += 1
+
+    def _append_alteration(self, entry: Alteration) -> None:
+        if entry.amends:
+            last = next(each for each in reversed(self.alterations) if each.name == entry.name)
+            self.alterations.remove(last)
+            entry = replace(entry, before=last.before, amends=False)
+        if entry.before != entry.after:  # otherwise it is as if nobody had touched it
+            self.alterations.append(entry)
 
     def _append_checkpoint(self, checkpoint: Checkpoint) -> None:
         self.checkpoints.append(checkpoint)
@@ -183,7 +200,7 @@ class History:
         described = {
             "version": _VERSION, "columns": list(_COLUMN), "reward_scale": self.reward_scale,
             "stride": self._stride, "told": self._told,
-            "alterations": [asdict(alteration) for alteration in self.alterations],
+            "alterations": [_written(alteration) for alteration in self.alterations],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
                 {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.scale}
@@ -286,3 +303,8 @@ def _above_zero(scale: Any) -> float:
     if not number_of(scale) > 0:
         raise ValueError(f"a reward scale of {brief(repr(scale), 40)} is not above 0")
     return float(scale)
+
+
+def _written(alteration: Alteration) -> dict[str, Any]:
+    """Return what a file holds of it; that it amends another one only matters on its way."""
+    return {name: value for name, value in asdict(alteration).items() if name != "amends"}

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, NeuralNetwork
+
+_WITNESSES: Final = 64  # observations, to find the silent units by
+_LENGTHS: Final = 40  # gradients, to see how many were cut short: ten seconds of a live run
+_CUT: Final = 0.999  # of the longest allowed: so long is one that was cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +77,34 @@ def dead_units(network: NeuralNetwork, observations: npt.ArrayLike) -> float:
                 units += silent.size
                 dead += int(silent.sum())
     return dead / units if units else 0.0
+
+
+class NetworkHealth:
+    """What is wrong inside a network that learns, from a look at it now and then.
+
+    Attributes:
+        dead_share: share of rectified units that answered none of the latest observations; None before there were
+            enough of them.
+
+    """
+
+    def __init__(self) -> None:
+        self.dead_share: float | None = None
+        self._observations: deque[Array] = deque(maxlen=_WITNESSES)
+        self._cut: deque[bool] = deque(maxlen=_LENGTHS)
+
+    @property
+    def clipped_share(self) -> float | None:
+        """Share of the latest gradients that were cut short; None while there are few."""
+        return float(np.mean(self._cut)) if len(self._cut) == _LENGTHS else None
+
+    def look(self, network: NeuralNetwork, observation: Array, gradient_clip: float) -> None:
+        """Look at a network with the gradients of its latest step, and at an observation (inputs,) it answers."""
+        self._cut.append(bool(np.linalg.norm(network.gradients) >= _CUT * gradient_clip))
+        self._observations.append(observation)
+        if len(self._observations) == _WITNESSES:
+            self.dead_share = dead_units(network, np.array(self._observations))
+            self._observations.clear()
 
 
 def _links(layer: Layer) -> bool:

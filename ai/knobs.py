@@ -26,10 +26,12 @@ def knob(
     log: bool = False,
     live: bool = False,
     offers: tuple[Any, ...] = (),
+    needs: str = "",
 ) -> Any:
     """Describe a field: its help, group, range or choices, scale, and whether it may change during a run.
 
-    `offers` are a few values for a screen, of a field whose range says too little.
+    `offers` are a few values for a screen, of a field whose range says too little. `needs` is another field, without
+    which, while it is off or 0, this one changes nothing.
     """
     described = {
         "help": help,
@@ -40,6 +42,7 @@ def knob(
         "log": log,
         "live": live,
         "offers": offers,
+        "needs": needs,
     }
     return field(default=default, metadata=described)
 
@@ -57,6 +60,11 @@ class Knobs:
     def problems(self) -> list[str]:
         """Say what is wrong with the values."""
         return [problem for item in fields(self) if (problem := field_problem(item, getattr(self, item.name)))]
+
+    def unused(self) -> dict[str, str]:
+        """Return the fields that change nothing because another one is off or 0, each with that other."""
+        needed = {item.name: item.metadata["needs"] for item in fields(self)}
+        return {name: other for name, other in needed.items() if other and not getattr(self, other)}
 
     def to_json(self) -> dict[str, Any]:
         """Plain values, for a file."""

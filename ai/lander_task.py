@@ -23,7 +23,7 @@ from ai.lander import (
     engines_switched,
 )
 from ai.pilots import Pilot
-from ai.schedule import linear
+from ai.schedule import care
 from ai.spawns import Curriculum
 from ai.task import checked_score
 
@@ -128,7 +128,7 @@ class LanderTask:
     def follow(self, decisions: int, env: Env) -> None:
         """Tighten the limits of a touch, from the real ones to as careful as is asked for."""
         if isinstance(env, LanderEnv):
-            env.limits = LIMITS.stricter(linear(1.0, self.config.care, decisions, self.config.horizon))
+            env.limits = LIMITS.stricter(care(self.config, decisions))
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
         """Fly so many flights at once from random spawns."""

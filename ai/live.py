@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+import time
+from collections.abc import Callable, Generator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import fields, replace
 from itertools import repeat
@@ -22,6 +23,7 @@ from ai.lander_task import Evaluation, trial
 from ai.messages import Begun, Change, Command, Insight, Message, Refused, Revert, Save, Saved, Sight, Teach
 from ai.runs import resume_run, snapshot
 from ai.scaling import RunningScale
+from ai.schedule import InForce, in_force
 from ai.task import VALIDATION_SEED
 from ai.training import Progress, Training
 
@@ -33,6 +35,7 @@ __all__ = [
 POINT_DECISIONS: Final = 256  # at least so many between two points
 INSIGHT_SECONDS: Final = 0.25
 KEEP_SECONDS: Final = 10.0
+TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
 TAUGHT: Final = "demonstrations"  # the name of the alteration that gives it some to learn from
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
@@ -40,21 +43,26 @@ CAREFUL: Final = 0  # the lander with the fewest random actions; the last one ha
 
 
 def live(
-    config: Config, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None
+    config: Config,
+    seed: int = 0,
+    *,
+    keep: Path | None = None,
+    resume: Path | None = None,
+    clock: Callable[[], float] = time.monotonic,
 ) -> Generator[tuple[Message, ...], Command | None, None]:
     """Train landers without end; every turn is one decision of all landers, and yields what there is to tell.
 
     The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
     without a decision, and yields the answer. The run saves itself to `keep` now and then and when it is closed.
-    With `resume`, it goes on from a saved run, with the settings, seed and history of that.
+    With `resume`, it goes on from a saved run, with the settings, seed and history of that. `clock` counts seconds.
 
     Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's, and
     FloatingPointError, which names the learning step and the likely cause, when the numbers run away.
     """
     if resume is None:
-        run = _LiveRun(Training(config, seed), History(), keep)
+        run = _LiveRun(Training(config, seed), History(), keep, clock)
     else:
-        run = _LiveRun(resume_run(resume), History.read(resume), keep)
+        run = _LiveRun(resume_run(resume), History.read(resume), keep, clock)
     try:
         told = run.begin()
         while True:
@@ -114,11 +122,14 @@ class _Trial:
 class _LiveRun:
     """A Training, what has been told of it, and where it is kept."""
 
-    def __init__(self, training: Training, history: History, keep: Path | None) -> None:
+    def __init__(
+        self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]
+    ) -> None:
         if not isinstance(training.env, LanderEnv):
             raise ValueError(f"only landers can be looked into, not {training.config.env}")
         self.training, self.history, self.env = training, history, training.env
         history.reward_scale = training.config.reward_scale
+        training.clock = clock
         training.witness = self._see
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
         self._trial: _Trial | None = None
@@ -131,6 +142,8 @@ class _LiveRun:
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
         self._trouble = ""
+        self._began_learning = training.agent.train_count
+        self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
         self._lessons: set[Demonstration] = set()
         self._writer = ThreadPoolExecutor(max_workers=1)
         self._writing: Future[None] | None = None
@@ -144,7 +157,7 @@ class _LiveRun:
     def begin(self) -> tuple[Message, ...]:
         """Say how the run begins."""
         training = self.training
-        self._told = [Begun(training.config, training.seed, training.agent.decisions), self._sight, self._insight()]
+        self._told = [Begun(training.config, training.seed, training.agent.decisions), self._sight, *self._look()]
         if not self.history.checkpoints:
             self._note(self._checkpoint(0.0))
         return self._flush()
@@ -160,7 +173,7 @@ class _LiveRun:
         self._told.append(self._sight)
         if now >= self._insight_at:
             self._insight_at = now + INSIGHT_SECONDS
-            self._told.append(self._insight())
+            self._told += self._look()
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self._note(self._point(progress))
@@ -220,12 +233,19 @@ class _LiveRun:
             agent.decisions,
         )  # fmt: skip
 
+    def _look(self) -> tuple[Insight, InForce]:
+        """What is told a few times a second, and whenever a command has changed it."""
+        training = self.training
+        return self._insight(), in_force(training.config, training.agent.decisions, training.episodes)
+
     def _point(self, progress: Progress) -> Point:
-        landed, crashed, out_of_bounds, timed_out = progress.shares
+        flown = 1.0 if self.training.flights.known else np.nan
+        learnt = 1.0 if self.training.agent.train_count > self._began_learning else np.nan
+        shares = [flown * share for share in progress.shares]
         return Point(
-            self.training.seconds, progress.decisions, progress.episodes, progress.success_rate,
-            progress.mean_return, progress.loss, progress.mean_q, progress.epsilon, progress.stage,
-            progress.steps_per_second, landed, crashed, out_of_bounds, timed_out, progress.parts or NOTHING_PAID,
+            self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
+            flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
+            progress.stage, progress.steps_per_second, *shares, parts=progress.parts or NOTHING_PAID,
         )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:
@@ -266,7 +286,10 @@ class _LiveRun:
             self._told.append(Refused(command, str(error)))
             return
         value = attrgetter(command.name)
-        self._alter(command.name, value(before), value(self.training.config))
+        after = value(self.training.config)
+        if after != value(before):
+            self._alter(command.name, value(before), after, self._amends(command.name, after))
+        self._told.append(self._look()[1])
 
     def _teach(self, command: Teach) -> None:
         agent = self.training.agent
@@ -284,8 +307,20 @@ class _LiveRun:
             self._change(Change("success_pass", taught(self.training.config).success_pass))
         self._alter(TAUGHT, None, used)
 
-    def _alter(self, name: str, before: Any, after: Any) -> None:
-        self._note(Alteration(self.training.agent.decisions, name, before, after))
+    def _alter(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
+        self._note(Alteration(self.training.agent.decisions, name, before, after, amends))
+
+    def _amends(self, name: str, after: Any) -> bool:
+        """Whether a knob is still being turned: a moment after the last time, or without a decision in between."""
+        now, last = self.training.clock(), self._turned_at.get(name)
+        self._turned_at[name] = now
+        if last is None:
+            return False
+        earlier = next(each for each in reversed(self.history.alterations) if each.name == name)
+        amends = now - last < TURNING_SECONDS or earlier.decisions == self.training.agent.decisions
+        if amends and earlier.before == after:  # back where it was: the mark will be gone
+            del self._turned_at[name]
+        return amends
 
     def _revert(self, command: Revert) -> None:
         checkpoint = self.history.checkpoint_at(command.decisions)
@@ -294,7 +329,7 @@ class _LiveRun:
             return
         self._go_back(checkpoint)
         self._alter(REVERTED, None, checkpoint.decisions)
-        self._told.append(self._insight())
+        self._told += self._look()
 
     def _go_back(self, checkpoint: Checkpoint) -> None:
         agent = self.training.agent

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ai.config import Config
 from ai.env import Floats
 from ai.history import Alteration, Checkpoint, Point, Validation
+from ai.schedule import InForce
 
 
 @dataclass(frozen=True)
@@ -94,5 +95,5 @@ class Refused:
     problem: str
 
 
-Message = Begun | Sight | Insight | Point | Checkpoint | Validation | Alteration | Saved | Refused
+Message = Begun | Sight | Insight | InForce | Point | Checkpoint | Validation | Alteration | Saved | Refused
 Command = Change | Save | Revert | Teach

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from ai.agent import KIND, LAST, DeepQAgent
 from ai.config import LANDER, PRESETS
+from ai.flights import Flights
 from ai.gym_task import gym_config
 from ai.history import History
 from ai.knobs import nearest_preset
@@ -80,6 +81,7 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 1), "best": training.best.to_json() if training.best else None,
+        "flights": training.flights.to_json(),
     }  # fmt: skip
     return Snapshot(
         described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
@@ -129,6 +131,7 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         training.seconds = float(number_of(described["seconds"]))
+        training.flights.load(described.get("flights", Flights(0).to_json()))  # runs of old say nothing of them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error

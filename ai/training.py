@@ -17,7 +17,7 @@ from ai.env import Env, Floats, StepResult
 from ai.flights import Flights
 from ai.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
 from ai.scaling import RunningScale
-from ai.schedule import geometric, linear
+from ai.schedule import exploration, exploration_of_each
 from ai.task import TEST_SEED, VALIDATION_SEED, Score, Task, task_of
 
 __all__ = [
@@ -90,22 +90,14 @@ class Training:
     @property
     def epsilon(self) -> float:
         """Share of random actions now."""
-        config = self.agent.config
-        start, end = config.epsilon_start, config.epsilon_end
-        start = geometric(start, end, config.epsilon_decay, self.episodes)
-        return linear(start, end, self.agent.decisions, config.epsilon_decisions) if config.epsilon_decisions else start
-
-    def _spread(self, epsilon: float) -> Floats:
-        """Each lander's share of random actions: bold ones go on finding what the careful ones never try."""
-        reach = np.linspace(1.0, 1.0 - self.agent.config.epsilon_spread, self.env.num_envs)
-        return np.asarray(epsilon**reach)
+        return exploration(self.agent.config, self.agent.decisions, self.episodes)
 
     def advance(self) -> Progress:
         """Let every lander take one decision, learn from it, and evaluate if it is time."""
         agent, env, flights = self.agent, self.env, self.flights
         epsilon = self.epsilon
         self.task.follow(agent.decisions, env)
-        actions = agent.act(self.observation, self._spread(epsilon), self._held)
+        actions = agent.act(self.observation, exploration_of_each(agent.config, epsilon), self._held)
         result = env.step(actions)
         agent.remember(self.observation, actions, result, result.succeeded)
         self.observation = result.observation

@@ -9,6 +9,7 @@ from ai.config import Config
 from ai.history import Alteration, Checkpoint, History, Point, Validation
 from ai.live import TAUGHT, Begun, Insight, Refused, Revert, Save, Saved, Sight, Teach, live, turned
 from ai.nn import ModelFormatError
+from ai.schedule import InForce
 from game import texts
 from game.collection import LibraryError
 from game.learner import EARLIER, Learner
@@ -26,7 +27,7 @@ class Student(Learner):
 
     Attributes:
         history: what has been told of the run that goes on, or of the last one.
-        sight, insight: the latest of their kind; None until a run has told of any.
+        sight, insight, in_force: the latest of their kind; None until a run has told of any.
         earlier: the runs before it, by name, the latest first.
 
     """
@@ -40,6 +41,7 @@ class Student(Learner):
         self.history = History()
         self.sight: Sight | None = None
         self.insight: Insight | None = None
+        self.in_force: InForce | None = None
         self.earlier: list[tuple[str, History]] = []
         self.runs = 0
         self.begun = False  # whether a run has said with what it was begun, since this was last set to False
@@ -66,7 +68,7 @@ class Student(Learner):
         except (ModelFormatError, LibraryError) as error:
             note = str(error)
         self.config, self.seed = config, seed
-        self.sight = self.insight = None
+        self.sight = self.insight = self.in_force = None
         self.runs += 1
         self._worker = Worker(live, config, seed, keep=self.library.unsaved, resume=resume)
         self._worker.set_pace(PACES[self.pace])
@@ -113,6 +115,8 @@ class Student(Learner):
                     self.sight = message
                 case Insight():
                     self.insight = message
+                case InForce():
+                    self.in_force = message
                 case Alteration(_, name, _, after):
                     self.history.append(message)
                     self.config = _turned(self.config, name, after)

@@ -484,6 +484,19 @@ KNOB_WEIGHTS: Final = {
     "terminal": ("Terminal", "For a landing; as much is lost by a crash or by leaving the area."),
 }
 KNOB_SEED: Final = "What chance begins with: the same seed and the same knobs give the same network."
+KNOB_NOW: Final = "now {value}"
+KNOB_IDLE: Final = "no effect"
+# Why a knob changes nothing any more, or never would, and which one does
+KNOBS_IDLE: Final = {
+    "learning_rate": "The horizon is over, so steps have the last learning rate: that is the knob to turn.",
+    "horizon": "Nothing changes over it: the learning rate begins as it ends, and care stays at 1.",
+    "epsilon_start": "ε is the same at first and at last.",
+    "epsilon_decay": "ε has come down to its last value: ε at last is the knob to turn.",
+    "epsilon_decisions": "ε is at its last value from the start: ε at last is the knob to turn.",
+    "epsilon_spread": "There is one lander: ε is its own.",
+    "random_main": "Nothing is done at random: raise ε at last first.",
+}
+KNOBS_IDLE_WITHOUT: Final = "Changes nothing while {other} is {value}."
 KNOBS_NEW_RUN: Final = "takes a new run"
 KNOBS_BACK_TO: Final = "back to {value}"
 KNOBS_CLICK: Final = "Click its name"
@@ -611,6 +624,7 @@ TRAIN_CHARTS_SHOW: Final = {
 TRAIN_THIS: Final = "this run"
 TRAIN_RUN: Final = "run {number}"
 TRAIN_CHECKPOINT: Final = "checkpoint {seconds:.0f} s"
+TRAIN_TURNED_MORE: Final = "{few} and {count} more"
 TRAIN_NO_CHECKPOINT: Final = "There is nothing to fly against yet: press Start first."
 TRAIN_KEPT: Final = "What it has learnt is kept, and offered when you come back."
 TRAIN_NOTHING: Final = "There is nothing to save yet: press Start first."

@@ -11,9 +11,11 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from ai.config import PRESETS
+from ai.knobs import Knobs
 from ai.sabotage import SABOTAGES, sabotaged
+from ai.schedule import InForce, idle
 from game import texts
-from game.dials import Configuration, Dial, dials
+from game.dials import Configuration, Dial, dials, figure, label
 
 SEED: Final = "seed"
 Named = tuple[str, str]  # a preset, and what it was sabotaged by or nothing
@@ -28,6 +30,7 @@ class Family:
         presets: configurations by name.
         words: what a preset is called, and a sentence about it, by its name.
         sabotages: the same of what can be taken away from a preset, if anything.
+        idle: says of a configuration which settings change nothing in a new run, each with the one that decides that.
         seed_page: the page of knobs that the seed stands on.
 
     """
@@ -37,6 +40,7 @@ class Family:
     words: Mapping[str, tuple[str, str]]
     seed_page: str
     sabotages: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    idle: Callable[[Any], Mapping[str, str]] = Knobs.unused
 
     def config_of(self, named: Named) -> Configuration:
         """Return what a name stands for."""
@@ -66,7 +70,7 @@ class Family:
 
 
 LANDER: Final = Family(
-    tuple(dials()), PRESETS, texts.PRESETS, "lander", {name: texts.SABOTAGES[name] for name in SABOTAGES}
+    tuple(dials()), PRESETS, texts.PRESETS, "lander", {name: texts.SABOTAGES[name] for name in SABOTAGES}, idle
 )
 
 
@@ -82,6 +86,7 @@ class Tuning:
         draft: what the knobs show, with what waits.
         named: the preset, or the sabotage of one, that this is or began as.
         running: whether a run goes on.
+        in_force: what acts in it at this moment, as it told last.
         problem: why the last value was refused.
         put_aside: what a preset has taken the place of, until the next change.
 
@@ -99,6 +104,7 @@ class Tuning:
         self.dials = {dial.name: dial for dial in family.dials}
         self._on_change, self._on_restart = on_change, on_restart
         self.running = False
+        self.in_force: InForce | None = None
         self.named, self.draft = family.nearest(config), config
         self.set_config(config, seed)
 
@@ -114,7 +120,7 @@ class Tuning:
 
     def set_running(self, running: bool) -> None:
         """A run has begun, or is over: without one, nothing has to wait."""
-        self.running, self.put_aside = running, None
+        self.running, self.put_aside, self.in_force = running, None, None
         if not running:
             self._hold(self.draft, self.draft_seed)
 
@@ -132,6 +138,25 @@ class Tuning:
     def waiting(self) -> list[str]:
         """Which knobs wait for a new run, by name."""
         return self._different(self.draft, self.config) + [SEED] * (self.draft_seed != self.seed)
+
+    def now(self, name: str) -> float | None:
+        """Return what acts at this moment of a run in place of a knob's value; None if that is the value."""
+        return self.in_force.values.get(name) if self.in_force and name not in self.in_force.idle else None
+
+    def idle(self, name: str) -> str:
+        """Say why a knob changes nothing, and which one does; empty for one that does.
+
+        A live knob is asked about for the run as it is, another one for the new run that it would take.
+        """
+        dial = self.dials[name]
+        now = self.in_force.idle if self.in_force and dial.live else self.family.idle(self.draft)
+        instead = now.get(dial.field)
+        if instead is None:
+            return ""
+        if sentence := texts.KNOBS_IDLE.get(dial.field):
+            return sentence
+        value = figure(getattr(self.config if self.in_force and dial.live else self.draft, instead))
+        return texts.KNOBS_IDLE_WITHOUT.format(other=label(instead), value=value)
 
     def turn(self, name: str, value: Any) -> None:
         """Turn a knob; an impossible value changes nothing, and `problem` says why."""

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import pygame
 
 from ai.config import PRESETS, Config
@@ -118,6 +119,8 @@ class Train:
         if student.begun:
             student.begun = False
             self.knobs.set_config(student.config, student.seed)
+        if student.alive:
+            self.knobs.show_in_force(student.in_force)
         if student.alive != self._alive:
             self._alive = student.alive
             self._advice.clear()
@@ -146,8 +149,8 @@ class Train:
             return False
         self.inside.take(student.insight, student.config)
         if student.alive and len(student.history):
-            inside = self.inside
-            self._advice.follow(student.history, student.config, inside.dead_share, inside.clipped_share)
+            health = self.inside.health
+            self._advice.follow(student.history, student.config, health.dead_share, health.clipped_share)
         return True
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -349,7 +352,8 @@ class Train:
             line = texts.TRAIN_FIGURES.format(
                 count=len(sight.outcome), seconds=history.points[-1][0], decisions=int(sight.decisions)
             )
-            height, share = _TITLE.height, f"{100 * history['success'][-1]:.0f}"
+            height, landed = _TITLE.height, history["success"][-1]
+            share = "" if np.isnan(landed) else f"{100 * landed:.0f}"
         for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
             canvas.panel(box, _COVER)
         draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,

@@ -19,6 +19,8 @@ from game.ui.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.ui.charts import Charts
 
 _TURNS: Final = 12  # in which the charts look at the history, one in every other: no frame has all of it
+_TOGETHER: Final = 0.5  # seconds in which several knobs that are turned share one mark: a preset turns many
+_FEW: Final = 3  # of them that are named
 _SHORTEST: Final = 10.0  # seconds that the axis spans at least
 _LEGEND: Final = (40.0, 450.0)
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
@@ -114,10 +116,19 @@ def _ticks(history: History) -> list[Tick]:
     ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds)) for each in history.checkpoints]
     if history.alterations and len(history):
         when = np.interp([each.decisions for each in history.alterations], history["decisions"], history["seconds"])
-        ticks += [
-            Tick(seconds, _told(each), "knob") for each, seconds in zip(history.alterations, when.tolist(), strict=True)
-        ]
+        together: list[tuple[float, list[str]]] = []
+        for each, seconds in zip(history.alterations, when.tolist(), strict=True):
+            if not together or seconds - together[-1][0] >= _TOGETHER:
+                together.append((seconds, []))
+            together[-1][1].append(_told(each))
+        ticks += [Tick(seconds, _listed(words), "knob") for seconds, words in together]
     return ticks
+
+
+def _listed(words: Sequence[str]) -> str:
+    """Name what was turned in one moment: as much as there is room for."""
+    few = ", ".join(words[:_FEW])
+    return few if len(words) <= _FEW else texts.TRAIN_TURNED_MORE.format(few=few, count=len(words) - _FEW)
 
 
 def _told(turn: Alteration) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from typing import Final, get_args
 
@@ -12,7 +11,7 @@ import pygame
 from ai.agent import build_network
 from ai.config import Config
 from ai.history import PARTS, History
-from ai.inspect import dead_units
+from ai.inspect import NetworkHealth
 from ai.lander import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.messages import Insight
 from ai.nn import NeuralNetwork
@@ -35,9 +34,6 @@ _SMALL: Final = pygame.Rect(868, 458, 384, 150)
 _STRIP: Final = pygame.Rect(868, 478, 384, 80)
 _LARGE: Final = pygame.Rect(48, 144, 740, 548)
 _LEFT: Final = 40.0
-_WITNESSES: Final = 64  # observations, to find the silent units by
-_LENGTHS: Final = 40  # gradients, to see how many were cut short: ten seconds of them
-_CUT: Final = 0.999  # of the longest allowed: so long is one that was cut
 
 
 class Inside:
@@ -45,7 +41,7 @@ class Inside:
 
     Attributes:
         large: whether the network is shown large.
-        dead_share: share of hidden units that are silent whatever they see; None while nobody knows.
+        health: what is wrong inside the network.
 
     """
 
@@ -67,14 +63,7 @@ class Inside:
     def clear(self) -> None:
         """Begin anew with another run."""
         self._network: NeuralNetwork | None = None
-        self._seen: deque[np.ndarray] = deque(maxlen=_WITNESSES)
-        self._cut: deque[bool] = deque(maxlen=_LENGTHS)
-        self.dead_share: float | None = None
-
-    @property
-    def clipped_share(self) -> float | None:
-        """Share of the recent gradients that were cut short; None while there are few."""
-        return float(np.mean(self._cut)) if len(self._cut) == _LENGTHS else None
+        self.health = NetworkHealth()
 
     @property
     def busy(self) -> bool:
@@ -109,11 +98,7 @@ class Inside:
         network.gradients[:] = insight.gradients
         self._view.output_scale = config.reward_scale
         self._view.set(network, insight.observation)
-        self._cut.append(bool(np.linalg.norm(insight.gradients) >= _CUT * config.gradient_clip))
-        self._seen.append(insight.observation)
-        if len(self._seen) == _WITNESSES:
-            self.dead_share = dead_units(network, np.array(self._seen))
-            self._seen.clear()
+        self.health.look(network, insight.observation, config.gradient_clip)
 
     def pay(self, history: History) -> None:
         """Show what the latest flights were paid for."""

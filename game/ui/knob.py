@@ -20,7 +20,7 @@ from game.scene import Transition
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.entry import Entry, digits, draw_line
-from game.ui.tokens import FAINT, HUMAN, INK, MUTE, NET, PANEL, SMALL, Colour
+from game.ui.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.ui.widget import PointsManager, Widget, mix
 from game.ui.widgets import draw_switch
 from game.ui.words import WordRow
@@ -29,6 +29,9 @@ MARGIN: Final = 16  # left of the label, for the dot
 _TRACK: Final = (142.0, 62.0)  # from the label to the track, from the track to the right end
 _GAP: Final = 14.0  # between words
 _LONGEST_SEED: Final = 9  # digits
+_DIM: Final = mix(FAINT, MUTE, 0.45)  # of what changes nothing
+_NOTE: Final = LABEL - 1.5  # the size of what is written over a track
+_CLEAR: Final = 9.0  # from the middle of the handle to such words
 
 
 class Knob(Widget):
@@ -40,6 +43,8 @@ class Knob(Widget):
         value: what is shown.
         home: what the preset says.
         waits: whether the value is yet to be applied.
+        now: what acts in its place at this moment of a run, if that is something else.
+        idle: why it changes nothing; empty if it does.
 
     """
 
@@ -56,12 +61,18 @@ class Knob(Widget):
         self.value: Any = None
         self.home: Any = None
         self.waits = False
+        self.now: float | None = None
+        self.idle = ""
         self._turn, self._enter = turn, enter
         self._named = False  # the mouse was pressed on the name
 
-    def display(self, value: Any, home: Any, *, waits: bool) -> None:
+    def display(
+        self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = ""
+    ) -> None:
         """Show what the panel says."""
-        self.value, self.home, self.waits = value, home, waits
+        self.value, self.home, self.waits, self.idle = value, home, waits, idle
+        self.now = None if now is None or figure(now) == figure(value) else now
+        self.help = idle or self.dial.help
 
     @property
     def live(self) -> bool:
@@ -80,8 +91,8 @@ class Knob(Widget):
 
     @property
     def colour(self) -> Colour:
-        """Blue, grey for what takes a new run, amber for what waits."""
-        return HUMAN if self.waits else NET if self.live else MUTE
+        """Blue, grey for what takes a new run, amber for what waits, dim for what changes nothing."""
+        return HUMAN if self.waits else _DIM if self.idle else NET if self.live else MUTE
 
     def turn(self, value: Any) -> None:
         """Ask for another value."""
@@ -110,7 +121,7 @@ class Knob(Widget):
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the ring of the focus, the dot of a change and the label."""
-        draw_row(canvas, self, changed=self.changed)
+        draw_row(canvas, self, changed=self.changed, dim=bool(self.idle))
 
     def write(self, canvas: Canvas, written: str) -> None:
         """Write a figure at the right end."""
@@ -159,10 +170,32 @@ class SliderKnob(Knob):
         canvas.line((home, middle - 5), (home, middle + 5), MUTE, 1, 0.8)
         canvas.bar((left, middle - 1, width, 2), fraction, self.colour)
         handle, radius = (left + fraction * width, middle), 5 + self.warmth
-        canvas.dot(handle, radius, INK if self.live else mix(MUTE, INK, self.warmth))
-        if not self.live:
+        whole = self.live and not self.idle
+        canvas.dot(handle, radius, INK if whole else mix(_DIM if self.idle else MUTE, INK, self.warmth))
+        if not whole:
             canvas.dot(handle, radius - 1.6, PANEL)
+        if self.now is not None:
+            self._paint_now(canvas, self.now, handle[0])
+        elif self.idle:
+            self._paint_beside(canvas, texts.KNOB_IDLE, middle - 4, handle[0], handle[0])
         self.write(canvas, figure(self.value))
+
+    def _paint_now(self, canvas: Canvas, now: float, handle: float) -> None:
+        """Mark on the track what acts now, and write it above."""
+        left, right = self.track
+        x, middle = left + self._at(now) * (right - left), self.box.centery
+        canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
+        self._paint_beside(canvas, texts.KNOB_NOW.format(value=figure(now)), middle - 4, x, handle)
+
+    def _paint_beside(self, canvas: Canvas, words: str, baseline: float, x: float, handle: float) -> None:
+        """Write over the track, around x as far as there is room, and beside the handle."""
+        left, right = self.track
+        width = canvas.text_width(words, size=_NOTE)
+        start = min(max(x - width / 2, left), right - width)
+        if start - _CLEAR < handle < start + width + _CLEAR:
+            before, after = handle - _CLEAR - width, handle + _CLEAR
+            start = before if before >= left and (x <= handle or after + width > right) else after
+        canvas.text(words, (start, baseline), size=_NOTE, colour=mix(MUTE, INK, self.warmth))
 
 
 class SwitchKnob(Knob):
@@ -205,9 +238,11 @@ class WordsKnob(Knob):
     values: tuple[Any, ...] = ()
     row: WordRow
 
-    def display(self, value: Any, home: Any, *, waits: bool) -> None:
+    def display(
+        self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = ""
+    ) -> None:
         """Show what the panel says; a value that is on no word has one made for it."""
-        super().display(value, home, waits=waits)
+        super().display(value, home, waits=waits, now=now, idle=idle)
         own = [extra for extra in (home, value) if extra not in self.dial.stops]
         values = (*self.dial.stops, *dict.fromkeys(own))
         if values != self.values:
@@ -230,7 +265,7 @@ class WordsKnob(Knob):
     def paint(self, canvas: Canvas) -> None:
         """Draw the words."""
         super().paint(canvas)
-        ink = self.colour if self.live or self.waits else INK
+        ink = self.colour if self.live or self.waits or self.idle else INK
         self.row.paint(
             canvas, self.box.centery + 4.5, self.values.index(self.value),
             ink=ink, line=self.colour, drop=5.5, thickness=2.0 if self.live else 1.0,
@@ -298,13 +333,13 @@ def _along(stops: tuple[Any, ...], value: Any) -> float:
     return float(np.interp(abs(value), sizes, np.linspace(0.0, 1.0, len(sizes))))
 
 
-def draw_row(canvas: Canvas, widget: Widget, *, changed: bool) -> None:
+def draw_row(canvas: Canvas, widget: Widget, *, changed: bool, dim: bool = False) -> None:
     """Draw what every row has: the ring of the focus, the dot of a change, the label."""
     box = widget.box
     if widget.ringed and widget.warmth > 0.02:
         canvas.outline(box.inflate(12, 0), 6, INK, 1, 0.35 * widget.warmth)
     if changed:
         canvas.dot((box.left + 5, box.centery), 2.5, HUMAN)
-    colour = mix(mix(MUTE, INK, 0.7), INK, widget.warmth)
+    colour = mix(_DIM if dim else mix(MUTE, INK, 0.7), INK, widget.warmth)
     canvas.text(widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour,
                 room=_TRACK[0] - MARGIN - 6)  # fmt: skip

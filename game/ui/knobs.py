@@ -8,6 +8,7 @@ from typing import Any, Final
 import pygame
 
 from ai.sabotage import MEASURED
+from ai.schedule import InForce
 from game import texts
 from game.dials import Configuration, Dial, label, pages
 from game.tuning import LANDER, SEED, Family, Named, Tuning
@@ -95,6 +96,12 @@ class Knobs:
             self._tuning.set_running(running)
             self._lay()
 
+    def show_in_force(self, in_force: InForce | None) -> None:
+        """Show beside the settings what acts at this moment of a run; None for nothing."""
+        if in_force is not self._tuning.in_force:
+            self._tuning.in_force = in_force
+            self._lay()
+
     def set_config(self, config: Configuration, seed: int) -> None:
         """Show a configuration that came from elsewhere, such as a run that was loaded; nobody is called."""
         self._tuning.set_config(config, seed)
@@ -150,7 +157,10 @@ class Knobs:
         for widget in widgets:
             if isinstance(widget, Knob):
                 dial = widget.dial
-                widget.display(dial.read(tuning.draft), dial.read(tuning.home), waits=dial.name in waiting)
+                widget.display(
+                    dial.read(tuning.draft), dial.read(tuning.home), waits=dial.name in waiting,
+                    now=tuning.now(dial.name), idle=tuning.idle(dial.name),
+                )  # fmt: skip
             elif isinstance(widget, SeedKnob):
                 widget.display(tuning.draft_seed, waits=SEED in waiting)
 

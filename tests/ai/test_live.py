@@ -1,3 +1,4 @@
+import json
 import pickle
 from dataclasses import fields, replace
 from itertools import pairwise
@@ -29,6 +30,7 @@ from ai.live import (
 from ai.nn import ModelFormatError
 from ai.rewards import RewardWeights
 from ai.runs import resume_run
+from ai.schedule import exploration_of_each
 from ai.training import Training
 
 TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000, spawn="near")
@@ -138,8 +140,7 @@ def test_what_flights_earned_is_the_sum_of_its_parts(begin):
 
 
 def test_the_careful_lander_acts_at_random_the_least():
-    training = Training(TINY.changed(epsilon_spread=0.7), 0, evaluate_every=0)
-    spread = training._spread(0.3)
+    spread = exploration_of_each(TINY.changed(epsilon_spread=0.7), 0.3)
     assert spread.argmin() == CAREFUL
     assert (spread[CAREFUL] < np.delete(spread, CAREFUL)).all()
 
@@ -163,9 +164,9 @@ def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
 def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     run = begin()
     told_in(run, 30)
-    (answer,) = run.send(Change("learning_rate", 0.05))
+    answer, _ = run.send(Change("learning_rate", 0.05))
     assert answer == Alteration(29 * 32, "learning_rate", TINY.learning_rate, 0.05)
-    (answer,) = run.send(Change("weights.time", -1.0))
+    answer, _ = run.send(Change("weights.time", -1.0))
     assert answer == Alteration(29 * 32, "weights.time", TINY.weights.time, -1.0)
     assert of(Sight, next(run))[0].decisions == 30 * 32
 
@@ -269,14 +270,14 @@ def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
     history = History()
     for message in told_in(run, 100):
         history.append(message)
-    (change,) = run.send(Change("updates", 2))
+    change, _ = run.send(Change("updates", 2))
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
     again = begin(Config(), 99, resume=tmp_path / "run")
     first = next(again)
     assert of(Begun, first) == [Begun(TINY.changed(updates=2), 5, 99 * 32)]
     assert np.array_equal(of(Insight, first)[0].values, DeepQAgent.load(tmp_path / "run" / "last").online.values)
     kept = History.read(tmp_path / "run")
-    assert np.array_equal(kept.points, history.points)
+    assert np.array_equal(kept.points, history.points, equal_nan=True)
     assert [each.decisions for each in kept.checkpoints] == [each.decisions for each in history.checkpoints]
     assert kept.alterations == [change]
     sights = of(Sight, told_in(again, 3))
@@ -393,3 +394,75 @@ def test_a_save_that_was_cut_between_its_two_renames_is_put_back(begin, tmp_path
     run.send(Save(tmp_path / "run"))
     (tmp_path / "run").rename(tmp_path / ".run.old")
     assert resume_run(tmp_path / "run").agent.decisions == 4 * 32
+
+
+def test_a_run_that_goes_on_draws_no_spike(begin, tmp_path):
+    run = begin()
+    before = of(Point, told_in(run, 250))
+    assert np.isnan(before[0].mean_return), "no flight had ended"
+    assert np.isnan(before[0].loss)
+    assert before[-1].mean_return < -50
+    run.send(Save(tmp_path / "run"))
+    after = of(Point, told_in(begin(resume=tmp_path / "run"), 60))
+    assert after[0].mean_return == before[-1].mean_return, "of the hundred flights before"
+    assert after[0].landed == before[-1].landed
+    assert after[0].parts == before[-1].parts
+    assert np.isnan([after[0].loss, after[0].mean_q]).all(), "it has not learnt since"
+    assert np.isfinite([after[-1].loss, after[-1].mean_q]).all()
+
+
+def test_a_run_saved_before_flights_were_kept_goes_on(begin, tmp_path):
+    run = begin()
+    told_in(run, 250)
+    run.send(Save(tmp_path / "run"))
+    file = tmp_path / "run" / "training.json"
+    described = json.loads(file.read_text())
+    flights = described.pop("flights")
+    file.write_text(json.dumps(described))
+    assert np.isnan(of(Point, told_in(begin(resume=tmp_path / "run"), 2))[0].mean_return)
+    for nonsense in (7, {}, flights | {"returns": [1.0]}, flights | {"outcomes": ["x"]}, flights | {"parts": [[], 1]}):
+        file.write_text(json.dumps(described | {"flights": nonsense}))
+        with pytest.raises(ModelFormatError):
+            next(begin(resume=tmp_path / "run"))
+
+
+def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
+    run = begin(clock=(clock := Clock()))
+    told, history = told_in(run, 30), History()
+
+    def turn(name, value):
+        for message in run.send(Change(name, value)):
+            history.append(message)
+
+    for value in (0.97, 0.96, 0.95, 0.9):  # a drag, with a decision at each step
+        turn("discount", value)
+        clock.now += 0.3
+        told += told_in(run, 1)
+    (mark,) = history.alterations
+    assert (mark.before, mark.after, mark.decisions) == (TINY.discount, 0.9, 32 * 32)
+    turn("learning_rate", 0.1)
+    clock.now += 5.0
+    told_in(run, 1)
+    turn("discount", 0.85)
+    assert [(each.name, each.before, each.after) for each in history.alterations] == [
+        ("discount", TINY.discount, 0.9), ("learning_rate", TINY.learning_rate, 0.1), ("discount", 0.9, 0.85),
+    ]  # fmt: skip
+    clock.now += 5.0
+    turn("discount", 0.8)  # it rests: nothing was learnt with the value before
+    turn("discount", 0.9)  # and back to where it was
+    assert [each.name for each in history.alterations] == ["discount", "learning_rate"]
+    turn("discount", 0.82)
+    assert [each.after for each in history.alterations] == [0.9, 0.1, 0.82], "the mark of before stays"
+    turn("discount", 0.9)
+    turn("discount", 0.9)
+    turn("discount", 0.9)  # nothing is turned
+    kept = run.gi_frame.f_locals["run"].history
+    assert kept.alterations == history.alterations
+    assert run.gi_frame.f_locals["run"].training.config.discount == 0.9
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self):
+        return self.now

@@ -5,6 +5,7 @@ import pytest
 
 from ai.config import PRESETS, Config
 from ai.sabotage import SABOTAGES, sabotaged
+from ai.schedule import exploration_of_each
 from ai.training import Training
 
 CASES = [(base, name) for base in PRESETS for name in SABOTAGES]
@@ -56,7 +57,7 @@ def test_no_replay_keeps_one_batch():
 def test_without_exploration_nothing_is_random():
     training = Training(sabotaged(Config(num_envs=4, epsilon_spread=1.0), "no_exploration"), evaluate_every=0)
     assert training.advance().epsilon == 0.0
-    assert not training._spread(training.epsilon).any()
+    assert not exploration_of_each(training.config, training.epsilon).any()
 
 
 def test_an_unknown_name_is_a_key_error():

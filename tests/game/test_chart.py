@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pygame
@@ -6,12 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ai.history import Alteration, History
 from game import texts
 from game.ui import plotting, typeface
+from game.ui.board import _ticks
 from game.ui.canvas import Canvas
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick
 from game.ui.charts import Charts
 from game.ui.strip import PART_COLOURS, Strip, signed
+from tests.ai.test_hints import HEALTHY
 
 BOX = (40, 450, 372, 128)
 NAN, INF = float("nan"), float("inf")
@@ -586,3 +590,15 @@ def test_a_name_in_large_type_leaves_room_for_the_latest_number(canvas: Canvas, 
     finally:
         typeface.grow(1.0)
     assert boxes["EXPLORATION ε"].right < boxes["0.33"].left
+
+
+def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
+    run = History()
+    for number in range(40):
+        run.append(replace(HEALTHY, seconds=float(number), decisions=1000.0 * number))
+    for name in ("learning_rate", "final_learning_rate", "discount", "n_step", "updates"):
+        run.append(Alteration(10_000, name, 0, 1))
+    run.append(Alteration(20_000, "updates", 1, 2))
+    marks = [tick for tick in _ticks(run) if tick.kind == "knob"]
+    assert [tick.x for tick in marks] == [10.0, 20.0]
+    assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"

@@ -6,6 +6,7 @@ import pygame
 import pytest
 
 from ai.config import PRESETS, Config
+from ai.schedule import in_force
 from game import texts
 from game.context import Context
 from game.scene import Pop, Transition
@@ -320,3 +321,57 @@ def test_all_states_are_drawn_at_any_size(panel: tuple[Driver, Panel], size: tup
     game.click(scene.word(texts.SABOTAGE).box.center)
     game.frames(2)
     assert game.top is scene  # and not the scene of a fault
+
+
+def test_what_acts_now_is_shown_beside_what_is_set(panel: tuple[Driver, Panel], monkeypatch: pytest.MonkeyPatch):
+    game, scene = panel
+    knobs = scene.knobs
+    knobs.set_running(True)
+    knobs.show_in_force(in_force(PRESETS["modern"], 300_000, 2_000))
+    rate, last = scene.knob("learning_rate"), scene.knob("final_learning_rate")
+    assert rate.now == pytest.approx(1.15e-3)
+    assert not rate.idle
+    assert last.now is None
+    written = words_drawn(game, monkeypatch)
+    assert texts.KNOB_NOW.format(value="0.00115") in written
+    assert "0.002" in written, "and what is set stays"
+
+    knobs.show_in_force(in_force(PRESETS["modern"], 600_000, 4_000))
+    assert rate.now is None
+    assert rate.idle == texts.KNOBS_IDLE["learning_rate"]
+    assert not last.idle
+    assert rate.colour != last.colour
+    scene.form.focus(rate)
+    written = words_drawn(game, monkeypatch)
+    assert texts.KNOB_IDLE in written
+    assert rate.idle.split(",")[0] in " ".join(written)
+
+    knobs.set_running(False)
+    assert not rate.idle, "a new run begins with it"
+
+
+def test_what_is_not_turned_on_says_so(panel: tuple[Driver, Panel]):
+    game, scene = panel
+    turn_to(game, scene, "memory")
+    exponent, batch = scene.knob("priority_exponent"), scene.knob("success_batch_size")
+    assert exponent.idle == "Changes nothing while Prioritised is off."
+    assert batch.idle == "Changes nothing while Success pass is off."
+    scene.knobs.turn("prioritised", True)
+    scene.knobs.turn("success_pass", True)
+    assert not exponent.idle
+    assert not batch.idle
+
+
+def words_drawn(game: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Return what is written in a frame."""
+    written: list[str] = []
+    real = Canvas.text
+
+    def text(canvas: Canvas, words: str, *args: Any, **options: Any) -> Any:
+        written.append(words)
+        return real(canvas, words, *args, **options)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Canvas, "text", text)
+        game.frames(1)
+    return written

@@ -1,0 +1,97 @@
+"""What schedules make of the settings, and which settings they leave without effect."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from ai.config import PRESETS, Config
+from ai.digit_config import DIGIT_PRESETS
+from ai.live import Change, Sight, live
+from ai.schedule import InForce, idle, in_force
+from ai.training import Training
+
+TINY = Config(
+    hidden=(8,), num_envs=16, warm_up=32, batch_size=16, updates=1, replay_size=2000, spawn="near", horizon=1000,
+    epsilon_decisions=500, epsilon_start=0.5,
+)  # fmt: skip
+LIVE = [item.name for item in fields(Config) if item.metadata["live"]]
+
+
+def trained(config: Config, change: dict[str, float], at: int, until: int) -> Training:
+    training = Training(config, 3, evaluate_every=0)
+    while training.agent.decisions < until:
+        if training.agent.decisions == at:
+            training.change(config.changed(**change))
+        training.advance()
+    return training
+
+
+@pytest.mark.parametrize(
+    ("config", "at"),
+    [
+        (TINY, 0),
+        (TINY, 640),  # ε has come down
+        (TINY, 1120),  # and the horizon is over
+        (TINY.changed(num_envs=1), 64),
+        (TINY.changed(epsilon_start=0.0, epsilon_end=0.0), 64),
+        (TINY.changed(success_pass=True, prioritised=True), 64),
+    ],
+)
+def test_what_is_called_idle_changes_nothing_bit_for_bit(config: Config, at: int):
+    until = at + 25 * config.num_envs
+    quiet = trained(config, {}, at, until)
+    found = [name for name in idle(config, at, quiet.episodes) if name in LIVE]
+    for name in found:
+        described = Config.__dataclass_fields__[name].metadata
+        for value in (described["low"], described["high"]):
+            turned = trained(config, {name: value}, at, until)
+            assert np.array_equal(turned.agent.online.values, quiet.agent.online.values), (name, value)
+            assert np.array_equal(turned.observation, quiet.observation), (name, value)
+
+
+@pytest.mark.parametrize(
+    ("preset", "decisions", "episodes", "expected"),
+    [
+        ("modern", 0, 0, {"success_batch_size"}),
+        ("modern", 39_000, 250, {"success_batch_size"}),
+        ("modern", 40_000, 250, {"success_batch_size", "epsilon_decay"}),
+        ("modern", 600_000, 5_000, {"success_batch_size", "epsilon_decay", "learning_rate"}),
+        ("classic", 0, 0, {"epsilon_spread"}),
+        ("classic", 299_999, 2_000, {"epsilon_spread"}),
+        ("classic", 300_000, 4_000, {"epsilon_spread", "learning_rate", "epsilon_decisions"}),
+    ],
+)
+def test_schedules_leave_their_settings_behind_one_by_one(preset, decisions, episodes, expected):
+    assert {name for name in idle(PRESETS[preset], decisions, episodes) if name in LIVE} == expected
+
+
+def test_what_is_not_turned_on_changes_nothing():
+    assert {"priority_exponent", "importance_exponent"} <= set(idle(PRESETS["modern"]))
+    assert "horizon" in idle(PRESETS["classic"])
+    assert "horizon" not in idle(PRESETS["classic"].changed(care=0.5))
+    assert DIGIT_PRESETS["classic"].unused() == {"filters": "convolutions", "kernel": "convolutions"}
+    assert DIGIT_PRESETS["modern"].changed(augmentation=0.0).unused() == {"original": "augmentation"}
+
+
+def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
+    run = live(TINY)
+    told = [next(run)]
+    training = run.gi_frame.f_locals["run"].training
+    told += [next(run) for _ in range(80)]
+    assert isinstance(told[0][-2], InForce) or any(isinstance(each, InForce) for each in told[0])
+    (said,) = [each for each in run.send(Change("discount", 0.9)) if isinstance(each, InForce)]
+    assert said.values["learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
+    assert said.values["epsilon_start"] == training.epsilon
+    assert said.idle["learning_rate"] == "final_learning_rate"
+    (said,) = [each for each in run.send(Change("final_learning_rate", 0.01)) if isinstance(each, InForce)]
+    assert said.values["learning_rate"] == 0.01, "at once, also while it rests"
+    assert any(isinstance(each, Sight) for each in next(run))
+    assert training.agent.optimizer.learning_rate == 0.01
+    run.close()
+
+
+def test_half_way_it_is_half_way():
+    said = in_force(PRESETS["modern"], 20_000, 0)
+    assert said.values["epsilon_start"] == pytest.approx(0.525)
+    assert in_force(PRESETS["modern"], 300_000, 0).values["learning_rate"] == pytest.approx((2e-3 + 3e-4) / 2)
