@@ -300,9 +300,7 @@ class DeepQAgent:
         (folder / AGENT_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
     @classmethod
-    def load(
-        cls, folder: str | Path, rng: np.random.Generator | None = None, *, env: str | None = None
-    ) -> DeepQAgent:
+    def load(cls, folder: str | Path, rng: np.random.Generator | None = None, *, env: str | None = None) -> DeepQAgent:
         """Read what `save` wrote. Raises ModelFormatError, which names everything that is wrong.
 
         A file never has code imported: an agent for an environment "module:Name" is refused, unless the caller
@@ -314,7 +312,9 @@ class DeepQAgent:
         try:
             config = Config.from_json(described["config"])
             _check_env(config.env, env)
-            agent = cls(count_of(described["features"], 1, WIDEST), count_of(described["actions"], 1, WIDEST), config, rng)
+            agent = cls(
+                count_of(described["features"], 1, WIDEST), count_of(described["actions"], 1, WIDEST), config, rng
+            )
             agent.decisions, agent.train_count = count_of(described["decisions"]), count_of(described["train_count"])
             if agent.scale:
                 agent.scale.load(described["scale"])
@@ -377,7 +377,9 @@ def _read_state(path: Path, agent: DeepQAgent) -> dict[str, Any]:
 
     def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
         steps = name == "steps" and shape == () and dtype.kind in "iu"
-        if not steps and not (name in remembers and shape == values.shape and dtype.kind == "f" and dtype.itemsize <= 8):
+        if not steps and not (
+            name in remembers and shape == values.shape and dtype.kind == "f" and dtype.itemsize <= 8
+        ):
             raise ValueError(f"{name} is no state of {type(agent.optimizer).__name__} of {len(values):,} parameters")
 
     return read_arrays(path, len(remembers) * values.size * 8 + _SLACK, expect)

@@ -47,7 +47,12 @@ class Demonstration:
         whole = (self.seed, self.begins, self.pad, *self.actions, *(() if self.ground is None else (self.ground,)))
         if not all(isinstance(number, int) and number >= 0 for number in whole) or self.pad > LARGEST:
             raise ValueError("seeds, steps, pad and actions of a demonstration are whole numbers from 0")
-        if not isinstance(self.spawn, str) or self.spawn not in SPAWNS or not 0 < len(self.actions) <= _LONGEST or max(self.actions) >= NUM_ACTIONS:
+        if (
+            not isinstance(self.spawn, str)
+            or self.spawn not in SPAWNS
+            or not 0 < len(self.actions) <= _LONGEST
+            or max(self.actions) >= NUM_ACTIONS
+        ):
             raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {brief(repr(self.spawn), 40)}")
 
 

@@ -96,7 +96,7 @@ def _read_last(path: Path, training: DigitTraining) -> dict[str, Any]:
     return state
 
 
-def _epoch(entry: Any) -> dict[str, float]:
+def _epoch(entry: Any) -> dict[str, Any]:
     if not isinstance(entry, dict):
         raise ValueError(f"{brief(repr(entry), 40)} is no epoch")
     return {name: value if value is None else number_of(value) for name, value in entry.items()}

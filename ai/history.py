@@ -261,7 +261,7 @@ def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
     fits = {
         "described": shape == () and dtype.kind == "U" and dtype.itemsize <= 4 * _MOST_TEXT,
         "points": len(shape) == 2 and shape[0] <= CAPACITY and 0 <= shape[1] <= _MOST_COLUMNS and dtype == np.float64,
-        "values": len(shape) == 2 and 0 <= shape[0] <= MOST_CHECKPOINTS and 0 <= shape[1]
+        "values": len(shape) == 2 and 0 <= shape[0] <= MOST_CHECKPOINTS and shape[1] >= 0
         and shape[0] * shape[1] <= _MOST_VALUES and dtype == np.float32,
     }  # fmt: skip
     if not fits.get(name):

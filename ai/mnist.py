@@ -6,17 +6,18 @@ LeCun, Cortes and Burges; see assets/mnist/README.txt for where the data come fr
 from __future__ import annotations
 
 import hashlib
-import zlib
 from pathlib import Path
-from typing import Final, NamedTuple
-from zipfile import BadZipFile
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from ai.nn.files import described, read_arrays
+
 FOLDER: Final = Path(__file__).parents[1] / "assets" / "mnist"
 SIDE: Final = 28  # pixels along an image
 TRAIN, TEST = "train", "test"
+_LARGEST: Final = 100_000_000  # bytes of a file
 
 Images = npt.NDArray[np.float32]  # (n, 28, 28), 0 to 1, ink bright
 Labels = npt.NDArray[np.uint8]  # (n,), 0 to 9
@@ -59,19 +60,21 @@ def load_part(part: str, folder: str | Path = FOLDER) -> tuple[Images, Labels]:
     """Read the images and labels of "train" or "test" alone; raises MnistError like `load_mnist`."""
     count, images_sum, labels_sum = PARTS[part]
     path = Path(folder) / f"{part}.npz"
+    shapes = {"images": (count, SIDE, SIDE), "labels": (count,)}
+
+    def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+        if shape != shapes.get(name) or dtype != np.uint8:
+            raise ValueError(f"{name} is {described(shape, dtype)}")
+
     try:
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as arrays:
-            pixels, labels = arrays["images"], arrays["labels"]
+        arrays = read_arrays(path, _LARGEST, expect)
+        pixels, labels = arrays["images"], arrays["labels"]
     except FileNotFoundError as error:
         raise MnistError(f"MNIST: {path} is missing; install the program again") from error
-    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile, zlib.error) as error:
+    except (OSError, ValueError, KeyError) as error:
         raise MnistError(f"MNIST: {path} is damaged ({error}); install the program again") from error
-    for array, shape, wanted in ((pixels, (count, SIDE, SIDE), images_sum), (labels, (count,), labels_sum)):
-        if array.dtype != np.uint8 or array.shape != shape:
-            said = f"{array.dtype} {array.shape} where uint8 {shape} should be"
-            raise MnistError(f"MNIST: {path} is damaged ({said}); install the program again")
-        if _checksum(array) != wanted:
-            raise MnistError(f"MNIST: {path} is damaged (a checksum differs); install the program again")
+    if (_checksum(pixels), _checksum(labels)) != (images_sum, labels_sum):
+        raise MnistError(f"MNIST: {path} is damaged (a checksum differs); install the program again")
     return np.divide(pixels, np.float32(255), dtype=np.float32), labels
 
 

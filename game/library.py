@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from ai.agent import LAST
 from ai.config import LANDER
 from ai.nn.files import count_of, inside, number_of, read_json
 from ai.nn.folder import moved_aside, recover_folder
 from ai.nn.lock import Lock, lock_of, take
-from ai.runs import LAST, TRAINING_FILE
+from ai.runs import TRAINING_FILE
 from game import texts
 from game.collection import UNSAVED, Collection, LibraryError, reason
 from game.networks import PARTS, PLAYERS
@@ -77,7 +78,8 @@ def _figures(described: dict[str, Any]) -> dict[str, Any]:
     return {
         "preset": str(described["preset"]), "changes": len(described["changes"]),
         "seed": count_of(described["seed"], most=10**40), "decisions": count_of(described["decisions"]),
-        "seconds": float(number_of(described["seconds"])), "success": None if success is None else float(number_of(success)),
+        "seconds": float(number_of(described["seconds"])),
+        "success": None if success is None else float(number_of(success)),
     }  # fmt: skip
 
 

@@ -52,7 +52,9 @@ class Settings:
     first_flown: bool = False  # whether it was flown to its landing
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
     unread: bool = field(default=False, compare=False)  # whether there is a file that could not be read; not kept
-    known: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)  # what was last on the disk; not kept
+    known: dict[str, Any] = field(
+        default_factory=dict, compare=False, repr=False
+    )  # what was last on the disk; not kept
 
     def to_dict(self) -> dict[str, Any]:
         """Return what the file holds."""
@@ -142,4 +144,3 @@ class SettingsFile:
             self.problem = texts.SETTINGS_DAMAGED.format(name=aside.name)
         except OSError:
             self.problem = texts.SETTINGS_DAMAGED_HERE
-

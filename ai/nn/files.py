@@ -222,7 +222,7 @@ def _read_member(file: IO[bytes], name: str, expect: Expect) -> npt.NDArray[Any]
     if dtype.hasobject:
         raise ValueError(f"{name} holds objects, not numbers")
     flat = np.empty(math.prod(shape), dtype)
-    room = memoryview(flat.view(np.uint8)) if flat.nbytes else memoryview(b"")
+    room = memoryview(flat.view(np.uint8).data) if flat.nbytes else memoryview(b"")
     filled = 0
     while part := file.read(min(_CHUNK, len(room) - filled + 1)):
         if filled + len(part) > len(room):
@@ -268,10 +268,23 @@ def write_text(path: Path, text: str, *, flush: bool = True, new: bool = False) 
             if flush:
                 file.flush()
                 os.fsync(file.fileno())
-        if new:
-            path.open("x").close()  # whoever makes the file has the name
-        temporary.replace(path)
+        if new and _linked(temporary, path):
+            temporary.unlink()
+        else:
+            temporary.replace(path)
     except BaseException:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+
+
+def _linked(temporary: Path, path: Path) -> bool:
+    """Give a file one more name, which nothing else may have; false if it only has the right to take that name."""
+    try:
+        os.link(temporary, path)
+    except FileExistsError:
+        raise
+    except OSError:  # not every disk has hard links
+        path.open("x").close()
+        return False
+    return True

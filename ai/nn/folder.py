@@ -127,7 +127,7 @@ def aside_for(path: Path) -> str:
         return ""
     name = path.name[1 : -len(OLD)]
     stem, dot, token = name.rpartition(".")
-    return stem if dot and len(token) == 8 and set(token) <= set("0123456789abcdef") else name  # noqa: PLR2004
+    return stem if dot and len(token) == 8 and set(token) <= set("0123456789abcdef") else name
 
 
 def _begin(target: str | Path, kind: Kind) -> tuple[Path, Path]:

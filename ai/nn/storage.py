@@ -179,7 +179,9 @@ def _read_config(folder: Path) -> dict[str, Any]:
     if not isinstance(config, dict) or config.get("format") != FORMAT:
         raise ValueError(f"does not say that this is a {FORMAT!r}")
     if config.get("version") != VERSION:
-        raise ValueError(f"format version {brief(repr(config.get('version')), 40)}; this program reads version {VERSION}")
+        raise ValueError(
+            f"format version {brief(repr(config.get('version')), 40)}; this program reads version {VERSION}"
+        )
     return config
 
 

@@ -1,4 +1,5 @@
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 from ai.lander import Outcome
 from ai.missions import MISSIONS
 from ai.pilots import ScriptedPilot
-from game import records, texts
+from game import flight_file, records, texts
 from game.flight import Flight, Hand, Recording
 from game.flight_file import Entry, Record, from_text, to_text
 from game.records import Records, best, skill, totals
@@ -32,6 +33,42 @@ def entry(outcome: str = "LANDED", when: float = NOON, **figures) -> Entry:
 @pytest.fixture
 def kept(tmp_path: Path) -> Records:
     return Records(tmp_path / "user")
+
+
+def test_two_games_that_keep_a_flight_in_one_millisecond_keep_both(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    write, others = flight_file.write, Records(kept.folder.parent)
+
+    def after_another(path: Path, record: Record) -> None:
+        monkeypatch.setattr(flight_file, "write", write)
+        others.keep(fly(seed=4), NOON)
+        write(path, record)
+
+    monkeypatch.setattr(flight_file, "write", after_another)
+    kept.keep(fly(seed=3), NOON)
+    assert sorted(kept.read(each.file).recording.seed for each in kept.entries()) == [3, 4]
+    assert len(kept.kept()) == 2
+
+
+def test_of_a_huge_logbook_the_end_is_read(kept: Records):
+    kept.keep(fly(), NOON)
+    line = kept.logbook.read_bytes()
+    with kept.logbook.open("wb") as file:
+        file.truncate(300_000_000)
+        file.seek(0, 2)
+        file.write(b"\n" + line)
+    assert [each.when for each in kept.entries()] == [NOON]
+
+
+def test_a_pipe_in_place_of_a_flight_or_the_logbook_is_named(kept: Records):
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("there are no such pipes here")
+    kept.folder.mkdir(parents=True)
+    os.mkfifo(kept.folder / "a.json")
+    os.mkfifo(kept.logbook)
+    with pytest.raises(ValueError, match=r"a\.json"):
+        kept.read("a.json")
+    assert kept.entries() == []
+    assert "logbook" in kept.problem
 
 
 @pytest.mark.parametrize("pads", [1, 3])

@@ -123,3 +123,36 @@ def test_writing_leaves_no_temporary_file(tmp_path: Path):
     write_text(tmp_path / "a.txt", "two")
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
     assert (tmp_path / "a.txt").read_text() == "two"
+
+
+def test_two_games_at_once_keep_what_each_has_chosen(tmp_path: Path):
+    SettingsFile(tmp_path).save(Settings(model="first"))
+    one, two = SettingsFile(tmp_path).load(), SettingsFile(tmp_path).load()
+    one.reduced_motion = True
+    SettingsFile(tmp_path).save(one)
+    two.colour_safe, two.keys = True, {"up": ["w"]}
+    SettingsFile(tmp_path).save(two)
+    one.model = "second"
+    SettingsFile(tmp_path).save(one)
+    SettingsFile(tmp_path).save(two)
+    expected = Settings(model="second", reduced_motion=True, colour_safe=True, keys={"up": ["w"]})
+    assert SettingsFile(tmp_path).load() == expected
+
+
+def test_a_huge_file_and_a_pipe_are_put_aside_unread(tmp_path: Path):
+    path = tmp_path / FILE_NAME
+    with path.open("wb") as file:
+        file.truncate(200_000_000)
+    for _ in range(2):
+        file = SettingsFile(tmp_path)
+        settings = file.load()
+        assert settings == Settings()
+        assert "could not be read" in file.problem
+        settings.model = "mine"
+        assert file.save(settings)
+        assert SettingsFile(tmp_path).load().model == "mine"
+        assert (tmp_path / DAMAGED_NAME).exists()
+        path.unlink()
+        if not hasattr(os, "mkfifo"):
+            break
+        os.mkfifo(path)
