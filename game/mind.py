@@ -8,10 +8,9 @@ import numpy as np
 import pygame
 
 from ai.decision import Decision
-from ai.lander import ACTION_NAMES
 from game import hud, texts
 from game.ui.canvas import Canvas
-from game.ui.q_values import HEIGHT, QValues, decision_words, draw_q_values
+from game.ui.q_values import HEIGHT, QValues, decision_words, draw_actions, draw_q_values
 from game.ui.tokens import INK, LABEL, LINE, MUTE, SMALL, TEXT
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
@@ -31,8 +30,7 @@ def draw_mind(canvas: Canvas, decision: Decision) -> None:
     values = QValues.of(decision)
     canvas.text(texts.MIND_SCRIPTED_TITLE if values is None else texts.MIND_TITLE, (left, top + 34), size=TEXT)
     if values is None:
-        flown = ACTION_NAMES[int(decision.action[0])]
-        canvas.text(texts.MIND_SCRIPTED_FLOWN.format(action=flown), (left, top + _VALUES), size=SMALL)
+        draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
     else:
         draw_q_values(canvas, values, left, top + _VALUES, width)
     for number, line in enumerate(decision_words(decision)):

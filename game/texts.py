@@ -200,7 +200,7 @@ HINT_RESTART: Final = "new starts"
 HINT_NEXT_LANDER: Final = "next lander"
 MIND_TITLE: Final = "What the network thinks"
 MIND_SCRIPTED_TITLE: Final = "What the pilot does"
-MIND_SCRIPTED_FLOWN: Final = "flown: {action}"
+MIND_SCRIPTED_FLOWN: Final = "flown"
 # A decision of a network: what it expects, in points of reward, and why its action is flown, in two lines
 Q_EXPECTED: Final = "expected score"
 Q_ADVANTAGE: Final = "advantage"

@@ -88,6 +88,16 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
         canvas.marker("triangle_down", (x, y - 11), 6, INK, 0.8)
 
 
+def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
+    """Draw which action is flown, where nothing is known of what they are worth; `top` is the first baseline."""
+    for action, name in enumerate(ACTION_NAMES):
+        y, here = top + _ROW * action, action == flown
+        canvas.text(name, (left, y), size=SMALL, colour=INK if here else MUTE, room=_NAME - 20)
+        if here:
+            canvas.marker("triangle", (left + _NAME - 8, y - 4), 6, NET)
+            canvas.text(texts.MIND_SCRIPTED_FLOWN, (left + _NAME, y), size=SMALL, colour=MUTE)
+
+
 def _draw_row(canvas: Canvas, values: QValues, action: int, left: float, y: float, width: float) -> None:
     x, track = left + _NAME, width - _NAME - _FIGURE
     flown, feasible = action == values.flown, values.feasible[action]

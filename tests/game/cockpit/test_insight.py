@@ -1,9 +1,14 @@
 import numpy as np
+import pygame
 import pytest
 
+from ai.copilot import Mode
 from ai.decision import Decision, decide
+from game import texts
 from game.cockpit.insight import Insight
 from game.flight import Flight
+from game.ui.canvas import Canvas
+from tests.game.drawn import Drawn, read_panel
 
 
 class Wavers:
@@ -37,3 +42,57 @@ def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(bef
         assert insight.values.flown == np.argmax(insight.values.points) == flown
         seen.add(flown)
     assert len(seen) > 1
+
+
+class Damaged(Wavers):
+    """One whose values are not numbers."""
+
+    def q_values(self, observation: np.ndarray) -> np.ndarray:
+        return np.full((len(observation), 6), np.nan, np.float32)
+
+
+@pytest.mark.parametrize("shares", [False, True])
+def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
+    shares: bool, monkeypatch: pytest.MonkeyPatch
+):
+    flight = Flight(3, Damaged())
+    flight.help(0.5, Mode.TOLERANCE)
+    if not shares:
+        flight.hand_over()
+    insight = Insight(flight.env.ground)
+    flight.step(3)
+    insight.follow(flight)
+    drawn = Drawn(monkeypatch)
+    insight.draw(Canvas(pygame.Surface((1280, 720))), 0.5)
+    panel = read_panel(drawn)
+    assert panel.expected == "–"
+    assert {row.figure for row in panel.rows} == {"–"}
+    assert {row.fraction for row in panel.rows} == {0.0}
+    assert set(texts.VALUES_DAMAGED) <= set(drawn.words)
+
+
+def test_an_override_that_is_over_is_said_to_be_past(monkeypatch: pytest.MonkeyPatch):
+    flight = Flight(3, Prefers())
+    flight.help(0.5, Mode.TOLERANCE)
+    insight = Insight(flight.env.ground)
+    canvas, drawn = Canvas(pygame.Surface((1280, 720))), Drawn(monkeypatch)
+
+    def title(held: int) -> str:
+        flight.step(held)
+        insight.follow(flight)
+        drawn.clear()
+        insight.draw(canvas, 0.5)
+        return next(word for word in drawn.words for why in texts.INSIGHT_WHY.values() if word.startswith(why[0]))
+
+    copilot, yours = texts.INSIGHT_WHY["COPILOT"][0], texts.INSIGHT_WHY["PILOT"][0]
+    assert title(2) == copilot
+    assert title(1) == texts.INSIGHT_BEFORE.format(title=copilot)
+    assert flight.recording.actions[-1] == 1
+    assert [title(1) for _ in range(60)][-1] == yours
+
+
+class Prefers(Wavers):
+    """One that finds the main engine best, left good enough, and the rest of no use."""
+
+    def q_values(self, observation: np.ndarray) -> np.ndarray:
+        return np.tile(np.array([0, 0.06, 0, 0.1, 0, 0], np.float32), (len(observation), 1))
