@@ -20,7 +20,7 @@ from game.ui.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIE
 from game.world.paint import mix
 
 PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 64 - 244, 84, 264, 336)
-_PADS_HIGH: Final = 102  # what the rows of three pads add
+PADS_HIGH: Final = 102  # what the rows of three pads add
 _LEFT: Final = 20  # of what stands on the panel, from its corner
 _WIDTH: Final = PANEL.width - 40
 _TRACK: Final = (_LEFT + 96, _WIDTH - 96)
@@ -105,7 +105,7 @@ class Insight:
     def draw(self, canvas: Canvas, share: float) -> None:
         """Draw the panel; `share` is the person's share of the flight so far."""
         pads = self._likely if len(self._likely) > 1 else []
-        lower, left, top = _PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
+        lower, left, top = PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
         surest = max(pads, default=0.0)
         shows = self._flown, self._feasible.tobytes(), tuple(chance == surest for chance in pads)
         box = (PANEL.left, top, PANEL.width, PANEL.height + lower)
@@ -136,7 +136,7 @@ class Insight:
 
     def _paint_words(self, canvas: Canvas, pads: list[float]) -> None:
         """Draw the panel and the words on it that seldom change."""
-        canvas.panel((0, 0, PANEL.width, PANEL.height + (_PADS_HIGH if pads else 0)))
+        canvas.panel((0, 0, PANEL.width, PANEL.height + (PADS_HIGH if pads else 0)))
         canvas.text(texts.MIND_TITLE, (_LEFT, 34))
         for action, name in enumerate(ACTION_NAMES):
             flown, good = action == self._flown, bool(self._feasible[action])
