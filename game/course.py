@@ -32,13 +32,15 @@ class Moment:
         alpha: how much of the way between two steps has passed.
         controls: in whose words keys are named.
         clear: where on the screen nothing else is said.
-        stuck: whether the craft waits for something held to be let go of.
+        waiting: whether the craft hangs until something is touched.
+        stuck: whether it does so until something held is let go of first.
 
     """
 
     alpha: float
     controls: Controls
     clear: Clear
+    waiting: bool = False
     stuck: bool = False
 
 

@@ -39,13 +39,13 @@ class Outlook:
         if self._forecast:
             self._forecast.follow(self._flight.env, 1 if self._drifts else 2)
 
-    def draw(self, canvas: Canvas, view: View) -> None:
-        """Draw both ways, until there is none left to go."""
+    def draw(self, canvas: Canvas, view: View, head: float) -> None:
+        """Draw both ways, until there is none left to go, below the words in the uppermost `head` points."""
         if self._arrived:
             return
-        draw_dotted(canvas, view, self._drift.path, HUMAN)
+        draw_dotted(canvas, view, self._drift.path, HUMAN, head=head)
         if self._forecast:
-            draw_dotted(canvas, view, self._forecast.path, NET)
+            draw_dotted(canvas, view, self._forecast.path, NET, head=head)
 
     @property
     def _arrived(self) -> bool:

@@ -27,6 +27,12 @@ class Rerun(Flight):
         """Steps flown."""
         return len(self.recording.actions)
 
+    @property
+    def flown_by(self) -> Hand:
+        """Whose action the last step was; before the first, whose that will be."""
+        hands = self._source.hands
+        return hands[min(max(self.at - 1, 0), len(hands) - 1)] if hands else self.hand
+
     def _choose(self, held: int) -> tuple[int, Hand]:  # noqa: ARG002
         """Return what the next step was flown with, and whose action that was."""
         if self.at >= len(self._source.actions):

@@ -1135,6 +1135,7 @@ TUTORIAL_POINT: Final = ("{key} with the pointer left of it", "{key} with the po
 TUTORIAL_POINT_EITHER: Final = "{key} with the pointer beside it"
 TUTORIAL_PUSH: Final = ("{key} to the left", "{key} to the right")
 TUTORIAL_STANDS: Final = "Let go: it comes to stand upright."
+TUTORIAL_READY: Final = "{main}  when you are ready. Then land: upright, slower than 2 m/s."
 TUTORIAL_LET_GO: Final = "Let go of everything first."
 # Why a lesson begins again, where a flight's own end does not say so
 TUTORIAL_AGAIN: Final = "Once more, from the top."

@@ -259,8 +259,8 @@ class Tutorial(Course):
 
     # The picture
 
-    def words(self, flight: Flight, controls: Controls, *, stuck: bool = False) -> str:
-        """Return what to say now, in the words of the device in use; `stuck` while something held is to be let go."""
+    def words(self, flight: Flight, controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
+        """Return what to say now, in the words of the device in use; `waiting` and `stuck` as in a `Moment`."""
         left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
         turn = texts.TUTORIAL_EITHER.format(left=left, right=right)
         if left == right:  # one button for both, which turns towards the pointer, or a stick
@@ -271,7 +271,7 @@ class Tutorial(Course):
             else:
                 left, right = (text.format(key=sign) for text in texts.TUTORIAL_PUSH)
         env = flight.env
-        return self._line(flight, stuck).format(
+        return self._line(flight, waiting, stuck).format(
             main=controls.word(Held.MAIN),
             turn=turn,
             other=right if _turned(env) > 0 else left,
@@ -279,13 +279,15 @@ class Tutorial(Course):
             hand_over=controls.word(Command.HANDOVER),
         )
 
-    def _line(self, flight: Flight, stuck: bool) -> str:
+    def _line(self, flight: Flight, waiting: bool, stuck: bool) -> str:
         env, lesson = flight.env, self.lesson
         told = texts.TUTORIAL[lesson.name]
         if flight.over:
             return texts.TUTORIAL_AGAIN
         if stuck:
             return told[0] if lesson.hands_off else texts.TUTORIAL_LET_GO
+        if waiting and lesson.name == "land":  # whose line names no key that would begin it
+            return texts.TUTORIAL_READY
         if flight.hand is Hand.HUMAN and (urgent := self._urgent(env)):
             return urgent
         if self._praise:
@@ -318,7 +320,7 @@ class Tutorial(Course):
         if flight.over and self.through:
             return
         x, y, _ = flight.poses.at(scene.alpha)[0].tolist()
-        words = self.words(flight, scene.controls, stuck=scene.stuck)
+        words = self.words(flight, scene.controls, waiting=scene.waiting, stuck=scene.stuck)
         praised = bool(self._praise) and words == texts.TUTORIAL_GOOD[self.lesson.name]
         tick = 22 if praised else 0
         width = max(canvas.text_width(words, size=_SIZE) + tick, canvas.text_width(self.why, size=SMALL))

@@ -13,7 +13,7 @@ from ai.lander import Outcome
 from game import texts
 from game.cockpit.dial import Dial, draw_title
 from game.cockpit.hands import OWN
-from game.cockpit.insight import PANEL, Insight
+from game.cockpit.insight import PADS_HIGH, PANEL, Insight
 from game.cockpit.lesson import keep_lesson
 from game.cockpit.overrides import Overrides
 from game.cockpit.track import Track
@@ -28,6 +28,7 @@ from game.ui.canvas import Canvas
 from game.ui.tokens import MARGIN, VIEW_SIZE
 
 MODES: Final = ("tolerance", "guardian")
+_CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
 _CARD_LEFT: Final = float(MARGIN)  # where else a card may stand, to leave the path in sight
 _CARD_RIGHT: Final = float(VIEW_SIZE[0] - MARGIN - CARD.width)
 
@@ -100,15 +101,22 @@ class Cockpit:
     def _explains(self) -> bool:
         return self._settings.explain and self._insight.shown and not self._flight.over
 
-    def draw_behind(self, canvas: Canvas) -> None:
-        """Draw what the craft flies in front of."""
-        if self._explains:
+    def draw_panel(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        """Draw what explains the flight; it gives way to a craft that flies where it stands."""
+        if self._explains and not self._meets(view, pose):
             self._insight.draw(canvas, self._flight.share)
+
+    def _meets(self, view: View, pose: Doubles) -> bool:
+        """Whether the craft is where the panel stands: only where the camera can't keep it clear."""
+        around = 2 * _CRAFT * view.pixels_per_metre / view.scale
+        lower = PADS_HIGH if len(self._flight.env.ground.pads) > 1 else 0
+        panel = pygame.Rect(PANEL.topleft, (PANEL.width, PANEL.height + lower))
+        return bool(panel.inflate(around, around).collidepoint(view.points(pose[:2]).tolist()))
 
     def draw_beside(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Draw what was changed of what the hands asked for."""
         if not self._flight.over:
-            self.overrides.draw_word(canvas, view, pose)
+            self.overrides.draw_word(canvas, view, pose, self.clear)
 
     def draw_top(self, canvas: Canvas) -> None:
         """Say who flies, and who flew just now."""

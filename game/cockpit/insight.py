@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ai.copilot import SharedDecision
 
 PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 36 - 280, 84, 280, 388)
-_PADS_HIGH: Final = 102  # what the rows of three pads add
+PADS_HIGH: Final = 102  # what the rows of three pads add
 _LEFT: Final = 20  # of what stands on the panel, from its corner
 _WIDTH: Final = PANEL.width - 40
 _VALUES: Final = 62  # the first line of the values, from its top
@@ -89,7 +89,7 @@ class Insight:
     def draw(self, canvas: Canvas, share: float) -> None:
         """Draw the panel; `share` is the person's share of the flight so far."""
         pads = self._likely if len(self._likely) > 1 else []
-        lower, left, top = _PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
+        lower, left, top = PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
         canvas.panel((PANEL.left, top, PANEL.width, PANEL.height + lower))
         canvas.text(texts.MIND_TITLE, (left, top + 34))
         if self.values is not None:

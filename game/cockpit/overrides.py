@@ -11,7 +11,7 @@ from ai.env import Doubles
 from ai.pilots import COAST
 from game import texts
 from game.flight import DECISION_STEPS, Flight, Hand
-from game.render import View
+from game.render import Clear, View
 from game.ui.canvas import Canvas
 from game.ui.shapes import Shape
 from game.ui.tokens import HUMAN, NET, SMALL, VIEW_SIZE, Colour
@@ -22,6 +22,8 @@ _FADES: Final = 14
 _SAMPLES: Final = 120  # decisions on the line, eight seconds
 _STRIP: Final = (VIEW_SIZE[0] / 2 - 90, 77.0, 180.0)  # left, middle, width
 _DOTS: Final = 6  # of what was asked for and not flown
+_SIGN: Final = 9.0  # from the middle of a sign to the words beside it
+_LOWEST: Final = 620.0  # row above the read-outs
 _YOURS, _HANDED, _CHANGED = range(3)
 
 
@@ -83,8 +85,8 @@ class Overrides:
             canvas.fill(canvas.rect(x, middle - height / 2, max(length, 1.0), height), colour, alpha)
             x += length
 
-    def draw_word(self, canvas: Canvas, view: View, pose: Doubles) -> None:
-        """Say beside the craft what was changed, and dot the fire that was asked for and not lit."""
+    def draw_word(self, canvas: Canvas, view: View, pose: Doubles, clear: Clear) -> None:
+        """Say beside the craft what was changed, where it is `clear`, and dot the fire that was not lit."""
         strength = self.strength
         if strength <= 0:
             return
@@ -93,11 +95,11 @@ class Overrides:
                 _draw_unlit(canvas, view, pose, start, away)
         x, y = view.points(pose[:2]).tolist()
         metre = view.pixels_per_metre / view.scale
-        right = x < VIEW_SIZE[0] - 200
+        right = x + 1.5 * metre + canvas.text_width(self._word, size=SMALL) + 2 * _SIGN < clear.right
         x += (1.5 if right else -1.5) * metre
-        y -= 0.4 * metre
+        y = min(max(y - 0.4 * metre, clear.head), _LOWEST)
         canvas.marker("diamond", (x, y), 8, NET, strength)
-        canvas.text(self._word, (x + (9 if right else -9), y + 4), size=SMALL, colour=NET,
+        canvas.text(self._word, (x + (_SIGN if right else -_SIGN), y + 4), size=SMALL, colour=NET,
                     align="left" if right else "right", alpha=strength)  # fmt: skip
 
 

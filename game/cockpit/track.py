@@ -11,10 +11,10 @@ import pygame
 
 from ai.env import Doubles
 from game.flight import Flight, Hand
-from game.render import View
+from game.render import Clear, View
 from game.ui.canvas import Canvas
 from game.ui.tokens import HUMAN, NET
-from game.world.paths import draw_stretch
+from game.world.paths import draw_faint
 
 _STRIDE: Final = 4  # steps between points
 _MOST_MARKS: Final = 24
@@ -54,19 +54,20 @@ class Track:
         return min(lefts, key=hidden)
 
     def draw(self, canvas: Canvas, view: View, shown: float = 1.0) -> None:
-        """Draw the path, `shown` 0 to 1 of it from the start, and a diamond for every moment."""
-        pixels = view.pixels(self.path).tolist()
+        """Draw the path, `shown` 0 to 1 of it from the start, and a diamond for every moment, below the head."""
+        pixels = view.pixels(self.path)
         last = round(shown * len(self._hands))
         ends = [0]
         for _, run in groupby(self._hands[:last]):
             ends.append(ends[-1] + len(list(run)))
         for start, end in pairwise(ends):
             colour = HUMAN if self._hands[start] is Hand.HUMAN else NET
-            faint = pygame.Color(colour).lerp((0, 0, 0), 1 - _DIM)
-            draw_stretch(canvas.surface, faint, pixels[start : end + 1])
+            draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * Clear.head)
         if shown >= 1:
             for place in self._marked():
-                canvas.marker("diamond", view.points(place).tolist(), 8, NET)
+                spot = view.points(place).tolist()
+                if spot[1] > Clear.head:
+                    canvas.marker("diamond", spot, 8, NET)
 
     def _marked(self) -> list[Doubles]:
         """Return the moments, or some of them where there are too many to be told apart."""

@@ -149,17 +149,17 @@ class Play:
         self._scenery.draw_land(canvas, alpha)
         if self._ghost:
             self._ghost.draw_way(canvas, view)
-        self._cockpit.draw_behind(canvas)
         if flight.over:
             self._cockpit.track.draw(canvas, view)
-        self._outlook.draw(canvas, view)
+        self._outlook.draw(canvas, view, self._scenery.clear.head)
         if self._ghost:
             self._ghost.draw(canvas, view, alpha)
-        self._scenery.draw_craft(canvas, alpha, reason=self.ending.shown == 0)
-        self._cockpit.draw_beside(canvas, view, flight.poses.at(alpha)[0])
+        self._scenery.draw_craft(canvas, alpha, words=self.ending.shown == 0)
+        pose = flight.poses.at(alpha)[0]
+        self._cockpit.draw_panel(canvas, view, pose)
+        self._cockpit.draw_beside(canvas, view, pose)
         if self._course:
-            stuck = self.waiting and not self._let_go
-            self._course.draw(canvas, view, flight, Moment(alpha, self._controls, self._cockpit.clear, stuck))
+            self._course.draw(canvas, view, flight, self._moment(alpha))
         self._draw_words(canvas)
         self.ending.draw(canvas, self._controls, self._course, self._ghost, self._settings.show_hints)
 
@@ -354,6 +354,10 @@ class Play:
             self._outlook.ask(self._guide)
 
     # The picture
+
+    def _moment(self, alpha: float) -> Moment:
+        stuck = self.waiting and not self._let_go
+        return Moment(alpha, self._controls, self._cockpit.clear, self.waiting, stuck)
 
     def _draw_words(self, canvas: Canvas) -> None:
         course = self._course

@@ -68,13 +68,13 @@ class Moments:
             place = view.points(foot).tolist()
             canvas.glow((place[0], place[1]), 0.5 * view.pixels_per_metre / view.scale, INK, 1.3 * (1 - gone) ** 2)
 
-    def draw_words(self, canvas: Canvas, view: View, pose: Doubles, reason: bool = True) -> None:
-        """Write what has happened above the craft; `reason` is whether that of a crash is still to be told."""
+    def draw_words(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        """Write what has happened above the craft."""
         shown = self._shown(self._contact, _CONTACT)
         if shown > 0:
             self._write(canvas, view, pose, texts.CONTACT_LIGHT, shown, crash=False)
         shown = self._shown(self._crash, _REASON)
-        if shown > 0 and reason:
+        if shown > 0:
             self._write(canvas, view, pose, crash_reason(self._env), shown, crash=True)
 
     def _shown(self, since: int, times: tuple[int, int, int]) -> float:

@@ -23,8 +23,10 @@ _STRETCH: Final = 12  # points of a trail drawn in one colour
 _FADE: Final = 0.6  # below the words at the head, in their height: where a line fades in
 
 
-def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6) -> None:
-    """Draw a path (k, 2) as dots that fade along the way, from `start` metres on."""
+def draw_dotted(
+    canvas: Canvas, view: View, path: Doubles, colour: Colour, start: float = 1.6, head: float = 0.0
+) -> None:
+    """Draw a path (k, 2) as dots that fade along the way, from `start` metres on, below the uppermost `head` points."""
     if len(path) < 2:
         return
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
@@ -34,8 +36,11 @@ def draw_dotted(canvas: Canvas, view: View, path: Doubles, colour: Colour, start
     places = np.stack([np.interp(marks, lengths, path[:, k]) for k in range(2)], axis=1)
     fade = np.linspace(0.95, 0.22, len(marks))
     for place, alpha in zip(view.points(places).tolist(), fade.tolist(), strict=True):
-        canvas.dot(place, 1.5, colour, alpha)
-    canvas.marker("diamond", view.points(path[-1]).tolist(), 7, colour, 0.55)
+        if place[1] > head:
+            canvas.dot(place, 1.5, colour, alpha)
+    end = view.points(path[-1]).tolist()
+    if end[1] > head:
+        canvas.marker("diamond", end, 7, colour, 0.55)
 
 
 @dataclass

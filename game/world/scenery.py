@@ -11,12 +11,15 @@ from game.clock import STEP
 from game.flight import Flight, Hand
 from game.render import Camera, Clear, Shot, View
 from game.ui.canvas import Canvas
+from game.ui.tokens import VIEW_SIZE
 from game.world.backdrop import EARTH, landscape
 from game.world.ground import draw_ground
 from game.world.looks import LOOKS, look_of
 from game.world.moments import Moments
 from game.world.particles import DUST
 from game.world.stage import Stage
+
+_EDGE, _LOWEST = 24.0, 620.0  # points that a mark keeps from the sides, and its lowest row, above the read-outs
 
 
 class Scenery:
@@ -113,11 +116,26 @@ class Scenery:
         if env.conditions.pushes and not self._calm:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
-    def draw_craft(self, canvas: Canvas, alpha: float, reason: bool = True) -> None:
-        """Draw the craft with all that it raises; `reason` is whether that of a crash is told on the spot."""
+    def draw_craft(self, canvas: Canvas, alpha: float, words: bool = True) -> None:
+        """Draw the craft with all that it raises; `words` is whether what happens is told on the spot.
+
+        One that has left the area is gone from sight; a cross stands where that was.
+        """
         view, pose = self.view(canvas.scale, alpha), self._flight.poses.at(alpha)[0]
+        if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
+            _mark_lost(canvas, view, pose)
+            return
         self._moments.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
         self.stage.draw_dust(canvas, view, alpha)
         shown = self.stage.wreck_pose(alpha) if self._flight.outcome is Outcome.CRASHED else None
-        self._moments.draw_words(canvas, view, pose if shown is None else shown, reason)
+        if words:
+            self._moments.draw_words(canvas, view, pose if shown is None else shown)
+
+
+def _mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:
+    """Mark where a craft has left the area, or the nearest place to it that is clear of words."""
+    x, y = view.points(pose[:2]).tolist()
+    place = (min(max(x, _EDGE), VIEW_SIZE[0] - _EDGE), min(max(y, framing.ALL.head), _LOWEST))
+    canvas.glow(place, 18, canvas.palette.warn, 0.5)
+    canvas.marker("cross", place, 12, canvas.palette.warn)

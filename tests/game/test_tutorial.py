@@ -5,6 +5,7 @@ import pygame
 import pytest
 
 from ai.lander import Outcome
+from ai.missions import FIRST
 from ai.pilots import ScriptedPilot
 from game import networks, texts
 from game.bindings import Held
@@ -13,6 +14,7 @@ from game.flight import Hand
 from game.records import Records
 from game.scene import Push
 from game.scenes.menu import Menu
+from game.scenes.missions import Missions
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
 from game.settings import FILE_NAME
@@ -98,7 +100,9 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     assert play(driver)._course is None
     assert play(driver).waiting
     driver.app.close()
-    assert json.loads((context.user_dir / FILE_NAME).read_text())["tutored"]
+    assert saved(context) == (True, True)
+    missions = open_game(Missions()).top
+    assert missions._row(FIRST.name)[1] == texts.TUTORIAL_FLOWN
 
 
 def test_only_the_very_first_flight_teaches(open_game: Open):
@@ -161,7 +165,7 @@ def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
     assert play(driver).flight.hand is Hand.HUMAN
 
 
-def test_each_lesson_can_be_skipped_and_the_whole_be_left(open_game: Open):
+def test_each_lesson_can_be_skipped(open_game: Open, context: Context):
     driver = open_game(Menu(), tutored=False)
     driver.key(pygame.K_RETURN)
     for name in NAMES:
@@ -170,12 +174,29 @@ def test_each_lesson_can_be_skipped_and_the_whole_be_left(open_game: Open):
         assert tutorial(driver).lesson.name == name
         driver.key(pygame.K_n)
     assert play(driver)._course is None
+    assert saved(context) == (True, False)  # left out, and not flown
+
+
+def saved(context: Context) -> tuple[bool, bool]:
+    values = json.loads((context.user_dir / FILE_NAME).read_text())
+    return values["tutored"], values["first_flown"]
+
+
+def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: Context):
     driver = open_game(Menu(), tutored=False)
-    driver.key(pygame.K_RETURN)
-    driver.key(pygame.K_ESCAPE)
+    driver.keys(pygame.K_RETURN, pygame.K_ESCAPE)
     assert driver.top_name == "Menu"
     driver.key(pygame.K_RETURN)
+    assert tutorial(driver).lesson.name == "fire"
+    assert saved(context) == (False, False)
+    driver.key(pygame.K_UP)
+    driver.key(pygame.K_ESCAPE)
+    assert driver.top_name == "Pause"
+    word = next(word for word in driver.top._form.widgets if word.label == texts.TUTORIAL_LEAVE)
+    driver.top._form.focus(word)
+    driver.key(pygame.K_RETURN)
     assert play(driver)._course is None
+    assert saved(context) == (True, False)
 
 
 def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):
