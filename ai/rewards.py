@@ -1,7 +1,11 @@
 """What the lander is paid for: a table of named parts, each a function of what one decision changed.
 
-Distance, speed and alignment are differences of a potential, so that no loop through the same states can
-earn anything (Ng, Harada and Russell 1999); the rest is paid per physics step.
+Distance, speed and alignment are differences Φ' - Φ of a potential, so in points a flight is paid for its two
+ends alone, and no loop earns anything. An agent that discounts sees a little more: Ng, Harada and Russell 1999
+would pay it γΦ' - Φ, and this is that plus (1 - γ)Φ'. Upright above the pad that is at most 0.45 points a
+decision (modern; classic 0.30), less than its time costs (1.6; 0.4), so it does not pay to stay. The parts are
+kept without γ because they are points that a player can follow: 0.5 for each 0.1 m. The rest is paid per physics
+step.
 """
 
 from __future__ import annotations

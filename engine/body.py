@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.vector import Array, Bools, cross
 
 if TYPE_CHECKING:
     from engine.world import World
+
+T = TypeVar("T", bound=np.generic)
 
 
 class Body:
@@ -62,7 +65,7 @@ class Body:
     @property
     def active(self) -> Bools:
         """Whether it takes part, (batch,); an inactive body neither moves nor touches."""
-        return self.world.state.active[:, self.index]
+        return _read_only(self.world.state.active[:, self.index])
 
     @active.setter
     def active(self, value: object) -> None:
@@ -126,6 +129,6 @@ class Body:
         return 1.0 / value if value else float("inf")
 
 
-def _read_only(view: Array) -> Array:
+def _read_only(view: NDArray[T]) -> NDArray[T]:
     view.flags.writeable = False
     return view

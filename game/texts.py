@@ -509,7 +509,13 @@ KNOBS_PUT_ASIDE: Final = "Your knobs"
 KNOBS_PUT_ASIDE_LINE: Final = "were put aside for {name}."
 PRESETS: Final = {
     "modern": ("Modern", "The fastest learner we could build: within a minute, it lands."),
-    "classic": ("Classic", "Deep Q-learning as one first meets it: slow, and never quite steady."),
+    "classic": (
+        "Classic",
+        (
+            "Deep Q-learning as one first meets it: slow, and never quite steady. Not of old: time costs points,"
+            " gradients are clipped, rewards scaled, and a decision lasts four steps."
+        ),
+    ),
 }
 
 # Whatever works in a process of its own

@@ -97,7 +97,9 @@ def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
 def test_a_gradient_that_is_not_finite_ends_the_run(data):
     training = DigitTraining(SMALL, data=data)
     training.classifier.network.values[:] = np.nan
-    with pytest.raises(FloatingPointError, match="the cost was not finite at learning step 1; most likely the learning rate"):
+    with pytest.raises(
+        FloatingPointError, match="the cost was not finite at learning step 1; most likely the learning rate"
+    ):
         training.advance()
 
 

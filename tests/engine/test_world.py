@@ -88,9 +88,10 @@ def test_setters_reach_the_worlds_of_a_mask():
 
 def test_handles_cannot_be_written_through_by_accident():
     body = World(batch=2).add(BOX, (0, 0))
-    for name in ("position", "angle", "velocity", "angular_velocity"):
+    for name in ("position", "angle", "velocity", "angular_velocity", "active"):
         with pytest.raises(ValueError, match="read-only"):
-            getattr(body, name)[0] = 1.0
+            getattr(body, name)[0] = 0.0
+    assert body.active.all()
 
 
 def test_a_static_body_moved_by_hand_is_met_where_it_is():

@@ -107,7 +107,7 @@ def test_numbers_that_run_away_end_the_training_and_no_infinite_weight_stays(rat
     rng = np.random.default_rng(0)
     network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(4, 1))
     x = rng.normal(size=(200, 4))
-    with pytest.raises(DivergenceError, match="learning step .* the learning rate of") as caught:
+    with pytest.raises(DivergenceError, match=r"learning step .* the learning rate of") as caught:
         network.train(x, x.sum(axis=1, keepdims=True), epochs=epochs, batch_size=4, learning_rate=rate)
     assert caught.value.learning_rate == rate
     assert 1 <= caught.value.step <= 50
@@ -186,7 +186,7 @@ def test_a_custom_layer_learns_wherever_it_stands(place):
 def test_a_custom_layer_is_saved_once_it_is_registered(tmp_path, monkeypatch):
     monkeypatch.setattr("ai.nn.storage.LAYERS", LAYERS.copy())
     network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(Gain(2)).add_layer(FullyConnectedLayer(2, 1))
-    with pytest.raises(ValueError, match="layer 0, a Gain, could not be loaded again: tell ai.nn.register_layer"):
+    with pytest.raises(ValueError, match=r"layer 0, a Gain, could not be loaded again: tell ai\.nn\.register_layer"):
         network.save(tmp_path / "model")
     assert not (tmp_path / "model").exists()
     assert register_layer(Gain) is register_layer(Gain) is Gain

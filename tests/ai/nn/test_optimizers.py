@@ -138,7 +138,9 @@ def test_a_gradient_that_is_not_finite_moves_nothing(name, bad):
     optimizer, values = OPTIMIZERS[name](clip=10.0), np.ones(3)
     optimizer.step(values, np.ones(3))
     before, state = values.copy(), optimizer.state()
-    with pytest.raises(DivergenceError, match=f"gradient was not finite at learning step 2; .* {optimizer.learning_rate}"):
+    with pytest.raises(
+        DivergenceError, match=f"gradient was not finite at learning step 2; .* {optimizer.learning_rate}"
+    ):
         optimizer.step(values, np.array([1.0, bad, 1.0]))
     with pytest.raises(DivergenceError, match="the cost was not finite at learning step 2"):
         optimizer.step(values, np.ones(3), cost=bad)
@@ -150,7 +152,7 @@ def test_a_gradient_that_is_not_finite_moves_nothing(name, bad):
 @pytest.mark.parametrize("name", OPTIMIZERS)
 def test_a_step_that_would_overflow_is_not_taken(name):
     optimizer, values = OPTIMIZERS[name](1e300), np.ones(3, np.float32)
-    with pytest.raises(DivergenceError, match="step was not finite at learning step 1; .*1e\\+300"):
+    with pytest.raises(DivergenceError, match=r"step was not finite at learning step 1; .*1e\+300"):
         optimizer.step(values, np.full(3, 1e10, np.float32))
     assert (values == 1).all()
 

@@ -1,0 +1,61 @@
+"""What the shaping of the reward pays: nothing for a loop in points, and little where the agent discounts."""
+
+import numpy as np
+import pytest
+
+from ai.config import PRESETS
+from ai.lander import NUM_ACTIONS, LanderEnv, Outcome
+from ai.rewards import REWARDS, Change, RewardWeights, Situation
+
+SHAPING = ("distance", "speed", "alignment")
+
+
+def change(before, after):
+    """A decision of four steps between two situations, in which nothing else happened."""
+    none = np.zeros(len(before.distance), dtype=np.intp)
+    return Change(before, after, none + 4, none, none, none, none, none > 0, none > 0)
+
+
+def situation(distance, speed, offset, tilt):
+    return Situation(*(np.atleast_1d(np.asarray(part, float)) for part in (distance, offset, speed, tilt)))
+
+
+MIDDLE = situation(0, 0, 0, 0)
+
+
+def shaped(before, after, weights):
+    return sum(REWARDS[name](change(before, after), weights) for name in SHAPING)
+
+
+def test_in_points_a_flight_is_paid_for_its_two_ends_alone():
+    env, rng = LanderEnv(20, 3, "practice"), np.random.default_rng(0)
+    env.reset()
+    start, paid = env._situation(), np.zeros(20)
+    while (flying := env.outcome == Outcome.FLYING).any():
+        components = env.step(rng.integers(0, NUM_ACTIONS, 20)).components
+        paid += flying * sum(components[name] for name in SHAPING)
+    assert paid == pytest.approx(shaped(start, env._situation(), env.weights), abs=1e-2)
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_discounted_a_decision_near_the_pad_is_worth_less_than_its_time_costs(preset):
+    """A difference of potentials is γΦ' - Φ plus (1 - γ)Φ': the last is what docs/training.md gives in points."""
+    config = PRESETS[preset]
+    rng = np.random.default_rng(1)
+    some = situation(rng.uniform(0, 20, 500), rng.uniform(0, 5, 500), rng.uniform(0, 4, 500), rng.uniform(0, 1, 500))
+    rest = Situation(*(np.zeros(500) for _ in range(4)))
+    potential = config.weights.alignment - shaped(some, rest, config.weights)
+    most = (1 - config.discount) * potential.max()
+    bound = (1 - config.discount) * config.weights.alignment
+    assert potential.max() <= config.weights.alignment
+    assert most <= bound == pytest.approx({"modern": 0.45, "classic": 0.30}[preset])
+    time = -config.weights.time * config.frame_skip
+    assert time == pytest.approx({"modern": 1.6, "classic": 0.4}[preset])
+    assert bound < time
+
+
+def test_a_loop_that_first_gains_pays_a_little_when_discounted_and_nothing_in_points():
+    weights, discount = RewardWeights(), 0.985
+    there, back = shaped(situation(2, 1, 2, 0.4), MIDDLE, weights), shaped(MIDDLE, situation(2, 1, 2, 0.4), weights)
+    assert there + back == pytest.approx(0)
+    assert there + discount * back > 0
