@@ -629,15 +629,21 @@ PICKING_EMPTY: Final = "Nothing is saved yet."
 HINT_TITLE: Final = "Hint"
 HINT_APPLIED: Final = "Applied"
 HINT_APPLY: Final = "Apply"
+HINT_WENT_BACK: Final = "back to {decisions:,} decisions"
 HINT_DISMISS: Final = "Dismiss"
 HINT_UNDO: Final = "Undo"
 # What a rule of ai.hints means, by its name
 HINTS: Final = {
+    "rate_too_high": "The learning rate is far too high: every step goes too far.",
+    "damaged": "Steps that were far too long have ruined the network. Go back to before.",
     "loss_explodes": "The loss explodes: its steps are too long. Try a lower learning rate.",
     "q_runs_away": "Q has left what the rewards can pay: its guesses feed on each other.",
     "dead_units": "More than half of its units are silent for everything it sees.",
     "collapsed": "It flew better before. Go back to its best, with shorter steps.",
-    "crashes": "Nothing lands and everything falls: what it is paid does not show the way.",
+    "target_stands": "The target network hardly moves: it aims, and may fly, at what it knew long ago.",
+    "short_sight": "Its discount γ is low: a landing that is a second away is worth little to it.",
+    "no_guide": "Nothing it is paid says on the way whether it comes closer to the pad.",
+    "crashes": "By now it should land, and nearly every flight still ends in a crash.",
     "hovers": "Time runs out: it hovers or parks beside the pad.",
     "small_memory": "Its memory holds only a few batches: it forgets what it has just learnt.",
     "overfed": "Few landers for so many learning steps: it sees the same again and again.",

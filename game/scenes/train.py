@@ -39,7 +39,7 @@ _WIDTH: Final = 836.0  # of the swarm and the charts; the panel has the rest
 _LEFT: Final = 40.0
 _FLOOR: Final = 434.0  # where the charts begin
 _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
-_SAID: Final = pygame.Rect(868, 612, 384, 50)
+_SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
 _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
@@ -119,6 +119,7 @@ class Train:
         if student.begun:
             student.begun = False
             self.knobs.set_config(student.config, student.seed)
+        self._advice.hush(bool(self.knobs.waiting))
         if student.alive:
             self.knobs.show_in_force(student.in_force)
         if student.alive != self._alive:
