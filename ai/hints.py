@@ -15,9 +15,8 @@ import numpy as np
 
 from ai.config import Config
 from ai.env import Doubles
-from ai.history import History
+from ai.history import REVERTED, History
 from ai.lander import LIMITS
-from ai.live import REVERTED
 from ai.rewards import FEET_STEPS_PAID, RewardWeights
 from ai.schedule import idle, learning_rate
 
@@ -219,8 +218,8 @@ def returns(config: Config) -> tuple[float, float]:
 
 
 def _sane_rates(run: Recent) -> Mapping[str, Any]:
-    sane, limit = _SANE[run.config.optimizer], _TOO_HIGH[run.config.optimizer]
-    return {name: rate for name, rate in zip(_RATES, sane, strict=True) if getattr(run.config, name) > limit}
+    sane = zip(_RATES, _SANE[run.config.optimizer], strict=True)
+    return {name: rate for name, rate in sane if getattr(run.config, name) > 10 * rate}
 
 
 def _before_damage(run: Recent) -> int | None:

@@ -456,6 +456,7 @@ KNOBS_BACK_TO: Final = "back to {value}"
 KNOBS_CLICK: Final = "Click its name"
 KNOBS_CHANGED: Final = "changed"
 KNOBS_STARTS_ANEW: Final = "Starts anew"
+KNOBS_STARTS_ANEW_AS: Final = "Starts anew as {name}"
 KNOBS_MORE: Final = "{first} and {count} more"
 KNOBS_APPLY: Final = "Apply"
 KNOBS_UNDO: Final = "Undo"
@@ -576,7 +577,10 @@ TRAIN_CHARTS_SHOW: Final = {
     "stage": "how high it starts",
 }
 TRAIN_THIS: Final = "this run"
-TRAIN_RUN: Final = "run {number}"
+TRAIN_RUN: Final = "{name} {number}"
+TRAIN_MADE_ROOM: Final = "{name} is no longer beside it: there is room for {count}."
+TRAIN_AXES: Final = ("by seconds", "by decisions", "each run whole")
+TRAIN_AXIS: Final = ("{:.0f} s", "{:,.0f}", "{:.0f}%")
 TRAIN_CHECKPOINT: Final = "checkpoint {seconds:.0f} s"
 TRAIN_TURNED_MORE: Final = "{few} and {count} more"
 TRAIN_NO_CHECKPOINT: Final = "There is nothing to fly against yet: press Start first."
@@ -732,6 +736,10 @@ PUPIL_LOADING: Final = "Unpacking 60,000 handwritten digits …"
 PUPIL_FIGURES: Final = "epoch {epoch:.2f} of {epochs}  ·  {seconds:.0f} s  ·  {rate:,.0f} images a second"
 PUPIL_READ: Final = "% read of what was held out"
 PUPIL_TESTED: Final = "% read of the 10,000 test images"
+PUPIL_KEPT_BEST: Final = "Kept is its best network, of epoch {epoch}. The last one read {last} of what was held out."
+PUPIL_FALLEN: Final = "It read {best} before, and reads {now} now. Go back to its best?"
+PUPIL_GO_BACK: Final = "Go back"
+PUPIL_WENT_BACK: Final = "back to its best, {part:.1%}"
 PUPIL_STOP: Final = "Stop"
 PUPIL_STOPPING: Final = "Measuring …"
 PUPIL_GO_ON: Final = "Go on with the last run"
@@ -752,6 +760,7 @@ PUPIL_PRESETS: Final = {
     "classic": ("Classic", "Looks at all pixels at once: quick to learn, and good enough for neat hands."),
 }
 MATRIX_TITLE: Final = "WHAT IT MISREADS"
+MATRIX_OF_BEST: Final = "·  its best, of epoch {epoch}"
 MATRIX_AXES: Final = "rows: what it is  ·  columns: what it reads"
 MATRIX_RIGHT: Final = "{digit}, read rightly"
 MATRIX_WRONG: Final = "{digit}, read as {read}"
