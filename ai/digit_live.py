@@ -13,8 +13,10 @@ import numpy.typing as npt
 from ai.digit_config import DigitConfig
 from ai.digit_runs import resume_digit_run, save_digit_run
 from ai.digit_training import LIVE, DigitTraining
-from ai.digits import DIGITS
+from ai.digits import DIGITS, DigitClassifier
+from ai.history import REVERTED
 from ai.messages import Change, Refused, Save
+from ai.nn import Array
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 KEEP_SECONDS: Final = 20.0
@@ -75,12 +77,33 @@ class Confusion:
 
 
 @dataclass(frozen=True)
+class Turned:
+    """A knob was turned, or (REVERTED) the network is what it was at its best, which then is its accuracy."""
+
+    seconds: float
+    name: str
+    after: Any
+
+
+@dataclass(frozen=True)
 class Kept:
-    """The run is on the disk, or why it is not; `test` is the accuracy on the test images once it is finished."""
+    """The run is on the disk, or why it is not.
+
+    Attributes:
+        test: the accuracy on the test images, once it is finished.
+        epoch: after which epoch the network was best that is kept and was measured; None if it is the last one.
+
+    """
 
     folder: Path
     problem: str = ""
     test: float | None = None
+    epoch: int | None = None
+
+
+@dataclass(frozen=True)
+class GoBack:
+    """Let the network be what it was when it read the images held out best."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +111,8 @@ class Finish:
     """Take no more steps: keep the run, measure it, and end."""
 
 
-Message = DigitsBegun | DigitPoint | Score | Confusion | Kept | Refused
-Command = Change | Save | Finish
+Message = DigitsBegun | DigitPoint | Score | Confusion | Turned | Kept | Refused
+Command = Change | Save | Finish | GoBack
 
 
 def live_digits(
@@ -118,8 +141,8 @@ def live_digits(
 class _HeldOut:
     """The images held out, read by the network as it was when this was begun, a slice at a time."""
 
-    def __init__(self, training: DigitTraining) -> None:
-        self._classifier = training.current()
+    def __init__(self, training: DigitTraining, classifier: DigitClassifier | None = None) -> None:
+        self._classifier = classifier or training.current()
         self._images, self._labels = training.held_images, training.held_labels
         self._read: list[npt.NDArray[np.intp]] = []
         self._at = 0
@@ -131,7 +154,12 @@ class _HeldOut:
         self._at += _SLICE
         return self._at >= len(self._images)
 
-    def told(self, at: float) -> list[Message]:
+    @property
+    def values(self) -> Array:
+        """The network's parameters."""
+        return self._classifier.network.values
+
+    def told(self, at: float) -> tuple[Score, Confusion]:
         """Return what there is to say of it, of a network that had learnt for so many seconds."""
         labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
         table = np.zeros((DIGITS, DIGITS), np.int64)
@@ -142,7 +170,7 @@ class _HeldOut:
                                                       for kind in np.unique(kinds[wrong]))]))  # fmt: skip
         images = (self._images[chosen] * 255).astype(np.uint8)
         accuracy = float(table.trace() / len(labels))
-        return [Score(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)]
+        return Score(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)
 
 
 class _LiveDigits:
@@ -156,6 +184,7 @@ class _LiveDigits:
         self._kept = training.step
         self._trouble = ""
         self._reading: _HeldOut | None = None
+        self._best: tuple[float, Array] | None = None  # of all that was read, the accuracy and the values
         self._learning = self._looking = 0.0  # seconds
 
     def advance(self) -> list[Message]:
@@ -187,13 +216,23 @@ class _LiveDigits:
             return [Kept(command.folder, self._written(command.folder)[0])]
         if isinstance(command, Finish):
             return []
+        if isinstance(command, GoBack):
+            return self._go_back()
         try:
             if command.name not in LIVE:
                 raise ValueError(f"{command.name} cannot change while a run goes on")
             self.training.change(self.training.config.changed(**{command.name: command.value}))
         except ValueError as error:
             return [Refused(command, str(error))]
-        return []
+        return [Turned(self.training.seconds, command.name, command.value)]
+
+    def _go_back(self) -> list[Message]:
+        if self._best is None:
+            return []
+        accuracy, values = self._best
+        self.training.go_back(values)
+        self._reading = None  # it was reading for the network that is gone
+        return [Turned(self.training.seconds, REVERTED, accuracy)]
 
     def finish(self, command: Command | None) -> Generator[list[Message], Command | None, None]:
         """Read all that is held out once more, measure the test images, and keep what came of it.
@@ -213,7 +252,13 @@ class _LiveDigits:
             reading = _HeldOut(self.training)
             while not reading.go_on():
                 yield []
-            yield reading.told(self.training.seconds)
+            score, misread = reading.told(self.training.seconds)
+            yield [score, misread]
+            if self.training.best_epoch is not None:  # what is kept is another network: that one's slips are shown
+                reading = _HeldOut(self.training, self.training.best_classifier())
+                while not reading.go_on():
+                    yield []
+                yield [reading.told(self.training.seconds)[1]]
         yield self._keep(final=True)
 
     def end(self) -> None:
@@ -229,7 +274,10 @@ class _LiveDigits:
         if not self._reading.go_on():
             return []
         reading, self._reading = self._reading, None
-        return reading.told(self.training.seconds)
+        score, misread = reading.told(self.training.seconds)
+        if self._best is None or score.accuracy >= self._best[0]:
+            self._best = score.accuracy, reading.values.copy()
+        return [score, misread]
 
     def _keep(self, final: bool = False) -> list[Message]:
         """Write the run; tell of it when it is final, or when something new went wrong."""
@@ -239,7 +287,7 @@ class _LiveDigits:
         if not problem:
             self._kept = self.training.step
         new, self._trouble = problem != self._trouble, problem
-        return [Kept(self._folder, problem, test)] if final or new else []
+        return [Kept(self._folder, problem, test, self.training.best_epoch)] if final or new else []
 
     def _written(self, folder: Path, final: bool = False) -> tuple[str, float | None]:
         """Write the run; return what went wrong, and the accuracy on the test images if it is final."""

@@ -152,6 +152,19 @@ class DigitTraining:
         network.values = self.average
         return DigitClassifier(network)
 
+    @property
+    def best_epoch(self) -> int | None:
+        """After which epoch the network was best; None if that is the one there is now, or none was measured."""
+        if self.best_values is None or np.array_equal(self.best_values, self.average):
+            return None
+        return next((int(each["epoch"]) for each in reversed(self.history) if each.get("held_out") == self.best), None)
+
+    def go_back(self, values: Array) -> None:
+        """Let the network and its average have those values again, (parameters,); the optimizer starts afresh."""
+        self.classifier.network.values = values
+        self.average[...] = values
+        self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
+
     def best_classifier(self) -> DigitClassifier:
         """Return the classifier that read the images held out best, or the current one."""
         classifier = self.current()

@@ -15,9 +15,10 @@ import numpy as np
 
 from ai.config import Config
 from ai.env import Doubles
-from ai.history import History
+from ai.history import REVERTED, History
 from ai.lander import LIMITS
 from ai.rewards import FEET_STEPS_PAID, RewardWeights
+from ai.schedule import idle, learning_rate
 
 HOLD: Final = 2.0  # seconds of training for which a rule must hold before its hint appears
 STAY: Final = 6.0  # seconds for which a hint stays at least
@@ -29,7 +30,13 @@ _FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
 _ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always
 _FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
 _FAR_SPAWNS: Final = ("random", "hard", "highest")  # of which none begins near the pad
-_SANE: Final = {"learning_rate": 2e-3, "final_learning_rate": 3e-4}
+_RATES: Final = ("learning_rate", "final_learning_rate")
+# Rates above which no step is sensible, and sane ones, by the optimizer. Modern still learns at 0.03, not at 0.1;
+# classic's values have run away at 0.1.
+_TOO_HIGH: Final = {"adam": 0.05, "momentum": 0.01, "sgd": 0.05}
+_SANE: Final = {"adam": (2e-3, 3e-4), "momentum": (1e-4, 1e-4), "sgd": (1e-3, 1e-3)}
+_TARGET_STEPS: Final = 8_000  # learning steps after which a target should be nearly where the network is
+_COLLAPSE: Final = 3  # times a hundred flights for which a share must have been there, and must have gone
 _PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say how close it is
 
 
@@ -66,10 +73,6 @@ class Recent:
         """Whether a run should be landing by now."""
         return self.last("decisions", 1) >= _ENOUGH or self.last("episodes", 1) >= _FLIGHTS
 
-    def finite(self, name: str) -> bool:
-        """Whether a column is a number of finite size at the end."""
-        return bool(np.isfinite(self.history[name][-1]))
-
     def gained(self, name: str, share: float = 0.3) -> float:
         """How much a column rose from the first to the second half of the last share of the run."""
         decisions = self.history["decisions"]
@@ -77,14 +80,35 @@ class Recent:
         values = self.history[name]
         return _mean(values[middle:]) - _mean(values[first:middle])
 
-    def best(self) -> float:
-        """The largest share that landed, in this stage, over enough points and flights not to be chance."""
+    def by_hundreds(self) -> Doubles:
+        """The share that landed of each hundred flights of this stage, one after the other: none counts twice."""
         history = self.history
-        counts = (history["episodes"] >= 100) & (history["stage"] == history["stage"][-1])
-        success = np.where(np.isfinite(history["success"]) & counts, history["success"], 0.0)
-        if len(success) < 5:
+        here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success"])
+        episodes, success = history["episodes"][here], history["success"][here]
+        if not len(episodes):
+            return success
+        ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
+        return success[np.searchsorted(episodes, ends)]
+
+    def best(self) -> float:
+        """The largest share that landed, in this stage, over so many flights that it is not chance."""
+        shares = self.by_hundreds()
+        if len(shares) < _COLLAPSE:
             return 0.0
-        return float(np.lib.stride_tricks.sliding_window_view(success, 5).min(axis=1).max())
+        return float(np.lib.stride_tricks.sliding_window_view(shares, _COLLAPSE).min(axis=1).max())
+
+    def damaged_at(self) -> int | None:
+        """When steps began that were far too long, in decisions; None if there were none since it last went back."""
+        config, began = self.config, None
+        changes = [each for each in self.history.alterations if each.name in (*_RATES, REVERTED)]
+        since = self.history["decisions"][-1]
+        for each in [*reversed(changes), None]:
+            if _rate_too_high(config, int(since)):
+                began = 0 if each is None else each.decisions
+            if each is None or each.name == REVERTED:
+                break
+            config, since = config.changed(**{each.name: each.before}), each.decisions
+        return began
 
     def best_moment(self) -> int | None:
         """How many decisions the run had taken at its best checkpoint; None without any."""
@@ -93,20 +117,31 @@ class Recent:
 
 
 class Rule(NamedTuple):
-    """One thing that can be off."""
+    """One thing that can be off; `back_to` is the moment to go back to, in decisions."""
 
     name: str
     holds: Callable[[Recent], bool]
     remedy: Callable[[Recent], Mapping[str, Any]] = lambda _: {}
-    goes_back: bool = False
+    back_to: Callable[[Recent], int | None] = lambda _: None
 
 
 # Conditions
 
 
+def _rate_too_high(config: Config, decisions: int) -> bool:
+    return learning_rate(config, decisions) > _TOO_HIGH[config.optimizer]
+
+
+def _damaged(run: Recent) -> bool:
+    """Steps were far too long, are not any more, and have left a network that shows it."""
+    if run.damaged_at() is None or run.last("landed") > 0.5:
+        return False
+    return any(sign(run) for sign in (_loss_explodes, _q_runs_away, _dead_units, _collapsed, _crashes, _hovers))
+
+
 def _loss_explodes(run: Recent) -> bool:
-    """Ten times what it was, or no number any more."""
-    if not run.finite("loss"):
+    """Ten times what it was, or beyond all numbers; NaN is not known."""
+    if np.isinf(run.history["loss"][-1]):
         return True
     before = _median(run.history["loss"][-208:-8])
     return run.count >= 60 and before > 0 and run.last("loss") > 10 * before
@@ -114,10 +149,25 @@ def _loss_explodes(run: Recent) -> bool:
 
 def _q_runs_away(run: Recent) -> bool:
     """Beyond twice what a flight could earn, or lose, at all."""
-    if not run.finite("mean_q"):
+    if np.isinf(run.history["mean_q"][-1]):
         return True
     least, most = returns(run.config)
-    return not 2 * least <= run.last("mean_q") <= 2 * most
+    return run.last("mean_q") < 2 * least or run.last("mean_q") > 2 * most
+
+
+def _target_stands(run: Recent) -> bool:
+    """The targets, and where the target flies the flights too, are those of long ago."""
+    return run.config.target_every / run.config.target_rate > _TARGET_STEPS
+
+
+def _short_sight(run: Recent) -> bool:
+    """What comes a second later, fifteen decisions, counts for little."""
+    return run.is_late() and run.config.discount < 0.96 and run.last("landed") < 0.6
+
+
+def _no_guide(run: Recent) -> bool:
+    """Nothing that is paid says on the way whether it comes closer."""
+    return run.is_late() and run.last("landed") < 0.6 and not any(getattr(run.config.weights, part) for part in _PARTS)
 
 
 def _dead_units(run: Recent) -> bool:
@@ -127,7 +177,7 @@ def _dead_units(run: Recent) -> bool:
 
 def _collapsed(run: Recent) -> bool:
     best = run.best()
-    return best >= 0.6 and run.last("success", 12) <= best - 0.4
+    return best >= 0.6 and bool(run.by_hundreds()[-_COLLAPSE:].max() <= best - 0.4)
 
 
 def _crashes(run: Recent) -> bool:
@@ -167,6 +217,16 @@ def returns(config: Config) -> tuple[float, float]:
 # Remedies
 
 
+def _sane_rates(run: Recent) -> Mapping[str, Any]:
+    sane = zip(_RATES, _SANE[run.config.optimizer], strict=True)
+    return {name: rate for name, rate in sane if getattr(run.config, name) > 10 * rate}
+
+
+def _before_damage(run: Recent) -> int | None:
+    checkpoint = run.history.checkpoint_at(run.damaged_at() or 0)
+    return checkpoint.decisions if checkpoint else None
+
+
 def _slower(factor: float) -> Callable[[Recent], Mapping[str, Any]]:
     """Lower the learning rate, and what it falls to if that is higher."""
 
@@ -188,16 +248,9 @@ def _calm_q(run: Recent) -> Mapping[str, Any]:
 
 def _for_crashes(run: Recent) -> Mapping[str, Any]:
     config = run.config
-    if config.learning_rate > 0.01:
-        return _SANE
     if config.optimizer == "sgd" and config.learning_rate < 0.02:
         return {"optimizer": "adam"}
-    return _for_short_sight(config)
-
-
-def _for_dead_units(run: Recent) -> Mapping[str, Any]:
-    leaky = {"activation": "leaky_relu"}
-    return _SANE | leaky if run.config.learning_rate > 0.01 else leaky
+    return {}
 
 
 def _for_short_sight(config: Config) -> Mapping[str, Any]:
@@ -206,8 +259,6 @@ def _for_short_sight(config: Config) -> Mapping[str, Any]:
 
 def _for_hovering(run: Recent) -> Mapping[str, Any]:
     config, paid = run.config, RewardWeights()
-    if not any(getattr(config.weights, part) for part in _PARTS):
-        return {f"weights.{part}": getattr(paid, part) for part in _PARTS}
     if config.epsilon_end < 0.02:
         return {"epsilon_end": 0.05}
     if config.random_main > 0.4:
@@ -230,11 +281,24 @@ def _less_random(run: Recent) -> Mapping[str, Any]:
     config = run.config
     if config.epsilon_end > 0.2:
         return {"epsilon_end": 0.05}
+    if config.epsilon_decay == 1.0 and not config.epsilon_decisions:
+        return {"epsilon_decisions": 40_000}
     return {"epsilon_decisions": 40_000} if config.epsilon_decisions else {"epsilon_decay": 0.995}
 
 
 def _more_memory(run: Recent) -> Mapping[str, Any]:
     return {"replay_size": max(10_000, 100 * run.config.batch_size)}
+
+
+def _nearer_target(run: Recent) -> Mapping[str, Any]:
+    return {"target_every": 50} if run.config.target_rate > 0.5 else {"target_every": 1, "target_rate": 0.005}
+
+
+def _fewer_steps(run: Recent) -> Mapping[str, Any]:
+    """Take fewer steps where there are many, or let more landers feed them."""
+    config = run.config
+    enough = 500 * config.num_envs // config.batch_size
+    return {"updates": enough} if config.updates > 12 and enough else {"num_envs": 256}
 
 
 def _longer(run: Recent) -> Mapping[str, Any]:
@@ -245,18 +309,24 @@ def _longer(run: Recent) -> Mapping[str, Any]:
 
 # The most severe first.
 RULES: Final = (
+    Rule("rate_too_high", lambda run: _rate_too_high(run.config, int(run.last("decisions", 1))), _sane_rates,
+         _before_damage),
+    Rule("damaged", _damaged, back_to=_before_damage),
     Rule("loss_explodes", _loss_explodes, _slower(10)),
     Rule("q_runs_away", _q_runs_away, _calm_q),
-    Rule("dead_units", _dead_units, _for_dead_units),
-    Rule("collapsed", _collapsed, _slower(3), goes_back=True),
+    Rule("dead_units", _dead_units, lambda _: {"activation": "leaky_relu"}),
+    Rule("collapsed", _collapsed, _slower(3), Recent.best_moment),
+    Rule("target_stands", _target_stands, _nearer_target),
+    Rule("short_sight", _short_sight, lambda _: {"discount": 0.985}),
+    Rule("no_guide", _no_guide, lambda _: {f"weights.{part}": getattr(RewardWeights(), part) for part in _PARTS}),
     Rule("crashes", _crashes, _for_crashes),
     Rule("hovers", _hovers, _for_hovering),
     Rule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory),
-    Rule("overfed", _overfed, lambda _: {"num_envs": 256}),
+    Rule("overfed", _overfed, _fewer_steps),
     Rule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
     Rule("clipped", _clipped, _longer),
     Rule("plateau", _plateau, _for_plateau),
-)
+)  # fmt: skip
 
 
 class Adviser:
@@ -272,7 +342,7 @@ class Adviser:
         self._now = self._shown_since = 0.0
         self._since: dict[str, float] = {}  # when each rule that holds began to
         self._rests: dict[str, float] = {}  # until when each is quiet
-        self._before: dict[str, Any] = {}  # what the last remedy has changed
+        self._before: dict[str, Any] | None = None  # what the last remedy has changed
 
     def advise(
         self,
@@ -311,27 +381,34 @@ class Adviser:
             return
         if self.shown is None or self.shown.name != rule.name:
             self._shown_since = self._now
-        remedy = {name: value for name, value in rule.remedy(run).items() if value != attrgetter(name)(run.config)}
-        self.shown = Hint(rule.name, remedy, run.best_moment() if rule.goes_back else None)
+        idle_now = idle(run.config, *(int(run.last(name, 1)) for name in ("decisions", "episodes")))
+        remedy = {
+            name: value for name, value in rule.remedy(run).items()
+            if value != attrgetter(name)(run.config) and name not in idle_now
+        }  # fmt: skip
+        self.shown = Hint(rule.name, remedy, rule.back_to(run))
 
-    def apply(self) -> Mapping[str, Any]:
-        """Take the remedy of the hint that is shown: the values to set. The hint goes; `undo` has the way back."""
+    def apply(self, *, went_back: bool = False) -> Mapping[str, Any]:
+        """Take the remedy of the hint that is shown: the values to set. The hint goes; `undo` has the way back.
+
+        `went_back` says that a remedy was also to return to a checkpoint, which can be undone as well.
+        """
         if self.shown is None:
             return {}
         remedy = self.shown.remedy
-        self._before = {name: attrgetter(name)(self.config) for name in remedy}
+        self._before = {name: attrgetter(name)(self.config) for name in remedy} if remedy or went_back else None
         self.dismiss()
         return remedy
 
     @property
     def can_undo(self) -> bool:
         """Whether a remedy was applied that can be taken back."""
-        return bool(self._before)
+        return self._before is not None
 
     def undo(self) -> Mapping[str, Any]:
         """Return the values that the last remedy replaced, once."""
-        before, self._before = self._before, {}
-        return before
+        before, self._before = self._before, None
+        return before or {}
 
     def dismiss(self) -> None:
         """Put the hint away; it will not come back at once."""

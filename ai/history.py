@@ -23,6 +23,8 @@ COLUMNS: Final = (
 )  # fmt: skip
 SHARES: Final = ("landed", "crashed", "out_of_bounds", "timed_out")  # in the order of ai.lander.Outcome
 PARTS: Final = tuple(REWARDS)
+REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
+TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 HISTORY_FILE: Final = "history.npz"
 CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200

@@ -17,7 +17,7 @@ from ai.agent import DeepQAgent
 from ai.config import Config
 from ai.demonstrations import Demonstration, read, taught, teach
 from ai.env import Ints, StepResult
-from ai.history import PARTS, Alteration, Checkpoint, Entry, History, Point, Validation
+from ai.history import PARTS, REVERTED, TURNING_SECONDS, Alteration, Checkpoint, Entry, History, Point, Validation
 from ai.lander import NUM_ACTIONS, NUM_FEATURES, LanderEnv
 from ai.lander_task import Evaluation, trial
 from ai.messages import Begun, Change, Command, Insight, Message, Refused, Revert, Save, Saved, Sight, Teach
@@ -35,8 +35,6 @@ __all__ = [
 POINT_DECISIONS: Final = 256  # at least so many between two points
 INSIGHT_SECONDS: Final = 0.25
 KEEP_SECONDS: Final = 10.0
-TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
-REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
 TAUGHT: Final = "demonstrations"  # the name of the alteration that gives it some to learn from
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)

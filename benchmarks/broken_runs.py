@@ -5,8 +5,8 @@
 Every case is a real run of the live training, single-threaded: each knob that matters at its lowest and highest
 value for either preset, healthy runs, and runs in which a knob is turned on the way. What the rules of `ai.hints`
 look at is written down: the points of the curves, silent units, gradients that were cut short. Seconds are those
-of a clock that ticks with the decisions, as fast as one core takes them, so that the same seed makes the same file.
-A file that is there is added to; --only records the cases with that word in their names.
+of a clock that ticks with the decisions, as on a machine with much else to do, so that the same seed makes the same
+file. A file that is there is added to; --only records the cases with that word in their names, also anew.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
     "crashed", "out_of_bounds", "timed_out", "dead_share", "clipped_share",
 )  # fmt: skip
-PACE: Final = {"modern": 15_000.0, "classic": 550.0}  # decisions a second of one core
+PACE: Final = {"modern": 2_500.0, "classic": 150.0}  # decisions a second
 SHORT: Final = {"modern": 30_000, "classic": 3_000}  # decisions of a run
 LATE: Final = 180_000  # decisions after which modern should land
 PATIENCE: Final = 40.0  # seconds of the processor for one run
@@ -73,6 +73,7 @@ def cases() -> Iterator[tuple[str, Case]]:
     for preset, short in SHORT.items():
         for rate in (1.0, 0.3, 0.1, 0.03, 1e-5):
             yield f"{preset} rates {rate:g}", Case(preset, dict.fromkeys(rates, rate), 2 * short)
+        yield f"{preset} learning_rate 1", Case(preset, {"learning_rate": 1.0}, 2 * short)
         yield f"{preset} healthy", Case(preset, {}, LATE if preset == "modern" else 4 * short)
         mended = {short: at_one(preset), 2 * short: as_preset(preset)}
         yield f"{preset} rates to 1 and back", Case(preset, {}, (LATE if preset == "modern" else 3 * short), mended)

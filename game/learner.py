@@ -2,12 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Any, Final, Generic, TypeVar
 
 from ai.messages import Change
 from game.worker import State, Worker
 
-EARLIER: Final = 3  # runs of this visit that stay to be compared with
+Kind = TypeVar("Kind")
+
+EARLIER: Final = 3  # runs that may stand beside the one that goes on
+
+
+@dataclass(frozen=True)
+class Beside(Generic[Kind]):
+    """A run that is shown beside the one that goes on; it keeps the style of its lines as others come and go."""
+
+    name: str
+    run: Kind
+    style: int  # of game.ui.series.RUN_STYLES; 0 is that of the run that goes on
+
+
+def put_beside(runs: list[Beside[Kind]], name: str, run: Kind) -> str:
+    """Let a run stand beside, in place of one of its name or of the oldest; return who had to make room, if any."""
+    runs[:] = [each for each in runs if each.name != name]
+    gone = runs.pop().name if len(runs) >= EARLIER else ""
+    style = next(style for style in range(1, EARLIER + 1) if style not in {each.style for each in runs})
+    runs.insert(0, Beside(name, run, style))
+    return gone
 
 
 class Learner:

@@ -12,7 +12,7 @@ from ai.nn import ModelFormatError
 from ai.schedule import InForce
 from game import texts
 from game.collection import LibraryError
-from game.learner import EARLIER, Learner
+from game.learner import EARLIER, Beside, Learner, put_beside
 from game.library import Library
 from game.worker import Worker
 
@@ -28,7 +28,8 @@ class Student(Learner):
     Attributes:
         history: what has been told of the run that goes on, or of the last one.
         sight, insight, in_force: the latest of their kind; None until a run has told of any.
-        earlier: the runs before it, by name, the latest first.
+        name: what that run is called, among others.
+        earlier: the runs that stand beside it, the latest first.
 
     """
 
@@ -42,7 +43,8 @@ class Student(Learner):
         self.sight: Sight | None = None
         self.insight: Insight | None = None
         self.in_force: InForce | None = None
-        self.earlier: list[tuple[str, History]] = []
+        self.earlier: list[Beside[History]] = []
+        self.name = ""
         self.runs = 0
         self.begun = False  # whether a run has said with what it was begun, since this was last set to False
         self.pace = len(PACES) - 1
@@ -52,13 +54,13 @@ class Student(Learner):
         """Whether there is a run without a name that could be given one."""
         return self.alive or self.library.rescued() is not None
 
-    def begin(self, config: Config, seed: int, resume: Path | None = None) -> str:
-        """Start a run, or go on with a saved one. Returns what the player should know, if anything."""
+    def begin(self, config: Config, seed: int, resume: Path | None = None, name: str = "") -> str:
+        """Start a run, or go on with a saved one. Returns what the player should know, if anything.
+
+        `name` is what its settings are called; a run that was saved under a name has that.
+        """
         self.close()
-        if len(self.history):
-            self.earlier.insert(0, (texts.TRAIN_RUN.format(number=self.runs), self.history))
-            del self.earlier[EARLIER:]
-        note = ""
+        note = self._put_beside(self.name, self.history) if len(self.history) else ""
         self.history = History()
         try:
             if resume is not None:
@@ -70,6 +72,9 @@ class Student(Learner):
         self.config, self.seed = config, seed
         self.sight = self.insight = self.in_force = None
         self.runs += 1
+        self.name = texts.TRAIN_RUN.format(name=name or texts.TRAIN_THIS, number=self.runs)
+        if resume is not None and resume != self.library.unsaved:
+            self.name = resume.name
         self._worker = Worker(live, config, seed, keep=self.library.unsaved, resume=resume)
         self._worker.set_pace(PACES[self.pace])
         return note
@@ -143,8 +148,11 @@ class Student(Learner):
             return str(error)
         if not len(history):
             return texts.TRAIN_NO_CURVES.format(name=name)
-        self.earlier = [(name, history), *(run for run in self.earlier if run[0] != name)][:EARLIER]
-        return ""
+        return self._put_beside(name, history)
+
+    def _put_beside(self, name: str, history: History) -> str:
+        gone = put_beside(self.earlier, name, history)
+        return texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
 
 
 def _turned(config: Config, name: str, value: Any) -> Config:

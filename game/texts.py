@@ -502,6 +502,7 @@ KNOBS_BACK_TO: Final = "back to {value}"
 KNOBS_CLICK: Final = "Click its name"
 KNOBS_CHANGED: Final = "changed"
 KNOBS_STARTS_ANEW: Final = "Starts anew"
+KNOBS_STARTS_ANEW_AS: Final = "Starts anew as {name}"
 KNOBS_MORE: Final = "{first} and {count} more"
 KNOBS_APPLY: Final = "Apply"
 KNOBS_UNDO: Final = "Undo"
@@ -628,7 +629,10 @@ TRAIN_CHARTS_SHOW: Final = {
     "stage": "how high it starts",
 }
 TRAIN_THIS: Final = "this run"
-TRAIN_RUN: Final = "run {number}"
+TRAIN_RUN: Final = "{name} {number}"
+TRAIN_MADE_ROOM: Final = "{name} is no longer beside it: there is room for {count}."
+TRAIN_AXES: Final = ("by seconds", "by decisions", "each run whole")
+TRAIN_AXIS: Final = ("{:.0f} s", "{:,.0f}", "{:.0f}%")
 TRAIN_CHECKPOINT: Final = "checkpoint {seconds:.0f} s"
 TRAIN_TURNED_MORE: Final = "{few} and {count} more"
 TRAIN_NO_CHECKPOINT: Final = "There is nothing to fly against yet: press Start first."
@@ -681,15 +685,21 @@ PICKING_EMPTY: Final = "Nothing is saved yet."
 HINT_TITLE: Final = "Hint"
 HINT_APPLIED: Final = "Applied"
 HINT_APPLY: Final = "Apply"
+HINT_WENT_BACK: Final = "back to {decisions:,} decisions"
 HINT_DISMISS: Final = "Dismiss"
 HINT_UNDO: Final = "Undo"
 # What a rule of ai.hints means, by its name
 HINTS: Final = {
+    "rate_too_high": "The learning rate is far too high: every step goes too far.",
+    "damaged": "Steps that were far too long have ruined the network. Go back to before.",
     "loss_explodes": "The loss explodes: its steps are too long. Try a lower learning rate.",
     "q_runs_away": "Q has left what the rewards can pay: its guesses feed on each other.",
     "dead_units": "More than half of its units are silent for everything it sees.",
     "collapsed": "It flew better before. Go back to its best, with shorter steps.",
-    "crashes": "Nothing lands and everything falls: what it is paid does not show the way.",
+    "target_stands": "The target network hardly moves: it aims, and may fly, at what it knew long ago.",
+    "short_sight": "Its discount γ is low: a landing that is a second away is worth little to it.",
+    "no_guide": "Nothing it is paid says on the way whether it comes closer to the pad.",
+    "crashes": "By now it should land, and nearly every flight still ends in a crash.",
     "hovers": "Time runs out: it hovers or parks beside the pad.",
     "small_memory": "Its memory holds only a few batches: it forgets what it has just learnt.",
     "overfed": "Few landers for so many learning steps: it sees the same again and again.",
@@ -780,6 +790,10 @@ PUPIL_LOADING: Final = "Unpacking 60,000 handwritten digits …"
 PUPIL_FIGURES: Final = "epoch {epoch:.2f} of {epochs}  ·  {seconds:.0f} s  ·  {rate:,.0f} images a second"
 PUPIL_READ: Final = "% read of what was held out"
 PUPIL_TESTED: Final = "% read of the 10,000 test images"
+PUPIL_KEPT_BEST: Final = "Kept is its best network, of epoch {epoch}. The last one read {last} of what was held out."
+PUPIL_FALLEN: Final = "It read {best} before, and reads {now} now. Go back to its best?"
+PUPIL_GO_BACK: Final = "Go back"
+PUPIL_WENT_BACK: Final = "back to its best, {part:.1%}"
 PUPIL_STOP: Final = "Stop"
 PUPIL_STOPPING: Final = "Measuring …"
 PUPIL_GO_ON: Final = "Go on with the last run"
@@ -800,6 +814,7 @@ PUPIL_PRESETS: Final = {
     "classic": ("Classic", "Looks at all pixels at once: quick to learn, and good enough for neat hands."),
 }
 MATRIX_TITLE: Final = "WHAT IT MISREADS"
+MATRIX_OF_BEST: Final = "·  its best, of epoch {epoch}"
 MATRIX_AXES: Final = "rows: what it is  ·  columns: what it reads"
 MATRIX_RIGHT: Final = "{digit}, read rightly"
 MATRIX_WRONG: Final = "{digit}, read as {read}"

@@ -130,9 +130,14 @@ class Tuning:
         return self.family.presets[self.named[0]]
 
     @property
+    def holds(self) -> Named:
+        """What the run that goes on is called; what waits has no run yet."""
+        return self._named_held if self.waiting else self.named
+
+    @property
     def changed(self) -> bool:
-        """Whether this is not what its name says."""
-        return bool(self.draft != self.family.config_of(self.named))
+        """Whether what holds is not what its name says."""
+        return bool((self.config if self.waiting else self.draft) != self.family.config_of(self.holds))
 
     @property
     def waiting(self) -> list[str]:
@@ -177,7 +182,7 @@ class Tuning:
 
     def load(self, named: Named) -> None:
         """Take a preset or a sabotage whole; knobs that were turned can be had back."""
-        aside = (self.draft, self.named) if self.changed else None
+        aside = (self.draft, self.named) if self.draft != self.family.config_of(self.named) else None
         self.problem = ""
         self._propose(self.family.config_of(named), named)
         self.put_aside = None if self.waiting else aside

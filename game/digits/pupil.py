@@ -8,17 +8,29 @@ from pathlib import Path
 from typing import Final
 
 from ai.digit_config import DigitConfig
-from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, Kept, Score, live_digits
+from ai.digit_live import (
+    Confusion,
+    DigitPoint,
+    DigitsBegun,
+    Finish,
+    GoBack,
+    Kept,
+    Score,
+    Turned,
+    live_digits,
+)
 from ai.digit_runs import LAST_FILE, TRAINING_FILE
+from ai.history import REVERTED, TURNING_SECONDS
 from ai.messages import Refused, Save
 from ai.nn.files import read_json
 from ai.nn.folder import CONFIG, recover_folder
 from game import texts
 from game.collection import UNSAVED, Collection, LibraryError
 from game.digits import PATIENCE
-from game.learner import EARLIER, Learner
+from game.learner import EARLIER, Beside, Learner, put_beside
 from game.worker import Worker
 
+FALLEN: Final = 0.15  # of the images held out, so many fewer than at its best: the way back is offered
 _MOST_POINTS: Final = 4000
 
 
@@ -28,11 +40,29 @@ class Curves:
 
     points: list[DigitPoint] = field(default_factory=list)
     scores: list[Score] = field(default_factory=list)
+    turns: list[Turned] = field(default_factory=list)
 
-    def append(self, told: DigitPoint | Score) -> None:
-        """Take one more; of very many points every other one is forgotten."""
+    @property
+    def fallen(self) -> tuple[float, float] | None:
+        """What it read at its best and what it reads now, if that is far less; since it last went back."""
+        back = max((turn.seconds for turn in self.turns if turn.name == REVERTED), default=-1.0)
+        read = [score.accuracy for score in self.scores if score.seconds > back]
+        best = max((score.accuracy for score in self.scores), default=0.0)
+        return (best, read[-1]) if read and best - read[-1] > FALLEN else None
+
+    def append(self, told: DigitPoint | Score | Turned) -> None:
+        """Take one more; of very many points every other one is forgotten.
+
+        A knob that is turned again a moment later is still being turned: where it ends is what counts.
+        """
         if isinstance(told, Score):
             self.scores.append(told)
+            return
+        if isinstance(told, Turned):
+            last = self.turns[-1] if self.turns else None
+            if last and last.name == told.name != REVERTED and told.seconds - last.seconds < TURNING_SECONDS:
+                self.turns.pop()
+            self.turns.append(told)
             return
         self.points.append(told)
         if len(self.points) > _MOST_POINTS:
@@ -55,7 +85,8 @@ class Pupil(Learner):
         test: its accuracy on the test images, once it is finished or was stopped.
         stopping: whether it was asked to end, and is being measured.
         kept: where it is, once it has been written.
-        earlier: the runs before it, by name, the latest first.
+        kept_epoch: after which epoch the network that was measured was best, if that is not the last one.
+        earlier: the runs that stand beside it, the latest first.
 
     """
 
@@ -69,7 +100,9 @@ class Pupil(Learner):
         self.curves = Curves()
         self.confusion: Confusion | None = None
         self.test: float | None = None
-        self.earlier: list[tuple[str, Curves]] = []
+        self.kept_epoch: int | None = None
+        self.earlier: list[Beside[Curves]] = []
+        self.name = ""
         self.runs = 0
         self.stopping = False
         self._saving: list[Path] = []  # where it was asked to save itself, and has not answered
@@ -108,20 +141,29 @@ class Pupil(Learner):
             part = part if known is None else float(known)
         return preset, seconds, part
 
-    def begin(self, config: DigitConfig, seed: int, *, resume: bool = False) -> str:
-        """Start a run, or go on with the unfinished one. Returns what the player should know, if anything."""
+    def begin(self, config: DigitConfig, seed: int, *, resume: bool = False, name: str = "") -> str:
+        """Start a run, or go on with the unfinished one. Returns what the player should know, if anything.
+
+        `name` is what its settings are called.
+        """
         self.close()
         note = "" if resume else self._put_aside()
         if self.curves.points:
-            self.earlier.insert(0, (texts.TRAIN_RUN.format(number=self.runs), self.curves))
-            del self.earlier[EARLIER:]
-        self.curves, self.confusion, self.test = Curves(), None, None
+            gone = put_beside(self.earlier, self.name, self.curves)
+            note = note or (texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else "")
+        self.curves, self.confusion, self.test, self.kept_epoch = Curves(), None, None, None
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
+        self.name = texts.TRAIN_RUN.format(name=name or texts.TRAIN_THIS, number=self.runs)
         self._worker = Worker(live_digits, config, seed, keep=self.unsaved, resume=self.unsaved if resume else None)
         self._worker.patience = PATIENCE
         return note
+
+    def go_back(self) -> None:
+        """Let the network be what it was at its best."""
+        if self._worker and self.alive and not self.stopping:
+            self._worker.send(GoBack())
 
     def stop(self) -> None:
         """End the run; what it has learnt is kept, and measured. Asked again, it ends without being measured."""
@@ -150,14 +192,17 @@ class Pupil(Learner):
         notes: list[str] = []
         for told in self._worker.poll() if self._worker else ():
             match told:
-                case DigitPoint() | Score():
+                case DigitPoint() | Score() | Turned():
                     self.curves.append(told)
+                    if isinstance(told, Turned) and told.name != REVERTED:
+                        self.config = self.config.changed(**{told.name: told.after})
                 case Confusion():
                     self.confusion = told
                 case DigitsBegun(config, seed, _, steps):
                     self.config, self.seed, self.steps, self.begun = config, seed, steps, True
-                case Kept(folder, problem, test):
-                    self.test = test if folder == self.unsaved and test is not None else self.test
+                case Kept(folder, problem, test, epoch):
+                    if folder == self.unsaved and test is not None:
+                        self.test, self.kept_epoch = test, epoch
                     if folder in self._saving:
                         self._saving.remove(folder)
                     if problem:

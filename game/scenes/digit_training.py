@@ -8,27 +8,32 @@ import numpy as np
 import pygame
 
 from ai.digit_config import DIGIT_PRESETS, DigitConfig
+from ai.digit_live import Turned
+from ai.history import REVERTED
+from ai.schedule import InForce
 from game import texts
 from game.context import Context
 from game.controls import Command, translate
-from game.dials import dials
+from game.dials import dials, figure, label
 from game.digits.matrix import Matrix
 from game.digits.pupil import Curves, Pupil
 from game.digits.shelf import runs_dir
+from game.learner import Beside
 from game.scene import Pop, Push, Transition
 from game.scenes.dialog import Asking
 from game.tuning import Family
 from game.ui import typeface
 from game.ui.canvas import Canvas
-from game.ui.chart import RUN_STYLES, Chart, Series, draw_legend
+from game.ui.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.ui.charts import Charts
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.knobs import Knobs
 from game.ui.pointer import Pointer
+from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.standing import draw_problem, draw_standing, start_word
-from game.ui.tokens import LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
+from game.ui.tokens import HUMAN, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
 from game.ui.widget import OnPress
 from game.ui.widgets import Word
 from game.worker import State
@@ -45,6 +50,7 @@ _CHARTS: Final = {"loss": (40, 146, 372, 152), "accuracy": (440, 146, 372, 152)}
 _MATRIX: Final = pygame.Rect(70, 372, 320, 320)
 _CELL: Final = pygame.Rect(440, 346, 372, 346)
 _SAID: Final = 500.0  # where a problem is told of
+_HINT: Final = pygame.Rect(868, 548, 384, 60)
 _EVERY: Final = 12  # frames between two drawings of the charts
 _BATCHES: Final = (MUTE, (2.0, 4.0))
 
@@ -64,6 +70,8 @@ class DigitTrainingScene:
         self._question: Transition | None = None
         self._asked = False
         self.stop_word: Word | None = None
+        self._back_word: Word | None = None
+        self._in_force_told: tuple[float, DigitConfig, InForce] | None = None
 
     def enter(self, context: Context) -> None:
         """Build the screen; when a scene above has gone, the run goes on."""
@@ -125,6 +133,9 @@ class DigitTrainingScene:
             self.knobs.set_running(self._alive)
         if self.matrix.confusion is not self.pupil.confusion:
             self.matrix.set(self.pupil.confusion)
+        if self.pupil.alive:
+            self.knobs.show_in_force(self._in_force())
+        self._offer_the_way_back()
         self._frame += 1
         if self._frame % _EVERY == 0:
             self._set_charts()
@@ -140,7 +151,10 @@ class DigitTrainingScene:
         self._draw_title(canvas)
         canvas.line((_LEFT, 318), (_WIDTH - 24, 318), LINE)
         heading = canvas.text(texts.MATRIX_TITLE, (_LEFT, 340), size=LABEL, colour=MUTE, weight="medium")
-        canvas.text(texts.MATRIX_AXES, (heading.right + 12, 340), size=LABEL, colour=MUTE)
+        shown = canvas.text(texts.MATRIX_AXES, (heading.right + 12, 340), size=LABEL, colour=MUTE)
+        if self.pupil.test is not None and self.pupil.kept_epoch is not None:
+            of_best = texts.MATRIX_OF_BEST.format(epoch=self.pupil.kept_epoch)
+            canvas.text(of_best, (shown.right + 12, 340), size=LABEL, colour=MUTE)
         if self.matrix.confusion is None:
             canvas.text(texts.MATRIX_EMPTY, (_CELL.left, _CELL.top + 14), size=SMALL, colour=MUTE)
         self.matrix.draw_cell(canvas, _CELL)
@@ -150,6 +164,28 @@ class DigitTrainingScene:
         self.charts.draw(canvas)
 
     # The run
+
+    def _in_force(self) -> InForce | None:
+        """What acts now, as the run told last."""
+        points, config = self.pupil.curves.points, self.pupil.config
+        if not points:
+            return None
+        if self._in_force_told is None or self._in_force_told[:2] != (points[-1].learning_rate, config):
+            rate = points[-1].learning_rate
+            self._in_force_told = rate, config, InForce({"learning_rate": rate}, config.unused())
+        return self._in_force_told[2]
+
+    def _offer_the_way_back(self) -> None:
+        wanted = self.pupil.alive and not self.pupil.stopping and self.pupil.curves.fallen is not None
+        if wanted == (self._back_word is not None):
+            return
+        old = self._back_word
+        width = typeface.width(texts.PUPIL_GO_BACK, SMALL, "regular")
+        self._back_word = Word(
+            self._form.manager, (_HINT.right - 14 - width, _HINT.top + 2, width, 22), texts.PUPIL_GO_BACK,
+            self.pupil.go_back, size=SMALL,
+        ) if wanted else None  # fmt: skip
+        self._form.replace([old] if old else [], [self._back_word] if self._back_word else [])
 
     def _toggle(self) -> None:
         if self.pupil.stopping:
@@ -188,7 +224,7 @@ class DigitTrainingScene:
     def _run(self, config: DigitConfig, seed: int, resume: bool = False) -> None:
         assert self._context is not None
         self._was_running = False
-        if note := self.pupil.begin(config, seed, resume=resume):
+        if note := self.pupil.begin(config, seed, resume=resume, name=self.knobs.name):
             self._context.note(note)
         self.matrix.set(None)
         if not resume:
@@ -284,14 +320,15 @@ class DigitTrainingScene:
 
     def _set_charts(self) -> None:
         curves = self.pupil.curves
-        told = (curves.seconds, len(curves.points), len(curves.scores), len(self.pupil.earlier))
+        told = (curves.seconds, len(curves.points), len(curves.scores), len(self.pupil.earlier), *curves.turns)
         if told == self._told:
             return
         self._told = told
-        runs = [(texts.TRAIN_THIS, curves), *self.pupil.earlier]
-        end = max(10.0, *(each.seconds for _, each in runs))
+        runs = [Beside(texts.TRAIN_THIS, curves, 0), *self.pupil.earlier]
+        end = max(10.0, *(beside.run.seconds for beside in runs))
         losses, accuracies = [], []
-        for (name, each), (colour, dash) in zip(runs, RUN_STYLES, strict=False):
+        for beside in runs:
+            name, each, (colour, dash) = beside.name, beside.run, RUN_STYLES[beside.style]
             if each.points:
                 seconds = [point.seconds for point in each.points]
                 losses.append(Series(seconds, [point.loss for point in each.points], name, colour, dash))
@@ -299,8 +336,9 @@ class DigitTrainingScene:
                 accuracies.append(Series(*scores, name, colour, dash, smooth=False))
         if curves.points:
             accuracies.append(_batches(curves))
+        ticks = [Tick(turn.seconds, _turn_told(turn), "knob") for turn in curves.turns]
         for chart, series in zip(self.charts.charts, (losses, accuracies), strict=True):
-            chart.set(series, (0.0, end))
+            chart.set(series, (0.0, end), ticks)
 
     def _draw_title(self, canvas: Canvas) -> None:
         assert self._context is not None
@@ -314,6 +352,9 @@ class DigitTrainingScene:
         part = pupil.test if pupil.test is not None else curves.scores[-1].accuracy if curves.scores else None
         figure = "" if part is None else f"{100 * part:.2f}"
         words = texts.PUPIL_READ if pupil.test is None else texts.PUPIL_TESTED
+        if pupil.test is not None and pupil.kept_epoch is not None:
+            last = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
+            line = texts.PUPIL_KEPT_BEST.format(epoch=pupil.kept_epoch, last=last)
         draw_standing(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
         hints = self._form.hints or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)
@@ -321,6 +362,19 @@ class DigitTrainingScene:
     def _draw_said(self, canvas: Canvas) -> None:
         if problem := self.pupil.problem:
             draw_problem(canvas, problem, (_PANEL, _SAID), 380, 4)
+        elif self._back_word is not None and (fallen := self.pupil.curves.fallen):
+            best, now = (f"{100 * part:.1f}%" for part in fallen)
+            canvas.outline(_HINT, 8, HUMAN, 1, 0.35)
+            canvas.text(texts.HINT_TITLE, (_HINT.left + 14, _HINT.top + 17), size=LABEL, colour=HUMAN)
+            said = texts.PUPIL_FALLEN.format(best=best, now=now)
+            for number, text in enumerate(wrapped(canvas, said, SMALL, _HINT.width - 28)[:2]):
+                canvas.text(text, (_HINT.left + 14, _HINT.top + 34 + 16 * number), size=SMALL)
+
+
+def _turn_told(turn: Turned) -> str:
+    if turn.name == REVERTED:
+        return texts.PUPIL_WENT_BACK.format(part=turn.after)
+    return f"{label(turn.name)} {figure(turn.after)}"
 
 
 def _batches(curves: Curves) -> Series:

@@ -29,7 +29,7 @@ from game.ui.knobs import Knobs
 from game.ui.pointer import Pointer
 from game.ui.scrubber import Scrubber
 from game.ui.standing import draw_problem, draw_standing, start_word
-from game.ui.tokens import LINE, NIGHT0, PANEL, VIEW_SIZE
+from game.ui.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, Word
 from game.worker import State
@@ -39,8 +39,9 @@ _WIDTH: Final = 836.0  # of the swarm and the charts; the panel has the rest
 _LEFT: Final = 40.0
 _FLOOR: Final = 434.0  # where the charts begin
 _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
-_SAID: Final = pygame.Rect(868, 612, 384, 50)
+_SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
+_AXES: Final = pygame.Rect(560, 436, 260, 20)  # by what the charts are measured, while runs are compared
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
 _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
@@ -54,7 +55,7 @@ class Train:
     def __init__(self, resume: Path | None = None) -> None:
         self._resume = resume
         self._context: Context | None = None
-        self._was_running = self._alive = False
+        self._was_running = self._alive = self._compared = False
         self._left: SavedRun | None = None  # by the last visit, without a name
 
     def enter(self, context: Context) -> None:
@@ -119,6 +120,7 @@ class Train:
         if student.begun:
             student.begun = False
             self.knobs.set_config(student.config, student.seed)
+        self._advice.hush(bool(self.knobs.waiting))
         if student.alive:
             self.knobs.show_in_force(student.in_force)
         if student.alive != self._alive:
@@ -126,7 +128,10 @@ class Train:
             self._advice.clear()
             self.knobs.set_running(self._alive)
         still = self._settings.reduced_motion
-        self.board.look([(texts.TRAIN_THIS, student.history), *student.earlier])
+        self.board.look(student.history, student.earlier)
+        if bool(student.earlier) != self._compared:
+            self._compared = bool(student.earlier)
+            self._lay_beside(self.inside.large)
         self.swarm.update(still)
         self.inside.update(still)
         # What takes a millisecond or two takes turns.
@@ -182,7 +187,7 @@ class Train:
 
     def _begin(self, config: Config, seed: int, resume: Path | None = None) -> None:
         assert self._context is not None
-        if note := self.student.begin(config, seed, resume):
+        if note := self.student.begin(config, seed, resume, self.knobs.name):
             self._context.note(note)
         self.swarm.clear()
         self._advice.clear()
@@ -329,6 +334,9 @@ class Train:
             charts = self.board.charts
             beside += [Pointer(self._form.manager, charts.box, charts.follow),
                        Scrubber(self._form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
+            if self._compared:
+                beside.append(Choice(self._form.manager, _AXES, "", texts.TRAIN_AXES, self.board.axis,
+                                     self.board.measure_by, size=SMALL, gap=14))  # fmt: skip
         self._form.replace(self._beside, beside)
         self._beside = beside
 

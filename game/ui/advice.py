@@ -11,6 +11,7 @@ from ai.config import Config
 from ai.hints import Adviser, Hint
 from ai.history import History
 from game import texts
+from game.dials import told
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.prose import wrapped
@@ -19,6 +20,7 @@ from game.ui.widgets import Word
 
 _WORD: Final = 62.0  # from one word to the next
 _LINE: Final = 16.0
+_LINES: Final = 2  # that a hint has room for, also in the largest text
 
 
 class Advice:
@@ -35,6 +37,8 @@ class Advice:
         self._moment = 0  # of the run as it was last seen, in decisions
         self._came_from: int | None = None  # the moment at which a remedy went back
         self._hint: Hint | None = None
+        self._done = ""  # what the last remedy did
+        self._quiet = False
         self._words: list[Word] = []
 
     @property
@@ -50,6 +54,13 @@ class Advice:
             self._moment = int(history["decisions"][-1])
         self._lay(self.adviser.advise(history, config, dead_share, clipped_share))
 
+    def hush(self, quiet: bool) -> None:
+        """Say nothing while something else waits to be applied or undone: one question at a time."""
+        if quiet != self._quiet:
+            self._quiet = quiet
+            self.adviser.undo()  # what was applied is in that question's hands
+            self._lay(self._hint)
+
     def clear(self) -> None:
         """Begin anew with another run."""
         self.adviser.reset()
@@ -61,11 +72,10 @@ class Advice:
             return
         box = self._box
         canvas.outline(box, 8, HUMAN, 1, 0.35)
-        title = texts.HINT_TITLE if self._hint else texts.HINT_APPLIED
+        title, said = (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self._done)
         canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
-        if self._hint:
-            for number, line in enumerate(wrapped(canvas, texts.HINTS[self._hint.name], SMALL, self._room)[:2]):
-                canvas.text(line, (box.left + 14, box.top + 34 + _LINE * number), size=SMALL)
+        for number, line in enumerate(wrapped(canvas, said, SMALL, self._room)[:_LINES]):
+            canvas.text(line, (box.left + 14, box.top + 34 + _LINE * number), size=SMALL)
 
     @property
     def _room(self) -> float:
@@ -75,7 +85,9 @@ class Advice:
         """Put the words there that fit what is shown."""
         self._hint = hint
         wanted: list[tuple[str, Callable[[], None]]] = []
-        if hint is not None:
+        if self._quiet:
+            pass
+        elif hint is not None:
             if hint.remedy or hint.back_to is not None:
                 wanted.append((texts.HINT_APPLY, self._apply))
             wanted.append((texts.HINT_DISMISS, self._dismiss))
@@ -94,7 +106,10 @@ class Advice:
 
     def _apply(self) -> None:
         back_to = self._hint.back_to if self._hint else None
-        for name, value in self.adviser.apply().items():
+        remedy = self.adviser.apply(went_back=back_to is not None)
+        went = [] if back_to is None else [texts.HINT_WENT_BACK.format(decisions=back_to)]
+        self._done = ", ".join([*([told(remedy)] if remedy else []), *went])
+        for name, value in remedy.items():
             self._turn(name, value)
         self._came_from = None if back_to is None else self._moment
         if back_to is not None:

@@ -14,6 +14,7 @@ from ai.history import Alteration, Checkpoint, History
 from ai.live import REVERTED, TAUGHT
 from game import texts
 from game.dials import told
+from game.learner import Beside
 from game.ui.canvas import Canvas
 from game.ui.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.ui.charts import Charts
@@ -21,7 +22,7 @@ from game.ui.charts import Charts
 _TURNS: Final = 12  # in which the charts look at the history, one in every other: no frame has all of it
 _TOGETHER: Final = 0.5  # seconds in which several knobs that are turned share one mark: a preset turns many
 _FEW: Final = 3  # of them that are named
-_SHORTEST: Final = 10.0  # seconds that the axis spans at least
+_SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
 _LEGEND: Final = (40.0, 450.0)
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
@@ -33,14 +34,13 @@ _CHARTS: Final = (
     ("stage", (622, 594, 174, 112), (0.0, 3.0), "{:.0f}"),
 )
 
-Runs = Sequence[tuple[str, History]]  # by name; the one that goes on comes first
-
 
 class Board:
-    """Six charts over one axis of seconds.
+    """Six charts over one axis: seconds, decisions, or each run from its beginning to its end.
 
     Attributes:
         chosen: the checkpoint under the marker, if there is one.
+        axis: which of texts.TRAIN_AXES.
 
     """
 
@@ -50,7 +50,8 @@ class Board:
                   empty=texts.TRAIN_CHARTS_SHOW[name])
             for name, box, limits, form in _CHARTS
         ])  # fmt: skip
-        self._turn = 0
+        self._turn = self.axis = 0
+        self._history = History()
         self.clear()
 
     def clear(self) -> None:
@@ -60,23 +61,53 @@ class Board:
         self._told = [-1] * len(_CHARTS)  # points of the history that each chart has
         self._legend: list[Series] = []
 
-    def look(self, runs: Runs) -> None:
-        """Take what is new in the first run; call it once a frame."""
+    def measure_by(self, axis: int) -> None:
+        """Measure the charts by another axis."""
+        self.axis = axis
+        for chart in self.charts.charts:
+            chart.read_x = texts.TRAIN_AXIS[axis].format
+        self._told = [-1] * len(_CHARTS)
+        self._mark()
+
+    def look(self, history: History, beside: Sequence[Beside[History]]) -> None:
+        """Take what is new in the run that goes on, with those beside it; call it once a frame."""
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
-        points = len(runs[0][1])
+        self._history, points = history, len(history)
         if odd or number >= len(_CHARTS) or self._told[number] == points:
             return
         self._told[number] = points
-        end = max([_SHORTEST, *(float(run["seconds"][-1]) for _, run in runs if len(run))])
-        name = _CHARTS[number][0]
-        series = _series(name, runs)
-        self.charts.charts[number].set(series, (0.0, end), _ticks(runs[0][1]) if number == 0 else ())
+        runs = [Beside(texts.TRAIN_THIS, history, 0), *beside]
+        series = [self._series(_CHARTS[number][0], each) for each in runs if len(each.run)]
+        end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
+        ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in _ticks(history)] if number == 0 else ()
+        self.charts.charts[number].set(series, (0.0, end), ticks)
         if number == 0:
             self._legend = series if len(series) > 1 else []
 
+    def _series(self, name: str, beside: Beside[History]) -> Series:
+        run, (colour, dash) = beside.run, RUN_STYLES[beside.style]
+        x = run["decisions" if self.axis == 1 else "seconds"]
+        if self.axis == 2:
+            x = 100.0 * x / max(float(x[-1]), 1e-9)
+        return Series(x, _shown(run, name), beside.name, colour, dash, smooth=name not in _STEPPED)
+
+    def _place(self, seconds: float) -> float:
+        """Where a moment of the run that goes on stands on the axis."""
+        history = self._history
+        if self.axis == 0 or not len(history):
+            return seconds
+        if self.axis == 1:
+            return float(np.interp(seconds, history["seconds"], history["decisions"]))
+        return 100.0 * seconds / max(float(history["seconds"][-1]), 1e-9)
+
+    def _mark(self) -> None:
+        if self.chosen is not None:
+            caption = texts.TRAIN_CHECKPOINT.format(seconds=self.chosen.seconds)
+            self.charts.mark(self._place(self.chosen.seconds), caption)
+
     def choose(self, place: float | int, checkpoints: Sequence[Checkpoint]) -> None:
-        """Choose the checkpoint at so many seconds, or one further left or right for a whole -1 or 1."""
+        """Choose the checkpoint at a place on the axis, or one further left or right for a whole -1 or 1."""
         if not checkpoints:
             return
         if isinstance(place, int):
@@ -86,22 +117,14 @@ class Board:
             )
             self.chosen = checkpoints[min(max(last + place, 0), len(checkpoints) - 1)]
         else:
-            self.chosen = min(checkpoints, key=lambda each: abs(each.seconds - place))
-        self.charts.mark(self.chosen.seconds, texts.TRAIN_CHECKPOINT.format(seconds=self.chosen.seconds))
+            self.chosen = min(checkpoints, key=lambda each: abs(self._place(each.seconds) - place))
+        self._mark()
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts, and which line is which."""
         if self._legend:
             draw_legend(canvas, self._legend, _LEGEND)
         self.charts.draw(canvas)
-
-
-def _series(name: str, runs: Runs) -> list[Series]:
-    return [
-        Series(run["seconds"], _shown(run, name), title, colour, dash, smooth=name not in _STEPPED)
-        for (title, run), (colour, dash) in zip(runs, RUN_STYLES, strict=False)
-        if len(run)
-    ]
 
 
 def _shown(run: History, name: str) -> Doubles:

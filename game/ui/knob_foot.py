@@ -21,6 +21,8 @@ HEIGHT: Final = 60  # points, at the bottom of the panel
 ANSWERS: Final = 42  # from the bottom to the top of the words that answer a notice
 _LINE: Final = 16.0  # from a baseline to the next
 _ABOVE: Final = 40.0  # what a longer text needs more
+_NOTICE: Final = 50.0  # from the bottom to the top of a notice
+_EXPLAINED: Final = 78.0  # what stands above it, from the first baseline
 
 
 def draw_foot(
@@ -32,14 +34,19 @@ def draw_foot(
         canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
         _write(canvas, tuning.problem, (box.left + 18, first), box.width - 18, canvas.palette.warn)
     elif tuning.waiting:
-        _draw_notice(canvas, box, texts.KNOBS_STARTS_ANEW, _listed(tuning.waiting))
+        if picking:
+            told = (focused and focused.help) or "\n".join(tuning.family.sabotages.get(tuning.named[1], ("",))[1:])
+            _write_parts(canvas, told, (box.left, box.bottom - _NOTICE - _EXPLAINED), box.width)
+        heading = texts.KNOBS_STARTS_ANEW
+        if tuning.named != tuning.holds:
+            heading = texts.KNOBS_STARTS_ANEW_AS.format(name=tuning.family.word(tuning.named))
+        _draw_notice(canvas, box, heading, _listed(tuning.waiting))
     elif tuning.put_aside:
         line = texts.KNOBS_PUT_ASIDE_LINE.format(name=tuning.family.word(tuning.named))
         _draw_notice(canvas, box, texts.KNOBS_PUT_ASIDE, line)
     else:
-        y = first - (_ABOVE if picking else 0.0)
-        for number, part in enumerate(((focused and focused.help) or tuning.family.sentence(tuning.named)).split("\n")):
-            y = _write(canvas, part, (box.left, y), box.width, INK if number else MUTE) + 6
+        told = (focused and focused.help) or tuning.family.sentence(tuning.named)
+        _write_parts(canvas, told, (box.left, first - (_ABOVE if picking else 0.0)), box.width)
         if isinstance(focused, Knob | SeedKnob):
             _draw_marks(canvas, box, focused, controls)
 
@@ -48,6 +55,13 @@ def _draw_notice(canvas: Canvas, box: pygame.Rect, heading: str, line: str) -> N
     canvas.outline((box.left, box.bottom - 50, box.width, 46), 8, HUMAN, 1, 0.35)
     canvas.text(heading, (box.left + 14, box.bottom - 31), size=SMALL, colour=HUMAN)
     canvas.text(line, (box.left + 14, box.bottom - 14), size=SMALL, colour=INK)
+
+
+def _write_parts(canvas: Canvas, told: str, start: tuple[float, float], width: float) -> None:
+    """Write paragraphs: the first muted, what was measured below it."""
+    x, y = start
+    for number, part in enumerate(told.split("\n")):
+        y = _write(canvas, part, (x, y), width, INK if number else MUTE) + 6
 
 
 def _draw_marks(canvas: Canvas, box: pygame.Rect, widget: Knob | SeedKnob, controls: Controls) -> None:

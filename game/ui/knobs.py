@@ -78,11 +78,11 @@ class Knobs:
     @property
     def name(self) -> str:
         """The preset or the sabotage that this is or began as, in the player's words."""
-        return self._family.word(self._tuning.named)
+        return self._family.word(self._tuning.holds)
 
     @property
     def changed(self) -> bool:
-        """Whether knobs were turned away from what has that name."""
+        """Whether knobs were turned away from what has that name, in what holds now."""
         return self._tuning.changed
 
     @property
@@ -141,7 +141,7 @@ class Knobs:
         tuning, picking = self._tuning, self._picking
         answer = "apply" if tuning.waiting else "undo" if tuning.put_aside else ""
         sections: dict[str, tuple[Hashable, Callable[[], list[Widget]]]] = {
-            "head": ((tuning.named, picking), self._make_head),
+            "head": ((tuning.holds, picking), self._make_head),
             "tabs": (picking, lambda: [] if picking else [self._make_tabs()]),
             "body": ((picking, self._page), self._make_picks if picking else self._make_rows),
             "answers": (answer, lambda: self._make_answers(answer)),
@@ -166,7 +166,7 @@ class Knobs:
 
     def _make_head(self) -> list[Widget]:
         """The chosen one large on the left, which brings all of it back; the others on the right."""
-        box, named, manager = self._box, self._tuning.named, self._form.manager
+        box, named, manager = self._box, self._tuning.holds, self._form.manager
         top = box.top + 5
         chosen = _Title(manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named))
         others: list[tuple[str, Callable[[], None]]] = [
@@ -265,9 +265,9 @@ class Knobs:
     def _loads(self, named: Named) -> Callable[[], None]:
         def load() -> None:
             self._tuning.load(named)
-            self._picking = False
+            self._picking = bool(named[1] and self._tuning.waiting)  # what it is for is told as long as it waits
             self._lay()
-            self._focus("head")
+            self._focus("answers" if self._picking else "head")
 
         return load
 
@@ -282,11 +282,13 @@ class Knobs:
         self._focus("head")
 
     def _apply(self) -> None:
+        self._picking = False
         self._tuning.apply()
         self._lay()
         self._focus("tabs")
 
     def _undo(self) -> None:
+        self._picking = False
         self._tuning.undo()
         self._lay()
         self._focus("tabs")

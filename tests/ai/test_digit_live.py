@@ -3,10 +3,11 @@ import pytest
 
 from ai import digit_live
 from ai.digit_config import DIGIT_PRESETS
-from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, Kept, Score, live_digits
+from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, GoBack, Kept, Score, Turned, live_digits
 from ai.digit_runs import resume_digit_run
-from ai.digit_training import DigitTraining
+from ai.digit_training import DigitTraining, confusion
 from ai.digits import DigitClassifier
+from ai.history import REVERTED
 from ai.messages import Change, Refused, Save
 from ai.mnist import load_part
 
@@ -103,7 +104,7 @@ def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
 def test_live_knobs_turn_and_others_are_refused(data):
     run = live_digits(SMALL, data=data)
     next(run), next(run)
-    assert run.send(Change("learning_rate", 1e-4)) == []
+    assert run.send(Change("learning_rate", 1e-4)) == [Turned(0.0, "learning_rate", 1e-4)]
     (refused,) = run.send(Change("hidden", (3,)))
     assert isinstance(refused, Refused)
     assert isinstance(run.send(Change("augmentation", 7.0))[0], Refused)
@@ -134,3 +135,57 @@ def test_numbers_that_run_away_end_the_run_with_a_reason(data, tmp_path):
     with pytest.raises(FloatingPointError, match="learning rate"):
         for _ in live_digits(wild.changed(hidden=(512, 512), epochs=20), keep=tmp_path / "run", data=data):
             pass
+
+
+RUINED = SMALL.changed(epochs=40, learning_rate=0.02, augmentation=0.0)
+
+
+def ruin(run):
+    """Let a run learn for some epochs, with far too long steps from then on; return what it told."""
+    told = [each for _ in range(160) for each in next(run)]
+    told += run.send(Change("learning_rate", 1.0)) + run.send(Change("final_learning_rate", 1.0))
+    told += [each for _ in range(40) for each in next(run)]
+    told += run.send(Change("learning_rate", 0.02)) + run.send(Change("final_learning_rate", 1e-6))
+    return told + [each for _ in range(20) for each in next(run)]
+
+
+def test_a_ruined_network_can_go_back_to_its_best(data):
+    run = live_digits(RUINED, 4, data=data)
+    told = ruin(run)
+    assert [each.after for each in kinds(told, Turned)] == [1.0, 1.0, 0.02, 1e-6]
+    scores = [each.accuracy for each in kinds(told, Score)]
+    best = max(scores)
+    assert scores[-1] < best - 0.2, "rate to 1 and back leaves a ruin"
+    (went,) = run.send(GoBack())
+    assert (went.name, went.after) == (REVERTED, best)
+    training = run.gi_frame.f_locals["run"].training
+    table = confusion(training.current(), training.held_images, training.held_labels)
+    assert table.trace() / table.sum() == best
+    told = [each for _ in range(40) for each in next(run)]
+    assert kinds(told, Score)[-1].accuracy > best - 0.1, "and it learns on from there"
+
+
+def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
+    run = live_digits(RUINED, 4, keep=tmp_path / "run", data=data)
+    ruin(run)
+    told = run.send(Finish())
+    for turn in run:
+        told += turn
+    (kept,) = kinds(told, Kept)
+    training = resume_digit_run(tmp_path / "run", data=data)
+    shown = kinds(told, Confusion)[-1].table
+    best = DigitClassifier.load(tmp_path / "run")
+    assert np.array_equal(shown, confusion(best, training.held_images, training.held_labels))
+    assert shown.trace() / shown.sum() == training.best
+    assert kinds(told, Score)[-1].accuracy < training.best - 0.2, "the curve ends with the last one"
+    assert training.history[kept.epoch - 1]["held_out"] == training.best, "and which it is, is said"
+
+
+def test_a_last_network_that_is_the_best_needs_no_word(data):
+    training = DigitTraining(SMALL, 4, data)
+    while not training.done:
+        training.advance()
+        if training.step % training.steps_per_epoch == 0:
+            improved = training.history[-1]["held_out"] == training.best
+            assert (training.best_epoch is None) == improved
+    assert training.best is not None
