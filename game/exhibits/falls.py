@@ -99,7 +99,7 @@ class Bounce(Exhibit):
         for number, restitution in enumerate(self.restitutions):
             x = self._column(number)
             place = (x, self.drop + self.radius)
-            self.balls.append(self.add(Circle(self.radius), place, "ember disc", restitution=restitution))
+            self.balls.append(self.add(Circle(self.radius), place, "ember-disc", restitution=restitution))
             if restitution:
                 self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
         self.peaks = np.zeros(len(self.balls))
@@ -171,7 +171,7 @@ class DragRace(Exhibit):
         """Hang the discs up in a row."""
         self.discs: list[Body] = []
         for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
-            image = "disc" if not linear + quadratic else "bright disc" if linear else "ember disc"
+            image = "disc" if not linear + quadratic else "bright-disc" if linear else "ember-disc"
             disc = self.add(
                 Circle(_DISC * math.sqrt(mass)), (self._lane(number), self.top), image,
                 mass=mass, linear_drag=linear, quadratic_drag=quadratic,

@@ -64,7 +64,7 @@ class Impacts(Exhibit):
         return [body for body in self.bodies if low <= height(body) < high]
 
     def _disc(self, x: float, rail: float, pace: float) -> Body:
-        image = "ember disc" if pace else "disc"
+        image = "ember-disc" if pace else "disc"
         disc = self.add(Circle(self.radius), (x, rail + self.radius), image, friction=0.0, restitution=1.0)
         disc.velocity = (pace, 0.0)
         return disc
@@ -86,9 +86,9 @@ class Spin(Exhibit):
         self.rules.append(((-self.width / 2, ceiling), (self.width / 2, ceiling)))
         middle = ceiling / 2
         self.turning = [
-            self.add(Circle(0.7), (-11.4, middle), "ember disc", restitution=0.8),
+            self.add(Circle(0.7), (-11.4, middle), "ember-disc", restitution=0.8),
             self.add(Polygon.box(2.2, 2.2), (-7.6, middle), "box", restitution=0.8),
-            self.add(Polygon.box(3.6, 0.5), (-2.8, middle), "bright box", restitution=0.8),
+            self.add(Polygon.box(3.6, 0.5), (-2.8, middle), "bright-box", restitution=0.8),
         ]
         for body in self.turning:
             body.angular_velocity = self.momentum / body.inertia

@@ -30,7 +30,7 @@ class Stack(Exhibit):
             count = self.base - level
             for number in range(count):
                 self._box(6.4 + 1.05 * self.box * (number - (count - 1) / 2), (level + 0.5) * self.box)
-        self.ball = self.add(Circle(0.7), (-10.5, 0.7), "ember disc", mass=4.0, friction=0.6, restitution=0.2)
+        self.ball = self.add(Circle(0.7), (-10.5, 0.7), "ember-disc", mass=4.0, friction=0.6, restitution=0.2)
 
     @property
     def state(self) -> str:
@@ -82,10 +82,10 @@ class Heap(Exhibit):
             y = 1.0 + 1.26 * row
             angle = rng.uniform(0, 2 * np.pi)
             if rng.random() < 0.4:
-                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), (x, y), "ember disc", angle=angle, friction=0.5)
+                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), (x, y), "ember-disc", angle=angle, friction=0.5)
             else:
                 wide, tall = rng.uniform(0.55, 0.95, 2)
-                image = "bright box" if rng.random() < 0.15 else "box"
+                image = "bright-box" if rng.random() < 0.15 else "box"
                 self.add(Polygon.box(wide, tall), (x, y), image, angle=angle, friction=0.5)
         self.at_first = self.energy
 

@@ -51,10 +51,10 @@ PICTURES: Final[dict[str, Picture]] = {
     "rail": Picture(_SQUARE, FAINT),
     "slope": Picture(_WEDGE, FAINT),
     "box": Picture(_SQUARE, MUTE),
-    "bright box": Picture(_SQUARE, INK),
+    "bright-box": Picture(_SQUARE, INK),
     "disc": Picture((), MUTE),
-    "bright disc": Picture((), INK),
-    "ember disc": Picture((), EMBER),
+    "bright-disc": Picture((), INK),
+    "ember-disc": Picture((), EMBER),
 }
 
 

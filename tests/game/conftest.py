@@ -20,9 +20,17 @@ from game.app import App
 from game.context import Context
 from game.scene import Scene
 from game.settings import Settings, SettingsFile
+from game.ui import typeface
 from tests.game.driver import Driver
 
 pygame.font.init()  # as long as the tests run, in whatever order
+
+
+@pytest.fixture(autouse=True)
+def usual_text_size() -> Iterator[None]:
+    """Leave text as large as it was found: its size is the process's, and the last game may have made it larger."""
+    yield
+    typeface.grow(1.0)
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 import json
 import os
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -33,8 +34,10 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def library(tmp_path: Path) -> Library:
-    return Library(tmp_path / "user")
+def library(tmp_path: Path) -> Iterator[Library]:
+    library = Library(tmp_path / "user")
+    yield library
+    library.release()
 
 
 def add(library: Library, name: str, **described: object) -> Path:

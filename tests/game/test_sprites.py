@@ -52,8 +52,8 @@ def test_every_sprite_of_the_gallery_covers_the_shape_that_collides(name: str):
 def test_the_highest_layer_is_seen_whatever_the_order(drawn):
     world = World()
     low, high = (world.add(Polygon.box(2.0, 2.0), (0.0, 0.0)) for _ in range(2))
-    sprites = [Sprite(low, "box", (2.0, 2.0), layer=1), Sprite(high, "bright box", (2.0, 2.0), layer=2)]
-    alone = drawn([Sprite(low, "bright box", (2.0, 2.0))])
+    sprites = [Sprite(low, "box", (2.0, 2.0), layer=1), Sprite(high, "bright-box", (2.0, 2.0), layer=2)]
+    alone = drawn([Sprite(low, "bright-box", (2.0, 2.0))])
     assert drawn(sprites) == drawn(sprites[::-1]) == alone != drawn(sprites[:1])
 
 
@@ -65,7 +65,7 @@ def test_a_picture_is_found_by_its_key_and_drawn_at_the_size_of_the_sprite(drawn
     assert drawn([Sprite(body, "disc", (2.0, 2.0))]) != before
     with pytest.raises(KeyError, match="trebuchet"):
         Outlines([Sprite(body, "trebuchet", (2.0, 2.0))])
-    assert bodies.PICTURES["ember disc"].colour == EMBER != bodies.PICTURES["bright disc"].colour == INK
+    assert bodies.PICTURES["ember-disc"].colour == EMBER != bodies.PICTURES["bright-disc"].colour == INK
 
 
 @pytest.mark.parametrize("calm", [False, True])
