@@ -99,6 +99,8 @@ class Config(Knobs):
         problems = super().problems()
         if not _pays(self.weights):
             problems.append(f"weights are finite numbers, one for each part of the reward, not {self.weights!r}")
+        if not isinstance(self.env, str) or not self.env:
+            problems.append(f"env is the name of an environment, not {self.env!r}")
         if not problems and self.replay_prune > self.replay_size:
             problems.append(f"replay_prune is at most replay_size, {self.replay_size}, not {self.replay_prune}")
         return problems
@@ -112,7 +114,7 @@ class Config(Knobs):
 def _pays(weights: Any) -> bool:
     """Whether these are weights of a reward that can be reckoned with."""
     return isinstance(weights, RewardWeights) and all(
-        isinstance(weight, int | float) and math.isfinite(weight) for weight in astuple(weights)
+        isinstance(weight, int | float) and abs(weight) < math.inf for weight in astuple(weights)
     )
 
 

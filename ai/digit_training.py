@@ -90,8 +90,7 @@ class DigitTraining:
 
     def change(self, config: DigitConfig) -> None:
         """Go on with other live knobs; the others stay as they are."""
-        live = {name: getattr(config, name) for name in LIVE}
-        self.config = self.config.changed(**live)
+        self.config = self.config.with_live(config)
 
     def advance(self) -> DigitProgress:
         """Learn from one batch, and measure what is held out if an epoch ends with it."""
@@ -163,9 +162,7 @@ class DigitTraining:
         return classifier
 
 
-LIVE: Final = tuple(
-    name for name, item in DigitConfig.__dataclass_fields__.items() if item.metadata["live"]
-)  # the knobs that may change during a run
+LIVE: Final = DigitConfig.live_names()  # the knobs that may change during a run
 
 
 def run_digits(

@@ -26,6 +26,12 @@ HISTORY_FILE: Final = "history.npz"
 CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200
 _VERSION: Final = 1
+# What can come of reading a damaged file: "Infinity" as a count overflows, and JSON that is nested too deeply or an
+# archive that is encrypted is a RuntimeError.
+UNREADABLE: Final = (
+    OSError, ValueError, KeyError, TypeError, EOFError, OverflowError, MemoryError, RuntimeError, BadZipFile,
+    zlib.error,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -196,7 +202,7 @@ class History:
                 history._restore(json.loads(str(arrays["described"])), arrays["points"], arrays["values"])
         except FileNotFoundError:
             return cls()
-        except (OSError, ValueError, KeyError, TypeError, EOFError, MemoryError, BadZipFile, zlib.error) as error:
+        except UNREADABLE as error:
             raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error or type(error).__name__}"]) from error
         return history
 
@@ -222,3 +228,38 @@ class History:
         ]
         self.alterations = [Alteration(**told) for told in described["alterations"]]
         self.validations = [Validation(**told) for told in described["validations"]]
+        for entry in (*self.checkpoints, *self.alterations, *self.validations):
+            _check(entry)
+
+
+def _check(entry: Checkpoint | Alteration | Validation) -> None:
+    """Raise ValueError if a number of this entry is none, or what should be a name or a table is not."""
+    numbers = [value for name in ("decisions", "seconds", "success", "mean_return")
+               if (value := getattr(entry, name, 0.0)) is not None]  # fmt: skip
+    if not all(finite(number) for number in numbers) or not 0 <= entry.decisions == int(entry.decisions):
+        raise ValueError(f"{type(entry).__name__} with numbers that make no sense: {numbers}")
+    if isinstance(entry, Alteration) and not isinstance(entry.name, str):
+        raise ValueError(f"an alteration of {entry.name!r}")
+    if isinstance(entry, Checkpoint) and not isinstance(entry.scale, dict | None):
+        raise ValueError(f"a scale {entry.scale!r}")
+
+
+def finite(value: Any) -> bool:
+    """Whether this is a number that can be reckoned with: not a yes or no, and neither infinite nor absurd."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
+
+
+def count(described: dict[str, Any], name: str) -> int:
+    """Return a whole number from 0 that a file holds by this name; raises ValueError or KeyError if it does not."""
+    value = described[name]
+    if not finite(value) or value != int(value) or value < 0:
+        raise ValueError(f"{name} is a whole number from 0, not {value!r}")
+    return int(value)
+
+
+def spent(described: dict[str, Any]) -> float:
+    """Return the seconds that a file says a run has lasted; raises ValueError or KeyError if it does not."""
+    seconds = described["seconds"]
+    if not finite(seconds) or seconds < 0:
+        raise ValueError(f"seconds are a number from 0, not {seconds!r}")
+    return float(seconds)

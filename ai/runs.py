@@ -5,17 +5,20 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from ai.agent import DeepQAgent
 from ai.config import LANDER, PRESETS
 from ai.gym_task import gym_config
-from ai.history import History
+from ai.history import UNREADABLE, History, count, finite, spent
 from ai.knobs import nearest_preset
 from ai.nn import ModelFormatError, atomic_folder
-from ai.task import TEST_SEED
+from ai.task import TEST_SEED, Score
 from ai.training import Progress, Training
 
 TRAINING_FILE: Final = "training.json"
@@ -24,23 +27,27 @@ CHECKPOINT_SECONDS: Final = 20.0
 
 
 class TrainingClock:
-    """Ends a run after so many seconds or decisions, and says when a checkpoint is due."""
+    """Ends a run after so many seconds of training or so many decisions, and says when a checkpoint is due.
+
+    Both are counted from the run's own beginning, however often it was interrupted in between.
+    """
 
     def __init__(self, seconds: float | None = None, decisions: int | None = None) -> None:
         self.seconds, self.decisions = seconds, decisions
-        self.share = 0.0
-        self._started = self._saved = time.monotonic()
+        self._saved = time.monotonic()
+
+    def share(self, training: Training) -> float:
+        """Return how much of its time or decisions a run has used up, from 0 to 1, whichever is more."""
+        elapsed = training.seconds / self.seconds if self.seconds else 0.0
+        taken = training.agent.decisions / self.decisions if self.decisions else 0.0
+        return min(1.0, max(elapsed, taken))
 
     def run(self, training: Training) -> Iterator[Progress]:
         """Advance until the time or the decisions are used up."""
-        while self.share < 1.0:
+        while self.share(training) < 1.0:
             before = time.monotonic()
             progress = training.advance()
-            now = time.monotonic()
-            training.seconds += now - before
-            elapsed = (now - self._started) / self.seconds if self.seconds else 0.0
-            taken = progress.decisions / self.decisions if self.decisions else 0.0
-            self.share = min(1.0, max(elapsed, taken))
+            training.seconds += time.monotonic() - before
             yield progress
 
     def checkpoint_due(self) -> bool:
@@ -71,7 +78,10 @@ class Snapshot:
 
 
 def snapshot(training: Training, history: History | None = None) -> Snapshot:
-    """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best."""
+    """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best.
+
+    This measures nothing: when it is called, the clock may say, and the clock has no say in which network is best.
+    """
     agent, config = training.agent, training.config
     presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
     described = {
@@ -89,16 +99,25 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
 def save_run(training: Training, folder: str | Path, final: bool = False) -> None:
     """Keep the best network of a run, and what is needed to go on with it, whole or not at all.
 
-    A run that has not yet been evaluated is evaluated first; `final` measures the best network on spawns that
-    neither trained nor chose it. Raises OSError if the disk does not take it.
+    `final` lets the network of the last moment stand for election too, and measures the best one on spawns that
+    neither trained nor chose it. Raises OSError if the disk does not take it, and ValueError, with the disk left
+    as it was, if the numbers of the network are not finite.
     """
-    if training.best is None:
-        training.evaluate()
+    if final:
+        training.conclude()
     kept = snapshot(training)
     if final:
         score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
         kept.described["evaluation"] = score.to_json()
     kept.save(folder)
+
+
+def rewind(training: Training) -> None:
+    """Let the networks be the best ones found so far, if there are any, when their numbers have run away."""
+    agent = training.agent
+    sound = all(np.isfinite(network.values).all() for network in (agent.online, agent.target))
+    if not sound and training.best_values is not None:
+        agent.go_back(training.best_values, deepcopy(training.best_scale))
 
 
 def resume_run(folder: str | Path) -> Training:
@@ -107,13 +126,23 @@ def resume_run(folder: str | Path) -> Training:
     best, last = DeepQAgent.load(folder), DeepQAgent.load(folder / LAST)
     try:
         described = json.loads((folder / TRAINING_FILE).read_text(encoding="utf-8"))
-        training = Training(last.config, int(described["seed"]))
+        training = Training(last.config, count(described, "seed"))
         if described["best"] is not None:
-            training.best = training.task.read_score(described["best"])
+            training.best = _read_score(training, described["best"])
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
-        training.episodes, training.env.landings = int(described["episodes"]), int(described["landings"])
-        training.seconds = float(described["seconds"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        training.episodes, training.env.landings = count(described, "episodes"), count(described, "landings")
+        training.seconds = spent(described)
+    except UNREADABLE as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error!r}"]) from error
     training.agent.take_over(last)
     return training
+
+
+def _read_score(training: Training, described: Any) -> Score:
+    """Read a score, and make sure that it can be compared and shown; raises ValueError or TypeError if not."""
+    score = training.task.read_score(described)
+    if not all(value is None or finite(value) for value in score.to_json().values()):
+        raise ValueError(f"best is a table of numbers, not {described}")
+    score.better_than(score)
+    str(score)
+    return score

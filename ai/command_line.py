@@ -1,0 +1,127 @@
+"""What all commands without a window share: refusals in one sentence, ranges of options, and an orderly stop."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+if TYPE_CHECKING:
+    from ai.knobs import Knobs
+
+    Settings = TypeVar("Settings", bound=Knobs)
+
+FAILED: Final = 1
+LONGEST: Final = 400  # letters of one line that is told: what is in a file or an argument may be of any length
+SEEDS: Final = (0, 2**63 - 1)
+SECONDS: Final = (0.001, 1e9)
+EPISODES: Final = (1, 100_000)  # all are flown at once: memory bounds them
+
+# What reading a path or settings that somebody has named can come to. A loop of links and JSON that is nested too
+# deeply are RuntimeErrors.
+REFUSED: Final = (OSError, ValueError, OverflowError, RuntimeError, ImportError, MemoryError)
+
+
+def fail(message: str) -> int:
+    """Say what went wrong, and return the exit code of a failure."""
+    print("\n".join(shortened(line) for line in message.splitlines()), file=sys.stderr)
+    return FAILED
+
+
+def shortened(line: str) -> str:
+    """Return a line without its middle, if it is too long to be read."""
+    return line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
+
+
+def reason(error: BaseException) -> str:
+    """Say why something was refused, without the numbers and names that only help a programmer."""
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for that"
+    if isinstance(error, RecursionError):
+        return "that is nested too deeply"
+    return str(error) or type(error).__name__
+
+
+def out_of_range(arguments: argparse.Namespace, **ranges: tuple[float, float]) -> str | None:
+    """Say which option lies outside its range, if one does; both ends belong to it, and "not a number" to none."""
+    for name, (low, high) in ranges.items():
+        value = getattr(arguments, name)
+        if value is not None and not low <= value <= high:
+            return f"--{name} lies between {low:,} and {high:,}, and was {value}"
+    return None
+
+
+def configured(preset: Settings, given: list[str]) -> Settings:
+    """Return the preset with some settings changed, each as NAME=VALUE; raises ValueError for nonsense."""
+    changes = {}
+    for change in given:
+        name, equals, text = change.partition("=")
+        if not equals or name not in preset.to_json():
+            raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
+        try:
+            changes[name] = json.loads(text)
+        except RecursionError:
+            raise ValueError(f"--set {name}: that is nested too deeply") from None
+        except ValueError:
+            changes[name] = text
+    return preset.from_json(preset.to_json() | changes)
+
+
+def refuse_fixed(begun: Settings, wanted: Settings, begun_seed: int, seed: int | None) -> None:
+    """Raise ValueError, with their names, if choices are wanted that a run which has begun cannot change."""
+    fixed = begun.fixed_differences(wanted)
+    if seed is not None and seed != begun_seed:
+        fixed.append("seed")
+    if fixed:
+        raise ValueError(f"a run that has begun cannot change {', '.join(fixed)}; without --resume, a new run can")
+
+
+@contextmanager
+def stoppable() -> Iterator[list[int]]:
+    """Turn Ctrl-C and a request to end into entries of the list, so that a step and its save are never cut short.
+
+    An entry is the number of a signal. Meant for the main thread; afterwards, signals do what they did before.
+    """
+    stop: list[int] = []
+    terminals = [number for number in (1, 2) if os.isatty(number)]
+
+    def note(number: int, _: FrameType | None) -> None:
+        stop.append(number)
+        if number == getattr(signal, "SIGHUP", None):
+            _forget(terminals)
+
+    before = {number: signal.signal(number, note) for number in _requests()}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _requests() -> list[int]:
+    """Return the signals that ask a program to end on this system; a hang-up that is ignored (nohup) is none."""
+    names = ["SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK"]
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        names.remove("SIGHUP")
+    return [getattr(signal, name) for name in names if hasattr(signal, name)]
+
+
+def _forget(terminals: list[int]) -> None:
+    """Write into the void from now on: a terminal that has been closed takes no more words."""
+    void = os.open(os.devnull, os.O_WRONLY)
+    for number in terminals:
+        os.dup2(void, number)
+    os.close(void)
+
+
+def exit_code(stop: list[int]) -> int:
+    """Return the exit code of a run that ended well: 0, also by Ctrl-C, or 128 and the signal that ended it."""
+    return 128 + stop[0] if stop and stop[0] != signal.SIGINT else 0
