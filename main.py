@@ -9,31 +9,75 @@ from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any, NoReturn
+
+LONGEST = 400  # letters of a complaint: an argument may be of any length
 
 
 def limit_threads() -> None:
     """Let linear algebra use one thread; call it before NumPy is imported, or it has no effect.
 
-    The matrices are small: a second thread only gets in the way, of the window most of all.
+    The matrices are small: a second thread only gets in the way, of the window most of all. And the sums of a
+    product that two threads share are rounded differently, so the same seed would give another network.
     """
     for library in ("OPENBLAS", "OMP", "MKL"):
-        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+        os.environ[f"{library}_NUM_THREADS"] = "1"
 
 
 def main(argv: list[str] | None = None) -> int:
     """Run `tranquility` with these arguments and return the exit code."""
     limit_threads()
-    arguments = _parser().parse_args(argv)
+    _forgive_terminals()
     try:
-        if arguments.run is not None:
-            return int(arguments.run(arguments))
-        return _open_game(arguments)
+        arguments = _parser().parse_args(argv)
+        code = _open_game(arguments) if arguments.run is None else int(arguments.run(arguments))
+        if sys.stdout is not None:
+            sys.stdout.flush()  # here, where it can still be said that it failed
+        return code
     except KeyboardInterrupt:
         return 130
+    except BrokenPipeError:  # whoever read has read enough, as `head` does
+        _discard_output()
+        return 141
+    except OSError as error:
+        if error.filename is not None:
+            raise  # the matter of whoever opened that file
+        _discard_output()
+        print(f"tranquility: cannot write: {error.strerror or error}", file=sys.stderr)
+        return 1
+
+
+def _forgive_terminals() -> None:
+    """Let letters that a terminal does not know come out as question marks, instead of ending the program."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+
+
+def _discard_output() -> None:
+    """Let what is still to be printed go nowhere, so that the interpreter does not stumble over it at its end."""
+    void = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(void, sys.stdout.fileno())
+    os.close(void)
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that complains in one line, and not in a page."""
+
+    def error(self, message: str) -> NoReturn:
+        said = message if len(message) <= LONGEST else f"{message[: LONGEST - 100]} ... {message[-90:]}"
+        self.exit(2, f"{self.prog}: {' '.join(said.split())} (see {self.prog} --help)\n")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse as usual; a number of more digits than Python reads is a complaint as well."""
+        try:
+            return super().parse_known_args(args, namespace)
+        except (ValueError, OverflowError) as error:
+            self.error(str(error))
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="tranquility", description="Land on the moon by hand, by network, or share the stick."
     )
     parser.set_defaults(run=None)

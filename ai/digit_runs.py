@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-import zlib
 from pathlib import Path
 from typing import Any, Final
-from zipfile import BadZipFile
 
 import numpy as np
 
 from ai.digit_config import DIGIT_PRESETS, DigitConfig
 from ai.digit_training import DigitTraining, accuracy
 from ai.digits import DigitClassifier
+from ai.history import UNREADABLE, count, finite, spent
 from ai.knobs import nearest_preset
 from ai.mnist import TEST, load_part
 from ai.nn import ModelFormatError, atomic_folder
@@ -31,7 +30,7 @@ def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = Fa
     described = {
         **nearest_preset(training.config.to_json(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}),
         "seed": training.seed, "step": training.step, "epochs": training.step // training.steps_per_epoch,
-        "seconds": round(training.seconds, 1), "held_out": training.best, "history": training.history,
+        "seconds": round(training.seconds, 3), "held_out": training.best, "history": training.history,
     }  # fmt: skip
     if final:
         described["test"] = accuracy(best, *load_part(TEST))
@@ -52,10 +51,15 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
     try:
         described = json.loads((folder / TRAINING_FILE).read_text(encoding="utf-8"))
         preset = DIGIT_PRESETS[described["preset"]].to_json()
-        training = DigitTraining(DigitConfig.from_json(preset | described["changes"]), described["seed"], **options)
-        training.step, training.seconds = int(described["step"]), float(described["seconds"])
+        config = DigitConfig.from_json(preset | described["changes"])
+        training = DigitTraining(config, count(described, "seed"), **options)
+        training.step, training.seconds = count(described, "step"), spent(described)
         training.best, training.history = described["held_out"], list(described["history"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        if not (training.best is None or finite(training.best)):
+            raise ValueError(f"held_out is a share, not {training.best!r}")
+        if not all(finite(value) for epoch in training.history for value in epoch.values()):
+            raise ValueError("history has numbers that make no sense")
+    except UNREADABLE as error:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error!r}"]) from error
     if not (folder / LAST_FILE).exists():
         raise ModelFormatError(folder, ["the run is finished: there is nothing to go on with"])
@@ -65,7 +69,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
             training.average[...] = state["average"]
             known = {name.removeprefix("optimizer."): state[name] for name in state if name.startswith("optimizer.")}
         training.optimizer.load_state(known)
-    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile, zlib.error) as error:
+    except UNREADABLE as error:
         raise ModelFormatError(folder, [f"{LAST_FILE}: {error}"]) from error
     if best.shape != training.average.shape:
         raise ModelFormatError(folder, ["the network's sizes are not those of the run's settings"])

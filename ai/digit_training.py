@@ -118,7 +118,10 @@ class DigitTraining:
         self.step += 1
         # Young averages follow faster: the first weights are nothing to remember.
         keep = min(config.averaging, self.step / (self.step + 10))
-        self.average += (1 - keep) * (network.values - self.average)
+        if keep:
+            self.average += (1 - keep) * (network.values - self.average)
+        else:
+            self.average[...] = network.values  # exactly, as a sum of differences would not be
         self._loss += (loss - self._loss) * 0.05
         self._accuracy += (accuracy - self._accuracy) * 0.05
         held_out = self._measure() if self.step % self.steps_per_epoch == 0 else None

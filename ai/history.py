@@ -29,8 +29,8 @@ _VERSION: Final = 1
 # What can come of reading a damaged file: "Infinity" as a count overflows, and JSON that is nested too deeply or an
 # archive that is encrypted is a RuntimeError.
 UNREADABLE: Final = (
-    OSError, ValueError, KeyError, TypeError, EOFError, OverflowError, MemoryError, RuntimeError, BadZipFile,
-    zlib.error,
+    OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, OverflowError, MemoryError, RuntimeError,
+    BadZipFile, zlib.error,
 )  # fmt: skip
 
 

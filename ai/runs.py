@@ -89,7 +89,7 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
-        "seconds": round(training.seconds, 1), "best": training.best.to_json() if training.best else None,
+        "seconds": round(training.seconds, 3), "best": training.best.to_json() if training.best else None,
     }  # fmt: skip
     return Snapshot(
         described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
