@@ -77,9 +77,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="tranquility", description="Land on the moon by hand, by network, or share the stick."
-    )
+    parser = _Parser(prog="tranquility", description="Land on the moon by hand, by network, or share the stick.")
     parser.set_defaults(run=None)
     parser.add_argument("--version", action="version", version=_version())
     parser.add_argument("--user-dir", type=Path, metavar="DIR", help="where settings and networks are kept")

@@ -28,6 +28,8 @@ FORMAT: Final = "tranquility demonstrations"
 VERSION: Final = 1
 MOST: Final = 50  # flights kept; the oldest make room, since each takes a moment to be flown again
 _LONGEST: Final = 25 * 60  # physics steps of a flight
+_SEEDS: Final = 2**128  # a seed is below
+_PADS: Final = 1000  # far more than any ground has
 
 
 @dataclass(frozen=True)
@@ -42,11 +44,13 @@ class Demonstration:
     pad: int = 0  # number of the pad landed on
 
     def __post_init__(self) -> None:
-        whole = (self.seed, self.begins, self.pad, *self.actions)
-        if not all(isinstance(number, int) and number >= 0 for number in whole):
-            raise ValueError("seed, steps and actions of a demonstration are whole numbers from 0")
-        if self.spawn not in SPAWNS or not 0 < len(self.actions) <= _LONGEST or max(self.actions) >= NUM_ACTIONS:
-            raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {self.spawn!r}")
+        whole = (self.seed, self.begins, self.pad, 0 if self.ground is None else self.ground, *self.actions)
+        if not all(type(number) is int and 0 <= number < _SEEDS for number in whole) or self.pad >= _PADS:
+            raise ValueError("seeds, steps, pad and actions of a demonstration are whole numbers from 0")
+        if self.spawn not in tuple(SPAWNS) or not 0 < len(self.actions) <= _LONGEST:
+            raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {str(self.spawn)[:20]!r}")
+        if max(self.actions) >= NUM_ACTIONS:
+            raise ValueError(f"there are {NUM_ACTIONS} actions, from 0 on, and {max(self.actions)} is none of them")
 
 
 def takeover(hands: Sequence[bool]) -> int:
@@ -126,7 +130,7 @@ def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
 
 
 def read(path: Path) -> list[Demonstration]:
-    """Read what `write` wrote, oldest first; nothing if there is no file yet.
+    """Read what `write` wrote, oldest first, and no more than that keeps; nothing if there is no file yet.
 
     Raises ValueError, which names the file and what is wrong with it, and OSError if it can't be read.
     """
@@ -134,11 +138,14 @@ def read(path: Path) -> list[Demonstration]:
         described = json.loads(path.read_text(encoding="utf-8"))
         if described["format"] != FORMAT or described["version"] != VERSION:
             raise ValueError(f"this is no {FORMAT}, version {VERSION}")
-        return [Demonstration(**flight | {"actions": tuple(flight["actions"])}) for flight in described["flights"]]
+        flights = described["flights"][-MOST:]
+        return [Demonstration(**flight | {"actions": tuple(flight["actions"])}) for flight in flights]
     except FileNotFoundError:
         return []
+    except RecursionError as error:
+        raise ValueError(f"{path} is nested too deeply") from error
     except (ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path}: {error}") from error
+        raise ValueError(f"{path}: {str(error)[:200]}") from error
 
 
 def _stream(seed: int) -> np.random.Generator:

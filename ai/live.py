@@ -269,11 +269,11 @@ class _LiveRun:
         agent = self.training.agent
         try:
             new = [lesson for lesson in read(command.path) if lesson not in self._lessons]
+            used = teach(agent, new)
         except (OSError, ValueError) as error:
             self._told.append(Refused(command, str(error)))
             return
         self._lessons.update(new)
-        used = teach(agent, new)
         if not used:
             self._told.append(Refused(command, "there are no landings that this run has not learnt from already"))
             return
