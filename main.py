@@ -8,10 +8,9 @@ import sys
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
-from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
-LONGEST = 400  # letters of a complaint: an argument may be of any length
+from ai.command_line import folder, readable
 
 
 def limit_threads() -> None:
@@ -65,22 +64,14 @@ class _Parser(argparse.ArgumentParser):
     """A parser that complains in one line, and not in a page."""
 
     def error(self, message: str) -> NoReturn:
-        said = message if len(message) <= LONGEST else f"{message[: LONGEST - 100]} ... {message[-90:]}"
-        self.exit(2, f"{self.prog}: {' '.join(said.split())} (see {self.prog} --help)\n")
-
-    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse as usual; a number of more digits than Python reads is a complaint as well."""
-        try:
-            return super().parse_known_args(args, namespace)
-        except (ValueError, OverflowError) as error:
-            self.error(str(error))
+        self.exit(2, f"{self.prog}: {readable(' '.join(message.split()))} (see {self.prog} --help)\n")
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog="tranquility", description="Land on the moon by hand, by network, or share the stick.")
     parser.set_defaults(run=None)
     parser.add_argument("--version", action="version", version=_version())
-    parser.add_argument("--user-dir", type=Path, metavar="DIR", help="where settings and networks are kept")
+    parser.add_argument("--user-dir", type=folder, metavar="DIR", help="where settings and networks are kept")
     screen = parser.add_mutually_exclusive_group()
     screen.add_argument("--windowed", dest="full_screen", action="store_false", default=None)
     screen.add_argument("--fullscreen", dest="full_screen", action="store_true", default=None)

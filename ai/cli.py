@@ -19,6 +19,7 @@ from ai.command_line import (
     configured,
     exit_code,
     fail,
+    folder,
     out_of_range,
     reason,
     refuse_fixed,
@@ -46,8 +47,8 @@ def add_commands(commands: Any) -> None:
     train.add_argument("--decisions", type=int,
                        help="stop when the whole run, resumed or not, has taken so many decisions; begun anew with"
                             " the same seed, it gives the same network")  # fmt: skip
-    train.add_argument("--output", type=Path, metavar="DIR", help="where to keep the network")
-    train.add_argument("--resume", type=Path, metavar="DIR",
+    train.add_argument("--output", type=folder, metavar="DIR", help="where to keep the network")
+    train.add_argument("--resume", type=folder, metavar="DIR",
                        help="go on with what an earlier run kept there, by its settings; --set and --preset may"
                             " change those that can change while a run goes on")  # fmt: skip
     train.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
@@ -56,7 +57,7 @@ def add_commands(commands: Any) -> None:
     train.set_defaults(run=_train)
 
     evaluate = commands.add_parser("evaluate", help="measure how well a network does")
-    evaluate.add_argument("--model", type=Path, required=True, metavar="DIR")
+    evaluate.add_argument("--model", type=folder, required=True, metavar="DIR")
     evaluate.add_argument("--episodes", type=int, help="default: 1000 flights, or 100 episodes of another environment")
     evaluate.add_argument("--seed", type=int, default=0)
     evaluate.add_argument("--spawn", help="random or hard (default: random)")
@@ -179,7 +180,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.task import task_of
     from ai.training import evaluate
 
-    spawn, episodes = arguments.spawn or "random", arguments.episodes
+    spawn, episodes = "random" if arguments.spawn is None else arguments.spawn, arguments.episodes
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):
         return fail(problem)
     if spawn not in SPAWNS:

@@ -9,8 +9,9 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 if TYPE_CHECKING:
     from ai.knobs import Knobs
@@ -30,13 +31,28 @@ REFUSED: Final = (OSError, ValueError, OverflowError, RuntimeError, ImportError,
 
 def fail(message: str) -> int:
     """Say what went wrong, and return the exit code of a failure."""
-    print("\n".join(shortened(line) for line in message.splitlines()), file=sys.stderr)
+    print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
     return FAILED
 
 
-def shortened(line: str) -> str:
-    """Return a line without its middle, if it is too long to be read."""
-    return line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
+def readable(line: str) -> str:
+    """Return a line without its middle, if that is too long, and without what would steer a terminal."""
+    short = line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in short)
+
+
+def folder(text: str) -> Path:
+    """Return the path of a folder that somebody named; raises ArgumentTypeError for what can be none anywhere."""
+    try:
+        os.fsencode(text)
+        named = "\0" not in text and text.strip() != "" and Path(text).resolve().name != ""
+    except (ValueError, RuntimeError):  # letters that no file system takes, a loop of links
+        named = False
+    except OSError:  # whoever opens it will say what is wrong
+        named = True
+    if not named:
+        raise argparse.ArgumentTypeError(f"{text!r} cannot be the path of a folder")
+    return Path(text)
 
 
 def reason(error: BaseException) -> str:
@@ -46,7 +62,7 @@ def reason(error: BaseException) -> str:
     if isinstance(error, MemoryError):
         return "there is not enough memory for that"
     if isinstance(error, RecursionError):
-        return "that is nested too deeply"
+        return "a file or a setting is nested too deeply"
     return str(error) or type(error).__name__
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import astuple, dataclass
 from typing import Any, Final
 
@@ -114,7 +113,7 @@ class Config(Knobs):
 def _pays(weights: Any) -> bool:
     """Whether these are weights of a reward that can be reckoned with."""
     return isinstance(weights, RewardWeights) and all(
-        isinstance(weight, int | float) and abs(weight) < math.inf for weight in astuple(weights)
+        isinstance(weight, int | float) and abs(weight) < 1e30 for weight in astuple(weights)
     )
 
 

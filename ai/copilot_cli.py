@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.command_line import EPISODES, REFUSED, SEEDS, fail, out_of_range, reason
+from ai.command_line import EPISODES, REFUSED, SEEDS, fail, folder, out_of_range, reason
 
 if TYPE_CHECKING:
     from ai.copilot_table import Row
@@ -19,7 +19,7 @@ MODEL: Final = Path(__file__).parent.parent / "models" / "lander" / "modern"
 def add_commands(commands: Any) -> None:
     """Add `copilot-table` to a parser's sub-commands."""
     table = commands.add_parser("copilot-table", help="measure how much the co-pilot helps good and bad pilots")
-    table.add_argument("--model", type=Path, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
+    table.add_argument("--model", type=folder, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
     table.add_argument("--episodes", type=int, default=1000, help="flights for each row (default: 1000)")
     table.add_argument("--seed", type=int, default=0)
     table.add_argument("--good", choices=("network", "scripted"), default="network",

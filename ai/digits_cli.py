@@ -19,6 +19,7 @@ from ai.command_line import (
     configured,
     exit_code,
     fail,
+    folder,
     out_of_range,
     reason,
     refuse_fixed,
@@ -35,8 +36,8 @@ def add_commands(commands: Any) -> None:
     train = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
     train.add_argument("--preset", help="modern, classic, or as-described, the recipe of one epoch that the classic"
                        " one grew from (default: modern)")  # fmt: skip
-    train.add_argument("--output", type=Path, metavar="DIR", help="where to keep the network")
-    train.add_argument("--resume", type=Path, metavar="DIR",
+    train.add_argument("--output", type=folder, metavar="DIR", help="where to keep the network")
+    train.add_argument("--resume", type=folder, metavar="DIR",
                        help="go on with what an earlier run kept there, by its settings; --set and --preset may"
                             " change those that can change while a run goes on")  # fmt: skip
     train.add_argument("--seed", type=int, help="what all chance follows from (default: 0)")
@@ -49,7 +50,7 @@ def add_commands(commands: Any) -> None:
     train.set_defaults(run=_train)
 
     evaluate = commands.add_parser("evaluate-digits", help="measure how well a network reads MNIST's test images")
-    evaluate.add_argument("--model", type=Path, required=True, metavar="DIR")
+    evaluate.add_argument("--model", type=folder, required=True, metavar="DIR")
     evaluate.add_argument("--json", action="store_true", help="print one JSON object")
     evaluate.set_defaults(run=_evaluate)
 
