@@ -228,7 +228,10 @@ class History:
         ]
         self.alterations = [Alteration(**told) for told in described["alterations"]]
         self.validations = [Validation(**told) for told in described["validations"]]
-        for entry in (*self.checkpoints, *self.alterations, *self.validations):
+        entries: list[Checkpoint | Alteration | Validation] = [
+            *self.checkpoints, *self.alterations, *self.validations,
+        ]  # fmt: skip
+        for entry in entries:
             _check(entry)
 
 

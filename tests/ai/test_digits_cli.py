@@ -1,4 +1,8 @@
 import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +23,7 @@ from ai.nn import (
 )
 from main import main
 
+ROOT = Path(__file__).parents[2]
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, averaging=0.9)
 
 
@@ -217,3 +222,14 @@ def test_the_recipe_as_described_saves_reloads_and_reads(tmp_path, capsys):
     targets = np.eye(10, dtype=np.float32)[labels[order]]
     network.train(images[order].reshape(-1, 784), targets, epochs=1, batch_size=500, learning_rate=0.2)
     np.testing.assert_array_equal(network.values, DigitClassifier.load(run).network.values)
+
+
+def test_the_network_does_not_depend_on_how_many_threads_are_offered(tmp_path):
+    """Two threads share products of 500 images with 784 numbers, and round their sums otherwise than one."""
+    for threads in ("1", "2"):
+        libraries = {f"{library}_NUM_THREADS": threads for library in ("OPENBLAS", "OMP", "MKL")}
+        arguments = ["train-digits", "--preset", "as-described", "--set", "held_out=30000"]
+        subprocess.run([sys.executable, "main.py", *arguments, "--output", str(tmp_path / threads)],
+                       cwd=ROOT, env=os.environ | libraries, timeout=300, check=True, capture_output=True)  # fmt: skip
+    one, two = (DigitClassifier.load(tmp_path / threads).network for threads in ("1", "2"))
+    np.testing.assert_array_equal(one.values, two.values)
