@@ -22,7 +22,7 @@ FAILED: Final = 1
 LONGEST: Final = 400  # letters of one line that is told: what is in a file or an argument may be of any length
 SEEDS: Final = (0, 2**63 - 1)
 SECONDS: Final = (0.001, 1e9)
-EPISODES: Final = (1, 100_000)  # all are flown at once: memory bounds them
+EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
 
 # What reading a path or settings that somebody has named can come to. A loop of links and JSON that is nested too
 # deeply are RuntimeErrors.
