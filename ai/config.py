@@ -98,6 +98,8 @@ class Config(Knobs):
         problems = super().problems()
         if not _pays(self.weights):
             problems.append(f"weights are finite numbers, one for each part of the reward, not {shown(self.weights)}")
+        if self.env == "":
+            problems.append("env is the name of an environment, and was empty")
         if not problems and self.replay_prune > self.replay_size:
             problems.append(f"replay_prune is at most replay_size, {self.replay_size}, not {self.replay_prune}")
         return problems

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli import fail
+from ai.command_line import EPISODES, REFUSED, SEEDS, fail, folder, out_of_range, reason
 
 if TYPE_CHECKING:
     from ai.copilot_table import Row
@@ -19,7 +19,7 @@ MODEL: Final = Path(__file__).parent.parent / "models" / "lander" / "modern"
 def add_commands(commands: Any) -> None:
     """Add `copilot-table` to a parser's sub-commands."""
     table = commands.add_parser("copilot-table", help="measure how much the co-pilot helps good and bad pilots")
-    table.add_argument("--model", type=Path, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
+    table.add_argument("--model", type=folder, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
     table.add_argument("--episodes", type=int, default=1000, help="flights for each row (default: 1000)")
     table.add_argument("--seed", type=int, default=0)
     table.add_argument("--good", choices=("network", "scripted"), default="network",
@@ -34,15 +34,14 @@ def _table(arguments: argparse.Namespace) -> int:
     from ai.agent import DeepQAgent
     from ai.config import LANDER
     from ai.copilot_table import ONE_PAD, PILOTS, THREE_PADS, WISHFUL, one_pad, three_pads
-    from ai.nn import ModelFormatError
     from ai.pilots import Pilot, ScriptedPilot
 
-    if arguments.episodes < 1:
-        return fail("--episodes starts from 1")
+    if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):
+        return fail(problem)
     try:
         agent = DeepQAgent.load(arguments.model)
-    except ModelFormatError as error:
-        return fail(str(error))
+    except REFUSED as error:
+        return fail(reason(error))
     if agent.config.env != LANDER:
         return fail(f"the co-pilot flies the lander; this network is for {agent.config.env}")
     good: Pilot = ScriptedPilot() if arguments.good == "scripted" else agent

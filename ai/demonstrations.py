@@ -20,7 +20,6 @@ from ai.env import Bools, Floats
 from ai.ground import hilly
 from ai.lander import NUM_ACTIONS, LanderEnv, Outcome
 from ai.memory import NStep
-from ai.nn.files import MOST as LARGEST
 from ai.nn.files import brief, read_json, write_text
 from ai.pilots import Pilot
 from ai.replay import MemoryCell
@@ -30,6 +29,8 @@ FORMAT: Final = "tranquility demonstrations"
 VERSION: Final = 1
 MOST: Final = 50  # flights kept; the oldest make room, since each takes a moment to be flown again
 _LONGEST: Final = 25 * 60  # physics steps of a flight
+_SEEDS: Final = 2**128  # a seed is below
+_PADS: Final = 1000  # far more than any ground has
 
 
 @dataclass(frozen=True)
@@ -44,16 +45,13 @@ class Demonstration:
     pad: int = 0  # number of the pad landed on
 
     def __post_init__(self) -> None:
-        whole = (self.seed, self.begins, self.pad, *self.actions, *(() if self.ground is None else (self.ground,)))
-        if not all(isinstance(number, int) and number >= 0 for number in whole) or self.pad > LARGEST:
+        whole = (self.seed, self.begins, self.pad, 0 if self.ground is None else self.ground, *self.actions)
+        if not all(type(number) is int and 0 <= number < _SEEDS for number in whole) or self.pad >= _PADS:
             raise ValueError("seeds, steps, pad and actions of a demonstration are whole numbers from 0")
-        if (
-            not isinstance(self.spawn, str)
-            or self.spawn not in SPAWNS
-            or not 0 < len(self.actions) <= _LONGEST
-            or max(self.actions) >= NUM_ACTIONS
-        ):
+        if self.spawn not in tuple(SPAWNS) or not 0 < len(self.actions) <= _LONGEST:
             raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {brief(repr(self.spawn), 40)}")
+        if max(self.actions) >= NUM_ACTIONS:
+            raise ValueError(f"there are {NUM_ACTIONS} actions, from 0 on, and {max(self.actions)} is none of them")
 
 
 def takeover(hands: Sequence[bool]) -> int:
@@ -130,7 +128,7 @@ def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
 
 
 def read(path: Path) -> list[Demonstration]:
-    """Read what `write` wrote, oldest first; nothing if there is no file yet.
+    """Read what `write` wrote, oldest first, and no more than that keeps; nothing if there is no file yet.
 
     Of more than there can be, those are the newest. Raises ValueError, which names the file and what is wrong with
     it, and OSError if it can't be read.
@@ -145,6 +143,8 @@ def read(path: Path) -> list[Demonstration]:
         return [Demonstration(**flight | {"actions": tuple(flight["actions"])}) for flight in flights[-MOST:]]
     except FileNotFoundError:
         return []
+    except RecursionError as error:
+        raise ValueError(f"{path} is nested too deeply") from error
     except (ValueError, KeyError, TypeError) as error:
         raise ValueError(f"{path}: {brief(error)}") from error
 

@@ -68,6 +68,12 @@ DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {
         learning_rate=3e-3, cost="mse", smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
         output_activation=True, dropout=0.0, augmentation=0.8, original=0.2, epochs=60, batch_size=100,
     ),
+    # The classic network as it was first described: all 60,000 images once, and plain steps.
+    "as-described": DigitConfig(
+        learning_rate=0.2, final_learning_rate=0.2, warm_up=0.0, epochs=1, batch_size=500, optimizer="sgd",
+        cost="mse", smoothing=0.0, averaging=0.0, held_out=0, convolutions=False, hidden=(100, 50),
+        activation="tanh", output_activation=True, dropout=0.0, augmentation=0.0,
+    ),
 }  # fmt: skip
 
 

@@ -32,7 +32,7 @@ def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = Fa
     described = {
         **nearest_preset(training.config.to_json(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}),
         "seed": training.seed, "step": training.step, "epochs": training.step // training.steps_per_epoch,
-        "seconds": round(training.seconds, 1), "held_out": training.best, "history": training.history,
+        "seconds": round(training.seconds, 3), "held_out": training.best, "history": training.history,
     }  # fmt: skip
     if final:
         described["test"] = accuracy(best, *load_part(TEST))

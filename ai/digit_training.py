@@ -90,8 +90,7 @@ class DigitTraining:
 
     def change(self, config: DigitConfig) -> None:
         """Go on with other live knobs; the others stay as they are."""
-        live = {name: getattr(config, name) for name in LIVE}
-        self.config = self.config.changed(**live)
+        self.config = self.config.with_live(config)
 
     def advance(self) -> DigitProgress:
         """Learn from one batch, and measure what is held out if an epoch ends with it."""
@@ -116,7 +115,10 @@ class DigitTraining:
         self.step += 1
         # Young averages follow faster: the first weights are nothing to remember.
         keep = min(config.averaging, self.step / (self.step + 10))
-        self.average += (1 - keep) * (network.values - self.average)
+        if keep:
+            self.average += (1 - keep) * (network.values - self.average)
+        else:
+            self.average[...] = network.values  # exactly, as a sum of differences would not be
         self._loss += (loss - self._loss) * 0.05
         self._accuracy += (accuracy - self._accuracy) * 0.05
         held_out = self._measure() if self.step % self.steps_per_epoch == 0 else None
@@ -173,9 +175,7 @@ class DigitTraining:
         return classifier
 
 
-LIVE: Final = tuple(
-    name for name, item in DigitConfig.__dataclass_fields__.items() if item.metadata["live"]
-)  # the knobs that may change during a run
+LIVE: Final = DigitConfig.live_names()  # the knobs that may change during a run
 
 
 def run_digits(

@@ -7,11 +7,25 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ai.cli import fail, stoppable
+from ai.command_line import (
+    REFUSED,
+    SECONDS,
+    SEEDS,
+    configured,
+    exit_code,
+    fail,
+    folder,
+    out_of_range,
+    reason,
+    refuse_fixed,
+    stoppable,
+)
 
 if TYPE_CHECKING:
     from ai.digit_config import DigitConfig
@@ -21,76 +35,120 @@ if TYPE_CHECKING:
 def add_commands(commands: Any) -> None:
     """Add `train-digits` and `evaluate-digits` to a parser's sub-commands."""
     train = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
-    train.add_argument("--preset", default="modern", help="modern or classic (default: modern)")
-    train.add_argument("--output", type=Path, metavar="DIR", help="where to keep the network")
-    train.add_argument("--resume", type=Path, metavar="DIR", help="go on with what an earlier run kept there")
-    train.add_argument("--seed", type=int, default=0)
+    train.add_argument("--preset", help="modern, classic, or as-described, the recipe of one epoch that the classic"
+                       " one grew from (default: modern)")  # fmt: skip
+    train.add_argument("--output", type=folder, metavar="DIR", help="where to keep the network")
+    train.add_argument("--resume", type=folder, metavar="DIR",
+                       help="go on with what an earlier run kept there, by its settings; --set and --preset may"
+                            " change those that can change while a run goes on")  # fmt: skip
+    train.add_argument("--seed", type=int, help="what all chance follows from (default: 0)")
     train.add_argument("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
-    train.add_argument("--seconds", type=float, help="stop after so many seconds, even if there are epochs to come")
+    train.add_argument("--seconds", type=float,
+                       help="stop when the whole run, resumed or not, has trained for so many seconds, even if there"
+                            " are epochs to come")  # fmt: skip
     train.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
                        help="change a setting of the preset, such as --set dropout=0.5")  # fmt: skip
     train.set_defaults(run=_train)
 
     evaluate = commands.add_parser("evaluate-digits", help="measure how well a network reads MNIST's test images")
-    evaluate.add_argument("--model", type=Path, required=True, metavar="DIR")
+    evaluate.add_argument("--model", type=folder, required=True, metavar="DIR")
     evaluate.add_argument("--json", action="store_true", help="print one JSON object")
     evaluate.set_defaults(run=_evaluate)
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.digit_runs import resume_digit_run, save_digit_run
-    from ai.digit_training import DigitTraining
     from ai.digits import KIND
     from ai.nn.folder import claimed_folder
 
     output = arguments.output or arguments.resume
     if output is None:
         return fail("say where to keep the network: --output DIR, or --resume DIR")
+    if problem := out_of_range(arguments, seed=SEEDS, seconds=SECONDS):
+        return fail(problem)
+    with ExitStack() as claims:
+        try:
+            training = _begun(arguments) if arguments.resume is None else _resumed(arguments)
+            if arguments.seconds is not None and training.seconds >= arguments.seconds:
+                raise ValueError(
+                    f"this run has trained for {training.seconds:,.1f} seconds already; --seconds is of the whole run:"
+                    " ask for more"
+                )
+            claims.enter_context(claimed_folder(output, KIND))
+        except REFUSED as error:
+            return fail(reason(error))
+        return _keep_training(training, arguments.seconds, output)
+
+
+def _begun(arguments: argparse.Namespace) -> DigitTraining:
+    """Return a new run; raises ValueError for settings that make no sense, MnistError without images."""
+    from ai.digit_training import DigitTraining
+
+    return DigitTraining(_config(arguments), arguments.seed or 0)
+
+
+def _resumed(arguments: argparse.Namespace) -> DigitTraining:
+    """Return the run to go on with, its live settings changed as asked; raises ValueError where they are not live."""
+    from ai.digit_runs import resume_digit_run
+
+    training = resume_digit_run(arguments.resume)
+    wanted = _config(arguments, training.config)
+    refuse_fixed(training.config, wanted, training.seed, arguments.seed)
+    training.change(wanted)
+    return training
+
+
+def _keep_training(training: DigitTraining, seconds: float | None, output: Path) -> int:
+    """Train, keep what comes of it, and return the exit code."""
+    from ai.digit_runs import save_digit_run
+
     try:
-        training = (
-            resume_digit_run(arguments.resume)
-            if arguments.resume
-            else DigitTraining(_config(arguments), arguments.seed)
-        )
-    except ValueError as error:
-        return fail(str(error))
-    try:
-        with claimed_folder(output, KIND):
-            _advance(training, arguments.seconds, output)
-            described = save_digit_run(training, output, final=True)
+        with stoppable() as stop:
+            _advance(training, seconds, output, stop)
+            save_digit_run(training, output)  # at once: measuring takes a while, and who wants this to end may not wait
+        described = save_digit_run(training, output, final=True)
     except FloatingPointError as error:
-        return fail(f"training stopped: {error}. What was kept at the last epoch is in {output}.")
-    except FileExistsError as error:
-        return fail(str(error))
+        kept = f"What was kept at the last epoch is in {output}." if training.history else "No epoch was over."
+        return fail(f"training stopped: {error}. {kept}")
     except OSError as error:
         return fail(f"could not write to {output}: {error.strerror or error}")
     except ValueError as error:
         return fail(str(error))
     print(f"kept in {output}: {described['test']:.2%} of MNIST's test images read right")
-    return 0
+    return exit_code(stop)
 
 
-def _advance(training: DigitTraining, seconds: float | None, output: Path) -> None:
+def _advance(training: DigitTraining, seconds: float | None, output: Path, stop: list[int]) -> None:
     """Train until the last epoch, the clock or the user says stop, and keep the work after each epoch."""
     from tqdm import tqdm
 
-    from ai.digit_runs import save_digit_run
-
-    began = time.monotonic()
-    before = training.seconds
     form = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
-    bar = tqdm(total=training.steps, initial=training.step, desc="training", bar_format=form, disable=None)
-    with bar, stoppable() as stop:
+    trouble = ""
+    with tqdm(total=training.steps, initial=training.step, desc="training", bar_format=form, disable=None) as bar:
         while not training.done and not stop:
+            began = time.monotonic()
             progress = training.advance()
-            training.seconds = before + time.monotonic() - began
+            training.seconds += time.monotonic() - began
             bar.update(1)
             best = f", held out {progress.best:.2%}" if progress.best is not None else ""
             bar.set_postfix_str(f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}", refresh=False)
             if progress.step % training.steps_per_epoch == 0 and not training.done:
-                save_digit_run(training, output)
-            if seconds is not None and time.monotonic() - began >= seconds:
+                new = _checkpoint(training, output)
+                if new and new != trouble:
+                    bar.write(new, file=sys.stderr)
+                trouble = new
+            if seconds is not None and training.seconds >= seconds:
                 break
+
+
+def _checkpoint(training: DigitTraining, output: Path) -> str:
+    """Save, and say what went wrong, if something did: a disk that is full now may have room again by the end."""
+    from ai.digit_runs import save_digit_run
+
+    try:
+        save_digit_run(training, output)
+    except OSError as error:
+        return f"could not write to {output}: {error.strerror or error}; training goes on"
+    return ""
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:
@@ -101,8 +159,8 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     try:
         classifier = DigitClassifier.load(arguments.model)
         images, labels = load_part(TEST)
-    except ValueError as error:
-        return fail(str(error))
+    except REFUSED as error:
+        return fail(reason(error))
     table = confusion(classifier, images, labels)
     right, shown = table.diagonal(), table.sum(axis=1)
     if arguments.json:
@@ -119,12 +177,15 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _config(arguments: argparse.Namespace) -> DigitConfig:
-    """Return the preset with the changes asked for; raises ValueError for one that makes no sense."""
-    from ai.cli import configured
+def _config(arguments: argparse.Namespace, begun: DigitConfig | None = None) -> DigitConfig:
+    """Return the preset, or the settings a run was begun with, with the changes asked for.
+
+    Raises ValueError for a change that makes no sense.
+    """
     from ai.digit_config import DIGIT_PRESETS
 
-    if arguments.preset not in DIGIT_PRESETS:
+    if arguments.preset is not None and arguments.preset not in DIGIT_PRESETS:
         raise ValueError(f"--preset is one of {', '.join(DIGIT_PRESETS)}, not {arguments.preset}")
-    config = configured(DIGIT_PRESETS[arguments.preset], arguments.changes)
+    preset = begun if begun and arguments.preset is None else DIGIT_PRESETS[arguments.preset or "modern"]
+    config = configured(preset, arguments.changes)
     return config if arguments.epochs is None else config.changed(epochs=arguments.epochs)

@@ -142,7 +142,7 @@ class GymTask:
     def _make(self) -> gymnasium.Env[Any, Any]:
         try:
             env: gymnasium.Env[Any, Any] = self._gymnasium.make(self.config.env, disable_env_checker=True)
-        except (self._gymnasium.error.Error, ImportError) as error:
+        except (self._gymnasium.error.Error, ImportError, ValueError) as error:
             hint = ""
             if isinstance(error, self._gymnasium.error.DependencyNotInstalled):
                 # The advice of the error itself would bring plain pygame, which breaks pygame-ce.

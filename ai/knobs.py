@@ -90,6 +90,20 @@ class Knobs:
         """Return a copy with some fields changed, checked like any other."""
         return replace(self, **values)
 
+    @classmethod
+    def live_names(cls) -> tuple[str, ...]:
+        """Return the names of the fields that may change while a run goes on."""
+        return tuple(item.name for item in fields(cls) if item.metadata["live"])
+
+    def with_live(self, other: Self) -> Self:
+        """Return these choices with the live fields of others; all the rest stay as they are."""
+        return self.changed(**{name: getattr(other, name) for name in self.live_names()})
+
+    def fixed_differences(self, other: Self) -> list[str]:
+        """Return the names of the fields in which others differ, although a run cannot change them."""
+        taken = self.with_live(other)
+        return [item.name for item in fields(self) if getattr(taken, item.name) != getattr(other, item.name)]
+
 
 def field_problem(item: Field[Any], value: Any) -> str | None:
     """Say what is wrong with a field's value, if anything."""

@@ -25,7 +25,7 @@ from ai.runs import resume_run, snapshot
 from ai.scaling import RunningScale
 from ai.schedule import InForce, in_force
 from ai.task import VALIDATION_SEED
-from ai.training import Progress, Training
+from ai.training import Progress, Training, passed
 
 __all__ = [
     "CAREFUL", "REVERTED", "TAUGHT", "Begun", "Change", "Insight", "Refused", "Revert", "Save", "Saved", "Sight",
@@ -120,9 +120,7 @@ class _Trial:
 class _LiveRun:
     """A Training, what has been told of it, and where it is kept."""
 
-    def __init__(
-        self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]
-    ) -> None:
+    def __init__(self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]) -> None:
         if not isinstance(training.env, LanderEnv):
             raise ValueError(f"only landers can be looked into, not {training.config.env}")
         self.training, self.history, self.env = training, history, training.env
@@ -131,7 +129,6 @@ class _LiveRun:
         training.witness = self._see
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
         self._trial: _Trial | None = None
-        self._tried = 0
         self._sight = self._seen(self.env.outcome)
         self._folder = keep
         self._kept = training.agent.decisions
@@ -163,11 +160,11 @@ class _LiveRun:
     def advance(self) -> tuple[Message, ...]:
         """Let every lander take one decision; return what there is to tell of it."""
         training = self.training
-        before = training.clock()
+        began, before = training.clock(), training.agent.decisions
         progress = training.advance()
-        self._try_the_network()
+        self._try_the_network(before)
         now = training.clock()
-        training.seconds += now - before
+        training.seconds += now - began
         self._told.append(self._sight)
         if now >= self._insight_at:
             self._insight_at = now + INSIGHT_SECONDS
@@ -257,12 +254,11 @@ class _LiveRun:
         scale = agent.scale.to_json() if agent.scale else None
         return Checkpoint(self.training.seconds, agent.decisions, success, values, scale)
 
-    def _try_the_network(self) -> None:
+    def _try_the_network(self, before: int) -> None:
         """Fly a little of the validation flights, if it is time for them; the networks are those of `Training`."""
         training = self.training
-        if training.agent.decisions - self._tried >= training.task.evaluate_every:
+        if passed(before, training.agent.decisions, training.task.evaluate_every):
             self._finish_trial()
-            self._tried = training.agent.decisions
             self._trial = _Trial(training)
         elif self._trial is not None and self._trial.go_on(1 + self.env.num_envs // 256):
             self._finish_trial()
@@ -293,11 +289,11 @@ class _LiveRun:
         agent = self.training.agent
         try:
             new = [lesson for lesson in read(command.path) if lesson not in self._lessons]
+            used = teach(agent, new)
         except (OSError, ValueError) as error:
             self._told.append(Refused(command, str(error)))
             return
         self._lessons.update(new)
-        used = teach(agent, new)
         if not used:
             self._told.append(Refused(command, "there are no landings that this run has not learnt from already"))
             return

@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
+
+import numpy as np
 
 from ai.agent import KIND, LAST, DeepQAgent
 from ai.config import LANDER, PRESETS
@@ -17,7 +20,7 @@ from ai.history import History
 from ai.knobs import nearest_preset
 from ai.nn import ModelFormatError, atomic_folder
 from ai.nn.files import count_of, inside, number_of, read_json
-from ai.task import TEST_SEED
+from ai.task import TEST_SEED, Score
 from ai.training import Progress, Training
 
 TRAINING_FILE: Final = "training.json"
@@ -25,23 +28,27 @@ CHECKPOINT_SECONDS: Final = 20.0
 
 
 class TrainingClock:
-    """Ends a run after so many seconds or decisions, and says when a checkpoint is due."""
+    """Ends a run after so many seconds of training or so many decisions, and says when a checkpoint is due.
+
+    Both are counted from the run's own beginning, however often it was interrupted in between.
+    """
 
     def __init__(self, seconds: float | None = None, decisions: int | None = None) -> None:
         self.seconds, self.decisions = seconds, decisions
-        self.share = 0.0
-        self._started = self._saved = time.monotonic()
+        self._saved = time.monotonic()
+
+    def share(self, training: Training) -> float:
+        """Return how much of its time or decisions a run has used up, from 0 to 1, whichever is more."""
+        elapsed = training.seconds / self.seconds if self.seconds else 0.0
+        taken = training.agent.decisions / self.decisions if self.decisions else 0.0
+        return min(1.0, max(elapsed, taken))
 
     def run(self, training: Training) -> Iterator[Progress]:
         """Advance until the time or the decisions are used up."""
-        while self.share < 1.0:
+        while self.share(training) < 1.0:
             before = time.monotonic()
             progress = training.advance()
-            now = time.monotonic()
-            training.seconds += now - before
-            elapsed = (now - self._started) / self.seconds if self.seconds else 0.0
-            taken = progress.decisions / self.decisions if self.decisions else 0.0
-            self.share = min(1.0, max(elapsed, taken))
+            training.seconds += time.monotonic() - before
             yield progress
 
     def checkpoint_due(self) -> bool:
@@ -72,7 +79,10 @@ class Snapshot:
 
 
 def snapshot(training: Training, history: History | None = None) -> Snapshot:
-    """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best."""
+    """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best.
+
+    This measures nothing: when it is called, the clock may say, and the clock has no say in which network is best.
+    """
     agent, config = training.agent, training.config
     presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
     described = {
@@ -80,7 +90,7 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
-        "seconds": round(training.seconds, 1), "best": training.best.to_json() if training.best else None,
+        "seconds": round(training.seconds, 3), "best": training.best.to_json() if training.best else None,
         "flights": training.flights.to_json(),
     }  # fmt: skip
     return Snapshot(
@@ -91,16 +101,25 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
 def save_run(training: Training, folder: str | Path, final: bool = False) -> None:
     """Keep the best network of a run, and what is needed to go on with it, whole or not at all.
 
-    A run that has not yet been evaluated is evaluated first; `final` measures the best network on spawns that
-    neither trained nor chose it. Raises OSError if the disk does not take it.
+    `final` lets the network of the last moment stand for election too, and measures the best one on spawns that
+    neither trained nor chose it. Raises OSError if the disk does not take it, and ValueError, with the disk left
+    as it was, if the numbers of the network are not finite.
     """
-    if training.best is None:
-        training.evaluate()
+    if final:
+        training.conclude()
     kept = snapshot(training)
     if final:
         score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
         kept.described["evaluation"] = score.to_json()
     kept.save(folder)
+
+
+def rewind(training: Training) -> None:
+    """Let the networks be the best ones found so far, if there are any, when their numbers have run away."""
+    agent = training.agent
+    sound = all(np.isfinite(network.values).all() for network in (agent.online, agent.target))
+    if not sound and training.best_values is not None:
+        agent.go_back(training.best_values, deepcopy(training.best_scale))
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
@@ -127,7 +146,7 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
         if described["best"] is not None:
             if best.network.values.shape != training.agent.network.values.shape:
                 raise ValueError("the best network and the last one are of different sizes")
-            training.best = training.task.read_score(described["best"])
+            training.best = _read_score(training, described["best"])
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         training.seconds = float(number_of(described["seconds"]))
@@ -137,3 +156,14 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error
     training.agent.take_over(last)
     return training
+
+
+def _read_score(training: Training, described: Any) -> Score:
+    """Read a score, and make sure that it can be compared and shown; raises ValueError or TypeError if not."""
+    score = training.task.read_score(described)
+    for value in score.to_json().values():
+        if value is not None:
+            number_of(value)
+    score.better_than(score)
+    str(score)
+    return score

@@ -75,7 +75,7 @@ class Training:
         self.env = self.task.make_env(env_rng)
         self.observation = self.env.reset()
         self.episodes = 0
-        self._evaluated = 0
+        self._evaluated: int | None = None  # how many decisions the network had taken that was measured last
         self._moments: deque[float] = deque(maxlen=100)
         self.flights = Flights(self.env.num_envs)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
@@ -95,7 +95,7 @@ class Training:
     def advance(self) -> Progress:
         """Let every lander take one decision, learn from it, and evaluate if it is time."""
         agent, env, flights = self.agent, self.env, self.flights
-        epsilon = self.epsilon
+        before, epsilon = agent.decisions, self.epsilon
         self.task.follow(agent.decisions, env)
         actions = agent.act(self.observation, exploration_of_each(agent.config, epsilon), self._held)
         result = env.step(actions)
@@ -110,7 +110,7 @@ class Training:
             self.observation = env.reset(result.ended)
         self._held = np.where(result.ended, 0, actions)
         agent.learn()
-        evaluation = self._evaluate_if_due()
+        evaluation = self.evaluate() if passed(before, agent.decisions, self.evaluate_every or 0) else None
         return Progress(
             agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
             flights.success, flights.mean_return, agent.loss, agent.mean_q, epsilon, env.stage, self._pace(),
@@ -125,24 +125,24 @@ class Training:
         return steps / spent if spent > 0 else 0.0
 
     def change(self, config: Config) -> None:
-        """Take over the live knobs of another configuration; it must have all others in common with this one."""
-        self.config = config
+        """Take over the live knobs of another configuration; the others stay as they are."""
+        self.config = config = self.config.with_live(config)
         self.task.change(config, self.env)
         self.agent.change(config)
         self.agent.action_chances = self.task.action_chances
 
-    def _evaluate_if_due(self) -> Score | None:
-        if not self.evaluate_every or self.agent.decisions - self._evaluated < self.evaluate_every:
-            return None
-        self._evaluated = self.agent.decisions
-        return self.evaluate()
-
     def evaluate(self) -> Score:
         """Try the validation episodes, and keep the network if it is the best so far."""
         assert self.validation_episodes is not None
+        self._evaluated = self.agent.decisions
         score = self.task.evaluate(self.agent, self.validation_episodes, VALIDATION_SEED)
         self.consider(score, self.agent)
         return score
+
+    def conclude(self) -> None:
+        """Measure the network as it is at the end of a run, unless that has just been done."""
+        if self._evaluated != self.agent.decisions:
+            self.evaluate()
 
     def consider(self, score: Score, agent: DeepQAgent) -> bool:
         """Keep an agent's network if its score is the best so far, and say whether it is."""
@@ -166,6 +166,15 @@ class Training:
         agent.take_over(self.agent)
         agent.scale = deepcopy(self.agent.scale)
         return agent
+
+
+def passed(before: int, now: int, every: int) -> bool:
+    """Whether a count has reached a multiple of `every` on its way from `before` to `now`; never, if that is 0.
+
+    The moments at which networks are measured depend on nothing else: not on the clock, and not on whether
+    a run was interrupted.
+    """
+    return every > 0 and now // every > before // every
 
 
 def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Config | None, None]:

@@ -80,6 +80,7 @@ def serve(connection: Connection, payload: bytes) -> None:
     """Run the pickled (function, args, kwargs), whose turns are told through `connection`, until its end."""
     _settle()
     service = _Service(connection)
+    signal.signal(signal.SIGTERM, lambda *_: service.terminate())
     bundle = Bundle(ended=True)
     try:
         function, args, kwargs = pickle.loads(payload)
@@ -88,6 +89,9 @@ def serve(connection: Connection, payload: bytes) -> None:
         return  # the window has gone
     except Exception as error:
         bundle.problem, bundle.trace = _in_words(error), traceback.format_exc()
+    if service.terminated:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGTERM)  # so that the window hears how it ended
     with suppress(OSError):
         try:
             bundle.messages = service.waiting.take()
@@ -122,13 +126,18 @@ class _Service:
         self.waiting = Waiting()
         self._connection = connection
         self._orders: SimpleQueue[Order] = SimpleQueue()
-        self._stopped = self._paused = False
+        self.terminated = self._stopped = self._paused = False
         self._steps = 0  # to be taken in spite of the pause
         self._period = 0.0  # seconds from turn to turn
         self._due = 0.0  # when the next turn is
         self._wanted = CREDIT  # bundles that the window has asked for
         self._since = time.monotonic()  # when it last asked, or was told something
         Thread(target=_listen, args=(connection, self._orders), daemon=True).start()
+
+    def terminate(self) -> None:
+        """End as when the window asks for it, so that a run keeps itself; called from within a signal's handler."""
+        self.terminated = True
+        self._orders.put(("stop", None))
 
     def run(self, turns: Turns) -> None:
         """Turn until the generator or the window ends it."""

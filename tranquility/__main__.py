@@ -18,10 +18,11 @@ from pathlib import Path
 def limit_threads() -> None:
     """Let linear algebra use one thread; call it before NumPy is imported, or it has no effect.
 
-    The matrices are small: a second thread only gets in the way, of the window most of all.
+    The matrices are small: a second thread only gets in the way, of the window most of all. And the sums of a
+    product that two threads share are rounded differently, so the same seed would give another network.
     """
     for library in ("OPENBLAS", "OMP", "MKL"):
-        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+        os.environ[f"{library}_NUM_THREADS"] = "1"
 
 
 def find_own_folders() -> None:
@@ -39,22 +40,47 @@ def main(argv: list[str] | None = None) -> int:
     """Run `tranquility` with these arguments and return the exit code."""
     limit_threads()
     find_own_folders()
-    arguments = _parser().parse_args(argv)
+    _forgive_terminals()
     try:
-        if arguments.run is not None:
-            return int(arguments.run(arguments))
-        return _open_game(arguments)
+        arguments = _parser().parse_args(argv)
+        code = _open_game(arguments) if arguments.run is None else int(arguments.run(arguments))
+        if sys.stdout is not None:
+            sys.stdout.flush()  # here, where it can still be said that it failed
+        return code
     except KeyboardInterrupt:
         return 130
+    except BrokenPipeError:  # whoever read has read enough, as `head` does
+        _discard_output()
+        return 141
+    except OSError as error:
+        if error.filename is not None:
+            raise  # the matter of whoever opened that file
+        _discard_output()
+        print(f"tranquility: cannot write: {error.strerror or error}", file=sys.stderr)
+        return 1
+
+
+def _forgive_terminals() -> None:
+    """Let letters that a terminal does not know come out as question marks, instead of ending the program."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+
+
+def _discard_output() -> None:
+    """Let what is still to be printed go nowhere, so that the interpreter does not stumble over it at its end."""
+    void = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(void, sys.stdout.fileno())
+    os.close(void)
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="tranquility", description="Land on the moon by hand, by network, or share the stick."
-    )
+    from ai.command_line import Parser, folder  # once its folder has been found
+
+    parser = Parser(prog="tranquility", description="Land on the moon by hand, by network, or share the stick.")
     parser.set_defaults(run=None)
     parser.add_argument("--version", action="version", version=_version())
-    parser.add_argument("--user-dir", type=Path, metavar="DIR", help="where settings and networks are kept")
+    parser.add_argument("--user-dir", type=folder, metavar="DIR", help="where settings and networks are kept")
     screen = parser.add_mutually_exclusive_group()
     screen.add_argument("--windowed", dest="full_screen", action="store_false", default=None)
     screen.add_argument("--fullscreen", dest="full_screen", action="store_true", default=None)

@@ -41,7 +41,8 @@ from game.worker import State
 if TYPE_CHECKING:
     from ai.digits import DigitClassifier
 
-FAMILY: Final = Family(tuple(dials(DigitConfig)), DIGIT_PRESETS, texts.PUPIL_PRESETS, "images")
+_OFFERED: Final = {name: DIGIT_PRESETS[name] for name in texts.PUPIL_PRESETS}
+FAMILY: Final = Family(tuple(dials(DigitConfig)), _OFFERED, texts.PUPIL_PRESETS, "images")
 _WIDTH: Final = 836.0  # the panel has the rest
 _LEFT: Final = 40.0
 _PANEL: Final = 868.0
@@ -204,7 +205,7 @@ class DigitTrainingScene:
             self._run(config, seed)
             return
         preset, seconds, part = self.pupil.described()
-        named = (preset, "") if preset in DIGIT_PRESETS else FAMILY.nearest(self.pupil.config)
+        named = (preset, "") if preset in _OFFERED else FAMILY.nearest(self.pupil.config)
         name = self.pupil.collection.free_name(texts.PUPIL_NAME.format(preset=FAMILY.word(named)))
 
         def keep() -> None:

@@ -72,7 +72,9 @@ class Advice:
             return
         box = self._box
         canvas.outline(box, 8, HUMAN, 1, 0.35)
-        title, said = (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self._done)
+        title, said = (
+            (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self._done)
+        )
         canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
         for number, line in enumerate(wrapped(canvas, said, SMALL, self._room)[:_LINES]):
             canvas.text(line, (box.left + 14, box.top + 34 + _LINE * number), size=SMALL)

@@ -1,3 +1,4 @@
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -5,7 +6,7 @@ import pytest
 
 from ai.agent import DeepQAgent
 from ai.config import PRESETS
-from ai.demonstrations import Demonstration, demonstrate, read, relive, takeover, taught, teach, write
+from ai.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, taught, teach, write
 from ai.ground import hilly
 from ai.lander import LanderEnv
 from ai.live import TAUGHT, Insight, Refused, Sight, Teach, live
@@ -142,6 +143,36 @@ def test_a_live_run_goes_on_where_there_is_nothing_to_learn_from(content, words,
 
 
 KNOWN = '"format": "tranquility demonstrations", "version": 1'
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["[" * 100_000, b"\xff\xfe", f'{{{KNOWN}, "flights": 3}}', f'{{{KNOWN}, "flights": [3]}}',
+     *(f'{{{KNOWN}, "flights": [{{"seed": 1, "actions": [0], {wrong}}}]}}' for wrong in (
+         '"ground": -1', '"ground": "x"', '"ground": 1.5', '"ground": [1]', '"ground": true', '"spawn": []',
+         '"spawn": {}', '"pad": 1e400', f'"pad": 1{"0" * 30}', f'"begins": 1{"0" * 400}', '"begins": null',
+         '"actions": [true]', '"actions": [Infinity]', '"seed": NaN'))],
+)  # fmt: skip
+def test_demonstrations_that_make_no_sense_are_refused_and_the_training_goes_on(content, tmp_path):
+    path = tmp_path / "flights.json"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    run = live(PRESETS["classic"])
+    next(run)
+    (refused,) = run.send(Teach(path))
+    assert isinstance(refused, Refused)
+    assert "flights.json" in refused.problem
+    assert len(refused.problem) < 400
+    assert any(isinstance(message, Sight) for message in next(run))
+    run.close()
+
+
+def test_a_file_of_many_flights_is_read_no_further_than_one_is_written(landings, tmp_path):
+    path = tmp_path / "flights.json"
+    write(path, landings)
+    described = json.loads(path.read_text())
+    described["flights"] *= 2 * MOST
+    path.write_text(json.dumps(described))
+    assert len(read(path)) == MOST
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,8 @@
 import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -6,12 +10,20 @@ import pytest
 import ai.digit_training
 from ai.digit_config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digit_runs import resume_digit_run, save_digit_run
-from ai.digit_training import LIVE, DigitTraining, run_digits
+from ai.digit_training import LIVE, SPLIT_SEED, DigitTraining, run_digits
 from ai.digits import DigitClassifier
 from ai.mnist import load_part
-from ai.nn import ModelFormatError
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    CostFunctions,
+    FullyConnectedLayer,
+    ModelFormatError,
+    NeuralNetwork,
+)
 from main import main
 
+ROOT = Path(__file__).parents[2]
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, averaging=0.9)
 
 
@@ -130,12 +142,18 @@ def test_settings_are_checked_and_survive_json():
 def test_train_resume_evaluate(tmp_path, capsys):
     run = str(tmp_path / "run")
     small = ["--preset", "classic", "--set", "hidden=[16]", "--set", "held_out=100"]
-    assert main(["train-digits", *small, "--epochs", "3", "--seconds", "0", "--output", run]) == 0
+    assert main(["train-digits", *small, "--epochs", "3", "--seconds", "0.001", "--output", run]) == 0
     assert run in capsys.readouterr().out
-    assert main(["train-digits", "--resume", run]) == 0
+    for changes, named in (
+        (["--epochs", "4"], "epochs"), (["--seed", "1"], "seed"), (["--set", "hidden=[9]"], "hidden"),
+        (["--preset", "modern"], "convolutions"), (["--seconds", "0.001"], "whole run"),
+    ):  # fmt: skip
+        assert main(["train-digits", "--resume", run, *changes]) == 1
+        assert named in capsys.readouterr().err
+    assert main(["train-digits", "--resume", run, "--epochs", "3", "--seed", "0", "--set", "smoothing=0.1"]) == 0
     described = json.loads((tmp_path / "run" / "training.json").read_text())
     assert described["preset"] == "classic"
-    assert described["changes"] == {"hidden": [16], "held_out": 100, "epochs": 3}
+    assert described["changes"] == {"hidden": [16], "held_out": 100, "epochs": 3, "smoothing": 0.1}
     assert described["epochs"] == 3
     assert len(described["history"]) == 3
     assert not (tmp_path / "run" / "last.npz").exists(), "there is nothing to go on with"
@@ -157,6 +175,7 @@ def test_train_resume_evaluate(tmp_path, capsys):
         (["train-digits", "--output", "x", "--preset", "magic"], "--preset is one of"),
         (["train-digits", "--output", "x", "--set", "warp=9"], "warp=9"),
         (["train-digits", "--output", "x", "--epochs", "0"], "epochs lies between"),
+        (["train-digits", "--output", "x", "--seconds", "0"], "--seconds lies between"),
         (["train-digits", "--resume", "nowhere"], "nowhere"),
         (["evaluate-digits", "--model", "nowhere"], "nowhere"),
     ],
@@ -182,3 +201,37 @@ def test_a_folder_that_cannot_be_written_is_named_before_anything_is_learnt(tmp_
     assert "letters" in capsys.readouterr().err
     assert (tmp_path / "letters" / "dear.txt").read_text() == "you"
     assert [path.name for path in tmp_path.iterdir()] == ["letters"]
+
+
+def test_the_recipe_as_described_saves_reloads_and_reads(tmp_path, capsys):
+    run = str(tmp_path / "run")
+    assert main(["train-digits", "--preset", "as-described", "--seed", "3", "--output", run]) == 0
+    assert main(["evaluate-digits", "--model", run, "--json"]) == 0
+    measured = json.loads(capsys.readouterr().out.splitlines()[-1])
+    described = json.loads((tmp_path / "run" / "training.json").read_text())
+    assert described["preset"] == "as-described"
+    assert (described["changes"], described["step"]) == ({}, 120)
+    assert measured["accuracy"] == described["test"] > 0.75
+
+    # The same by the library alone: 784-100-50-10, one epoch over 60,000 images, batches of 500, a rate of 0.2.
+    images, labels = load_part("train")
+    order = np.random.default_rng(SPLIT_SEED).permutation(60_000)
+    order = order[np.random.default_rng((3, 1, 0)).permutation(60_000)]  # as the run draws it
+    network = NeuralNetwork(*CostFunctions.use_mse(), rng=np.random.default_rng(3))
+    for inputs, outputs in ((784, 100), (100, 50), (50, 10)):
+        network.add_layer(FullyConnectedLayer(inputs, outputs))
+        network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+    targets = np.eye(10, dtype=np.float32)[labels[order]]
+    network.train(images[order].reshape(-1, 784), targets, epochs=1, batch_size=500, learning_rate=0.2)
+    np.testing.assert_array_equal(network.values, DigitClassifier.load(run).network.values)
+
+
+def test_the_network_does_not_depend_on_how_many_threads_are_offered(tmp_path):
+    """Two threads share products of 500 images with 784 numbers, and round their sums otherwise than one."""
+    for threads in ("1", "2"):
+        libraries = {f"{library}_NUM_THREADS": threads for library in ("OPENBLAS", "OMP", "MKL")}
+        arguments = ["train-digits", "--preset", "as-described", "--set", "held_out=30000"]
+        subprocess.run([sys.executable, "main.py", *arguments, "--output", str(tmp_path / threads)],
+                       cwd=ROOT, env=os.environ | libraries, timeout=300, check=True, capture_output=True)  # fmt: skip
+    one, two = (DigitClassifier.load(tmp_path / threads).network for threads in ("1", "2"))
+    np.testing.assert_array_equal(one.values, two.values)

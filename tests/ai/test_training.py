@@ -66,8 +66,15 @@ def test_progress_tells_the_pace_by_the_clock_it_is_given():
 def test_the_generator_takes_changed_knobs():
     going = run(SMALL, 0, **QUICK)
     next(going)
-    assert going.send(SMALL.changed(epsilon_start=0.0, epsilon_end=0.0)).epsilon == 0.0
+    assert going.send(SMALL.changed(epsilon_decisions=8, epsilon_end=0.0)).epsilon == 0.0
     going.close()
+
+
+def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
+    training, _ = advanced(decisions=2)
+    training.change(SMALL.changed(hidden=(3,), num_envs=2, n_step=3, updates=3))
+    assert training.config == training.agent.config == SMALL.changed(updates=3)
+    assert training.advance().decisions == 24
 
 
 def test_evaluation_shares_add_up_and_the_pilot_is_asked_for_living_slots_only():
@@ -145,7 +152,7 @@ def test_the_clock_stops_at_the_decisions_asked_for():
     training, _ = advanced(decisions=1)
     clock = TrainingClock(decisions=80)
     assert [progress.decisions for progress in clock.run(training)][-1] == 80
-    assert clock.share == 1.0
+    assert clock.share(training) == 1.0
     assert not clock.checkpoint_due()
 
 

@@ -289,6 +289,17 @@ def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
     assert all(decisions)
 
 
+@POSIX
+def test_a_run_that_is_terminated_keeps_itself(start, tmp_path):
+    run = start(live, TINY, 0, keep=tmp_path / "run")
+    polled(run, lambda told: any(isinstance(each, Checkpoint) and each.decisions > 0 for each in told))
+    os.kill(run._process.pid, signal.SIGTERM)
+    over(run)
+    assert run.state is State.FAILED
+    assert run.problem == texts.WORKER_SIGNAL.format(signal="SIGTERM")
+    assert resume_run(tmp_path / "run").agent.decisions > 0
+
+
 def test_stopping_lets_the_generator_close(start, tmp_path):
     ending = start(chores.ending_well, tmp_path / "closed")
     polled(ending, ticks)
