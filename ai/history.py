@@ -26,6 +26,7 @@ HISTORY_FILE: Final = "history.npz"
 CAPACITY: Final = 4000  # points
 MOST_CHECKPOINTS: Final = 200
 _VERSION: Final = 1
+_MOST: Final = 10**15  # of any count
 
 
 @dataclass(frozen=True)
@@ -196,7 +197,10 @@ class History:
                 history._restore(json.loads(str(arrays["described"])), arrays["points"], arrays["values"])
         except FileNotFoundError:
             return cls()
-        except (OSError, ValueError, KeyError, TypeError, EOFError, MemoryError, BadZipFile, zlib.error) as error:
+        except (
+            OSError, ValueError, KeyError, TypeError, EOFError, MemoryError, BadZipFile, zlib.error, ArithmeticError,
+            RecursionError,
+        ) as error:  # fmt: skip
             raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error or type(error).__name__}"]) from error
         return history
 
@@ -222,3 +226,17 @@ class History:
         ]
         self.alterations = [Alteration(**told) for told in described["alterations"]]
         self.validations = [Validation(**told) for told in described["validations"]]
+        for entry in (*self.checkpoints, *self.alterations, *self.validations):
+            _check(entry)
+
+
+def _check(entry: Checkpoint | Alteration | Validation) -> None:
+    """Raise ValueError for what no run tells; charts, sums and sentences take the rest at its word."""
+    shown = (getattr(entry, name, 0.0) for name in ("seconds", "success", "mean_return"))
+    if type(entry.decisions) is not int or not 0 <= entry.decisions < _MOST:
+        raise ValueError(f"{str(entry.decisions)[:40]} is no count of decisions")
+    if not all(type(value) is float or (type(value) is int and abs(value) < _MOST) for value in shown):
+        raise ValueError(f"a {type(entry).__name__.lower()} with a figure that is no number")
+    name, scale, after = getattr(entry, "name", ""), getattr(entry, "scale", None), getattr(entry, "after", 0)
+    if not (isinstance(name, str) and isinstance(scale, dict | None) and isinstance(after, bool | int | float | str)):
+        raise ValueError(f"a {type(entry).__name__.lower()} with a field of a wrong type")

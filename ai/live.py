@@ -68,7 +68,7 @@ def live(
 
 
 def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
-    """Return an agent that flies as the run did at that checkpoint; raises ValueError if the sizes differ."""
+    """Return an agent that flies as the run did at that checkpoint; raises ValueError if it does not fit."""
     agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, config)
     if agent.online.values.shape != checkpoint.values.shape:
         raise ValueError(
@@ -324,7 +324,10 @@ def _scale_of(agent: DeepQAgent, checkpoint: Checkpoint) -> RunningScale | None:
     if checkpoint.scale is None:
         return None
     scale = RunningScale(agent.num_features)
-    scale.load(checkpoint.scale)
+    try:
+        scale.load(checkpoint.scale)
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"the checkpoint's scale of observations makes no sense: {error}") from error
     return scale
 
 

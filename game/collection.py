@@ -6,7 +6,7 @@ import os
 import shutil
 import time
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
@@ -19,6 +19,7 @@ from game import texts
 UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
 TRASH: Final = ".trash"
 LONGEST_NAME: Final = 40
+_LONGEST_SAID: Final = 200
 OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
 _NEW: Final = ".new"  # and one that it has not finished
 _TRASH_KEPT: Final = 8
@@ -53,6 +54,39 @@ def name_problem(text: str) -> str:
 def is_valid_name(text: str) -> bool:
     """Whether a folder can be called so."""
     return not name_problem(text)
+
+
+def brief(said: object, most: int = _LONGEST_SAID) -> str:
+    """Return what a file says, or an error about one, no longer than a screen can show: it can be of any length."""
+    text = str(said)
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def claims(folder: Path, parts: Iterable[str]) -> bool:
+    """Whether something looks like one of ours: it has one of these parts, or it cannot be looked into.
+
+    What cannot be looked into, such as a link that leads nowhere, is listed as well, so that it is told of.
+    """
+    if folder.name.startswith("."):
+        return False
+    try:
+        return any(there(folder / part) for part in parts) or leads_nowhere(folder)
+    except OSError:
+        return True
+
+
+def there(path: Path) -> bool:
+    """Whether something lies there; OSError where that cannot be told, which `Path.exists` takes for no."""
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        return False
+    return True
+
+
+def leads_nowhere(path: Path) -> bool:
+    """Whether it is a link to what is not there; OSError for a link to itself."""
+    return path.is_symlink() and not there(path)
 
 
 def exports_dir() -> Path:
@@ -97,7 +131,7 @@ class Collection:
     def existing(self, name: str) -> Path:
         """Return where it lies; a name must not lead out of it, whatever it is."""
         folder = self.folder / name
-        if name.startswith(".") or Path(name).name != name or not folder.is_dir():
+        if name.startswith(".") or Path(name).name != name or not (folder.is_dir() or folder.is_symlink()):
             raise LibraryError(texts.GONE.format(name=name))
         return folder
 
@@ -176,13 +210,17 @@ class Collection:
     def recover(self) -> None:
         """Put back what was being replaced when that was interrupted, and clear away what was never finished.
 
-        Raises OSError if the folder can't be looked into.
+        Raises OSError if the folder can't be looked into; what is wrong with one thing in it concerns no other.
         """
         for path in list(self.folder.iterdir()):
-            if path.name.endswith(OLD) and path.name[0] == "." and path.name[1] != ".":
-                recover_folder(self.folder / path.name[1 : -len(OLD)])
-            elif path.name.endswith(_NEW) and path.name[0] == "." and time.time() - path.stat().st_mtime > _STALE:
-                shutil.rmtree(path, ignore_errors=True)
+            with suppress(OSError):
+                self._recover(path)
+
+    def _recover(self, path: Path) -> None:
+        if path.name.endswith(OLD) and path.name[0] == "." and path.name[1] != ".":
+            recover_folder(self.folder / path.name[1 : -len(OLD)])
+        elif path.name.endswith(_NEW) and path.name[0] == "." and time.time() - path.lstat().st_mtime > _STALE:
+            shutil.rmtree(path, ignore_errors=True)
 
     def _thrown(self) -> list[Path]:
         """Return what was thrown away, the latest last: a name is when, and what it was called."""

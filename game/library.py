@@ -12,11 +12,25 @@ from ai.config import LANDER
 from ai.nn.folder import recover_folder
 from ai.runs import LAST, TRAINING_FILE
 from game import texts
-from game.collection import OLD, UNSAVED, Collection, LibraryError, reason
+from game.collection import (
+    LONGEST_NAME,
+    OLD,
+    UNSAVED,
+    Collection,
+    LibraryError,
+    brief,
+    claims,
+    leads_nowhere,
+    reason,
+    there,
+)
 from game.lock import Lock, take
 from game.networks import PARTS, PLAYERS
 
+_CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of them is a run, whole or not
 _GAMES: Final = 16  # that may train at the same time
+_YEAR_3000: Final = 32_503_680_000.0  # in seconds since 1970; up to then every system knows dates
+_MOST: Final = 10**15  # of any count
 
 
 @dataclass(frozen=True)
@@ -54,31 +68,40 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     file = folder / TRAINING_FILE
     saved = 0.0
     with suppress(OSError):
-        saved = (file if file.exists() else folder).stat().st_mtime
+        saved = min(max((file if there(file) else folder).lstat().st_mtime, 0.0), _YEAR_3000)
     try:
-        missing = [part for part in (*PARTS, TRAINING_FILE) if not (folder / part).exists()]
+        if leads_nowhere(folder):
+            return SavedRun(name, folder, saved, problem=texts.RUN_LINK)
+        missing = [part for part in _CLAIMS if not there(folder / part)]
         if missing:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
         described = json.loads(file.read_text(encoding="utf-8"))
         if described["env"] != LANDER:
-            return SavedRun(name, folder, saved, problem=texts.RUN_ELSEWHERE.format(env=described["env"]))
+            problem = texts.RUN_ELSEWHERE.format(env=brief(described["env"], LONGEST_NAME))
+            return SavedRun(name, folder, saved, problem=problem)
         last = (folder / LAST).is_dir()
         return SavedRun(name, folder, saved, flyable=True, resumable=last, **_figures(described))
     except OSError as error:
-        problem = reason(error)
+        problem = brief(reason(error))
     except (ValueError, KeyError, TypeError, ArithmeticError, RecursionError):
         problem = texts.RUN_UNREADABLE.format(file=TRAINING_FILE)
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
 def _figures(described: dict[str, Any]) -> dict[str, Any]:
+    """Return the figures a run is told by; ValueError, and others, for those that no run can have."""
     success = described["best"]["success"] if described["best"] else None  # a young run has not been tried yet
-    return {
-        "preset": str(described["preset"]), "changes": len(described["changes"]), "seed": int(described["seed"]),
-        "decisions": int(described["decisions"]), "seconds": float(described["seconds"]),
-        "success": None if success is None else float(success),
+    figures = {
+        "preset": brief(described["preset"], LONGEST_NAME), "changes": len(described["changes"]),
+        "seed": int(described["seed"]), "decisions": int(described["decisions"]),
+        "seconds": float(described["seconds"]), "success": None if success is None else float(success),
     }  # fmt: skip
+    if not (0 <= figures["decisions"] < _MOST and 0 <= figures["seconds"] < _MOST and 0 <= (success or 0) <= 1):
+        raise ValueError("a figure that no run comes to")
+    if len(str(figures["seed"])) > LONGEST_NAME:
+        raise ValueError("a seed that no run began with")
+    return figures
 
 
 class Library(Collection):
@@ -101,7 +124,7 @@ class Library(Collection):
         self.problem = ""
         try:
             self.recover()
-            found = [read_run(path) for path in self.folder.iterdir() if _claims(path)]
+            found = [read_run(path) for path in self.folder.iterdir() if claims(path, _CLAIMS)]
         except FileNotFoundError:
             return []
         except OSError as error:
@@ -115,7 +138,7 @@ class Library(Collection):
 
     def import_folder(self, path: Path) -> Path:
         """Copy a run from anywhere into the library, under its own name or one near it; return where the copy is."""
-        if not path.is_dir() or not _claims(path, hidden=True):
+        if not path.is_dir() or not _holds_run(path):
             raise LibraryError(texts.LIBRARY_NO_RUN.format(name=path.name))
         return super().import_folder(path)
 
@@ -146,7 +169,7 @@ class Library(Collection):
     def rescued(self) -> SavedRun | None:
         """Describe the run that was never given a name, called as it might be. Ask before a training begins."""
         recover_folder(self.unsaved)
-        if not self.unsaved.is_dir() or not _claims(self.unsaved, hidden=True):
+        if not self.unsaved.is_dir() or not _holds_run(self.unsaved):
             return None
         return read_run(self.unsaved, self.free_name(texts.RUN_RESCUED))
 
@@ -160,11 +183,11 @@ class Library(Collection):
             self.throw_away(self.unsaved, rescued.name)
 
 
-def _claims(path: Path, hidden: bool = False) -> bool:
-    """Whether a folder looks like a run, whole or not."""
-    if path.name.startswith(".") and not hidden:
-        return False
-    return any((path / part).exists() for part in (*PARTS, TRAINING_FILE))
+def _holds_run(path: Path) -> bool:
+    """Whether a folder of any name looks like a run, whole or not."""
+    with suppress(OSError):
+        return any(there(path / part) for part in _CLAIMS)
+    return False
 
 
 def _was_used(place: Path) -> bool:

@@ -75,7 +75,7 @@ class Student(Learner):
     @property
     def lessons(self) -> int:
         """Of how many demonstrations this run has learnt."""
-        return sum(each.after for each in self.history.alterations if each.name == TAUGHT)
+        return sum(each.after for each in self.history.alterations if each.name == TAUGHT and type(each.after) is int)
 
     def teach(self, demonstrations: Path) -> None:
         """Let the run learn from a file of demonstrations as well; that is told by `poll`."""

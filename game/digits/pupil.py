@@ -14,7 +14,7 @@ from ai.digit_runs import LAST_FILE, TRAINING_FILE
 from ai.messages import Refused, Save
 from ai.nn.folder import CONFIG, recover_folder
 from game import texts
-from game.collection import UNSAVED, Collection, LibraryError
+from game.collection import LONGEST_NAME, UNSAVED, Collection, LibraryError, brief
 from game.digits import PATIENCE
 from game.learner import EARLIER, Learner
 from game.worker import Worker
@@ -103,7 +103,7 @@ class Pupil(Learner):
             return preset, seconds, part
         with suppress(OSError, ValueError, KeyError, TypeError):
             said = json.loads((self.unsaved / TRAINING_FILE).read_text(encoding="utf-8"))
-            preset, seconds = str(said["preset"]), float(said["seconds"])
+            preset, seconds = brief(said["preset"], LONGEST_NAME), float(said["seconds"])
             known = said.get("test", said["held_out"])
             part = part if known is None else float(known)
         return preset, seconds, part

@@ -11,11 +11,13 @@ from typing import Any, Final
 from ai.digit_runs import TRAINING_FILE
 from ai.digits import DIGITS_FILE, NETWORK
 from game import texts
+from game.collection import claims
 
 NAMES: Final = ("modern", "classic")  # of the shipped ones
 FOLDER: Final = "digits"  # in the player's folder: the shipped networks' fixes, and `RUNS`
 RUNS: Final = "runs"
 FIXES: Final = "fixes"  # in the folder of a network of the player's own
+_PARTS: Final = (DIGITS_FILE, NETWORK, TRAINING_FILE)
 
 
 @dataclass(frozen=True)
@@ -41,10 +43,10 @@ class Shelved:
     def said(self) -> str:
         """What its small file says of how well it reads; empty if that is not known."""
         described: dict[str, Any] = {}
-        with suppress(OSError, ValueError, TypeError):
+        with suppress(OSError, ValueError, TypeError, RecursionError):
             described |= json.loads((self.folder / TRAINING_FILE).read_text(encoding="utf-8"))
         for key, words in (("test", texts.SHELF_TESTED), ("held_out", texts.SHELF_HELD_OUT)):
-            with suppress(KeyError, TypeError, ValueError):
+            with suppress(KeyError, TypeError, ValueError, ArithmeticError):
                 return words.format(part=float(described[key]))
         return ""
 
@@ -62,7 +64,7 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
     found = {name: Shelved(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
     with suppress(OSError):
         for path in sorted(runs_dir(user_dir).iterdir(), key=lambda path: path.name.casefold()):
-            if _claims(path):
+            if claims(path, _PARTS):
                 taken = path.name.casefold() in NAMES
                 found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = Shelved(path, path / FIXES)
     return found
@@ -71,7 +73,3 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
 def called(name: str) -> str:
     """Return what a network is called on the screen."""
     return texts.DIGITS_NETWORKS.get(name, name)
-
-
-def _claims(path: Path) -> bool:
-    return path.name[0] != "." and any((path / part).exists() for part in (DIGITS_FILE, NETWORK, TRAINING_FILE))

@@ -1,7 +1,9 @@
+import errno
 import json
 import os
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,9 +13,10 @@ from ai.config import Config
 from ai.runs import resume_run, save_run
 from ai.training import Training
 from game import collection as module
-from game import networks
-from game.collection import UNSAVED, LibraryError, is_valid_name
+from game import networks, texts
+from game.collection import LONGEST_NAME, UNSAVED, LibraryError, is_valid_name
 from game.library import Library, read_run
+from game.ui.run_page import row
 
 SMALL = Config(hidden=(8,), num_envs=4, warm_up=16, replay_size=100, batch_size=16)
 DESCRIBED = {
@@ -79,7 +82,10 @@ def test_the_latest_comes_first(library: Library):
     "text",
     ["", "{", "[]", '"run"', "[" * 100_000, '{"env": "lander"}', json.dumps({**DESCRIBED, "decisions": "many"}),
      json.dumps({**DESCRIBED, "seconds": None}), json.dumps({**DESCRIBED, "best": 3}),
-     json.dumps({**DESCRIBED, "decisions": float("inf")}), json.dumps({**DESCRIBED, "changes": 1})],
+     json.dumps({**DESCRIBED, "decisions": float("inf")}), json.dumps({**DESCRIBED, "changes": 1}),
+     json.dumps({**DESCRIBED, "decisions": 10**400}), json.dumps({**DESCRIBED, "decisions": -1}),
+     json.dumps({**DESCRIBED, "seconds": float("nan")}), json.dumps({**DESCRIBED, "seed": 10**400}),
+     json.dumps({**DESCRIBED, "best": {"success": float("nan")}})],
 )  # fmt: skip
 def test_a_damaged_run_is_listed_with_its_problem_and_can_go_anywhere(library: Library, text: str, tmp_path: Path):
     (add(library, "hurt") / "training.json").write_text(text)
@@ -99,6 +105,55 @@ def test_what_is_missing_is_named(library: Library, part: str):
     (run,) = library.runs()
     assert run.problem == f"{part} is missing"
     assert run.flyable is (part == "training.json")
+
+
+def forbid(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    """Let a folder be one that may not be looked into; permissions alone would not hold back an administrator."""
+    look = Path.stat
+
+    def stat(path: Path, **more: bool) -> os.stat_result:
+        if folder in path.parents:
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        return look(path, **more)
+
+    monkeypatch.setattr(Path, "stat", stat)
+
+
+def test_one_that_cannot_be_read_is_a_row_among_the_others(library: Library, monkeypatch: pytest.MonkeyPatch):
+    for name in ("one", "locked", "two"):
+        add(library, name)
+    forbid(monkeypatch, library.folder / "locked")
+    assert {run.name: run.problem for run in library.runs()} == {"one": "", "two": "", "locked": "Permission denied"}
+    assert list(networks.folders(library.folder, library.folder.parent)) == ["locked", "one", "two"]
+
+
+def test_links_that_lead_nowhere_are_rows_among_the_others(library: Library):
+    add(library, "one")
+    (library.folder / "lost").symlink_to("nowhere")
+    (library.folder / "round").symlink_to("round")
+    (library.folder / ".half.new").symlink_to("nowhere")
+    found = {run.name: run.problem for run in library.runs()}
+    assert found == {"one": "", "lost": texts.RUN_LINK, "round": "Too many levels of symbolic links"}
+    assert library.problem == ""
+    assert list(networks.folders(library.folder, library.folder.parent)) == ["lost", "one", "round"]
+    assert networks.load("lost", library.folder / "lost").problem
+    library.delete("lost")
+    library.rename("round", "square")
+    assert names(library) == ["one", "square"]
+
+
+def test_what_a_file_says_at_length_is_shortened(library: Library):
+    add(library, "wordy", preset="x" * 100_000)
+    add(library, "far", env="y" * 100_000)
+    assert {len(run.preset) for run in library.runs()} == {0, LONGEST_NAME}
+    assert max(len(run.problem) for run in library.runs()) < 100
+
+
+@pytest.mark.parametrize("when", [1e18, -1e18])
+def test_a_date_beyond_all_calendars_is_a_date(library: Library, monkeypatch: pytest.MonkeyPatch, when: float):
+    add(library, "strange")
+    monkeypatch.setattr(Path, "lstat", lambda _: SimpleNamespace(st_mtime=when, st_mode=0))
+    assert row(read_run(library.folder / "strange"), own=True)[-1][:2] in {"19", "29", "30"}
 
 
 def test_a_network_for_something_else_is_named_as_such(library: Library):
