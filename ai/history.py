@@ -226,7 +226,8 @@ class History:
         ]
         self.alterations = [Alteration(**told) for told in described["alterations"]]
         self.validations = [Validation(**told) for told in described["validations"]]
-        for entry in (*self.checkpoints, *self.alterations, *self.validations):
+        told: list[Checkpoint | Alteration | Validation] = [*self.checkpoints, *self.alterations, *self.validations]
+        for entry in told:
             _check(entry)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import logging
 import time
 from collections.abc import Callable
@@ -16,6 +15,7 @@ import pygame
 from game import texts
 from game.clock import FixedStep
 from game.controls import Command, translate
+from game.scene import Push
 from game.scene_manager import SceneManager
 from game.ui import typeface
 from game.ui.canvas import Canvas
@@ -72,11 +72,13 @@ class App:
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)
         self._start_pads()
-        self.scenes = SceneManager(context, first or _menu())
-        # What lives as long as the game need not be looked through again and again: that took 20 ms at a time.
-        gc.freeze()
-        gc.set_threshold(20_000, 20, 50)
+        self.scenes = SceneManager(context, lambda: self.canvas.surface)
+        self.show(first or _menu())
         self._last = now()
+
+    def show(self, scene: Scene) -> None:
+        """Put a scene over what is shown; one that fails at once is told of like any other."""
+        self._guarded(lambda: self.scenes.apply(Push(scene)))
 
     def run(self, max_frames: int | None = None) -> int:
         """Play until the game is closed, or for so many frames. Returns the process's exit code."""
@@ -243,7 +245,7 @@ class App:
         try:
             call()
         except Exception as error:
-            _log.exception("in %s", type(self.scenes.top).__name__)
+            _log.exception("in %s", self.scenes.told)
             from game.scenes.fault import Fault
 
             self.canvas.surface.set_clip(None)

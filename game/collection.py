@@ -15,6 +15,7 @@ import platformdirs
 
 from ai.nn.folder import recover_folder
 from game import texts
+from game.lock import Lock, take
 
 UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
 TRASH: Final = ".trash"
@@ -23,6 +24,7 @@ _LONGEST_SAID: Final = 200
 OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
 _NEW: Final = ".new"  # and one that it has not finished
 _TRASH_KEPT: Final = 8
+_GAMES: Final = 16  # that may train at the same time
 _STALE: Final = 3600.0  # seconds after which nobody will finish it any more
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
 
@@ -104,10 +106,21 @@ def free_path(folder: Path, name: str, suffix: str = "") -> Path:
 
 
 class Collection:
-    """What lies in `folder`. Whatever cannot be done raises LibraryError and changes nothing."""
+    """What lies in `folder`. Whatever cannot be done raises LibraryError and changes nothing.
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    Args:
+        folder: of the folders; need not exist.
+        parts: names of files or folders; what has one of them is one of ours, whole or not.
+
+    Attributes:
+        unsaved: where what has no name yet keeps itself; a second game's has a number behind it.
+
+    """
+
+    def __init__(self, folder: Path, parts: Iterable[str] = ()) -> None:
+        self.folder, self.parts = folder, tuple(parts)
+        self.unsaved = folder / UNSAVED
+        self._lock: Lock | None = None
 
     def free_name(self, suggestion: str) -> str:
         """Return the suggestion as a valid name that nothing has yet, with a number behind it if need be."""
@@ -179,6 +192,37 @@ class Collection:
             _copy(path, target)
         return target
 
+    # What has no name yet, and what a game that ended too early left behind
+
+    def hold(self) -> None:
+        """Let no other game use `unsaved` until `release`.
+
+        Of the places that no other game holds, it is the first where something was left behind, or else the first.
+        """
+        self.release()
+        places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
+        for place in [*filter(_was_used, places), *places]:
+            self._lock = take(place.with_name(f"{place.name}.lock"))
+            if self._lock:
+                self.unsaved = place
+                if self.left_behind or not _was_used(place):
+                    return
+                self._lock.release()
+
+    def release(self) -> None:
+        """Leave `unsaved` to whoever comes next."""
+        if self._lock:
+            self._lock.release()
+            self._lock = None
+
+    @property
+    def left_behind(self) -> bool:
+        """Whether something of ours lies in `unsaved`. Not to be asked while it is written to, for it repairs that."""
+        recover_folder(self.unsaved)
+        with suppress(OSError):
+            return any(there(self.unsaved / part) for part in self.parts)
+        return False
+
     # What was thrown away
 
     def throw_away(self, folder: Path, name: str) -> None:
@@ -244,6 +288,10 @@ def reason(error: OSError) -> str:
     if isinstance(error, shutil.Error) and error.args and isinstance(error.args[0], list):
         return str(error.args[0][0][-1])
     return error.strerror or str(error)
+
+
+def _was_used(place: Path) -> bool:
+    return place.exists() or place.with_name(f".{place.name}{OLD}").exists()
 
 
 def _same(name: str) -> str:

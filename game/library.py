@@ -9,28 +9,15 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.config import LANDER
-from ai.nn.folder import recover_folder
 from ai.runs import LAST, TRAINING_FILE
 from game import texts
-from game.collection import (
-    LONGEST_NAME,
-    OLD,
-    UNSAVED,
-    Collection,
-    LibraryError,
-    brief,
-    claims,
-    leads_nowhere,
-    reason,
-    there,
-)
-from game.lock import Lock, take
+from game.collection import LONGEST_NAME, Collection, LibraryError, brief, claims, leads_nowhere, reason, there
 from game.networks import PARTS, PLAYERS
 
 _CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of them is a run, whole or not
-_GAMES: Final = 16  # that may train at the same time
 _YEAR_3000: Final = 32_503_680_000.0  # in seconds since 1970; up to then every system knows dates
 _MOST: Final = 10**15  # of any count
+_MOST_SEED: Final = 10**LONGEST_NAME
 
 
 @dataclass(frozen=True)
@@ -91,17 +78,15 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
 
 def _figures(described: dict[str, Any]) -> dict[str, Any]:
     """Return the figures a run is told by; ValueError, and others, for those that no run can have."""
-    success = described["best"]["success"] if described["best"] else None  # a young run has not been tried yet
-    figures = {
-        "preset": brief(described["preset"], LONGEST_NAME), "changes": len(described["changes"]),
-        "seed": int(described["seed"]), "decisions": int(described["decisions"]),
-        "seconds": float(described["seconds"]), "success": None if success is None else float(success),
-    }  # fmt: skip
-    if not (0 <= figures["decisions"] < _MOST and 0 <= figures["seconds"] < _MOST and 0 <= (success or 0) <= 1):
+    best = described["best"]  # a young run has not been tried yet
+    success = None if not best or best["success"] is None else float(best["success"])
+    seed, decisions, seconds = int(described["seed"]), int(described["decisions"]), float(described["seconds"])
+    if not (0 <= decisions < _MOST and 0 <= seconds < _MOST and 0 <= (success or 0) <= 1 and 0 <= seed < _MOST_SEED):
         raise ValueError("a figure that no run comes to")
-    if len(str(figures["seed"])) > LONGEST_NAME:
-        raise ValueError("a seed that no run began with")
-    return figures
+    return {
+        "preset": brief(described["preset"], LONGEST_NAME), "changes": len(described["changes"]), "seed": seed,
+        "decisions": decisions, "seconds": seconds, "success": success,
+    }  # fmt: skip
 
 
 class Library(Collection):
@@ -109,22 +94,19 @@ class Library(Collection):
 
     Attributes:
         problem: why `runs` could not look; empty if it could.
-        unsaved: where a run keeps itself until it is given a name; a second game's has a number behind it.
 
     """
 
     def __init__(self, user_dir: Path) -> None:
-        super().__init__(user_dir / PLAYERS)
+        super().__init__(user_dir / PLAYERS, _CLAIMS)
         self.problem = ""
-        self.unsaved = self.folder / UNSAVED
-        self._lock: Lock | None = None
 
     def runs(self) -> list[SavedRun]:
         """Describe every run, the latest first, damaged ones too."""
         self.problem = ""
         try:
             self.recover()
-            found = [read_run(path) for path in self.folder.iterdir() if claims(path, _CLAIMS)]
+            found = [read_run(path) for path in self.folder.iterdir() if claims(path, self.parts)]
         except FileNotFoundError:
             return []
         except OSError as error:
@@ -138,38 +120,20 @@ class Library(Collection):
 
     def import_folder(self, path: Path) -> Path:
         """Copy a run from anywhere into the library, under its own name or one near it; return where the copy is."""
-        if not path.is_dir() or not _holds_run(path):
+        if not path.is_dir() or not any(there(path / part) for part in self.parts):
             raise LibraryError(texts.LIBRARY_NO_RUN.format(name=path.name))
         return super().import_folder(path)
 
-    # What has no name yet, and what a game that ended too early left behind
+    # What was never given a name
 
     def claim(self) -> SavedRun | None:
-        """Let no other game use `unsaved` until `release`, and describe the run that lies there, if one does.
-
-        Of the places that no other game holds, it is the first with a run that was left behind, or else the first.
-        """
-        self.release()
-        places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
-        for place in [*filter(_was_used, places), *places]:
-            self._lock = take(place.with_name(f"{place.name}.lock"))
-            if self._lock:
-                self.unsaved = place
-                if (left := self.rescued()) or not _was_used(place):
-                    return left
-                self._lock.release()
-        return None
-
-    def release(self) -> None:
-        """Leave `unsaved` to whoever comes next."""
-        if self._lock:
-            self._lock.release()
-            self._lock = None
+        """Let no other game use `unsaved` until `release`, and describe the run that lies there, if one does."""
+        self.hold()
+        return self.rescued()
 
     def rescued(self) -> SavedRun | None:
         """Describe the run that was never given a name, called as it might be. Ask before a training begins."""
-        recover_folder(self.unsaved)
-        if not self.unsaved.is_dir() or not _holds_run(self.unsaved):
+        if not self.left_behind:
             return None
         return read_run(self.unsaved, self.free_name(texts.RUN_RESCUED))
 
@@ -181,14 +145,3 @@ class Library(Collection):
         """Throw that run away, if there is one; `undo_delete` brings it back."""
         if rescued := self.rescued():
             self.throw_away(self.unsaved, rescued.name)
-
-
-def _holds_run(path: Path) -> bool:
-    """Whether a folder of any name looks like a run, whole or not."""
-    with suppress(OSError):
-        return any(there(path / part) for part in _CLAIMS)
-    return False
-
-
-def _was_used(place: Path) -> bool:
-    return place.exists() or place.with_name(f".{place.name}{OLD}").exists()

@@ -51,13 +51,21 @@ class Student(Learner):
         return self.alive or self.library.rescued() is not None
 
     def begin(self, config: Config, seed: int, resume: Path | None = None) -> str:
-        """Start a run, or go on with a saved one. Returns what the player should know, if anything."""
-        self.close()
+        """Start a run, or go on with a saved one, as soon as the one before has ended.
+
+        Returns what the player should know; of a run that must wait, that comes from `poll`.
+        """
         if len(self.history):
             self.earlier.insert(0, (texts.TRAIN_RUN.format(number=self.runs), self.history))
             del self.earlier[EARLIER:]
-        note = ""
         self.history = History()
+        self.config, self.seed = config, seed
+        self.sight = self.insight = None
+        self.runs += 1
+        return self._start(lambda: self._begin(config, seed, resume))
+
+    def _begin(self, config: Config, seed: int, resume: Path | None) -> str:
+        note = ""
         try:
             if resume is not None:
                 self.history = History.read(resume)
@@ -65,9 +73,6 @@ class Student(Learner):
                 self.library.discard_rescued()  # to where it can still be brought back from
         except (ModelFormatError, LibraryError) as error:
             note = str(error)
-        self.config, self.seed = config, seed
-        self.sight = self.insight = None
-        self.runs += 1
         self._worker = Worker(live, config, seed, keep=self.library.unsaved, resume=resume)
         self._worker.set_pace(PACES[self.pace])
         return note
@@ -79,27 +84,24 @@ class Student(Learner):
 
     def teach(self, demonstrations: Path) -> None:
         """Let the run learn from a file of demonstrations as well; that is told by `poll`."""
-        if self._worker and self.alive:
-            self._worker.send(Teach(demonstrations))
+        self._send(Teach(demonstrations))
 
     def set_pace(self, index: int) -> None:
         """Choose one of the paces."""
         self.pace = index
-        if self._worker:
-            self._worker.set_pace(PACES[index])
+        self._ask(lambda worker: worker.set_pace(PACES[index]))
 
     def revert(self, checkpoint: Checkpoint) -> None:
         """Let the network be what it was."""
-        if self._worker and self.alive:
-            self._worker.send(Revert(checkpoint.decisions))
+        self._send(Revert(checkpoint.decisions))
 
     def save(self, name: str) -> str:
         """Give the run a name in the library, or raise LibraryError.
 
         Returns what the player should know; of a run that goes on, that comes from `poll`.
         """
-        if self._worker and self.alive:
-            self._worker.send(Save(self.library.new_folder(name)))
+        if self.alive:
+            self._send(Save(self.library.new_folder(name)))
             return ""
         self.library.keep_rescued(name)
         return texts.TRAIN_SAVED.format(name=name)
@@ -108,6 +110,8 @@ class Student(Learner):
         """Take in what the worker has told; returns what the player should know."""
         notes: list[str] = []
         for message in self._worker.poll() if self._worker else ():
+            if self.waiting and not isinstance(message, Saved):  # of the run before, only where it is
+                continue
             match message:
                 case Sight():
                     self.sight = message
@@ -128,6 +132,8 @@ class Student(Learner):
                         notes.append(told.format(name=folder.name))
                 case Refused(_, problem):
                     notes.append(problem)
+        if note := self._start_waiting():
+            notes.append(note)
         return notes
 
     def compare(self, name: str, folder: Path) -> str:

@@ -12,10 +12,11 @@ from ai.digit_config import DigitConfig
 from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, Kept, Score, live_digits
 from ai.digit_runs import LAST_FILE, TRAINING_FILE
 from ai.messages import Refused, Save
-from ai.nn.folder import CONFIG, recover_folder
+from ai.nn.folder import CONFIG
 from game import texts
-from game.collection import LONGEST_NAME, UNSAVED, Collection, LibraryError, brief
+from game.collection import LONGEST_NAME, Collection, LibraryError, brief
 from game.digits import PATIENCE
+from game.digits.shelf import PARTS
 from game.learner import EARLIER, Learner
 from game.worker import Worker
 
@@ -63,7 +64,7 @@ class Pupil(Learner):
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
-        self.collection = Collection(folder)
+        self.collection = Collection(folder, PARTS)
         self.config, self.seed, self.steps = DigitConfig(), 0, 0
         self.begun = False
         self.curves = Curves()
@@ -77,13 +78,14 @@ class Pupil(Learner):
     @property
     def unsaved(self) -> Path:
         """Where a run keeps itself until it has a name."""
-        return self.collection.folder / UNSAVED
+        return self.collection.unsaved
 
     @property
     def unfinished(self) -> bool:
-        """Whether a run lies there that can go on."""
-        recover_folder(self.unsaved)
-        return (self.unsaved / LAST_FILE).exists()
+        """Whether a run lies there that can go on; no, while another goes on, or has not quite ended."""
+        if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
+            return False
+        return self.collection.left_behind and (self.unsaved / LAST_FILE).exists()
 
     @property
     def kept(self) -> bool:
@@ -109,9 +111,10 @@ class Pupil(Learner):
         return preset, seconds, part
 
     def begin(self, config: DigitConfig, seed: int, *, resume: bool = False) -> str:
-        """Start a run, or go on with the unfinished one. Returns what the player should know, if anything."""
-        self.close()
-        note = "" if resume else self._put_aside()
+        """Start a run, or go on with the unfinished one, as soon as the one before has ended.
+
+        Returns what the player should know; of a run that must wait, that comes from `poll`.
+        """
         if self.curves.points:
             self.earlier.insert(0, (texts.TRAIN_RUN.format(number=self.runs), self.curves))
             del self.earlier[EARLIER:]
@@ -119,26 +122,36 @@ class Pupil(Learner):
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
+        return self._start(lambda: self._begin(config, seed, resume))
+
+    def _begin(self, config: DigitConfig, seed: int, resume: bool) -> str:
+        notes = self._name_ended()
+        if not resume:
+            notes += filter(None, [self._put_aside()])
         self._worker = Worker(live_digits, config, seed, keep=self.unsaved, resume=self.unsaved if resume else None)
         self._worker.patience = PATIENCE
-        return note
+        return " ".join(notes)
 
     def stop(self) -> None:
         """End the run; what it has learnt is kept, and measured. Asked again, it ends without being measured."""
-        if self._worker and self.alive and self.steps and not self.stopping:
+        if self.waiting:
+            self._launch = None
+        elif self.alive and self.steps and not self.stopping:
             self.stopping = True
-            self._worker.send(Finish())
-            self._worker.resume()
+            self._send(Finish())
+            self.resume()
         elif self._worker:
             self._worker.stop()
 
     def save(self, name: str) -> str:
         """Give the run a name; returns why that can't be, and later news come from `poll`."""
+        if self.waiting:  # there is nothing of it yet
+            return texts.PUPIL_NOTHING
         try:
-            if self._worker and self.alive:
+            if self.alive:
                 folder = self.collection.new_folder(name)
                 self._saving.append(folder)
-                self._worker.send(Save(folder))
+                self._send(Save(folder))
             else:
                 self.collection.name(self.unsaved, name)
         except LibraryError as error:
@@ -149,6 +162,8 @@ class Pupil(Learner):
         """Take in what the worker has told; returns what the player should know."""
         notes: list[str] = []
         for told in self._worker.poll() if self._worker else ():
+            if self.waiting and not isinstance(told, Kept):  # of the run before, only where it is
+                continue
             match told:
                 case DigitPoint() | Score():
                     self.curves.append(told)
@@ -157,7 +172,8 @@ class Pupil(Learner):
                 case DigitsBegun(config, seed, _, steps):
                     self.config, self.seed, self.steps, self.begun = config, seed, steps, True
                 case Kept(folder, problem, test):
-                    self.test = test if folder == self.unsaved and test is not None else self.test
+                    if folder == self.unsaved and test is not None and not self.waiting:
+                        self.test = test
                     if folder in self._saving:
                         self._saving.remove(folder)
                     if problem:
@@ -168,9 +184,17 @@ class Pupil(Learner):
                     notes.append(problem)
         if not self.alive:
             self.stopping = False
-            while self._saving:  # it ended before it heard of that
-                name = self._saving.pop().name
-                notes.append(self.save(name) or texts.PUPIL_SAVED.format(name=name))
+            notes += self._name_ended()
+        if note := self._start_waiting():
+            notes.append(note)
+        return notes
+
+    def _name_ended(self) -> list[str]:
+        """Give a run its name that ended before it heard of that; returns what the player should know."""
+        notes = []
+        while self._saving:
+            name = self._saving.pop().name
+            notes.append(self.save(name) or texts.PUPIL_SAVED.format(name=name))
         return notes
 
     def _put_aside(self) -> str:

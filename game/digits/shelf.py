@@ -17,7 +17,7 @@ NAMES: Final = ("modern", "classic")  # of the shipped ones
 FOLDER: Final = "digits"  # in the player's folder: the shipped networks' fixes, and `RUNS`
 RUNS: Final = "runs"
 FIXES: Final = "fixes"  # in the folder of a network of the player's own
-_PARTS: Final = (DIGITS_FILE, NETWORK, TRAINING_FILE)
+PARTS: Final = (DIGITS_FILE, NETWORK, TRAINING_FILE)  # a folder with any of them is one, whole or not
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
     found = {name: Shelved(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
     with suppress(OSError):
         for path in sorted(runs_dir(user_dir).iterdir(), key=lambda path: path.name.casefold()):
-            if claims(path, _PARTS):
+            if claims(path, PARTS):
                 taken = path.name.casefold() in NAMES
                 found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = Shelved(path, path / FIXES)
     return found

@@ -76,6 +76,7 @@ class DigitTrainingScene:
             return
         self._context, self._settings = context, context.settings
         self.pupil = Pupil(runs_dir(context.user_dir))
+        self.pupil.collection.hold()
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = Charts([
             Chart(_CHARTS[name], texts.PUPIL_CHARTS[name], read=form.format, empty=texts.PUPIL_CHARTS_SHOW[name])
@@ -99,6 +100,7 @@ class DigitTrainingScene:
         """End the run's process; what it has learnt is kept."""
         if self._context is not None:
             self.pupil.close()
+            self.pupil.collection.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Start, pause, stop, turn knobs, look closer."""
@@ -172,7 +174,6 @@ class DigitTrainingScene:
         name = self.pupil.collection.free_name(texts.PUPIL_NAME.format(preset=FAMILY.word(named)))
 
         def keep() -> None:
-            self.pupil.close()
             if problem := self.pupil.save(name):
                 self._say(problem)
             else:

@@ -188,6 +188,60 @@ def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Conte
     assert game.frames(2)
 
 
+class Holder(Probe):
+    """Holds something that it gives back, unless it failed too early to have it."""
+
+    closed = 0
+
+    def close(self) -> None:
+        if self.fails_in == "enter":
+            raise AttributeError("there is nothing to close yet")
+        self.closed += 1
+
+
+@pytest.mark.parametrize("way", ["first", "over another"])
+def test_a_scene_that_fails_too_early_to_be_closed_is_told_of_and_the_others_are_closed(open_game, way: str):
+    below, broken = Holder(), Holder()
+    broken.fails_in = "enter"
+    game = open_game(broken if way == "first" else below)
+    if way != "first":
+        game.app.show(broken)
+    game.frames(2)
+    assert game.top_name == "Fault"
+    assert below.closed == (way != "first")
+    game.key(pygame.K_RETURN)
+    assert game.top_name == "Menu"
+
+
+@pytest.mark.parametrize("leave", [Replace(Probe()), Pop(), Pop(2)])
+def test_a_scene_that_fails_to_leave_gives_back_what_it_holds(open_game, leave):
+    held = [Holder(), Holder()]
+    game = open_game(held[0])
+    game.app.show(held[1])
+    held[1].fails_in = "exit"
+    game.app._guarded(lambda: game.app.scenes.apply(leave))
+    assert not game.app.scenes.running or game.top_name == "Fault"
+    game.app.close()
+    assert held[1].closed == 1
+
+
+def test_closing_the_window_closes_every_scene_whatever_fails(open_game):
+    held = [Holder(), Holder(), Holder()]
+    game = open_game(held[0])
+    for scene in held[1:]:
+        game.app.show(scene)
+    held[1].close = lambda: 1 / 0
+    held[2].fails_in = "exit"
+    game.app.close()
+    assert [scene.closed for scene in held] == [1, 0, 1]
+
+
+def test_making_a_window_leaves_the_collector_of_the_process_alone(open_game):
+    before = gc.get_freeze_count(), gc.get_threshold()
+    open_game()
+    assert (gc.get_freeze_count(), gc.get_threshold()) == before
+
+
 @pytest.mark.parametrize("scene", [Menu, SettingsScene, lambda: Pause(Probe()), Probe])
 def test_closing_the_window_anywhere_saves_the_settings(open_game, context: Context, scene):
     game = open_game(scene())
