@@ -7,6 +7,8 @@ it, it is flown again, with the rewards of whoever learns.
 from __future__ import annotations
 
 import json
+import os
+import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -119,10 +121,15 @@ def taught(config: Config) -> Config:
 def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
     """Keep the newest demonstrations in a file, whole or not at all. Raises OSError if the disk won't have it."""
     kept = [asdict(demonstration) for demonstration in demonstrations[-MOST:]]
-    temporary = path.with_name(path.name + ".part")
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary.write_text(json.dumps({"format": FORMAT, "version": VERSION, "flights": kept}) + "\n", encoding="utf-8")
-    temporary.replace(path)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)  # two games may write
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(json.dumps({"format": FORMAT, "version": VERSION, "flights": kept}) + "\n")
+        Path(name).replace(path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
 
 
 def read(path: Path) -> list[Demonstration]:

@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 from datetime import datetime
+from io import BytesIO
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -17,6 +18,8 @@ from game.clock import FixedStep
 from game.controls import Command, translate
 from game.scene import Push
 from game.scene_manager import SceneManager
+from game.settings import write_atomically
+from game.settings_writer import SettingsWriter
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.notes import Notes
@@ -62,6 +65,7 @@ class App:
         self._notes = Notes()
         self._mouse: tuple[tuple[int, int], ...] = ()  # where it was last, in the window and on the desktop
         self._settled = 0.0  # when the window will have kept its size long enough to be worth a picture
+        self.settings_writer = SettingsWriter(context.settings_file, context.settings)
         self.window = GameWindow(context.settings.full_screen)
         self.canvas = Canvas(self.window.surface)
         self._follow_window()
@@ -99,6 +103,8 @@ class App:
         self._last = time_now
         for _ in range(steps):
             self._notes.update()
+            if problem := self.settings_writer.problem():
+                self._notes.show(problem)
             self._guarded(self.scenes.update)
             self.context.sound.update()
         if self.scenes.running and not self.window.minimised and time_now >= self._settled:
@@ -113,7 +119,7 @@ class App:
             self.scenes.close()
         except Exception:
             _log.exception("leaving the last scene")
-        self._save_settings()
+        self.settings_writer.close(self.context.settings)
         self.context.sound.close()
         self.window.close()
 
@@ -145,12 +151,7 @@ class App:
             self._follow_window()
         self._look()
         self.context.sound.follow(self.context.settings)
-        self._save_settings()
-
-    def _save_settings(self) -> None:
-        file = self.context.settings_file
-        if not file.save(self.context.settings):
-            self._notes.show(file.problem)
+        self.settings_writer.save(self.context.settings)
 
     # Events
 
@@ -228,12 +229,17 @@ class App:
         self.window.flip()
 
     def _save_screenshot(self) -> None:
-        folder = self.context.user_dir / "screenshots"
-        path = folder / f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}.png"
+        """Save what is seen as a picture, whole or not at all."""
+        from game.collection import free_path
+
+        path = free_path(self.context.user_dir / "screenshots", f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}", ".png")
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            pygame.image.save(self.canvas.surface, path)
-        except (OSError, pygame.error) as error:
+            picture = BytesIO()  # pygame itself would not say that the disk is full
+            pygame.image.save(self.canvas.surface, picture, path.name)
+            write_atomically(path, picture.getvalue(), at_once=False)
+        except OSError as error:
+            self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error.strerror or error))
+        except pygame.error as error:
             self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error))
         else:
             self._notes.show(texts.SCREENSHOT_SAVED.format(path=path))

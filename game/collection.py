@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import time
 import unicodedata
@@ -24,7 +25,11 @@ _LONGEST_SAID: Final = 200
 OLD: Final = ".old"  # what `atomic_folder` calls a folder that it is about to replace
 _NEW: Final = ".new"  # and one that it has not finished
 _TRASH_KEPT: Final = 8
+_DEEPEST: Final = 8  # folders within folders of a network, its fixes included
+_MOST_FILES: Final = 5_000
+_MOST_BYTES: Final = 500_000_000
 _GAMES: Final = 16  # that may train at the same time
+_STAMP: Final = re.compile(r"[0-9]{1,30} ")  # what begins the name of something that was thrown away
 _STALE: Final = 3600.0  # seconds after which nobody will finish it any more
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
 
@@ -230,7 +235,8 @@ class Collection:
         trash = self.folder / TRASH
         with told(texts.NOT_DELETED, name):
             trash.mkdir(exist_ok=True)
-            folder.rename(trash / f"{time.time_ns()} {name}")
+            latest = max((_stamp(path) for path in self._thrown()), default=0)
+            folder.rename(trash / f"{max(time.time_ns(), latest + 1)} {name}")  # a clock can be set back
         for old in self._thrown()[:-_TRASH_KEPT]:
             with suppress(OSError):
                 old.unlink() if old.is_symlink() else shutil.rmtree(old)
@@ -269,8 +275,8 @@ class Collection:
     def _thrown(self) -> list[Path]:
         """Return what was thrown away, the latest last: a name is when, and what it was called."""
         with suppress(OSError):
-            dated = [path for path in (self.folder / TRASH).iterdir() if path.name.split(" ")[0].isdecimal()]
-            return sorted(dated, key=lambda path: int(path.name.split(" ")[0]))
+            dated = [path for path in (self.folder / TRASH).iterdir() if _STAMP.match(path.name)]
+            return sorted(dated, key=_stamp)
         return []
 
 
@@ -290,8 +296,34 @@ def reason(error: OSError) -> str:
     return error.strerror or str(error)
 
 
+def _stamp(thrown: Path) -> int:
+    """Return when something was thrown away, in nanoseconds, or a little later: none has the number of another."""
+    return int(thrown.name.split(" ")[0])
+
+
 def _was_used(place: Path) -> bool:
     return place.exists() or place.with_name(f".{place.name}{OLD}").exists()
+
+
+def _check_plain(folder: Path) -> None:
+    """Raise LibraryError unless a folder holds plain files alone, and no more of them than a network can have.
+
+    A link may lead out of it, or round in circles; a pipe never ends; and whatever is copied, the window waits for.
+    """
+    folders, files, size = [(folder, 0)], 0, 0
+    while folders:
+        parent, depth = folders.pop()
+        with os.scandir(parent) as inside:
+            for entry in inside:
+                files += 1
+                if entry.is_dir(follow_symlinks=False) and depth < _DEEPEST:
+                    folders.append((Path(entry.path), depth + 1))
+                elif entry.is_file(follow_symlinks=False):
+                    size += entry.stat(follow_symlinks=False).st_size
+                else:
+                    raise LibraryError(texts.LIBRARY_NOT_PLAIN.format(name=folder.name, inside=brief(entry.name, 40)))
+                if files > _MOST_FILES or size > _MOST_BYTES:
+                    raise LibraryError(texts.LIBRARY_TOO_LARGE.format(name=folder.name))
 
 
 def _same(name: str) -> str:
@@ -299,11 +331,12 @@ def _same(name: str) -> str:
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Copy a folder whole or not at all."""
+    """Copy a folder whole or not at all; LibraryError if it holds what no network has."""
+    _check_plain(source)
     partial = target.with_name(f".{target.name}{_NEW}")
     shutil.rmtree(partial, ignore_errors=True)
     try:
-        shutil.copytree(source, partial)
+        shutil.copytree(source, partial, symlinks=True)
         partial.rename(target)
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)

@@ -6,8 +6,10 @@ read. Nothing in it can do more than be flown again.
 
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict, dataclass
@@ -129,15 +131,26 @@ def read(path: Path) -> Record:
 
 
 def write(path: Path, record: Record) -> None:
-    """Write a flight whole or not at all; not flushed to the disk, which would take frames. Raises OSError."""
+    """Write a new flight whole or not at all; not flushed to the disk, which would take frames.
+
+    Raises:
+        FileExistsError: there is a flight of that name, or another game is writing one.
+        OSError: the disk will not have it.
+
+    """
     temporary = path.with_name(f".{path.name}.part")
-    try:
-        temporary.write_text(to_text(record), encoding="utf-8")
-        temporary.replace(path)
-    except BaseException:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
+    with temporary.open("x", encoding="utf-8") as file:  # whoever has made this one may have the name as well
+        try:
+            if os.path.lexists(path):
+                raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
+            file.write(to_text(record))
+            file.close()
+            temporary.replace(path)
+        except BaseException:
+            file.close()
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            raise
 
 
 def to_text(record: Record) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
-from contextlib import suppress
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
@@ -47,3 +49,19 @@ def take(path: Path) -> Lock | None:
             file.close()
             return None
     return Lock(file)
+
+
+@contextmanager
+def held(path: Path, seconds: float = 1.0) -> Iterator[None]:
+    """Hold the lock of a file for a moment, to read another file and write it anew.
+
+    After so many seconds of waiting it goes on without: then one of two changes may be lost, but the game goes on.
+    """
+    end = time.monotonic() + seconds
+    while not (lock := take(path)) and time.monotonic() < end:
+        time.sleep(0.01)
+    try:
+        yield
+    finally:
+        if lock:
+            lock.release()

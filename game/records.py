@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from game import flight_file, texts
-from game.collection import free_path
 from game.flight import Flight
 from game.flight_file import Entry, Record
 from game.outcomes import landing_score
@@ -24,6 +23,7 @@ FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"
 RECENT: Final = 100  # flights whose files are kept whatever they came to
 BEST: Final = 5  # and the best landings of each course
+_MOST_AT_ONCE: Final = 100  # flights of one moment
 _SLACK: Final = 25  # files too many before they are looked through
 RECENT_OWN: Final = 10  # flights by the person alone that their skill is told by
 
@@ -68,10 +68,7 @@ class Records:
         entry = describe(flight, when, **more)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            path = free_path(self.folder, f"{datetime.fromtimestamp(when):%Y-%m-%d %H.%M.%S.%f}"[:-3], ".json")
-            entry = replace(entry, file=path.name)
-            x, y, angle = flight.poses.now[0].tolist()
-            flight_file.write(path, Record(flight.recording, entry, (x, y, angle)))
+            entry = self._write(flight, entry)
             self._append(entry)
             self._make_room()
         except OSError as error:
@@ -79,7 +76,10 @@ class Records:
         return entry
 
     def entries(self) -> list[Entry]:
-        """Return the logbook, oldest first; lines that make no sense are counted in `problem` and left alone."""
+        """Return the logbook in the order in which flights were flown, whatever the clock said then.
+
+        Lines that make no sense are counted in `problem` and left alone.
+        """
         self.problem, found, damaged = "", [], 0
         try:
             text = self.logbook.read_text(encoding="utf-8", errors="replace")
@@ -95,7 +95,7 @@ class Records:
                 damaged += bool(line.strip())
         if damaged:
             self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self.logbook)
-        return sorted(found, key=lambda entry: entry.when)
+        return found
 
     def kept(self) -> set[str]:
         """Return the names of the files there are."""
@@ -116,6 +116,22 @@ class Records:
             return False
         return True
 
+    def _write(self, flight: Flight, entry: Entry) -> Entry:
+        """Write a flight's file, and return its line with the name of that: a number tells two of one moment apart."""
+        moment = f"{datetime.fromtimestamp(entry.when):%Y-%m-%d %H.%M.%S.%f}"[:-3]
+        x, y, angle = flight.poses.now[0].tolist()
+        for number in range(1, _MOST_AT_ONCE + 1):
+            path = self.folder / f"{moment} {number}.json".replace(" 1.json", ".json")
+            entry = replace(entry, file=path.name)
+            try:
+                flight_file.write(path, Record(flight.recording, entry, (x, y, angle)))
+            except FileExistsError:
+                if number == _MOST_AT_ONCE:
+                    raise
+            else:
+                break
+        return entry
+
     def _append(self, entry: Entry) -> None:
         """Add a line; one that a killed game has left unfinished must not swallow it."""
         with self.logbook.open("a+b") as file:
@@ -133,8 +149,9 @@ class Records:
         entries = self.entries()
         self.problem = ""
         spared = {entry.file for entry in best(entries)}
-        spared |= set(sorted(files)[-RECENT:])  # a name begins with its date
-        for name in {entry.file for entry in entries} & files - spared:  # what is in no logbook is not ours to throw
+        flown = [entry.file for entry in entries if entry.file in files]  # not by date: a clock can be set back
+        spared |= set(flown[-RECENT:])
+        for name in set(flown) - spared:  # what is in no logbook is not ours to throw
             with suppress(OSError):
                 (self.folder / name).unlink()
 

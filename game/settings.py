@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from game import texts
+from game.lock import held
 
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
@@ -66,6 +67,11 @@ class Settings:
         return settings
 
 
+def changes(values: dict[str, Any], since: dict[str, Any]) -> dict[str, Any]:
+    """Return those of some settings that are not what they were."""
+    return {name: value for name, value in values.items() if name not in since or since[name] != value}
+
+
 def _fits(value: object, default: object, limits: tuple[float, float]) -> bool:
     """Whether a value is of its default's type; a number must be within limits as well, which NaN is not."""
     return type(value) is type(default) and (not isinstance(value, float) or limits[0] <= value <= limits[1])
@@ -97,17 +103,33 @@ class SettingsFile:
             return Settings(unread=True)
         return Settings.from_dict(values)
 
-    def save(self, settings: Settings) -> bool:
-        """Write the settings whole or not at all; a file that could not be read is put aside first."""
+    def save(self, settings: Settings, since: dict[str, Any] | None = None) -> bool:
+        """Write the settings whole or not at all; a file that could not be read is put aside first.
+
+        Given what they were, as `Settings.to_dict` has it, only what has changed `since` is written over the file:
+        another game may have changed the rest meanwhile.
+        """
+        values = settings.to_dict()
         try:
             if settings.unread and os.path.lexists(self.path):
                 self.path.replace(self.path.with_name(DAMAGED_NAME))
             settings.unread = False
-            write_atomically(self.path, json.dumps(settings.to_dict(), indent=2) + "\n")
+            with held(self.path.with_name(f".{FILE_NAME}.lock")):
+                if since is not None:
+                    values = {**values, **self._there(), **changes(values, since)}
+                write_atomically(self.path, json.dumps(values, indent=2) + "\n")
         except OSError as error:
             self.problem = texts.SETTINGS_NOT_SAVED.format(reason=error.strerror)
             return False
         return True
+
+    def _there(self) -> dict[str, Any]:
+        """Return what the file holds; nothing if that makes no sense."""
+        try:
+            values = json.loads(self.path.read_text(encoding="utf-8"))
+        except (OSError, ValueError, RecursionError):
+            return {}
+        return values if isinstance(values, dict) else {}
 
     def _set_aside(self) -> None:
         aside = self.path.with_name(DAMAGED_NAME)
@@ -118,8 +140,10 @@ class SettingsFile:
             self.problem = texts.SETTINGS_DAMAGED_HERE
 
 
-def write_atomically(path: Path, text: str) -> None:
+def write_atomically(path: Path, content: str | bytes, *, at_once: bool = True) -> None:
     """Write a file whole: a temporary one beside it, flushed to the disk, then renamed.
+
+    Without `at_once`, the disk takes it when it has time for it, and nobody waits for that.
 
     Raises:
         OSError: the folder cannot be written, or the disk is full; an older file is still whole.
@@ -129,10 +153,11 @@ def write_atomically(path: Path, text: str) -> None:
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     temporary = Path(name)
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content.encode() if isinstance(content, str) else content)
             file.flush()
-            os.fsync(file.fileno())
+            if at_once:
+                os.fsync(file.fileno())
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)

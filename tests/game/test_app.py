@@ -86,6 +86,7 @@ def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context
     before = getattr(Settings(), name)
     game = open_game(SettingsScene())
     game.keys(*[pygame.K_DOWN] * rows.index(name), pygame.K_RETURN)
+    game.app.settings_writer.wait()
     assert getattr(SettingsFile(context.user_dir).load(), name) is not before
     game.app.close()
     again = open_game()
@@ -333,6 +334,18 @@ def test_screenshot_is_a_picture_of_the_view(game: Driver, context: Context):
     game.key(pygame.K_F12)
     (path,) = (context.user_dir / "screenshots").iterdir()
     assert pygame.image.load(path).get_size() == (1280, 720)
+
+
+def test_a_screenshot_on_a_full_disk_is_no_picture_and_says_so(game: Driver, context: Context):
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (900, limits[1]))
+    try:
+        game.key(pygame.K_F12)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "could not be saved" in game.app._notes._text
+    assert not list((context.user_dir / "screenshots").iterdir())
 
 
 def test_screenshot_into_a_folder_that_cannot_be(game: Driver, context: Context):

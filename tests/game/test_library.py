@@ -142,6 +142,46 @@ def test_links_that_lead_nowhere_are_rows_among_the_others(library: Library):
     assert names(library) == ["one", "square"]
 
 
+@pytest.mark.parametrize("kind", ["self", "out", "pipe", "deep", "many", "large"])
+def test_what_is_no_plain_network_is_not_copied(
+    library: Library, tmp_path: Path, kind: str, monkeypatch: pytest.MonkeyPatch
+):
+    strange = add(Library(tmp_path / "elsewhere"), "strange")
+    secret = tmp_path / "secret"
+    secret.mkdir()
+    (secret / "diary.txt").write_text("not to be taken along")
+    match kind:
+        case "self":
+            (strange / "again").symlink_to(strange)
+        case "out":
+            (strange / "online" / "more").symlink_to(secret)
+        case "pipe":
+            os.mkfifo(strange / "pipe")
+        case "deep":
+            (strange / Path(*"abcdefghijkl")).mkdir(parents=True)
+        case "many":
+            monkeypatch.setattr(module, "_MOST_FILES", 4)
+        case "large":
+            monkeypatch.setattr(module, "_MOST_BYTES", 10)
+    with pytest.raises(LibraryError, match="strange is not copied"):
+        library.import_folder(strange)
+    assert library.runs() == []
+    assert not library.folder.exists() or not [*library.folder.iterdir()]
+
+
+def test_what_was_just_thrown_away_is_what_comes_back_although_the_clock_was_set_back(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+):
+    clock = iter(range(2 * 10**18, 0, -(10**16)))
+    monkeypatch.setattr(module.time, "time_ns", lambda: next(clock))
+    for number in range(12):
+        add(library, f"run {number}")
+        library.delete(f"run {number}")
+        assert library.last_deleted == f"run {number}"
+    assert library.undo_delete()
+    assert names(library) == ["run 11"]
+
+
 def test_what_a_file_says_at_length_is_shortened(library: Library):
     add(library, "wordy", preset="x" * 100_000)
     add(library, "far", env="y" * 100_000)
@@ -295,7 +335,7 @@ def test_a_full_disk_is_said_and_leaves_nothing_half_done(
 ):
     add(library, "run")
 
-    def full(source: Path, target: Path) -> None:
+    def full(source: Path, target: Path, **_: bool) -> None:
         target.mkdir()
         raise error
 
