@@ -940,7 +940,9 @@ MISSION_BEST: Final = "Your best: {fuel:.1f} s of fuel, {seconds:.1f} s, {points
 EXPORT_AS: Final = "Save this flight as a moving picture"
 EXPORT_MORE: Final = "A GIF is small and shows anywhere; an MP4 is sharp, and the camera follows."
 EXPORT_KINDS: Final = {".gif": "GIF", ".mp4": "MP4"}
-EXPORT_GIF_ONLY: Final = "A GIF is small and shows anywhere. For MP4, close the game and run: pip install -e \".[export]\""
+EXPORT_GIF_ONLY: Final = (
+    'A GIF is small and shows anywhere. For MP4, close the game and run: pip install -e ".[export]"'
+)
 EXPORT_CANCEL: Final = "Cancel"
 EXPORT_GOES_ON: Final = "Cancel, {percent} %"
 EXPORT_STOPPED: Final = "No moving picture was saved."

@@ -171,15 +171,8 @@ class Pupil(Learner):
                     self.confusion = told
                 case DigitsBegun(config, seed, _, steps):
                     self.config, self.seed, self.steps, self.begun = config, seed, steps, True
-                case Kept(folder, problem, test):
-                    if folder == self.unsaved and test is not None and not self.waiting:
-                        self.test = test
-                    if folder in self._saving:
-                        self._saving.remove(folder)
-                    if problem:
-                        notes.append(texts.TRAIN_NOT_SAVED.format(problem=problem))
-                    elif folder != self.unsaved:
-                        notes.append(texts.PUPIL_SAVED.format(name=folder.name))
+                case Kept():
+                    notes += filter(None, [self._hear_of(told)])
                 case Refused(_, problem):
                     notes.append(problem)
         if not self.alive:
@@ -188,6 +181,16 @@ class Pupil(Learner):
         if note := self._start_waiting():
             notes.append(note)
         return notes
+
+    def _hear_of(self, kept: Kept) -> str:
+        """Take in where the run has been written, or why not; returns what the player should know."""
+        if kept.folder == self.unsaved and kept.test is not None and not self.waiting:
+            self.test = kept.test
+        if kept.folder in self._saving:
+            self._saving.remove(kept.folder)
+        if kept.problem:
+            return texts.TRAIN_NOT_SAVED.format(problem=kept.problem)
+        return "" if kept.folder == self.unsaved else texts.PUPIL_SAVED.format(name=kept.folder.name)
 
     def _name_ended(self) -> list[str]:
         """Give a run its name that ended before it heard of that; returns what the player should know."""
