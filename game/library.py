@@ -54,8 +54,9 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     name = name or folder.name
     file = folder / TRAINING_FILE
     saved = 0.0
-    with suppress(OSError):
-        saved = min(max((file if there(file) else folder).lstat().st_mtime, 0.0), _YEAR_3000)
+    for dated in (folder, file):
+        with suppress(OSError):
+            saved = min(max(dated.lstat().st_mtime, 0.0), _YEAR_3000)
     try:
         if leads_nowhere(folder):
             return SavedRun(name, folder, saved, problem=texts.RUN_LINK)

@@ -941,7 +941,7 @@ EXPORT_AS: Final = "Save this flight as a moving picture"
 EXPORT_MORE: Final = "A GIF is small and shows anywhere; an MP4 is sharp, and the camera follows."
 EXPORT_KINDS: Final = {".gif": "GIF", ".mp4": "MP4"}
 EXPORT_GIF_ONLY: Final = (
-    'A GIF is small and shows anywhere. For MP4, close the game and run: pip install -e ".[export]"'
+    'A GIF is small and shows anywhere. To have MP4 as well, close the game and run: pip install -e ".[export]"'
 )
 EXPORT_CANCEL: Final = "Cancel"
 EXPORT_GOES_ON: Final = "Cancel, {percent} %"
