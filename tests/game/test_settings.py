@@ -5,10 +5,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from threading import Event, current_thread
+from threading import Event, Thread, current_thread
 
 import pytest
 
+from game.lock import held, take
 from game.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile, write_atomically
 from game.settings_writer import SettingsWriter
 
@@ -222,3 +223,30 @@ def test_a_kill_at_any_moment_leaves_a_whole_file(tmp_path: Path):
         file = SettingsFile(tmp_path)
         assert file.load().model == "eagle"
         assert not file.problem
+
+
+def test_who_reads_and_writes_under_one_lock_loses_nothing(tmp_path: Path):
+    lock, total = tmp_path / ".lock", tmp_path / "total"
+    total.write_text("0")
+
+    def add() -> None:
+        for _ in range(20):
+            with held(lock, 60):
+                total.write_text(str(int(total.read_text()) + 1))
+
+    threads = [Thread(target=add) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert total.read_text() == "60"
+
+
+def test_a_lock_that_is_never_released_stops_nobody_for_good(tmp_path: Path):
+    other = take(tmp_path / ".lock")
+    with held(tmp_path / ".lock", 0.03):
+        pass
+    assert other
+    other.release()
+    with held(tmp_path / ".lock", 0):
+        assert take(tmp_path / ".lock") is None
