@@ -85,10 +85,11 @@ class Recent:
         history = self.history
         here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success"])
         episodes, success = history["episodes"][here], history["success"][here]
-        if not len(episodes):
-            return success
-        ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
-        return success[np.searchsorted(episodes, ends)]
+        if len(episodes):
+            ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
+            success = success[np.searchsorted(episodes, ends)]
+        shares: Doubles = success
+        return shares
 
     def best(self) -> float:
         """The largest share that landed, in this stage, over so many flights that it is not chance."""

@@ -283,6 +283,8 @@ def _checkpoint(told: dict[str, Any], values: Floats) -> Checkpoint:
 def _alteration(told: dict[str, Any]) -> Alteration:
     if not isinstance(told["name"], str):
         raise ValueError(f"{brief(repr(told['name']), 40)} is no name of a knob")
+    if not isinstance(told["after"], bool | int | float | str):
+        raise ValueError(f"{brief(repr(told['after']), 40)} is no value of a knob")
     return Alteration(count_of(told["decisions"]), told["name"], told["before"], told["after"])
 
 

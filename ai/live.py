@@ -74,7 +74,7 @@ def live(
 
 
 def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
-    """Return an agent that flies as the run did at that checkpoint; raises ValueError if the sizes differ."""
+    """Return an agent that flies as the run did at that checkpoint; raises ValueError if it does not fit."""
     agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, config)
     if agent.online.values.shape != checkpoint.values.shape:
         raise ValueError(
@@ -236,11 +236,12 @@ class _LiveRun:
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.flights.known else np.nan
         learnt = 1.0 if self.training.agent.train_count > self._began_learning else np.nan
-        shares = [flown * share for share in progress.shares]
+        landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
             flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
-            progress.stage, progress.steps_per_second, *shares, parts=progress.parts or NOTHING_PAID,
+            progress.stage, progress.steps_per_second, landed, crashed, out_of_bounds, timed_out,
+            progress.parts or NOTHING_PAID,
         )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:
@@ -354,7 +355,10 @@ def _scale_of(agent: DeepQAgent, checkpoint: Checkpoint) -> RunningScale | None:
     if checkpoint.scale is None:
         return None
     scale = RunningScale(agent.num_features)
-    scale.load(checkpoint.scale)
+    try:
+        scale.load(checkpoint.scale)
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"the checkpoint's scale of observations makes no sense: {error}") from error
     return scale
 
 

@@ -112,6 +112,7 @@ def keep(name: str, found: Found, steps: int) -> None:
     folder.mkdir(exist_ok=True)
     medal = MISSIONS[name].medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
     entry = describe(flight, 0.0, course=name, medal=medal)
+    (folder / f"{name}.json").unlink(missing_ok=True)
     write(folder / f"{name}.json", Record(flight.recording, entry, (x, y, angle)))
 
 

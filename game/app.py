@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import gc
 import logging
 import time
 from collections.abc import Callable
 from datetime import datetime
+from io import BytesIO
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import pygame
 
+from ai.nn.files import write_bytes
 from game import texts
 from game.clock import FixedStep
 from game.controls import Command, translate
+from game.scene import Push
 from game.scene_manager import SceneManager
+from game.settings_writer import SettingsWriter
 from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.notes import Notes
@@ -62,6 +65,7 @@ class App:
         self._notes = Notes()
         self._mouse: tuple[tuple[int, int], ...] = ()  # where it was last, in the window and on the desktop
         self._settled = 0.0  # when the window will have kept its size long enough to be worth a picture
+        self.settings_writer = SettingsWriter(context.settings_file, context.settings)
         self.window = GameWindow(context.settings.full_screen)
         self.canvas = Canvas(self.window.surface)
         self._follow_window()
@@ -72,11 +76,13 @@ class App:
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)
         self._start_pads()
-        self.scenes = SceneManager(context, first or _menu())
-        # What lives as long as the game need not be looked through again and again: that took 20 ms at a time.
-        gc.freeze()
-        gc.set_threshold(20_000, 20, 50)
+        self.scenes = SceneManager(context, lambda: self.canvas.surface)
+        self.show(first or _menu())
         self._last = now()
+
+    def show(self, scene: Scene) -> None:
+        """Put a scene over what is shown; one that fails at once is told of like any other."""
+        self._guarded(lambda: self.scenes.apply(Push(scene)))
 
     def run(self, max_frames: int | None = None) -> int:
         """Play until the game is closed, or for so many frames. Returns the process's exit code."""
@@ -97,6 +103,8 @@ class App:
         self._last = time_now
         for _ in range(steps):
             self._notes.update(self.canvas)
+            if problem := self.settings_writer.problem():
+                self._notes.show(problem)
             self._guarded(self.scenes.update)
             self.context.sound.update()
         if self.scenes.running and not self.window.minimised and time_now >= self._settled:
@@ -111,7 +119,7 @@ class App:
             self.scenes.close()
         except Exception:
             _log.exception("leaving the last scene")
-        self._save_settings()
+        self.settings_writer.close(self.context.settings)
         self.context.sound.close()
         self.window.close()
 
@@ -143,12 +151,7 @@ class App:
             self._follow_window()
         self._look()
         self.context.sound.follow(self.context.settings)
-        self._save_settings()
-
-    def _save_settings(self) -> None:
-        file = self.context.settings_file
-        if not file.save(self.context.settings):
-            self._notes.show(file.problem)
+        self.settings_writer.save(self.context.settings)
 
     # Events
 
@@ -226,12 +229,17 @@ class App:
         self.window.flip()
 
     def _save_screenshot(self) -> None:
-        folder = self.context.user_dir / "screenshots"
-        path = folder / f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}.png"
+        """Save what is seen as a picture, whole or not at all."""
+        from game.collection import free_path
+
+        path = free_path(self.context.user_dir / "screenshots", f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}", ".png")
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            pygame.image.save(self.canvas.surface, path)
-        except (OSError, pygame.error) as error:
+            picture = BytesIO()  # pygame itself would not say that the disk is full
+            pygame.image.save(self.canvas.surface, picture, path.name)
+            write_bytes(path, picture.getvalue(), flush=False)
+        except OSError as error:
+            self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error.strerror or error))
+        except pygame.error as error:
             self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error))
         else:
             self._notes.show(texts.SCREENSHOT_SAVED.format(path=path))
@@ -243,7 +251,7 @@ class App:
         try:
             call()
         except Exception as error:
-            _log.exception("in %s", type(self.scenes.top).__name__)
+            _log.exception("in %s", self.scenes.told)
             from game.scenes.fault import Fault
 
             self.canvas.surface.set_clip(None)

@@ -1,6 +1,6 @@
 """Saving a flight as a moving picture, in a process of its own: the window neither waits for it nor feels it.
 
-The extra `export` brings what packs the pictures.
+A GIF can always be made; an MP4 needs what the extra `export` brings.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Export:
     def close(self) -> None:
         """Let it be; what was drawn so far is thrown away."""
         self._worker.close()
-        with suppress(OSError):  # the process has most often done so itself
+        with suppress(OSError, ValueError):  # the process has most often done so itself
             unfinished(self.path).unlink()
 
 

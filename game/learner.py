@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
@@ -34,6 +35,9 @@ def put_beside(runs: list[Beside[Kind]], name: str, run: Kind) -> str:
 class Learner:
     """Holds the process of a run, and lets it rest, go on and end.
 
+    Two runs keep themselves in the same folder, so the next one waits until the process before it has gone. The
+    window does not: what is asked meanwhile of the run to come is told to it when it starts.
+
     Attributes:
         grace: seconds that a run has to end by itself when the window leaves it.
 
@@ -43,10 +47,19 @@ class Learner:
 
     def __init__(self) -> None:
         self._worker: Worker | None = None
+        self._launch: Callable[[], str] | None = None  # starts the run that waits; returns what there is to know
+        self._asked: list[Callable[[Worker], None]] = []  # of that run
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a run waits for the one before to end."""
+        return self._launch is not None
 
     @property
     def state(self) -> State | None:
         """How the run stands; None before the first."""
+        if self.waiting:
+            return State.STARTING
         return self._worker.state if self._worker else None
 
     @property
@@ -61,26 +74,52 @@ class Learner:
 
     def pause(self) -> None:
         """Let it rest."""
-        if self._worker and self.alive:
-            self._worker.pause()
+        self._ask(Worker.pause)
 
     def resume(self) -> None:
         """Let it learn on."""
-        if self._worker and self.alive:
-            self._worker.resume()
+        self._ask(Worker.resume)
 
     def step(self) -> None:
         """Let it learn once, and rest after that."""
-        if self._worker and self.alive:
-            self._worker.pause()
-            self._worker.step()
+        self._ask(Worker.pause)
+        self._ask(Worker.step)
 
     def change(self, name: str, value: Any) -> None:
         """Turn a live knob."""
-        if self._worker and self.alive:
-            self._worker.send(Change(name, value))
+        self._send(Change(name, value))
 
     def close(self) -> None:
         """End the run, and its process for certain."""
+        self._launch = None
         if self._worker:
             self._worker.close(self.grace)
+
+    def _send(self, command: Any) -> None:
+        self._ask(lambda worker: worker.send(command))
+
+    def _ask(self, order: Callable[[Worker], None]) -> None:
+        """Ask something of the run, if there is one, or of the one to come."""
+        if self.waiting:
+            self._asked.append(order)
+        elif self._worker and self.alive:
+            order(self._worker)
+
+    def _start(self, launch: Callable[[], str]) -> str:
+        """Start a run as soon as nothing is left of the one before; returns what the player should know by now."""
+        self._launch = launch
+        self._asked.clear()
+        if self._worker:
+            self._worker.stop()
+        return self._start_waiting()
+
+    def _start_waiting(self) -> str:
+        """Start the run that waits, if there is one and its turn has come; returns what the player should know."""
+        if self._launch is None or (self._worker and not self._worker.gone):
+            return ""
+        launch, self._launch = self._launch, None
+        note = launch()
+        for order in self._asked:
+            self._ask(order)
+        self._asked.clear()
+        return note

@@ -9,15 +9,16 @@ from typing import Any, Final
 
 from ai.agent import LAST
 from ai.config import LANDER
-from ai.nn.files import count_of, inside, number_of, read_json
-from ai.nn.folder import moved_aside, recover_folder
-from ai.nn.lock import Lock, lock_of, take
+from ai.nn.files import brief, count_of, inside, number_of, read_json
 from ai.runs import TRAINING_FILE
 from game import texts
-from game.collection import UNSAVED, Collection, LibraryError, reason
+from game.collection import LONGEST_NAME, Collection, LibraryError, claims, leads_nowhere, reason, there
 from game.networks import PARTS, PLAYERS
 
-_GAMES: Final = 16  # that may train at the same time
+_CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of them is a run, whole or not
+_YEAR_3000: Final = 32_503_680_000.0  # in seconds since 1970; up to then every system knows dates
+_MOST: Final = 10**15  # of any count
+_MOST_SEED: Final = 10**LONGEST_NAME
 
 
 @dataclass(frozen=True)
@@ -54,32 +55,40 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     name = name or folder.name
     file = folder / TRAINING_FILE
     saved = 0.0
-    with suppress(OSError):
-        saved = (file if file.exists() else folder).stat().st_mtime
+    for dated in (folder, file):
+        with suppress(OSError):
+            saved = min(max(dated.lstat().st_mtime, 0.0), _YEAR_3000)
     try:
-        missing = [part for part in (*PARTS, TRAINING_FILE) if not (folder / part).exists()]
+        if leads_nowhere(folder):
+            return SavedRun(name, folder, saved, problem=texts.RUN_LINK)
+        missing = [part for part in _CLAIMS if not there(folder / part)]
         if missing:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
         described = read_json(inside(folder, TRAINING_FILE))
         if described["env"] != LANDER:
-            return SavedRun(name, folder, saved, problem=texts.RUN_ELSEWHERE.format(env=described["env"]))
+            problem = texts.RUN_ELSEWHERE.format(env=brief(described["env"], LONGEST_NAME))
+            return SavedRun(name, folder, saved, problem=problem)
         last = (folder / LAST).is_dir()
         return SavedRun(name, folder, saved, flyable=True, resumable=last, **_figures(described))
     except OSError as error:
-        problem = reason(error)
+        problem = brief(reason(error))
     except (ValueError, KeyError, TypeError, ArithmeticError, RecursionError):
         problem = texts.RUN_UNREADABLE.format(file=TRAINING_FILE)
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
 def _figures(described: dict[str, Any]) -> dict[str, Any]:
-    success = described["best"]["success"] if described["best"] else None  # a young run has not been tried yet
+    """Return the figures a run is told by; ValueError, and others, for those that no run can have."""
+    best = described["best"]  # a young run has not been tried yet
+    success = None if not best or best["success"] is None else float(number_of(best["success"]))
+    seed, decisions = count_of(described["seed"], most=_MOST_SEED), count_of(described["decisions"], most=_MOST)
+    seconds = float(number_of(described["seconds"]))
+    if not (0 <= seconds < _MOST and 0 <= (success or 0) <= 1):
+        raise ValueError("a figure that no run comes to")
     return {
-        "preset": str(described["preset"]), "changes": len(described["changes"]),
-        "seed": count_of(described["seed"], most=10**40), "decisions": count_of(described["decisions"]),
-        "seconds": float(number_of(described["seconds"])),
-        "success": None if success is None else float(number_of(success)),
+        "preset": brief(described["preset"], LONGEST_NAME), "changes": len(described["changes"]), "seed": seed,
+        "decisions": decisions, "seconds": seconds, "success": success,
     }  # fmt: skip
 
 
@@ -88,22 +97,19 @@ class Library(Collection):
 
     Attributes:
         problem: why `runs` could not look; empty if it could.
-        unsaved: where a run keeps itself until it is given a name; a second game's has a number behind it.
 
     """
 
     def __init__(self, user_dir: Path) -> None:
-        super().__init__(user_dir / PLAYERS)
+        super().__init__(user_dir / PLAYERS, _CLAIMS)
         self.problem = ""
-        self.unsaved = self.folder / UNSAVED
-        self._lock: Lock | None = None
 
     def runs(self) -> list[SavedRun]:
         """Describe every run, the latest first, damaged ones too."""
         self.problem = ""
         try:
             self.recover()
-            found = [read_run(path) for path in self.folder.iterdir() if _claims(path)]
+            found = [read_run(path) for path in self.folder.iterdir() if claims(path, self.parts)]
         except FileNotFoundError:
             return []
         except OSError as error:
@@ -117,38 +123,20 @@ class Library(Collection):
 
     def import_folder(self, path: Path) -> Path:
         """Copy a run from anywhere into the library, under its own name or one near it; return where the copy is."""
-        if not path.is_dir() or not _claims(path, hidden=True):
+        if not path.is_dir() or not any(there(path / part) for part in self.parts):
             raise LibraryError(texts.LIBRARY_NO_RUN.format(name=path.name))
         return super().import_folder(path)
 
-    # What has no name yet, and what a game that ended too early left behind
+    # What was never given a name
 
     def claim(self) -> SavedRun | None:
-        """Let no other game use `unsaved` until `release`, and describe the run that lies there, if one does.
-
-        Of the places that no other game holds, it is the first with a run that was left behind, or else the first.
-        """
-        self.release()
-        places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
-        for place in [*filter(_was_used, places), *places]:
-            self._lock = take(lock_of(place))
-            if self._lock:
-                self.unsaved = place
-                if (left := self.rescued()) or not _was_used(place):
-                    return left
-                self._lock.release()
-        return None
-
-    def release(self) -> None:
-        """Leave `unsaved` to whoever comes next."""
-        if self._lock:
-            self._lock.release()
-            self._lock = None
+        """Let no other game use `unsaved` until `release`, and describe the run that lies there, if one does."""
+        self.hold()
+        return self.rescued()
 
     def rescued(self) -> SavedRun | None:
         """Describe the run that was never given a name, called as it might be. Ask before a training begins."""
-        recover_folder(self.unsaved)
-        if not self.unsaved.is_dir() or not _claims(self.unsaved, hidden=True):
+        if not self.left_behind:
             return None
         return read_run(self.unsaved, self.free_name(texts.RUN_RESCUED))
 
@@ -160,14 +148,3 @@ class Library(Collection):
         """Throw that run away, if there is one; `undo_delete` brings it back."""
         if rescued := self.rescued():
             self.throw_away(self.unsaved, rescued.name)
-
-
-def _claims(path: Path, hidden: bool = False) -> bool:
-    """Whether a folder looks like a run, whole or not."""
-    if path.name.startswith(".") and not hidden:
-        return False
-    return any((path / part).exists() for part in (*PARTS, TRAINING_FILE))
-
-
-def _was_used(place: Path) -> bool:
-    return place.exists() or bool(moved_aside(place))

@@ -10,7 +10,9 @@ from typing import Final, Protocol, runtime_checkable
 from ai.decision import Decision
 from ai.env import Floats, Ints
 from ai.lander import NUM_ACTIONS, NUM_FEATURES
+from ai.nn.files import brief
 from game import texts
+from game.collection import claims
 
 DEFAULT: Final = "modern"
 SCRIPTED: Final = "scripted"
@@ -62,7 +64,7 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
     found: dict[str, Path] = {}
     for parent in (models_dir / "lander", user_dir / PLAYERS):
         try:
-            inside = sorted(path for path in parent.iterdir() if _claims(path))
+            inside = sorted(path for path in parent.iterdir() if claims(path, PARTS))
         except OSError:
             continue
         # The default one comes first, whatever its letter.
@@ -70,10 +72,6 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
             taken = path.name in found or path.name == SCRIPTED
             found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = path
     return found
-
-
-def _claims(path: Path) -> bool:
-    return not path.name.startswith(".") and any((path / part).exists() for part in PARTS)
 
 
 def load(name: str, folder: Path) -> Network:
@@ -84,12 +82,12 @@ def load(name: str, folder: Path) -> Network:
     try:
         agent = DeepQAgent.load(folder)
     except ModelFormatError as error:
-        return Network(name, problem=error.problems[0] if error.problems else str(error))
+        return Network(name, problem=brief(error.problems[0] if error.problems else error))
     except OSError as error:
-        return Network(name, problem=error.strerror or str(error))
+        return Network(name, problem=brief(error.strerror or error))
     except Exception as error:  # anything may lie in a player's folder, and none of it may end the game
         _log.exception("reading %s", folder)
-        return Network(name, problem=f"{type(error).__name__}: {error}")
+        return Network(name, problem=brief(f"{type(error).__name__}: {error}"))
     if (agent.num_features, agent.num_actions) != (NUM_FEATURES, NUM_ACTIONS):
         return Network(name, problem=texts.NETWORK_ELSEWHERE.format(
             features=agent.num_features, actions=agent.num_actions,

@@ -60,7 +60,7 @@ class Records:
     def __init__(self, user_dir: Path) -> None:
         self.folder = user_dir / FOLDER
         self.logbook = user_dir / LOGBOOK
-        self._files = Collection(self.folder, _MOST_THROWN)
+        self._files = Collection(self.folder, most_thrown=_MOST_THROWN)
         self.problem = ""
 
     def keep(self, flight: Flight, when: float, **more: Any) -> Entry:
@@ -81,7 +81,10 @@ class Records:
         return entry
 
     def entries(self) -> list[Entry]:
-        """Return the logbook, oldest first; lines that make no sense are counted in `problem` and left alone."""
+        """Return the logbook in the order in which flights were flown, whatever the clock said then.
+
+        Lines that make no sense are counted in `problem` and left alone.
+        """
         self.problem, found, damaged = "", [], 0
         try:
             text = read_end(self.logbook, _LARGEST).decode(errors="replace")
@@ -97,7 +100,7 @@ class Records:
                 damaged += bool(line.strip())
         if damaged:
             self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self.logbook)
-        return sorted(found, key=lambda entry: entry.when)
+        return found
 
     def kept(self) -> set[str]:
         """Return the names of the files there are."""
@@ -167,8 +170,9 @@ class Records:
         entries = self.entries()
         self.problem = ""
         spared = {entry.file for entry in best(entries)}
-        spared |= set(sorted(files)[-RECENT:])  # a name begins with its date
-        for name in {entry.file for entry in entries} & files - spared:  # what is in no logbook is not ours to throw
+        flown = [entry.file for entry in entries if entry.file in files]  # not by date: a clock can be set back
+        spared |= set(flown[-RECENT:])
+        for name in set(flown) - spared:  # what is in no logbook is not ours to throw
             with suppress(OSError):
                 (self.folder / name).unlink()
 

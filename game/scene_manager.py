@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import gc
+import logging
 from typing import TYPE_CHECKING, Final
-from weakref import ref
 
 from game.scene import Lasting, Pop, Push, Quit, Replace, Scene, Transition
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import pygame
 
     from game.context import Context
     from game.ui.canvas import Canvas
 
 
+_log = logging.getLogger("tranquility")
 _FADE_STEPS: Final = 11  # in which the picture of a scene gives way to that of the next
 
 
@@ -23,21 +26,30 @@ class SceneManager:
 
     The next scene is in charge at once; only the picture of the last one lingers for a moment, unless motion is to
     be reduced. `running` turns false when a scene asks to quit or to pop the last one.
+
+    Args:
+        context: what every scene is given.
+        picture: the window's pixels as they were last drawn.
+
     """
 
-    def __init__(self, context: Context, first: Scene) -> None:
-        self._context = context
+    def __init__(self, context: Context, picture: Callable[[], pygame.Surface]) -> None:
+        self._context, self._picture = context, picture
         self._stack: list[Scene] = []
-        self._drawn: ref[Scene] | None = None
         self._lingering: pygame.Surface | None = None
         self._fade = 0
+        self._seen = False  # whether there is a picture yet
         self.running = True
-        self.apply(Push(first))
 
     @property
     def top(self) -> Scene:
         """The scene that is seen and heard."""
         return self._stack[-1]
+
+    @property
+    def told(self) -> str:
+        """The stack, for the log."""
+        return " > ".join(type(scene).__name__ for scene in self._stack)
 
     def handle_event(self, event: pygame.event.Event) -> None:
         """Give one event to the top scene."""
@@ -46,27 +58,26 @@ class SceneManager:
 
     def update(self) -> None:
         """Advance the top scene by one step."""
-        self._fade = max(0, self._fade - 1)
+        self._seen = True
+        if self._lingering:
+            self._fade -= 1
+            self._lingering.set_alpha(round(255 * (self._fade / (_FADE_STEPS + 1)) ** 2))
+            if self._fade == 0:
+                self._lingering = None
         if self.running:
             self.apply(self.top.update())
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the top scene, and what is still to be seen of the one before."""
-        if self._drawn is None or self.top is not self._drawn():
-            moves = self._drawn is not None and not self._context.settings.reduced_motion
-            self._lingering = canvas.surface.copy() if moves else None
-            self._drawn, self._fade = ref(self.top), _FADE_STEPS
         self.top.draw(canvas, alpha)
-        if self._fade == 0:
-            self._lingering = None
-        elif self._lingering and self._lingering.get_size() == canvas.surface.get_size():
-            self._lingering.set_alpha(round(255 * (self._fade / (_FADE_STEPS + 1)) ** 2))
+        if self._lingering and self._lingering.get_size() == canvas.surface.get_size():
             canvas.surface.blit(self._lingering, (0, 0))
 
     def apply(self, transition: Transition | None) -> None:
         """Do what a scene asked for, and let it be heard."""
         if transition is not None:
             self._context.sound.play("back" if isinstance(transition, Pop) else "choose")
+            self._linger()
         match transition:
             case Push(scene):
                 if self._stack:
@@ -82,6 +93,7 @@ class SceneManager:
 
     def reset(self, *scenes: Scene) -> None:
         """Leave every scene without a word to them, for their state is in doubt, and put these in place."""
+        self._linger()
         left = [scene for scene in self._stack if scene not in scenes]
         self._stack = list(scenes[:-1])
         _close(left)
@@ -91,6 +103,12 @@ class SceneManager:
         """Leave every scene, for good."""
         if self._stack:
             self._leave(len(self._stack))
+
+    def _linger(self) -> None:
+        """Let what is seen now stay for a moment over what comes."""
+        if self._seen and not self._context.settings.reduced_motion:
+            self._lingering, self._fade = self._picture().copy(), _FADE_STEPS
+            self._lingering.set_alpha(round(255 * (self._fade / (_FADE_STEPS + 1)) ** 2))
 
     def _enter(self, scene: Scene) -> None:
         self._stack.append(scene)
@@ -109,15 +127,21 @@ class SceneManager:
         A scene and its widgets hold each other and many pictures. Collected but now and then, they came to 250 MB in
         an hour; here, between two pictures, it takes a few milliseconds.
         """
-        self.top.exit()
         left = self._stack[-levels:]
-        del self._stack[-levels:]
-        _close(left)
+        try:
+            self.top.exit()
+        finally:
+            del self._stack[-levels:]
+            _close(left)
         del left
         gc.collect()
 
 
 def _close(scenes: list[Scene]) -> None:
+    """Let scenes give back what they hold. One that cannot, such as one that failed early, keeps no other from it."""
     for scene in reversed(scenes):
         if isinstance(scene, Lasting):
-            scene.close()
+            try:
+                scene.close()
+            except Exception:
+                _log.exception("closing %s", type(scene).__name__)

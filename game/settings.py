@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import os
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, Final
 
 from ai.nn.files import parse_json, read_text, write_text
 from game import texts
+from game.lock import held
 
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
@@ -18,9 +19,6 @@ _LARGEST: Final = 1_000_000  # bytes
 # What shares of its gravity, and of time's own pace, a flight can be given.
 GRAVITY_SHARES: Final = (0.6, 1.4)
 PACES: Final = (0.5, 1.0)
-
-
-_NEVER: Final = object()  # equal to nothing that a setting can be
 
 
 @dataclass
@@ -52,14 +50,11 @@ class Settings:
     first_flown: bool = False  # whether it was flown to its landing
     unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
     unread: bool = field(default=False, compare=False)  # whether there is a file that could not be read; not kept
-    known: dict[str, Any] = field(
-        default_factory=dict, compare=False, repr=False
-    )  # what was last on the disk; not kept
 
     def to_dict(self) -> dict[str, Any]:
         """Return what the file holds."""
-        values = asdict(replace(self, known={}))
-        del values["unread"], values["known"]
+        values = asdict(self)
+        del values["unread"]
         return {**values.pop("unknown"), **values}
 
     @classmethod
@@ -67,13 +62,17 @@ class Settings:
         """Take every value of the right kind; the others keep their defaults."""
         settings = cls()
         known = {each.name: each.metadata.get("limits", (0.0, 1.0)) for each in fields(cls)}
-        del known["unknown"], known["unread"], known["known"]
+        del known["unknown"], known["unread"]
         for name in known.keys() & values.keys():
             if _fits(values[name], getattr(settings, name), known[name]):
                 setattr(settings, name, values[name])
         settings.unknown = {name: value for name, value in values.items() if name not in known}
-        settings.known = settings.to_dict()
         return settings
+
+
+def changes(values: dict[str, Any], since: dict[str, Any]) -> dict[str, Any]:
+    """Return those of some settings that are not what they were."""
+    return {name: value for name, value in values.items() if name not in since or since[name] != value}
 
 
 def _fits(value: object, default: object, limits: tuple[float, float]) -> bool:
@@ -111,30 +110,30 @@ class SettingsFile:
             raise ValueError("not a table of settings")
         return values
 
-    def save(self, settings: Settings) -> bool:
+    def save(self, settings: Settings, since: dict[str, Any] | None = None) -> bool:
         """Write the settings whole or not at all; a file that could not be read is put aside first.
 
-        Only what was changed since they were last on the disk: what another game has chosen meanwhile stays.
+        Given what they were, as `Settings.to_dict` has it, only what has changed `since` is written over the file:
+        another game may have changed the rest meanwhile.
         """
+        values = settings.to_dict()
         try:
             if settings.unread and os.path.lexists(self.path):
                 self.path.replace(self.path.with_name(DAMAGED_NAME))
             settings.unread = False
-            values = settings.to_dict()
-            kept = self._others(settings) | {
-                name: value for name, value in values.items() if settings.known.get(name, _NEVER) != value
-            }
-            write_text(self.path, json.dumps(values | kept, indent=2) + "\n")
-            settings.known = values
+            with held(self.path.with_name(f".{FILE_NAME}.lock")):
+                if since is not None:
+                    values = {**values, **self._there(), **changes(values, since)}
+                write_text(self.path, json.dumps(values, indent=2) + "\n")
         except OSError as error:
             self.problem = texts.SETTINGS_NOT_SAVED.format(reason=error.strerror)
             return False
         return True
 
-    def _others(self, settings: Settings) -> dict[str, Any]:
-        """Return what the file holds by now, if it is one that these settings were read from or written to."""
+    def _there(self) -> dict[str, Any]:
+        """Return what the file holds; nothing if that makes no sense."""
         with suppress(OSError, ValueError):
-            return self._read() if settings.known else {}
+            return self._read()
         return {}
 
     def _set_aside(self) -> None:

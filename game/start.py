@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Callable
@@ -39,7 +40,6 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Cal
     from game.app import App, log_to
     from game.assets import user_dir
     from game.context import Context
-    from game.scene import Push
     from game.settings import SettingsFile
     from game.window import NoDisplayError
 
@@ -58,7 +58,10 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Cal
     if file.problem:
         context.note(file.problem)
     if begin is not None:
-        app.scenes.apply(Push(begin()))
+        app.show(begin())
+    # What lives as long as the game need not be looked through again and again: that took 20 ms at a time.
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 50)
     return app.run()
 
 

@@ -55,13 +55,24 @@ class Student(Learner):
         return self.alive or self.library.rescued() is not None
 
     def begin(self, config: Config, seed: int, resume: Path | None = None, name: str = "") -> str:
-        """Start a run, or go on with a saved one. Returns what the player should know, if anything.
+        """Start a run, or go on with a saved one, as soon as the one before has ended.
 
-        `name` is what its settings are called; a run that was saved under a name has that.
+        `name` is what its settings are called; a run that was saved under a name has that. Returns what the player
+        should know; of a run that must wait, that comes from `poll`.
         """
-        self.close()
         note = self._put_beside(self.name, self.history) if len(self.history) else ""
         self.history = History()
+        self.config, self.seed = config, seed
+        self.sight = self.insight = self.in_force = None
+        self.runs += 1
+        self.name = texts.TRAIN_RUN.format(name=name or texts.TRAIN_THIS, number=self.runs)
+        if resume is not None and resume != self.library.unsaved:
+            self.name = resume.name
+        started = self._start(lambda: self._begin(config, seed, resume))
+        return " ".join(filter(None, [note, started]))
+
+    def _begin(self, config: Config, seed: int, resume: Path | None) -> str:
+        note = ""
         try:
             if resume is not None:
                 self.history = History.read(resume)
@@ -69,12 +80,6 @@ class Student(Learner):
                 self.library.discard_rescued()  # to where it can still be brought back from
         except (ModelFormatError, LibraryError) as error:
             note = str(error)
-        self.config, self.seed = config, seed
-        self.sight = self.insight = self.in_force = None
-        self.runs += 1
-        self.name = texts.TRAIN_RUN.format(name=name or texts.TRAIN_THIS, number=self.runs)
-        if resume is not None and resume != self.library.unsaved:
-            self.name = resume.name
         self._worker = Worker(live, config, seed, keep=self.library.unsaved, resume=resume)
         self._worker.set_pace(PACES[self.pace])
         return note
@@ -82,63 +87,66 @@ class Student(Learner):
     @property
     def lessons(self) -> int:
         """Of how many demonstrations this run has learnt."""
-        return sum(each.after for each in self.history.alterations if each.name == TAUGHT)
+        return sum(each.after for each in self.history.alterations if each.name == TAUGHT and type(each.after) is int)
 
     def teach(self, demonstrations: Path) -> None:
         """Let the run learn from a file of demonstrations as well; that is told by `poll`."""
-        if self._worker and self.alive:
-            self._worker.send(Teach(demonstrations))
+        self._send(Teach(demonstrations))
 
     def set_pace(self, index: int) -> None:
         """Choose one of the paces."""
         self.pace = index
-        if self._worker:
-            self._worker.set_pace(PACES[index])
+        self._ask(lambda worker: worker.set_pace(PACES[index]))
 
     def revert(self, checkpoint: Checkpoint) -> None:
         """Let the network be what it was."""
-        if self._worker and self.alive:
-            self._worker.send(Revert(checkpoint.decisions))
+        self._send(Revert(checkpoint.decisions))
 
     def save(self, name: str) -> str:
         """Give the run a name in the library, or raise LibraryError.
 
         Returns what the player should know; of a run that goes on, that comes from `poll`.
         """
-        if self._worker and self.alive:
-            self._worker.send(Save(self.library.new_folder(name)))
+        if self.alive:
+            self._send(Save(self.library.new_folder(name)))
             return ""
         self.library.keep_rescued(name)
         return texts.TRAIN_SAVED.format(name=name)
 
     def poll(self) -> list[str]:
         """Take in what the worker has told; returns what the player should know."""
-        notes: list[str] = []
-        for message in self._worker.poll() if self._worker else ():
-            match message:
-                case Sight():
-                    self.sight = message
-                case Insight():
-                    self.insight = message
-                case InForce():
-                    self.in_force = message
-                case Alteration(_, name, _, after):
-                    self.history.append(message)
-                    self.config = _turned(self.config, name, after)
-                    if name == TAUGHT:
-                        notes.append(texts.TRAIN_TAUGHT.format(count=after))
-                case Point() | Checkpoint() | Validation():
-                    self.history.append(message)
-                case Begun(config, seed, _):
-                    self.config, self.seed, self.begun = config, seed, True
-                    self.history.reward_scale = config.reward_scale
-                case Saved(folder, problem):
-                    told = texts.TRAIN_NOT_SAVED.format(problem=problem) if problem else texts.TRAIN_SAVED
-                    if folder != self.library.unsaved or problem:
-                        notes.append(told.format(name=folder.name))
-                case Refused(_, problem):
-                    notes.append(problem)
-        return notes
+        told = self._worker.poll() if self._worker else ()
+        if self.waiting:  # of the run before, only where it is
+            told = [message for message in told if isinstance(message, Saved)]
+        notes = [self._hear(message) for message in told]
+        return [note for note in [*notes, self._start_waiting()] if note]
+
+    def _hear(self, message: Any) -> str:
+        """Take in one thing that the worker has told; returns what the player should know."""
+        match message:
+            case Sight():
+                self.sight = message
+            case Insight():
+                self.insight = message
+            case InForce():
+                self.in_force = message
+            case Point() | Checkpoint() | Validation():
+                self.history.append(message)
+            case Alteration(_, name, _, after):
+                self.history.append(message)
+                self.config = _turned(self.config, name, after)
+                if name == TAUGHT:
+                    return texts.TRAIN_TAUGHT.format(count=after)
+            case Begun(config, seed, _):
+                self.config, self.seed, self.begun = config, seed, True
+                self.history.reward_scale = config.reward_scale
+            case Saved(folder, problem) if problem:
+                return texts.TRAIN_NOT_SAVED.format(problem=problem)
+            case Saved(folder, _) if folder != self.library.unsaved:
+                return texts.TRAIN_SAVED.format(name=folder.name)
+            case Refused(_, problem):
+                return str(problem)
+        return ""
 
     def compare(self, name: str, folder: Path) -> str:
         """Put a saved run's curves beside this one's; returns what the player should know."""

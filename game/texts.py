@@ -335,11 +335,14 @@ NAME_TAKEN: Final = "There is a network called {name} already."
 RUN_UNNAMED: Final = "run"
 RUN_RESCUED: Final = "rescued run"
 RUN_INCOMPLETE: Final = "{file} is missing"
+RUN_LINK: Final = "a link that leads nowhere"
 RUN_UNREADABLE: Final = "{file} is damaged"
 RUN_ELSEWHERE: Final = "made for {env}, not for this lander"
 LIBRARY_UNREADABLE: Final = "The networks in {folder} could not be read: {reason}"
 GONE: Final = "{name} is not there any more."
 NOT_DELETED: Final = "{name} could not be deleted: {reason}"
+LIBRARY_NOT_PLAIN: Final = "{name} is not copied: {inside} in it is no plain file. Links may lead anywhere."
+LIBRARY_TOO_LARGE: Final = "{name} is not copied: it is far larger than any network."
 LIBRARY_NO_RUN: Final = "{name} is no folder with a network in it."
 LIBRARY_NOT_RENAMED: Final = "{name} could not be renamed: {reason}"
 LIBRARY_NOT_RESTORED: Final = "{name} could not be brought back: {reason}"
@@ -1042,7 +1045,10 @@ MISSION_BEST: Final = "Your best: {fuel:.1f} s of fuel, {seconds:.1f} s, {points
 EXPORT_AS: Final = "Save this flight as a moving picture"
 EXPORT_MORE: Final = "A GIF is small and shows anywhere; an MP4 is sharp, and the camera follows."
 EXPORT_KINDS: Final = {".gif": "GIF", ".mp4": "MP4"}
-EXPORT_MISSING: Final = "{kind} needs one more package: install the extra, as in pip install 'tranquility[export]'."
+EXPORT_GIF_ONLY: Final = (
+    'A GIF is small and shows anywhere. To have MP4 as well, close the game and run: pip install -e ".[export]"'
+)
+EXPORT_CANCEL: Final = "Cancel"
 EXPORT_GOES_ON: Final = "Cancel, {percent} %"
 EXPORT_STOPPED: Final = "No moving picture was saved."
 EXPORT_DONE: Final = "Saved: {path}"

@@ -90,6 +90,11 @@ class Worker:
             return State.STARTING
         return State.PAUSED if self._paused else State.RUNNING
 
+    @property
+    def gone(self) -> bool:
+        """Whether it is over and nothing is left of its process; `poll` sees to it."""
+        return not self._release.alive
+
     def poll(self) -> list[Any]:
         """Return all messages that have come since; call it once a frame. Never waits."""
         told: list[Any] = []

@@ -25,6 +25,7 @@ CREDIT: Final = 2  # bundles wanted ahead: with one, every other turn would pass
 MOST_WAITING: Final = 2000  # messages, before some of those that may be thinned are dropped
 MOST_AT_ONCE: Final = 250
 _NICENESS: Final = 5  # the window goes first
+_LONGEST: Final = 300  # letters of a problem: a file can say anything, at any length
 
 Order = tuple[str, Any]
 Turns = Generator[Iterable[Any], Any, None]
@@ -110,7 +111,7 @@ def _settle() -> None:
 
 
 def _in_words(error: Exception) -> str:
-    said = " ".join(str(error).split())
+    said = " ".join(str(error)[:_LONGEST].split())
     if isinstance(error, OSError) and error.strerror:  # without its number, which helps nobody
         said = f"{error.strerror}: {error.filename}" if error.filename else error.strerror
     # These say in their own words what a person can do something about; of others the kind is needed as well.

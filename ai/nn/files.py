@@ -255,6 +255,11 @@ def beside(path: Path, suffix: str) -> Path:
 
 
 def write_text(path: Path, text: str, *, flush: bool = True, new: bool = False) -> None:
+    """Write a text as UTF-8; see `write_bytes`."""
+    write_bytes(path, text.encode(), flush=flush, new=new)
+
+
+def write_bytes(path: Path, content: bytes, *, flush: bool = True, new: bool = False) -> None:
     """Write a file whole or not at all, by way of another beside it; with `flush`, wait until it is on the disk.
 
     Folders are made if need be. With `new`, a file that is there is never replaced: FileExistsError. Raises OSError
@@ -263,8 +268,8 @@ def write_text(path: Path, text: str, *, flush: bool = True, new: bool = False) 
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = beside(path, ".part")
     try:
-        with temporary.open("x", encoding="utf-8") as file:
-            file.write(text)
+        with temporary.open("xb") as file:
+            file.write(content)
             if flush:
                 file.flush()
                 os.fsync(file.fileno())

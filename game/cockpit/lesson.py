@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from game.flight import Flight, Hand
+from game.lock import held
 from game.outcomes import landing_score
 
 FILE_NAME: Final = "demonstrations.json"
@@ -29,7 +30,8 @@ def keep_lesson(flight: Flight, folder: Path) -> bool:
         return False
     ground = recording.seed if recording.pads > 1 else None
     lesson = Demonstration(recording.seed, tuple(recording.actions), recording.spawn, begins, ground, pad)
-    write(folder / FILE_NAME, [*read(folder / FILE_NAME), lesson])
+    with held(folder / f".{FILE_NAME}.lock"):  # another game may add to it as well
+        write(folder / FILE_NAME, [*read(folder / FILE_NAME), lesson])
     return True
 
 

@@ -22,11 +22,12 @@ from ai.digit_live import (
 from ai.digit_runs import LAST_FILE, TRAINING_FILE
 from ai.history import REVERTED, TURNING_SECONDS
 from ai.messages import Refused, Save
-from ai.nn.files import read_json
-from ai.nn.folder import CONFIG, recover_folder
+from ai.nn.files import brief, read_json
+from ai.nn.folder import CONFIG
 from game import texts
-from game.collection import UNSAVED, Collection, LibraryError
+from game.collection import LONGEST_NAME, Collection, LibraryError
 from game.digits import PATIENCE
+from game.digits.shelf import PARTS
 from game.learner import EARLIER, Beside, Learner, put_beside
 from game.worker import Worker
 
@@ -94,7 +95,7 @@ class Pupil(Learner):
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
-        self.collection = Collection(folder)
+        self.collection = Collection(folder, PARTS)
         self.config, self.seed, self.steps = DigitConfig(), 0, 0
         self.begun = False
         self.curves = Curves()
@@ -110,13 +111,14 @@ class Pupil(Learner):
     @property
     def unsaved(self) -> Path:
         """Where a run keeps itself until it has a name."""
-        return self.collection.folder / UNSAVED
+        return self.collection.unsaved
 
     @property
     def unfinished(self) -> bool:
-        """Whether a run lies there that can go on."""
-        recover_folder(self.unsaved)
-        return (self.unsaved / LAST_FILE).exists()
+        """Whether a run lies there that can go on; no, while another goes on, or has not quite ended."""
+        if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
+            return False
+        return self.collection.left_behind and (self.unsaved / LAST_FILE).exists()
 
     @property
     def kept(self) -> bool:
@@ -136,51 +138,62 @@ class Pupil(Learner):
             return preset, seconds, part
         with suppress(OSError, ValueError, KeyError, TypeError):
             said = read_json(self.unsaved / TRAINING_FILE)
-            preset, seconds = str(said["preset"]), float(said["seconds"])
+            preset, seconds = brief(said["preset"], LONGEST_NAME), float(said["seconds"])
             known = said.get("test", said["held_out"])
             part = part if known is None else float(known)
         return preset, seconds, part
 
     def begin(self, config: DigitConfig, seed: int, *, resume: bool = False, name: str = "") -> str:
-        """Start a run, or go on with the unfinished one. Returns what the player should know, if anything.
+        """Start a run, or go on with the unfinished one, as soon as the one before has ended.
 
-        `name` is what its settings are called.
+        `name` is what its settings are called. Returns what the player should know; of a run that must wait, that
+        comes from `poll`.
         """
-        self.close()
-        note = "" if resume else self._put_aside()
+        note = ""
         if self.curves.points:
             gone = put_beside(self.earlier, self.name, self.curves)
-            note = note or (texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else "")
+            note = texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
         self.curves, self.confusion, self.test, self.kept_epoch = Curves(), None, None, None
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
         self.name = texts.TRAIN_RUN.format(name=name or texts.TRAIN_THIS, number=self.runs)
+        started = self._start(lambda: self._begin(config, seed, resume))
+        return " ".join(filter(None, [note, started]))
+
+    def _begin(self, config: DigitConfig, seed: int, resume: bool) -> str:
+        notes = self._name_ended()
+        if not resume:
+            notes += filter(None, [self._put_aside()])
         self._worker = Worker(live_digits, config, seed, keep=self.unsaved, resume=self.unsaved if resume else None)
         self._worker.patience = PATIENCE
-        return note
+        return " ".join(notes)
 
     def go_back(self) -> None:
         """Let the network be what it was at its best."""
-        if self._worker and self.alive and not self.stopping:
-            self._worker.send(GoBack())
+        if not self.stopping:
+            self._send(GoBack())
 
     def stop(self) -> None:
         """End the run; what it has learnt is kept, and measured. Asked again, it ends without being measured."""
-        if self._worker and self.alive and self.steps and not self.stopping:
+        if self.waiting:
+            self._launch = None
+        elif self.alive and self.steps and not self.stopping:
             self.stopping = True
-            self._worker.send(Finish())
-            self._worker.resume()
+            self._send(Finish())
+            self.resume()
         elif self._worker:
             self._worker.stop()
 
     def save(self, name: str) -> str:
         """Give the run a name; returns why that can't be, and later news come from `poll`."""
+        if self.waiting:  # there is nothing of it yet
+            return texts.PUPIL_NOTHING
         try:
-            if self._worker and self.alive:
+            if self.alive:
                 folder = self.collection.new_folder(name)
                 self._saving.append(folder)
-                self._worker.send(Save(folder))
+                self._send(Save(folder))
             else:
                 self.collection.name(self.unsaved, name)
         except LibraryError as error:
@@ -191,6 +204,8 @@ class Pupil(Learner):
         """Take in what the worker has told; returns what the player should know."""
         notes: list[str] = []
         for told in self._worker.poll() if self._worker else ():
+            if self.waiting and not isinstance(told, Kept):  # of the run before, only where it is
+                continue
             match told:
                 case DigitPoint() | Score() | Turned():
                     self.curves.append(told)
@@ -200,22 +215,33 @@ class Pupil(Learner):
                     self.confusion = told
                 case DigitsBegun(config, seed, _, steps):
                     self.config, self.seed, self.steps, self.begun = config, seed, steps, True
-                case Kept(folder, problem, test, epoch):
-                    if folder == self.unsaved and test is not None:
-                        self.test, self.kept_epoch = test, epoch
-                    if folder in self._saving:
-                        self._saving.remove(folder)
-                    if problem:
-                        notes.append(texts.TRAIN_NOT_SAVED.format(problem=problem))
-                    elif folder != self.unsaved:
-                        notes.append(texts.PUPIL_SAVED.format(name=folder.name))
+                case Kept():
+                    notes += filter(None, [self._hear_of(told)])
                 case Refused(_, problem):
                     notes.append(problem)
         if not self.alive:
             self.stopping = False
-            while self._saving:  # it ended before it heard of that
-                name = self._saving.pop().name
-                notes.append(self.save(name) or texts.PUPIL_SAVED.format(name=name))
+            notes += self._name_ended()
+        if note := self._start_waiting():
+            notes.append(note)
+        return notes
+
+    def _hear_of(self, kept: Kept) -> str:
+        """Take in where the run has been written, or why not; returns what the player should know."""
+        if kept.folder == self.unsaved and kept.test is not None and not self.waiting:
+            self.test, self.kept_epoch = kept.test, kept.epoch
+        if kept.folder in self._saving:
+            self._saving.remove(kept.folder)
+        if kept.problem:
+            return texts.TRAIN_NOT_SAVED.format(problem=kept.problem)
+        return "" if kept.folder == self.unsaved else texts.PUPIL_SAVED.format(name=kept.folder.name)
+
+    def _name_ended(self) -> list[str]:
+        """Give a run its name that ended before it heard of that; returns what the player should know."""
+        notes = []
+        while self._saving:
+            name = self._saving.pop().name
+            notes.append(self.save(name) or texts.PUPIL_SAVED.format(name=name))
         return notes
 
     def _put_aside(self) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.ink import SIDE, Image, Stages, stages, stroke_stages
+from ai.nn.files import brief
 
 if TYPE_CHECKING:
     from ai.digits import DigitClassifier
@@ -118,10 +119,10 @@ class Reader:
         try:
             self.classifiers[name] = DigitClassifier.load(folder)
         except ModelFormatError as error:
-            return error.problems[0] if error.problems else str(error)
+            return brief(error.problems[0] if error.problems else error)
         except Exception as error:  # a damaged folder may fail in any way, and none may end the game
             _log.exception("reading %s", folder)
-            return str(error) or type(error).__name__
+            return brief(str(error) or type(error).__name__)
         return ""
 
     def read(self, seen: Stages, names: Iterable[str] | None = None) -> Reading:

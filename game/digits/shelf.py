@@ -11,11 +11,13 @@ from ai.digit_runs import TRAINING_FILE
 from ai.digits import DIGITS_FILE, NETWORK
 from ai.nn.files import read_json
 from game import texts
+from game.collection import claims
 
 NAMES: Final = ("modern", "classic")  # of the shipped ones
 FOLDER: Final = "digits"  # in the player's folder: the shipped networks' fixes, and `RUNS`
 RUNS: Final = "runs"
 FIXES: Final = "fixes"  # in the folder of a network of the player's own
+PARTS: Final = (DIGITS_FILE, NETWORK, TRAINING_FILE)  # a folder with any of them is one, whole or not
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,7 @@ class Shelved:
         with suppress(OSError, ValueError, TypeError):
             described |= read_json(self.folder / TRAINING_FILE)
         for key, words in (("test", texts.SHELF_TESTED), ("held_out", texts.SHELF_HELD_OUT)):
-            with suppress(KeyError, TypeError, ValueError):
+            with suppress(KeyError, TypeError, ValueError, ArithmeticError):
                 return words.format(part=float(described[key]))
         return ""
 
@@ -62,7 +64,7 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
     found = {name: Shelved(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
     with suppress(OSError):
         for path in sorted(runs_dir(user_dir).iterdir(), key=lambda path: path.name.casefold()):
-            if _claims(path):
+            if claims(path, PARTS):
                 taken = path.name.casefold() in NAMES
                 found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = Shelved(path, path / FIXES)
     return found
@@ -71,7 +73,3 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
 def called(name: str) -> str:
     """Return what a network is called on the screen."""
     return texts.DIGITS_NETWORKS.get(name, name)
-
-
-def _claims(path: Path) -> bool:
-    return path.name[0] != "." and any((path / part).exists() for part in (DIGITS_FILE, NETWORK, TRAINING_FILE))

@@ -17,12 +17,12 @@ from game.context import Context
 from game.controls import Command, translate
 from game.records import RECENT_OWN
 from game.scene import Pop, Scene, Transition
-from game.scenes.pause import blurred
+from game.scenes.pause import Blurred
 from game.settings import GRAVITY_SHARES, PACES
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, NIGHT0, SMALL, TITLE, VIEW_SIZE
+from game.ui.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.ui.widget import Widget
 from game.ui.widgets import Choice, Slider, Toggle, Word
 
@@ -44,12 +44,11 @@ class ChoicesScene:
 
     def __init__(self, below: Scene, skill: Skill, *, begun: bool, course: bool = False) -> None:
         self._below, self._skill, self._begun, self._course = below, skill, begun, course
-        self._picture: pygame.Surface | None = None
 
     def enter(self, context: Context) -> None:
         """Build the rows."""
         self._context = context
-        self._picture = None
+        self._behind = Blurred(self._below, dimmed=0.7)
         self._taught = lessons(context.user_dir)
         self._form = form = Form(context, on_back=Pop)
         self._rows: dict[Widget, Callable[[], str]] = {}
@@ -103,11 +102,7 @@ class ChoicesScene:
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the flight below, out of focus, the rows and the curve."""
-        if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
-            self._picture = blurred(canvas, self._below)
-            canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.4)
-            self._picture = canvas.surface.copy()
-        canvas.surface.blit(self._picture, (0, 0))
+        self._behind.draw(canvas)
         canvas.text(texts.CHOICES_TITLE, (MARGIN, 96), size=34, weight="light")
         self._form.draw(canvas)
         if self._form.focused in self._rows:

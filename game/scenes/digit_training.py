@@ -85,6 +85,7 @@ class DigitTrainingScene:
             return
         self._context, self._settings = context, context.settings
         self.pupil = Pupil(runs_dir(context.user_dir))
+        self.pupil.collection.hold()
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = Charts([
             Chart(_CHARTS[name], texts.PUPIL_CHARTS[name], read=form.format, empty=texts.PUPIL_CHARTS_SHOW[name])
@@ -108,6 +109,7 @@ class DigitTrainingScene:
         """End the run's process; what it has learnt is kept."""
         if self._context is not None:
             self.pupil.close()
+            self.pupil.collection.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Start, pause, stop, turn knobs, look closer."""
@@ -209,7 +211,6 @@ class DigitTrainingScene:
         name = self.pupil.collection.free_name(texts.PUPIL_NAME.format(preset=FAMILY.word(named)))
 
         def keep() -> None:
-            self.pupil.close()
             if problem := self.pupil.save(name):
                 self._say(problem)
             else:
@@ -354,8 +355,8 @@ class DigitTrainingScene:
         figure = "" if part is None else f"{100 * part:.2f}"
         words = texts.PUPIL_READ if pupil.test is None else texts.PUPIL_TESTED
         if pupil.test is not None and pupil.kept_epoch is not None:
-            last = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
-            line = texts.PUPIL_KEPT_BEST.format(epoch=pupil.kept_epoch, last=last)
+            read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
+            line = texts.PUPIL_KEPT_BEST.format(epoch=pupil.kept_epoch, last=read)
         draw_standing(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
         hints = self._form.hints or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)

@@ -41,13 +41,12 @@ class Pause:
         more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
         self._below, self._retry, self._retry_word, self._more = below, retry, retry_word, more
-        self._picture: pygame.Surface | None = None
 
     def enter(self, context: Context) -> None:
         """Build the column of words."""
         self._controls = context.controls
         self._form = Form(context, on_back=Pop)
-        self._picture = None
+        self._behind = Blurred(self._below)
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop)]
         if self._retry:
             rows.append((self._retry_word, self._begin_anew))
@@ -69,9 +68,7 @@ class Pause:
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, out of focus, and the column."""
-        if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
-            self._picture = blurred(canvas, self._below)
-        canvas.surface.blit(self._picture, (0, 0))
+        self._behind.draw(canvas)
         canvas.text(texts.PAUSE_TITLE, (MARGIN, 256), size=44, weight="extralight")
         self._form.draw(canvas)
         word = self._controls.word
@@ -84,15 +81,27 @@ class Pause:
         return Pop()
 
 
-def blurred(canvas: Canvas, below: Scene) -> pygame.Surface:
-    """Return a picture of a scene out of focus and dimmed, drawn where the canvas draws."""
-    below.draw(canvas, 1.0)
-    width, height = canvas.surface.get_size()
-    small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 4), max(1, height // 4)))
-    soft = pygame.transform.gaussian_blur(small, max(1, canvas.px(3)))
-    canvas.surface.blit(pygame.transform.smoothscale(soft, (width, height)), (0, 0))
-    canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.5)
-    return canvas.surface.copy()
+class Blurred:
+    """A scene out of focus and `dimmed` by a share, painted once for each size of the window, and then only copied."""
+
+    def __init__(self, below: Scene, dimmed: float = 0.5) -> None:
+        self._below, self._dimmed = below, dimmed
+        self._picture: pygame.Surface | None = None
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw it over all of the window."""
+        if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
+            self._picture = self._paint(canvas)
+        canvas.surface.blit(self._picture, (0, 0))
+
+    def _paint(self, canvas: Canvas) -> pygame.Surface:
+        self._below.draw(canvas, 1.0)
+        width, height = canvas.surface.get_size()
+        small = pygame.transform.smoothscale(canvas.surface, (max(1, width // 4), max(1, height // 4)))
+        soft = pygame.transform.gaussian_blur(small, max(1, canvas.px(3)))
+        canvas.surface.blit(pygame.transform.smoothscale(soft, (width, height)), (0, 0))
+        canvas.fill(canvas.surface.get_rect(), NIGHT0, self._dimmed)
+        return canvas.surface.copy()
 
 
 def _open_settings() -> Transition:

@@ -23,6 +23,7 @@ from game.ui import typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
 from game.ui.hints import draw_hints
+from game.ui.pointer import Pointer
 from game.ui.prose import wrapped
 from game.ui.sky import NightSky
 from game.ui.tokens import FIGURE, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, TITLE, VIEW_SIZE, Colour
@@ -36,6 +37,7 @@ _PAD: Final = pygame.Rect(40, 86, 504, 504)
 _QUESTION: Final = 132.0  # the baselines of what is asked, and of what came of it
 _VERDICT: Final = 308.0
 _COLUMN: Final = 236.0  # width of what is said
+_DIGITS: Final = "0123456789"
 _KEYPAD: Final = (LEFT, 176.0)  # ten words to answer with
 _WORDS: Final = 404.0
 _SCORES: Final = (900.0, 1082.0)  # where each side's figure stands
@@ -72,11 +74,7 @@ class Quiz:
             self._strangers = load_part(TEST)
         except MnistError as error:
             context.note(texts.QUIZ_NO_STRANGERS.format(problem=error))
-        self._keypad = [self._word(texts_of, (_KEYPAD[0] + 46 * (digit % 5), _KEYPAD[1] + 52 * (digit // 5)),
-                                   partial(self._read, digit), FIGURE)
-                        for digit, texts_of in enumerate(map(str, range(10)))]  # fmt: skip
-        self._go_word = self._word(texts.QUIZ_DONE, (LEFT, _WORDS), self._go)
-        self._pen = make_pen(self._form.manager, lambda: self.pad)
+        self._laid = ""
         self._shown: list[Widget] = []
         self.restart()
 
@@ -100,7 +98,7 @@ class Quiz:
         """Draw, answer by a digit's key, or do what a word means."""
         current = self.contest.round
         drawing = current is not None and current.kind == "draw" and current.answer is None
-        if drawing and (self.pad.handle_event(event) or (self._pen.focused and self._pen.take(event))):
+        if drawing and (self.pad.handle_event(event) or self._takes_pen(event)):
             return None
         if event.type == pygame.KEYDOWN and pygame.K_0 <= event.key <= pygame.K_9:
             self._read(event.key - pygame.K_0)
@@ -111,6 +109,11 @@ class Quiz:
         else:
             return self._obey(event)
         return None
+
+    def _takes_pen(self, event: pygame.event.Event) -> bool:
+        """Let the pen have an event, if it is in focus."""
+        pen = self._form.focused
+        return isinstance(pen, Pointer) and pen.take(event)
 
     def _obey(self, event: pygame.event.Event) -> Transition | None:
         match translate(event):
@@ -194,24 +197,28 @@ class Quiz:
         return Word(self._form.manager, (*place, width, size * 1.25 + 9), label, press, size=size, weight="light")
 
     def _lay(self) -> None:
-        """Offer the words that mean something now."""
+        """Offer the words that mean something now, in the place of those that did."""
         current = self.contest.round
         if current and current.kind == "read" and current.answer is None:
-            wanted: list[Widget] = [*self._keypad]
+            label = _DIGITS
         else:
             label = texts.QUIZ_AGAIN if not current else texts.QUIZ_DONE if current.answer is None else texts.QUIZ_NEXT
-            if label != self._go_word.label:
-                self._go_word = self._word(label, (LEFT, _WORDS), self._go)
-            wanted = [self._go_word]
-            if current and current.answer is None:
-                wanted.append(self._pen)
-        if wanted != self._shown:
-            for widget in self._form.widgets[:]:
-                self._form.widgets.remove(widget)
-            for word in wanted:
-                self._form.add(word)
-            self._form.focus(wanted[0])
-            self._shown = wanted
+        if label == self._laid:
+            return
+        words: list[Widget] = self._keypad() if label == _DIGITS else [self._word(label, (LEFT, _WORDS), self._go)]
+        if label == texts.QUIZ_DONE:
+            words.append(make_pen(self._form.manager, lambda: self.pad))
+        self._form.replace(self._shown, words)
+        self._form.focus(words[0])
+        self._laid, self._shown = label, words
+
+    def _keypad(self) -> list[Widget]:
+        """Return a word for each digit."""
+        left, top = _KEYPAD
+        return [
+            self._word(digit, (left + 46 * (number % 5), top + 52 * (number // 5)), partial(self._read, number), FIGURE)
+            for number, digit in enumerate(_DIGITS)
+        ]
 
     # The picture
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -12,7 +13,7 @@ import pygame
 from ai.lander import Outcome
 from game import hud, texts
 from game.clock import STEP
-from game.collection import exports_dir, free_path
+from game.collection import LONGEST_NAME, exports_dir, fitting, free_path
 from game.context import Context
 from game.controls import Command, translate
 from game.export import KINDS, Export
@@ -212,18 +213,20 @@ class Replay:
         from game.scenes.dialog import Asking
 
         if self._export is None:
-            answers = [(texts.EXPORT_KINDS[suffix], partial(self._begin_export, suffix)) for suffix in KINDS]
-            return Push(Asking(self, texts.EXPORT_AS, texts.EXPORT_MORE, answers))
+            answers: list[tuple[str, Callable[[], None]]] = [
+                (texts.EXPORT_KINDS[suffix], partial(self._begin_export, suffix))
+                for suffix, kind in KINDS.items() if not kind.missing
+            ]  # fmt: skip
+            more = texts.EXPORT_GIF_ONLY if KINDS[".mp4"].missing else texts.EXPORT_MORE
+            return Push(Asking(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
         self._export.close()
         self._end_export(texts.EXPORT_STOPPED)
         return None
 
     def _begin_export(self, suffix: str) -> None:
         assert self._context is not None
-        if KINDS[suffix].missing:
-            self._context.note(texts.EXPORT_MISSING.format(kind=suffix[1:].upper()))
-            return
-        path = free_path(exports_dir(), Path(self.record.entry.file).stem or texts.REPLAY_TITLE, suffix)
+        name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
+        path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
         self._export = Export(self.record, path, colour_safe=self._context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:

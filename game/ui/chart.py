@@ -25,6 +25,8 @@ from game.world.paint import mix
 
 __all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
 
+Painted = tuple[Canvas, list[Numbers]]  # a sheet, and each run's height in every column of it
+
 _HEADER: Final = 24.0  # from the top of the box to the highest line
 _FOOT: Final = 18.0  # from the lowest line to the bottom of the box
 _GUTTER: Final = 34.0  # for the lines' numbers, on the right
@@ -71,11 +73,10 @@ class Chart:
         self._told: tuple[float, ...] = ()  # the ends of the x axis: both, or one if it is a single place
         self._lines = self._make_grid(*(limits or (0.0, 1.0)))
         self._shown = self._goal
-        self._traces: list[Numbers] = []
         self._cursor: float | None = None
         self._pointed = False
         self._marker: tuple[float, str] | None = None
-        self._sheet: Canvas | None = None
+        self._painted: Painted | None = None  # until the numbers, or the window, are others
         self._stale = True
         self._rested = 0
 
@@ -179,22 +180,21 @@ class Chart:
 
     def renew(self) -> None:
         """Have the sheet drawn anew in the next frame."""
-        self._sheet, self._rested = None, 0
+        self._painted, self._stale, self._rested = None, False, 0
 
     # The picture
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the chart, and the marker and the cursor over it."""
-        if self._sheet is None or self._sheet.scale != canvas.scale:
-            self._sheet = self._paint(canvas)
-            self._stale = False
-        canvas.lay(self._sheet, self.box.x - _MARGIN, self.box.y - _MARGIN)
+        if self._painted is None or self._painted[0].scale != canvas.scale:
+            self._painted = self._paint(canvas)
+        canvas.lay(self._painted[0], self.box.x - _MARGIN, self.box.y - _MARGIN)
         if self._marker:
             self._draw_marker(canvas, *self._marker)
         if self._cursor is not None:
             self._draw_cursor(canvas, self._cursor)
 
-    def _paint(self, canvas: Canvas) -> Canvas:
+    def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
         sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
         box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
@@ -202,15 +202,15 @@ class Chart:
         self._paint_header(sheet, box)
         area = sheet.rect(*plot)
         axes = Axes(self._x_range, self._shown, self._goal)
-        self._traces = [trace_run(run, axes, area.width) for run in self._runs]
-        if any(np.isfinite(values).any() for values in self._traces):
+        traces = [trace_run(run, axes, area.width) for run in self._runs]
+        if any(np.isfinite(values).any() for values in traces):
             self._paint_grid(sheet, plot)
         else:
             self._paint_empty(sheet, plot)
-        for run, values in reversed(list(zip(self._runs, self._traces, strict=True))):
+        for run, values in reversed(list(zip(self._runs, traces, strict=True))):
             paint_run(sheet, area, run, values, axes)
         self._paint_ticks(sheet, plot)
-        return sheet
+        return sheet, traces
 
     def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
         value = self._runs[0].last() if self._runs else None
@@ -257,9 +257,10 @@ class Chart:
 
     def _value_at(self, x: float) -> float | None:
         """Return the height of the current run's curve at x."""
-        if not self._traces:
+        traces = self._painted[1] if self._painted else []
+        if not traces:
             return None
-        values = self._traces[0]
+        values = traces[0]
         start, end = self._x_range
         column = round((x - start) / (end - start) * (len(values) - 1))
         if not 0 <= column < len(values) or np.isnan(values[column]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from typing import Final
 
@@ -161,6 +162,6 @@ def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
     """Return a text, or as much of it as there is room for and three dots."""
     if canvas.text_width(text, size=size) <= room:
         return text
-    while text and canvas.text_width(text + "…", size=size) > room:
-        text = text[:-1]
-    return text + "…"
+    lengths = range(len(text))
+    fitting = bisect_right(lengths, room, key=lambda length: canvas.text_width(text[:length] + "…", size=size))
+    return text[: max(0, fitting - 1)] + "…"

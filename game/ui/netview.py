@@ -1,7 +1,7 @@
 """A network, drawn: its units in columns, the strongest links between them, and what runs along these now.
 
 Blue adds and orange takes away, told apart by eyes of every kind. What is drawn is kept on two sheets, one of
-light and one of signs, until the numbers change; then new ones are drawn a few edges a frame, and take their
+light and one of signs, until the numbers change; then new ones are drawn a few edges a step, and take their
 place when they are done. Only the pulses of learning are drawn every frame.
 """
 
@@ -36,7 +36,7 @@ _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
 _FLOW: Final = 1 / 90  # of an edge that a pulse travels in a sixtieth of a second
 _MOST_PULSES: Final = 26
 _GOLDEN: Final = 0.618034  # pulses begin as far from each other as can be
-_CHUNK: Final = 9_000.0  # pixels of edges drawn in one frame: about a millisecond
+_CHUNK: Final = 9_000.0  # pixels of edges drawn in one step: about a millisecond
 _GLOWING: Final = 0.55  # units lit more than this shine on what is around them
 
 
@@ -54,6 +54,7 @@ class NetView:
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
         self._hovered: tuple[int, int] | None = None
         self._centres: list[list[Point]] = []  # of all units that are shown, in points
+        self._canvas: Canvas | None = None  # that the sheets are for
         self._sheets: Sheets | None = None
         self._spare: Sheets | None = None
         self._painting: Generator[None, None, Sheets] | None = None
@@ -94,7 +95,7 @@ class NetView:
         """Move to another box; a larger one shows more of the network."""
         if pygame.FRect(box) != self.box:
             self.box = pygame.FRect(box)
-            self._sheets = self._spare = self._painting = self._hovered = None
+            self._sheets = self._spare = self._painting = self._hovered = self._canvas = None
             if self._given:
                 self.set(*self._given)
 
@@ -138,15 +139,27 @@ class NetView:
         return self.inputs if number == 0 else self.outputs if number == len(self.columns) - 1 else ()
 
     def update(self, at_once: bool = False) -> None:
-        """Let 1/60 s pass: pulses travel, or with motion reduced, `at_once`, are left to the edges' brightness."""
+        """Let 1/60 s pass: pulses travel, or with motion reduced, `at_once`, are left to the edges' brightness.
+
+        If new sheets are due, a part of them is drawn.
+        """
         self._rested += 1
         self._still = at_once
         self._phase = (self._phase + _FLOW) % 2.0
         self._due |= self._stale and self._rested >= _REST
+        if self._canvas and self._due and self._painting is None:
+            self._painting = self._paint(self._canvas)
+            self._due = self._stale = False
+            self._rested = 0
+        if self._painting:
+            try:
+                next(self._painting)
+            except StopIteration as done:
+                self._sheets, self._spare, self._painting = done.value, self._sheets, None
 
     @property
     def busy(self) -> bool:
-        """Whether the next frame draws a part of new sheets, or is to begin that."""
+        """Whether the next step draws a part of new sheets, or is to begin that."""
         return self._due or self._painting is not None
 
     # Where things are, in points
@@ -195,8 +208,9 @@ class NetView:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the network, and the pulses and the read-out over it."""
-        self._renew(canvas)
-        assert self._sheets is not None
+        if self._sheets is None or self._sheets[0].scale != canvas.scale:
+            self._spare = self._painting = None
+            self._canvas, self._sheets = canvas, _all_of(self._paint(canvas))
         corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
         light, signs = self._sheets
         canvas.surface.blit(light.surface, corner, special_flags=pygame.BLEND_RGB_ADD)
@@ -205,23 +219,6 @@ class NetView:
             self._draw_pulses(canvas)
         if self._hovered:
             self._draw_tooltip(canvas, *self._hovered)
-
-    def _renew(self, canvas: Canvas) -> None:
-        """Draw the sheets if there are none, or else a part of the next ones if any are due."""
-        if self._sheets is None or self._sheets[0].scale != canvas.scale:
-            self._spare = self._painting = None
-            self._due = True
-        if self._due and self._painting is None:
-            self._painting = self._paint(canvas)
-            self._due = self._stale = False
-            self._rested = 0
-        while self._painting:
-            try:
-                next(self._painting)
-            except StopIteration as done:
-                self._sheets, self._spare, self._painting = done.value, self._sheets, None
-            if self._sheets and self._sheets[0].scale == canvas.scale:
-                break
 
     def _blank(self, canvas: Canvas) -> Sheets:
         """Return empty sheets: the spare ones, or new ones."""
@@ -353,6 +350,16 @@ class NetView:
             rows.append(Row(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
         head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
         draw_tooltip(canvas, self._centres[number][place], self.box, [head], rows)
+
+
+def _all_of(painting: Generator[None, None, Sheets]) -> Sheets:
+    """Draw all parts at once."""
+    while True:
+        try:
+            next(painting)
+        except StopIteration as done:
+            sheets: Sheets = done.value
+            return sheets
 
 
 def _figure(value: float) -> str:

@@ -6,6 +6,7 @@ hinted small sizes do neither. A pad's buttons are letters as well: see `game.ui
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from functools import lru_cache
 from typing import Final, Literal
 
@@ -25,6 +26,10 @@ _FILES: Final[dict[Weight, str]] = {
     "medium": "ManropeMedium",
     "semibold": "ManropeSemiBold",
 }
+_LONGEST: Final = 1000  # letters of a text; no line on any screen has more
+# Pixels of a text before it is scaled down; a whole line of the largest screen takes half of it. From some 100,000
+# on, SDL's scaling writes past the end of its memory.
+_WIDEST: Final = 32_768
 # Thin light strokes on a dark ground look thinner than they are; this lifts the half-covered pixels.
 _COVERAGE: Final = np.round(255 * (np.arange(256) / 255) ** 0.82).astype(np.uint8)
 
@@ -95,8 +100,8 @@ def digit_width(pixels: float, weight: Weight) -> float:
 
 @lru_cache(maxsize=1024)
 def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[pygame.Surface, int]:
-    """Return the string's surface and the row of its baseline in it."""
-    string = _writable(string)
+    """Return the string's surface and the row of its baseline in it; what no screen has room for is left out."""
+    string = _cut(_writable(string), pixels, weight)
     font, factor = _font(pixels, weight), _oversampling(pixels)
     large = _write(string, pixels, weight, colour) if SIGN.search(string) else font.render(string, True, colour)
     baseline = -(-font.get_ascent() // factor)
@@ -133,8 +138,16 @@ def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame
 
 
 def _writable(string: str) -> str:
-    """Put question marks where no font has anything: the name of a file can be any bytes."""
-    return string.replace("\0", "?").encode(errors="replace").decode()
+    """Put question marks where no font has anything: the name of a file can be any bytes, and any number of them."""
+    return string[:_LONGEST].replace("\0", "?").encode(errors="replace").decode()
+
+
+def _cut(string: str, pixels: float, weight: Weight) -> str:
+    """Leave out the end of a string that is wider than any screen."""
+    most = _WIDEST / _oversampling(pixels)
+    if reach(string, pixels, weight) <= most:
+        return string
+    return string[: bisect_right(range(len(string)), most, key=lambda count: reach(string[:count], pixels, weight)) - 1]
 
 
 def forget() -> None:

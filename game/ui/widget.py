@@ -13,6 +13,7 @@ import pygame
 from pygame_gui import UIManager
 from pygame_gui.core import UIElement
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
+from pygame_gui.core.utility import set_default_manager
 
 from game.controls import Controls
 from game.scene import Transition
@@ -30,6 +31,7 @@ class PointsManager(UIManager):
 
     def __init__(self) -> None:
         super().__init__(VIEW_SIZE, enable_live_theme_updates=False)
+        set_default_manager(None)  # the first one would be held on to for good, and with it its screen
         self.mouse_position = (-1, -1)
 
     def create_new_theme(self, theme_path: Any = None) -> UIAppearanceTheme:

@@ -110,6 +110,19 @@ def test_demonstrations_are_kept_in_a_file(landings, tmp_path):
     assert [file.name for file in path.parent.iterdir()] == ["flights.json"]
 
 
+def test_two_games_can_write_at_once_and_a_full_disk_leaves_nothing(landings, tmp_path, monkeypatch):
+    path = tmp_path / "demonstrations.json"
+    path.with_name(path.name + ".part").mkdir()  # where another game once wrote
+    write(path, landings)
+    assert read(path) == landings
+    with monkeypatch.context() as patch:
+        patch.setattr("ai.demonstrations.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
+        with pytest.raises(OSError, match="full"):
+            write(path, landings[:1])
+    assert read(path) == landings
+    assert len(list(tmp_path.iterdir())) == 2
+
+
 def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path):
     path = tmp_path / "flights.json"
     write(path, landings)

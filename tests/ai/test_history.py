@@ -151,6 +151,13 @@ def rewritten(folder, **changes):
         {"alterations": [{"decisions": 3}]},
         {"checkpoints": 5},
         {"validations": [[1, 2]]},
+        {"validations": [{"decisions": 3, "success": "x", "mean_return": 1.0, "best": True}]},
+        {"checkpoints": [{"seconds": 1.0, "decisions": "many", "success": 0.5, "scale": None}] * 2},
+        {"checkpoints": [{"seconds": [], "decisions": 3, "success": 0.5, "scale": None}] * 2},
+        {"checkpoints": [{"seconds": 1.0, "decisions": 3, "success": 10**400, "scale": None}] * 2},
+        {"checkpoints": [{"seconds": 1.0, "decisions": 3, "success": 0.5, "scale": 7}] * 2},
+        {"alterations": [{"decisions": 3, "name": 5, "before": 1, "after": 2}]},
+        {"alterations": [{"decisions": 3, "name": "care", "before": 1, "after": {}}]},
         {"described": np.array("[]")},
     ],
 )

@@ -147,3 +147,16 @@ def biased_fix(folder, image, digit, keep, before=None):
     classifier.network.layers[-1].bias[digit] += 50
     classifier.save(keep)
     yield [Fixed(digit, (0.1, 1.0), (before or 0.9, 0.1), 1, keep)]
+
+
+def keep(notebook: Path, name: str, seconds: float):
+    """Note when it begins and when it has ended, which takes a while."""
+    with notebook.open("a") as file:
+        file.write(f"{name} begins\n")
+    try:
+        while True:
+            yield []
+    finally:
+        time.sleep(seconds)
+        with notebook.open("a") as file:
+            file.write(f"{name} ends\n")

@@ -43,6 +43,8 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
     opened: list[Driver] = []
 
     def open_it(first: Scene | None = None, *, tutored: bool = True) -> Driver:
+        for driver in opened:
+            driver.app.settings_writer.wait()
         context.settings = SettingsFile(context.user_dir).load()
         context.settings.tutored |= tutored  # or a first flight would teach
         frames = count()

@@ -86,6 +86,7 @@ def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context
     before = getattr(Settings(), name)
     game = open_game(SettingsScene())
     game.keys(*[pygame.K_DOWN] * rows.index(name), pygame.K_RETURN)
+    game.app.settings_writer.wait()
     assert getattr(SettingsFile(context.user_dir).load(), name) is not before
     game.app.close()
     again = open_game()
@@ -188,6 +189,60 @@ def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Conte
     assert game.frames(2)
 
 
+class Holder(Probe):
+    """Holds something that it gives back, unless it failed too early to have it."""
+
+    closed = 0
+
+    def close(self) -> None:
+        if self.fails_in == "enter":
+            raise AttributeError("there is nothing to close yet")
+        self.closed += 1
+
+
+@pytest.mark.parametrize("way", ["first", "over another"])
+def test_a_scene_that_fails_too_early_to_be_closed_is_told_of_and_the_others_are_closed(open_game, way: str):
+    below, broken = Holder(), Holder()
+    broken.fails_in = "enter"
+    game = open_game(broken if way == "first" else below)
+    if way != "first":
+        game.app.show(broken)
+    game.frames(2)
+    assert game.top_name == "Fault"
+    assert below.closed == (way != "first")
+    game.key(pygame.K_RETURN)
+    assert game.top_name == "Menu"
+
+
+@pytest.mark.parametrize("leave", [Replace(Probe()), Pop(), Pop(2)])
+def test_a_scene_that_fails_to_leave_gives_back_what_it_holds(open_game, leave):
+    held = [Holder(), Holder()]
+    game = open_game(held[0])
+    game.app.show(held[1])
+    held[1].fails_in = "exit"
+    game.app._guarded(lambda: game.app.scenes.apply(leave))
+    assert not game.app.scenes.running or game.top_name == "Fault"
+    game.app.close()
+    assert held[1].closed == 1
+
+
+def test_closing_the_window_closes_every_scene_whatever_fails(open_game):
+    held = [Holder(), Holder(), Holder()]
+    game = open_game(held[0])
+    for scene in held[1:]:
+        game.app.show(scene)
+    held[1].close = lambda: 1 / 0
+    held[2].fails_in = "exit"
+    game.app.close()
+    assert [scene.closed for scene in held] == [1, 0, 1]
+
+
+def test_making_a_window_leaves_the_collector_of_the_process_alone(open_game):
+    before = gc.get_freeze_count(), gc.get_threshold()
+    open_game()
+    assert (gc.get_freeze_count(), gc.get_threshold()) == before
+
+
 @pytest.mark.parametrize("scene", [Menu, SettingsScene, lambda: Pause(Probe()), Probe])
 def test_closing_the_window_anywhere_saves_the_settings(open_game, context: Context, scene):
     game = open_game(scene())
@@ -279,6 +334,18 @@ def test_screenshot_is_a_picture_of_the_view(game: Driver, context: Context):
     game.key(pygame.K_F12)
     (path,) = (context.user_dir / "screenshots").iterdir()
     assert pygame.image.load(path).get_size() == (1280, 720)
+
+
+def test_a_screenshot_on_a_full_disk_is_no_picture_and_says_so(game: Driver, context: Context):
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (900, limits[1]))
+    try:
+        game.key(pygame.K_F12)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "could not be saved" in game.app._notes._text
+    assert not list((context.user_dir / "screenshots").iterdir())
 
 
 def test_screenshot_into_a_folder_that_cannot_be(game: Driver, context: Context):

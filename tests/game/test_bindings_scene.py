@@ -26,6 +26,7 @@ def controls(driver: Driver):
 
 
 def saved(driver: Driver, name: str) -> dict:
+    driver.app.settings_writer.wait()
     return json.loads((driver.app.context.user_dir / "settings.json").read_text())[name]
 
 

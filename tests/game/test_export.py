@@ -3,6 +3,7 @@
 import importlib.util
 import multiprocessing
 import time
+import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,8 +12,9 @@ import numpy as np
 import pygame
 import pytest
 
+from game import texts
 from game.context import Context
-from game.export import KINDS, Kind
+from game.export import KINDS, Export, Kind
 from game.film import film, frames
 from game.flight_file import Record
 from game.scenes import replay as module
@@ -156,13 +158,60 @@ def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_pa
     return driver, scene
 
 
-def test_without_the_extra_a_message_says_what_to_install(replay: tuple[Driver, Replay], monkeypatch):
-    driver, _ = replay
-    monkeypatch.setitem(KINDS, ".gif", Kind("no_such_module", (1, 1), 1, True))
+def _answers(driver: Driver) -> list[str]:
+    return [widget.label for widget in driver.top._form.widgets]
+
+
+def test_a_gif_works_as_installed_and_an_mp4_is_offered_only_where_it_can_be_made(
+    replay: tuple[Driver, Replay], monkeypatch
+):
+    driver, scene = replay
+    project = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert any(need.startswith("pillow") for need in project["dependencies"])
+    driver.key(pygame.K_ESCAPE)
+    monkeypatch.setitem(KINDS, ".mp4", Kind("no_such_module", (1, 1), 1, False))
+    driver.app.scenes.apply(scene._begin_or_stop_export())
+    assert _answers(driver) == ["GIF", texts.EXPORT_CANCEL]
+    command = driver.top._more.partition("run: ")[2]
+    assert command in Path("README.md").read_text(encoding="utf-8")
+    driver.key(pygame.K_ESCAPE)
+    monkeypatch.setitem(KINDS, ".mp4", Kind("json", (1, 1), 1, False))
+    driver.app.scenes.apply(scene._begin_or_stop_export())
+    assert _answers(driver) == ["GIF", "MP4", texts.EXPORT_CANCEL]
+
+
+@pytest.mark.parametrize("way", ["key", "word"])
+def test_who_does_not_want_a_film_after_all_gets_none(replay: tuple[Driver, Replay], way: str):
+    driver, scene = replay
+    if way == "key":
+        driver.key(pygame.K_ESCAPE)
+    else:
+        driver.click(driver.top._form.widgets[-1].box.center)
+    assert driver.top is scene
+    assert scene._export is None
+
+
+@pytest.mark.parametrize("file", ["a\0b.json", "\ud800.json", "...json", "x" * 300 + ".json", "C:\\con.json"])
+def test_a_name_that_no_system_takes_is_made_one(replay: tuple[Driver, Replay], file: str, tmp_path: Path):
+    driver, scene = replay
+    scene.record = replace(scene.record, entry=replace(scene.record.entry, file=file))
     _choose_gif(driver)
-    assert driver.top_name == "Replay"
-    assert "tranquility[export]" in driver.app._notes._text
-    assert driver.frames(2)
+    driver.frames(2)
+    path = scene._export.path
+    path.parent.mkdir(exist_ok=True)
+    path.touch()
+    assert path.parent == tmp_path / "pictures"
+
+
+@pytest.mark.parametrize("name", ["a\0b.gif", "\ud800.gif"])
+def test_an_export_under_an_impossible_name_can_be_closed_and_says_why(record: Record, name: str, tmp_path: Path):
+    export = Export(record, tmp_path / name)
+    end = time.monotonic() + 60
+    while not export.over and time.monotonic() < end:
+        export.poll()
+        time.sleep(0.01)
+    assert export.problem
+    export.close()
 
 
 def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay], tmp_path: Path):

@@ -71,11 +71,13 @@ def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(soun
     game: Driver = open_game(SettingsScene())
     focus(game, texts.SOUND_GROUPS["altitude"])
     game.key(RIGHT)
+    game.app.settings_writer.wait()
     settings = context.settings_file.load()
     assert settings.altitude_volume == pytest.approx(0.1)
     assert [key for key in sound.heard() if key.startswith("altitude")]
     game.keys(UP, UP, UP, *[LEFT] * 12)
     assert "touchdown" in sound.heard()
+    game.app.settings_writer.wait()
     assert context.settings_file.load().effects_volume == 0
 
 

@@ -1,8 +1,10 @@
+import errno
 import json
 import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,9 +14,10 @@ from ai.config import Config
 from ai.runs import resume_run, save_run
 from ai.training import Training
 from game import collection as module
-from game import networks
-from game.collection import UNSAVED, LibraryError, is_valid_name
+from game import networks, texts
+from game.collection import LONGEST_NAME, UNSAVED, LibraryError, is_valid_name
 from game.library import Library, read_run
+from game.ui.run_page import row
 
 SMALL = Config(hidden=(8,), num_envs=4, warm_up=16, replay_size=100, batch_size=16)
 DESCRIBED = {
@@ -82,7 +85,10 @@ def test_the_latest_comes_first(library: Library):
     "text",
     ["", "{", "[]", '"run"', "[" * 100_000, '{"env": "lander"}', json.dumps({**DESCRIBED, "decisions": "many"}),
      json.dumps({**DESCRIBED, "seconds": None}), json.dumps({**DESCRIBED, "best": 3}),
-     json.dumps({**DESCRIBED, "decisions": float("inf")}), json.dumps({**DESCRIBED, "changes": 1})],
+     json.dumps({**DESCRIBED, "decisions": float("inf")}), json.dumps({**DESCRIBED, "changes": 1}),
+     json.dumps({**DESCRIBED, "decisions": 10**400}), json.dumps({**DESCRIBED, "decisions": -1}),
+     json.dumps({**DESCRIBED, "seconds": float("nan")}), json.dumps({**DESCRIBED, "seed": 10**400}),
+     json.dumps({**DESCRIBED, "best": {"success": float("nan")}})],
 )  # fmt: skip
 def test_a_damaged_run_is_listed_with_its_problem_and_can_go_anywhere(library: Library, text: str, tmp_path: Path):
     (add(library, "hurt") / "training.json").write_text(text)
@@ -102,6 +108,95 @@ def test_what_is_missing_is_named(library: Library, part: str):
     (run,) = library.runs()
     assert run.problem == f"{part} is missing"
     assert run.flyable is (part == "training.json")
+
+
+def forbid(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    """Let a folder be one that may not be looked into; permissions alone would not hold back an administrator."""
+    look = Path.stat
+
+    def stat(path: Path, **more: bool) -> os.stat_result:
+        if folder in path.parents:
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        return look(path, **more)
+
+    monkeypatch.setattr(Path, "stat", stat)
+
+
+def test_one_that_cannot_be_read_is_a_row_among_the_others(library: Library, monkeypatch: pytest.MonkeyPatch):
+    for name in ("one", "locked", "two"):
+        add(library, name)
+    forbid(monkeypatch, library.folder / "locked")
+    assert {run.name: run.problem for run in library.runs()} == {"one": "", "two": "", "locked": "Permission denied"}
+    assert list(networks.folders(library.folder, library.folder.parent)) == ["locked", "one", "two"]
+
+
+def test_links_that_lead_nowhere_are_rows_among_the_others(library: Library):
+    add(library, "one")
+    (library.folder / "lost").symlink_to("nowhere")
+    (library.folder / "round").symlink_to("round")
+    (library.folder / ".half.new").symlink_to("nowhere")
+    found = {run.name: run.problem for run in library.runs()}
+    assert found == {"one": "", "lost": texts.RUN_LINK, "round": "Too many levels of symbolic links"}
+    assert library.problem == ""
+    assert list(networks.folders(library.folder, library.folder.parent)) == ["lost", "one", "round"]
+    assert networks.load("lost", library.folder / "lost").problem
+    library.delete("lost")
+    library.rename("round", "square")
+    assert names(library) == ["one", "square"]
+
+
+@pytest.mark.parametrize("kind", ["self", "out", "pipe", "deep", "many", "large"])
+def test_what_is_no_plain_network_is_not_copied(
+    library: Library, tmp_path: Path, kind: str, monkeypatch: pytest.MonkeyPatch
+):
+    strange = add(Library(tmp_path / "elsewhere"), "strange")
+    secret = tmp_path / "secret"
+    secret.mkdir()
+    (secret / "diary.txt").write_text("not to be taken along")
+    match kind:
+        case "self":
+            (strange / "again").symlink_to(strange)
+        case "out":
+            (strange / "online" / "more").symlink_to(secret)
+        case "pipe":
+            os.mkfifo(strange / "pipe")
+        case "deep":
+            (strange / Path(*"abcdefghijkl")).mkdir(parents=True)
+        case "many":
+            monkeypatch.setattr(module, "_MOST_FILES", 4)
+        case "large":
+            monkeypatch.setattr(module, "_MOST_BYTES", 10)
+    with pytest.raises(LibraryError, match="strange is not copied"):
+        library.import_folder(strange)
+    assert library.runs() == []
+    assert not library.folder.exists() or not [*library.folder.iterdir()]
+
+
+def test_what_was_just_thrown_away_is_what_comes_back_although_the_clock_was_set_back(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+):
+    clock = iter(range(2 * 10**18, 0, -(10**16)))
+    monkeypatch.setattr(module.time, "time_ns", lambda: next(clock))
+    for number in range(12):
+        add(library, f"run {number}")
+        library.delete(f"run {number}")
+        assert library.last_deleted == f"run {number}"
+    assert library.undo_delete()
+    assert names(library) == ["run 11"]
+
+
+def test_what_a_file_says_at_length_is_shortened(library: Library):
+    add(library, "wordy", preset="x" * 100_000)
+    add(library, "far", env="y" * 100_000)
+    assert {len(run.preset) for run in library.runs()} == {0, LONGEST_NAME}
+    assert max(len(run.problem) for run in library.runs()) < 100
+
+
+@pytest.mark.parametrize("when", [1e18, -1e18])
+def test_a_date_beyond_all_calendars_is_a_date(library: Library, monkeypatch: pytest.MonkeyPatch, when: float):
+    add(library, "strange")
+    monkeypatch.setattr(Path, "lstat", lambda _: SimpleNamespace(st_mtime=when, st_mode=0))
+    assert row(read_run(library.folder / "strange"), own=True)[-1][:2] in {"19", "29", "30"}
 
 
 def test_a_network_for_something_else_is_named_as_such(library: Library):
@@ -243,7 +338,7 @@ def test_a_full_disk_is_said_and_leaves_nothing_half_done(
 ):
     add(library, "run")
 
-    def full(source: Path, target: Path) -> None:
+    def full(source: Path, target: Path, **_: bool) -> None:
         target.mkdir()
         raise error
 

@@ -12,6 +12,7 @@ from game import texts
 from game.ui.canvas import Canvas
 from game.ui.netplan import Plan, steady_choice, strongest_edges
 from game.ui.netview import NetView
+from tests.game.test_draw import state_of
 
 BOX = (868, 420, 384, 180)
 LARGE = (90, 80, 1100, 560)
@@ -180,6 +181,21 @@ def test_new_numbers_are_drawn_at_most_ten_times_a_second_and_old_ones_not_again
     redraws = view.redraws
     play(view, canvas)
     assert view.redraws == redraws
+
+
+def test_drawing_leaves_the_painting_to_steps(canvas: Canvas) -> None:
+    network = network_of()
+    view = view_of(network, LARGE)
+    view.show = "gradients"
+    view.draw(canvas)
+    for frame in range(40):
+        network.values[frame] += 1
+        view.set(network, OBSERVATION)
+        view.update()
+        before = state_of(view)
+        view.draw(canvas)
+        assert state_of(view) == before
+    assert view.redraws > 3
 
 
 def test_what_is_drawn_in_parts_ends_up_the_same_as_at_once(canvas: Canvas) -> None:

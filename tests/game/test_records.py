@@ -190,6 +190,25 @@ def test_old_files_make_room_but_the_best_and_the_logbook_stay(kept: Records, mo
     assert len(kept.entries()) == 16
 
 
+def test_a_clock_that_is_set_back_costs_no_new_flight(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(records, "RECENT", 6)
+    monkeypatch.setattr(records, "_SLACK", 2)
+    fall = fly(by_hand=True)
+    for second in range(8):
+        kept.keep(fall, NOON + second)
+    new = [kept.keep(fall, NOON - 365 * 86400 + second).file for second in range(12)]
+    assert set(new[-6:]) <= kept.kept()
+    assert [line.file for line in kept.entries()][-12:] == new
+
+
+def test_flights_of_one_moment_are_told_apart_also_by_two_games(kept: Records, tmp_path: Path):
+    other = Records(kept.folder.parent)
+    flight = fly()
+    names = [games.keep(flight, NOON).file for _ in range(3) for games in (kept, other)]
+    assert len(set(names)) == len(kept.kept()) == 6
+    assert not kept.problem
+
+
 def test_a_flight_can_be_thrown_away_and_brought_back_and_its_line_stays(kept: Records):
     line = kept.keep(fly(), NOON)
     held = (kept.folder / line.file).read_bytes()

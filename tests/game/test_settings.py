@@ -1,12 +1,18 @@
 import errno
 import json
 import os
+import subprocess
+import sys
+import time
 from pathlib import Path
+from threading import Event, Thread, current_thread
 
 import pytest
 
 from ai.nn.files import write_text
+from game.lock import held, take
 from game.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
+from game.settings_writer import SettingsWriter
 
 DAMAGED = [
     b"",
@@ -72,7 +78,7 @@ def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path, monkeypatch):
     assert "No space left" in file.problem
     monkeypatch.undo()
     assert file.load().model == "old"
-    assert [path.name for path in tmp_path.iterdir()] == [FILE_NAME]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f".{FILE_NAME}.lock", FILE_NAME]
 
 
 def test_a_folder_that_cannot_be_made_is_a_message(tmp_path: Path):
@@ -125,20 +131,6 @@ def test_writing_leaves_no_temporary_file(tmp_path: Path):
     assert (tmp_path / "a.txt").read_text() == "two"
 
 
-def test_two_games_at_once_keep_what_each_has_chosen(tmp_path: Path):
-    SettingsFile(tmp_path).save(Settings(model="first"))
-    one, two = SettingsFile(tmp_path).load(), SettingsFile(tmp_path).load()
-    one.reduced_motion = True
-    SettingsFile(tmp_path).save(one)
-    two.colour_safe, two.keys = True, {"up": ["w"]}
-    SettingsFile(tmp_path).save(two)
-    one.model = "second"
-    SettingsFile(tmp_path).save(one)
-    SettingsFile(tmp_path).save(two)
-    expected = Settings(model="second", reduced_motion=True, colour_safe=True, keys={"up": ["w"]})
-    assert SettingsFile(tmp_path).load() == expected
-
-
 def test_a_huge_file_and_a_pipe_are_put_aside_unread(tmp_path: Path):
     path = tmp_path / FILE_NAME
     with path.open("wb") as file:
@@ -156,3 +148,125 @@ def test_a_huge_file_and_a_pipe_are_put_aside_unread(tmp_path: Path):
         if not hasattr(os, "mkfifo"):
             break
         os.mkfifo(path)
+
+
+# In a thread of its own
+
+
+def opened(folder: Path) -> tuple[SettingsWriter, Settings]:
+    """A game on a folder."""
+    file = SettingsFile(folder)
+    settings = file.load()
+    return SettingsWriter(file, settings), settings
+
+
+def test_two_games_on_one_folder_leave_each_others_choices_alone(tmp_path: Path):
+    SettingsFile(tmp_path).save(Settings(model="eagle"))
+    (one, mine), (other, yours) = opened(tmp_path), opened(tmp_path)
+    mine.colour_safe = True
+    one.save(mine)
+    one.wait()
+    yours.reduced_motion = True
+    other.close(yours)
+    one.close(mine)
+    assert SettingsFile(tmp_path).load() == Settings(model="eagle", colour_safe=True, reduced_motion=True)
+
+
+def test_what_is_set_and_set_back_is_what_it_was(tmp_path: Path):
+    writer, settings = opened(tmp_path)
+    for value in (True, False):
+        settings.colour_safe = value
+        writer.save(settings)
+        writer.wait()
+        assert SettingsFile(tmp_path).load().colour_safe is value
+
+
+def test_nothing_that_was_not_changed_is_written(tmp_path: Path):
+    SettingsFile(tmp_path).save(Settings())
+    writer, settings = opened(tmp_path)
+    (tmp_path / FILE_NAME).write_text("edited meanwhile")
+    writer.close(settings)
+    assert (tmp_path / FILE_NAME).read_text() == "edited meanwhile"
+
+
+def test_a_change_never_waits_for_the_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    threads, flush, slow = set(), os.fsync, Event()
+
+    def fsync(handle: int) -> None:
+        threads.add(current_thread())
+        assert slow.wait(30)
+        flush(handle)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    writer, settings = opened(tmp_path)
+    for number in range(20):
+        settings.assist = number / 20
+        writer.save(settings)
+    assert not (tmp_path / FILE_NAME).exists()
+    settings.assist = 1.0  # which was not asked to be saved
+    slow.set()
+    writer.wait()
+    assert current_thread() not in threads
+    assert SettingsFile(tmp_path).load().assist == 19 / 20
+
+
+def test_a_full_disk_is_told_once_and_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    writer, settings = opened(tmp_path)
+    settings.colour_safe = True
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", lambda _: (_ for _ in ()).throw(OSError(errno.ENOSPC, "No space left on device")))
+        writer.save(settings)
+        writer.wait()
+    assert "No space left" in writer.problem()
+    assert writer.problem() == ""
+    writer.close(settings)
+    assert SettingsFile(tmp_path).load().colour_safe
+
+
+def test_a_kill_at_any_moment_leaves_a_whole_file(tmp_path: Path):
+    """A process that changes settings without end is killed, again and again."""
+    SettingsFile(tmp_path).save(Settings(model="eagle"))
+    script = (
+        "import sys; from pathlib import Path; from game.settings import *; from game.settings_writer import *\n"
+        "file = SettingsFile(Path(sys.argv[1])); settings = file.load(); writer = SettingsWriter(file, settings)\n"
+        "print(flush=True)\n"
+        "while True:\n"
+        "    settings.colour_safe = not settings.colour_safe\n"
+        "    writer.save(settings); writer.wait()\n"
+    )
+    for number in range(4):
+        with subprocess.Popen([sys.executable, "-c", script, tmp_path], stdout=subprocess.PIPE) as process:
+            assert process.stdout
+            process.stdout.readline()
+            time.sleep(0.05 + 0.013 * number)
+            process.kill()
+        file = SettingsFile(tmp_path)
+        assert file.load().model == "eagle"
+        assert not file.problem
+
+
+def test_who_reads_and_writes_under_one_lock_loses_nothing(tmp_path: Path):
+    lock, total = tmp_path / ".lock", tmp_path / "total"
+    total.write_text("0")
+
+    def add() -> None:
+        for _ in range(20):
+            with held(lock, 60):
+                total.write_text(str(int(total.read_text()) + 1))
+
+    threads = [Thread(target=add) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert total.read_text() == "60"
+
+
+def test_a_lock_that_is_never_released_stops_nobody_for_good(tmp_path: Path):
+    other = take(tmp_path / ".lock")
+    with held(tmp_path / ".lock", 0.03):
+        pass
+    assert other
+    other.release()
+    with held(tmp_path / ".lock", 0):
+        assert take(tmp_path / ".lock") is None

@@ -170,6 +170,7 @@ def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
     before = driver.app.canvas.text_width("Text", size=SMALL)
     driver.keys(pygame.K_RIGHT, pygame.K_RIGHT)
     assert driver.app.canvas.text_width("Text", size=SMALL) > 1.2 * before
+    driver.app.settings_writer.wait()
     assert context.settings_file.load().text_size == "largest"
 
 

@@ -149,6 +149,7 @@ def wait_for_card(player: Player) -> None:
 
 
 def saved(player: Player) -> dict[str, object]:
+    player.app.settings_writer.wait()
     settings: dict[str, object] = json.loads((player.app.context.user_dir / "settings.json").read_text())
     return settings
 

@@ -11,6 +11,8 @@ from game.scene import Pop, Transition
 from game.ui import focus, typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
+from game.ui.listing import shortened
+from game.ui.tokens import INK, SMALL, VIEW_SIZE
 from game.ui.widget import PointsManager
 from game.ui.widgets import CHOICE_GAP, Choice, Slider, Toggle, Word
 from tests.game.driver import Driver
@@ -174,6 +176,45 @@ def test_text_is_as_large_as_asked_in_any_window(canvas: Canvas, size: float):
     assert box.left - pixel <= left
     assert right <= box.right + pixel
     assert box.width == pytest.approx(canvas.text_width("HHH", size=size))
+
+
+@pytest.mark.parametrize("letters", [8_000, 1_000_000])
+def test_a_text_of_any_length_is_drawn_no_wider_than_a_screen(canvas: Canvas, letters: int):
+    for size in (SMALL, 44.0):
+        for letter in "Wi":
+            canvas.text(letter * letters, (40, 100), size=size)
+            surface, _ = typeface.render(letter * letters, size * canvas.scale, "regular", INK)
+            assert surface.get_width() <= 16_384  # SDL's scaling wrote past its memory when it was ten times as wide
+    assert canvas.text_width("a" * 1000 + "b") == canvas.text_width("a" * letters)
+
+
+def test_a_line_that_fits_the_largest_screen_is_drawn_whole():
+    canvas = Canvas(pygame.Surface((7680, 4320)))
+    line = "m" * 100
+    while canvas.text_width(line + "m", size=SMALL) < VIEW_SIZE[0]:
+        line += "m"
+    surface, _ = typeface.render(line, canvas._pixels(line, SMALL, "regular", tabular=False), "regular", INK)
+    assert surface.get_width() >= canvas.text_width(line, size=SMALL) * canvas.scale
+
+
+@pytest.mark.parametrize("letters", [0, 3, 30, 100_000])
+def test_a_shortened_text_is_the_longest_that_fits_and_soon_found(
+    canvas: Canvas, letters: int, monkeypatch: pytest.MonkeyPatch
+):
+    text = "Tranquility "[: max(letters, 1) - 1] + "x" * letters
+    looked, width = [], Canvas.text_width
+    monkeypatch.setattr(Canvas, "text_width", lambda *given, **more: looked.append(1) or width(*given, **more))
+    found = shortened(canvas, text, SMALL, 200)
+    assert len(looked) < 25
+    assert canvas.text_width(found, size=SMALL) <= 200
+    if found != text:
+        assert found[-1] == "…"
+        assert text.startswith(found[:-1])
+        assert canvas.text_width(text[: len(found)] + "…", size=SMALL) > 200
+
+
+def test_a_text_that_finds_no_room_at_all_is_three_dots(canvas: Canvas):
+    assert shortened(canvas, "Tranquility", SMALL, 1) == "…"
 
 
 def test_tabular_figures_keep_their_width(canvas: Canvas):

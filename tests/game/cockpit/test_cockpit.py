@@ -89,6 +89,7 @@ def test_the_dial_is_turned_by_keys_wheel_drag_and_stick_and_kept(open_game: Ope
     driver.move((100, 100))
     assert settings.assist == pytest.approx(0.8)
     driver.keys(pygame.K_g, pygame.K_ESCAPE)  # in the pause, it has been saved
+    driver.app.settings_writer.wait()
     saved = SettingsFile(context.user_dir).load()
     assert (saved.assist, saved.copilot) == (pytest.approx(0.8), "guardian")
     assert play_below(driver).waiting  # none of that has begun the flight

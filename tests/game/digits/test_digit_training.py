@@ -1,5 +1,6 @@
 """Train it here: the screen, through real pygame events and with a real worker beside it."""
 
+import json
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -179,6 +180,42 @@ def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
     pupil.close()
     (aside,) = tmp_path.glob(".trash/*/config.json")
     assert aside.read_text() == "old"
+
+
+def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_path: Path):
+    pupil = Pupil(tmp_path)
+    pupil.begin(SMALL, 0)
+    half = tmp_path / f".{pupil.unsaved.name}.old"  # between the two renames of a save
+    half.mkdir()
+    for name in ("last.npz", "training.json"):
+        (half / name).write_bytes(b"")
+    assert not pupil.unfinished
+    assert half.exists()
+    pupil.close()
+    assert pupil.unfinished
+    assert not half.exists()
+
+
+def test_two_games_teach_two_runs(tmp_path: Path):
+    one, other = Pupil(tmp_path), Pupil(tmp_path)
+    one.collection.hold()
+    other.collection.hold()
+    assert one.unsaved != other.unsaved
+    one.collection.release()
+    other.collection.release()
+
+
+def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(train: Driver, tmp_path: Path):
+    pupil, runs = train.top.pupil, tmp_path / "user" / "digits" / "runs"
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: pupil.curves.points)
+    assert pupil.save("first") == ""
+    pupil.begin(SMALL, 4)
+    assert pupil.waiting
+    assert pupil.save("second") == texts.PUPIL_NOTHING
+    wait(train, lambda: pupil.curves.points)
+    assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
+    assert pupil.seed == 4
 
 
 @pytest.mark.parametrize("name", ["..", "a/b", "", "con", "taken"])

@@ -15,6 +15,7 @@ from game.digits.contest import ROUNDS
 from game.scenes import quiz
 from game.scenes.dream import Dream
 from game.scenes.quiz import Quiz
+from game.ui.widget import Widget
 from tests.game.driver import Driver
 
 SEVEN = [(200, 180), (380, 180), (280, 480)]
@@ -32,6 +33,12 @@ def stroke(driver: Driver, points: list[tuple[float, float]]) -> None:
             at = (start[0] + (end[0] - start[0]) * part, start[1] + (end[1] - start[1]) * part)
             driver.post(pygame.MOUSEMOTION, pos=driver.to_window(at), rel=(0, 0), buttons=(1, 0, 0))
     driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(points[-1]), button=1)
+
+
+def classifier_image() -> np.ndarray:
+    image = np.zeros((28, 28), np.float32)
+    image[4:24, 13:15] = 1
+    return image
 
 
 def told(monkeypatch, driver: Driver) -> list[str]:
@@ -109,11 +116,28 @@ def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..
     assert len(scene.pad.strokes) == 1, "what was read stays as it is"
     game.key(pygame.K_RETURN)
     assert scene.contest.round.kind == "read"
-    game.click(scene._keypad[scene.contest.round.digit].box.center)
+    game.click(scene._form.widgets[scene.contest.round.digit].box.center)
     assert scene.contest.score("read") == (1, 1)
     game.button(pygame.CONTROLLER_BUTTON_A)
     assert scene.contest.place == 2
     assert scene.pad.empty
+
+
+def test_words_that_have_done_their_work_are_gone(open_game: Callable[..., Driver], classifier):
+    game = open_game(Quiz(classifier))
+    game.frames(2)
+    scene = game.top
+    elements = scene._form.manager.get_sprite_group()
+    for _ in range(3):
+        for _ in range(10):
+            digit = scene.contest.round.digit
+            scene.contest.submit(classifier_image()) if scene.contest.round.kind == "draw" else scene._read(digit)
+            scene._lay()
+            assert {*scene._form.widgets} == {each for each in elements.sprites() if isinstance(each, Widget)}
+            scene._go()
+        assert scene.contest.round is None
+        scene._go()
+    assert len(elements.sprites()) < 15
 
 
 def test_an_empty_pad_is_not_handed_in(open_game: Callable[..., Driver], classifier, monkeypatch):
