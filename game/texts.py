@@ -516,8 +516,8 @@ PRESETS: Final = {
     "classic": (
         "Classic",
         (
-            "Deep Q-learning as one first meets it: slow, and never quite steady. Not of old: time costs points,"
-            " gradients are clipped, rewards scaled, and a decision lasts four steps."
+            "Deep Q-learning as one first meets it: slow, and never quite steady."
+            " Added: clipped gradients, scaled rewards, a cost of time."
         ),
     ),
 }
