@@ -149,3 +149,5 @@ def start(display: str, user_dir: Path, *arguments: str) -> Iterator[Window]:
         if window.process.poll() is None:
             window.process.kill()
             window.process.wait(10)
+        if window.process.stdout:
+            window.process.stdout.close()
