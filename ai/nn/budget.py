@@ -1,6 +1,6 @@
 """How large a network may be: a small file must not be able to ask for more than a machine has.
 
-A network of twelve million parameters, its gradients and its optimizer take some 200 MB.
+An agent of that many parameters, two networks with gradients and an optimizer, takes 430 MB to load.
 """
 
 import math
