@@ -28,7 +28,8 @@ def _where_left(env: LanderEnv, slot: int) -> str:
     """Say which edge of the area a lander has crossed; heights are above the pad, as the read-out has them."""
     limits = env.limits
     if env.position[slot, 1] > limits.ceiling:
-        return texts.LEFT_AT_THE_TOP.format(height=float(env.altitude[slot]))
+        height = limits.ceiling - float(env.position[slot, 1] - env.altitude[slot])
+        return texts.LEFT_AT_THE_TOP.format(height=height)
     return texts.LEFT_AT_THE_SIDE.format(width=limits.half_width)
 
 

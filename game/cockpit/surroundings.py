@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from ai.lander import PARAMS, LanderEnv
+from ai.lander import PARAMS, LanderEnv, Outcome
 from game import texts
 from game.ui.canvas import Canvas
 from game.ui.tokens import INK, MARGIN, MUTE, SMALL
@@ -57,6 +57,8 @@ def _edges(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
     """Warn of the edges of the area, which nothing in the world shows, while the flight goes there."""
     (x, y), (across, up) = env.position[0].tolist(), env.velocity[0].tolist()
     limits = env.limits
+    if env.outcome[0] != Outcome.FLYING:
+        return
     if up > 0 and (above := limits.ceiling - y) < _NEAR_EDGE:
         yield texts.EDGE_ABOVE.format(metres=math.ceil(max(0.0, above))), 0.0, True
     if x * across > 0 and (aside := limits.half_width - abs(x)) < _NEAR_EDGE:
