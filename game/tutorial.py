@@ -208,7 +208,6 @@ class Tutorial(Course):
         left = self._lessons[self._number + 1 :]
         beyond = next((number for number, lesson in enumerate(left, 1) if not lesson.back), 0)
         self.through = not beyond
-        self._why = ""
         self._begin_lesson(self._number + beyond)
 
     def leave(self) -> None:
@@ -238,7 +237,7 @@ class Tutorial(Course):
         return replace(card, title=texts.TUTORIAL_DONE, reason=texts.TUTORIAL_DONE_REASON, score="")
 
     def _begin_lesson(self, number: int) -> None:
-        self._number = number
+        self._number, self._why = number, ""
         self._done_for = self._praise = self._begun = 0
 
     def _do_without_network(self) -> None:

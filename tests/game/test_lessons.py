@@ -208,4 +208,8 @@ def test_who_holds_on_to_the_engine_is_warned_lost_told_why_and_goes_on_by_letti
     pupil.driver.frames(30)
     assert not play(pupil.driver).waiting
     assert play(pupil.driver).flight.env.velocity[0, 1] < -0.3
+    assert pupil.course.why
+    while pupil.course.lesson.name == "fall":
+        pupil.follow()
+    assert not pupil.course.why  # what went wrong before is done with
     to_the_landing(pupil)
