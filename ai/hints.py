@@ -86,9 +86,10 @@ class Recent:
         here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success"])
         episodes, success = history["episodes"][here], history["success"][here]
         if not len(episodes):
-            return success
+            return np.empty(0)
         ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
-        return success[np.searchsorted(episodes, ends)]
+        shares: Doubles = success[np.searchsorted(episodes, ends)]
+        return shares
 
     def best(self) -> float:
         """The largest share that landed, in this stage, over so many flights that it is not chance."""

@@ -120,9 +120,7 @@ class _Trial:
 class _LiveRun:
     """A Training, what has been told of it, and where it is kept."""
 
-    def __init__(
-        self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]
-    ) -> None:
+    def __init__(self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]) -> None:
         if not isinstance(training.env, LanderEnv):
             raise ValueError(f"only landers can be looked into, not {training.config.env}")
         self.training, self.history, self.env = training, history, training.env
@@ -238,11 +236,12 @@ class _LiveRun:
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.flights.known else np.nan
         learnt = 1.0 if self.training.agent.train_count > self._began_learning else np.nan
-        shares = [flown * share for share in progress.shares]
+        landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
             flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
-            progress.stage, progress.steps_per_second, *shares, parts=progress.parts or NOTHING_PAID,
+            progress.stage, progress.steps_per_second, landed, crashed, out_of_bounds,
+            timed_out, progress.parts or NOTHING_PAID,
         )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:

@@ -353,8 +353,8 @@ class DigitTrainingScene:
         figure = "" if part is None else f"{100 * part:.2f}"
         words = texts.PUPIL_READ if pupil.test is None else texts.PUPIL_TESTED
         if pupil.test is not None and pupil.kept_epoch is not None:
-            last = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
-            line = texts.PUPIL_KEPT_BEST.format(epoch=pupil.kept_epoch, last=last)
+            read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
+            line = texts.PUPIL_KEPT_BEST.format(epoch=pupil.kept_epoch, last=read)
         draw_standing(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
         hints = self._form.hints or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)

@@ -33,7 +33,6 @@ _CHARTS: Final = (
 )
 
 
-
 class Board:
     """Six charts over one axis: seconds, decisions, or each run from its beginning to its end.
 

@@ -66,12 +66,11 @@ class Knob(Widget):
         self._turn, self._enter = turn, enter
         self._named = False  # the mouse was pressed on the name
 
-    def display(
-        self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = ""
-    ) -> None:
+    def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
         """Show what the panel says."""
         self.value, self.home, self.waits, self.idle = value, home, waits, idle
-        self.now = None if now is None or figure(now) == figure(value) else now
+        rounded = None if now is None else float(f"{now:.3g}")
+        self.now = None if rounded is None or figure(rounded) == figure(value) else rounded
         self.help = idle or self.dial.help
 
     @property
@@ -238,9 +237,7 @@ class WordsKnob(Knob):
     values: tuple[Any, ...] = ()
     row: WordRow
 
-    def display(
-        self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = ""
-    ) -> None:
+    def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
         """Show what the panel says; a value that is on no word has one made for it."""
         super().display(value, home, waits=waits, now=now, idle=idle)
         own = [extra for extra in (home, value) if extra not in self.dial.stops]
