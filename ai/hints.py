@@ -85,10 +85,10 @@ class Recent:
         history = self.history
         here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success"])
         episodes, success = history["episodes"][here], history["success"][here]
-        if len(episodes):
-            ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
-            success = success[np.searchsorted(episodes, ends)]
-        shares: Doubles = success
+        if not len(episodes):
+            return np.empty(0)
+        ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
+        shares: Doubles = success[np.searchsorted(episodes, ends)]
         return shares
 
     def best(self) -> float:

@@ -240,8 +240,8 @@ class _LiveRun:
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
             flown * progress.mean_return, learnt * progress.loss, learnt * progress.mean_q, progress.epsilon,
-            progress.stage, progress.steps_per_second, landed, crashed, out_of_bounds, timed_out,
-            progress.parts or NOTHING_PAID,
+            progress.stage, progress.steps_per_second, landed, crashed, out_of_bounds,
+            timed_out, progress.parts or NOTHING_PAID,
         )  # fmt: skip
 
     def _checkpoint(self, success: float) -> Checkpoint:

@@ -38,7 +38,7 @@ COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
     "crashed", "out_of_bounds", "timed_out", "dead_share", "clipped_share",
 )  # fmt: skip
-PACE: Final = {"modern": 2_500.0, "classic": 150.0}  # decisions a second
+MANY, ALONE = 2_500.0, 150.0  # decisions a second of many landers, and of one
 SHORT: Final = {"modern": 30_000, "classic": 3_000}  # decisions of a run
 LATE: Final = 180_000  # decisions after which modern should land
 PATIENCE: Final = 40.0  # seconds of the processor for one run
@@ -107,7 +107,7 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
     turns = sorted(case.turns.items())
     done: list[tuple[int, str, Any]] = []
     problem, taken, began = "", 0, time.process_time()
-    going = live(config, case.seed, clock=_clock(PACE[case.preset] / config.num_envs))
+    going = live(config, case.seed, clock=_clock(ALONE if config.num_envs == 1 else MANY / config.num_envs))
     try:
         told = next(going)
         while taken < case.decisions and time.process_time() - began < PATIENCE:

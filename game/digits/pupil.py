@@ -209,8 +209,7 @@ class Pupil(Learner):
             match told:
                 case DigitPoint() | Score() | Turned():
                     self.curves.append(told)
-                    if isinstance(told, Turned) and told.name != REVERTED:
-                        self.config = self.config.changed(**{told.name: told.after})
+                    self.config = _turned(self.config, told)
                 case Confusion():
                     self.confusion = told
                 case DigitsBegun(config, seed, _, steps):
@@ -252,3 +251,10 @@ class Pupil(Learner):
             except LibraryError as error:
                 return str(error)
         return ""
+
+
+def _turned(config: DigitConfig, told: DigitPoint | Score | Turned) -> DigitConfig:
+    """Return the configuration that a run has after what it told."""
+    if not isinstance(told, Turned) or told.name == REVERTED:
+        return config
+    return config.changed(**{told.name: told.after})

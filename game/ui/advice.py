@@ -27,6 +27,10 @@ class Advice:
     """Asks the adviser and shows what it says in a box of a form; `turn` sets a knob by its name.
 
     `go_back` is called with the moment, in decisions, that a run should return to.
+
+    Attributes:
+        done: what the last remedy did, in words.
+
     """
 
     def __init__(
@@ -37,7 +41,7 @@ class Advice:
         self._moment = 0  # of the run as it was last seen, in decisions
         self._came_from: int | None = None  # the moment at which a remedy went back
         self._hint: Hint | None = None
-        self._done = ""  # what the last remedy did
+        self.done = ""  # what the last remedy did
         self._quiet = False
         self._words: list[Word] = []
 
@@ -73,7 +77,7 @@ class Advice:
         box = self._box
         canvas.outline(box, 8, HUMAN, 1, 0.35)
         title, said = (
-            (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self._done)
+            (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self.done)
         )
         canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
         for number, line in enumerate(wrapped(canvas, said, SMALL, self._room)[:_LINES]):
@@ -110,7 +114,7 @@ class Advice:
         back_to = self._hint.back_to if self._hint else None
         remedy = self.adviser.apply(went_back=back_to is not None)
         went = [] if back_to is None else [texts.HINT_WENT_BACK.format(decisions=back_to)]
-        self._done = ", ".join([*([told(remedy)] if remedy else []), *went])
+        self.done = ", ".join([*([told(remedy)] if remedy else []), *went])
         for name, value in remedy.items():
             self._turn(name, value)
         self._came_from = None if back_to is None else self._moment

@@ -69,7 +69,8 @@ class Knob(Widget):
     def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
         """Show what the panel says."""
         self.value, self.home, self.waits, self.idle = value, home, waits, idle
-        self.now = None if now is None or figure(now) == figure(value) else now
+        rounded = None if now is None else float(f"{now:.3g}")
+        self.now = None if rounded is None or figure(rounded) == figure(value) else rounded
         self.help = idle or self.dial.help
 
     @property

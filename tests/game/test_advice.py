@@ -7,10 +7,16 @@ import pygame
 import pytest
 
 from ai.config import PRESETS
+from ai.hints import RULES, Hint
 from ai.history import Checkpoint, History
+from game import texts
 from game.context import Context
+from game.ui import typeface
 from game.ui.advice import Advice
+from game.ui.canvas import Canvas
 from game.ui.form import Form
+from game.ui.prose import wrapped
+from game.ui.tokens import SMALL, TEXT_SIZES
 from tests.ai.test_hints import HEALTHY
 
 MODERN = PRESETS["modern"]
@@ -26,6 +32,30 @@ def collapsed() -> History:
     run.append(Checkpoint(20.0, 200_000, 0.97, np.zeros(3, np.float32)))
     run.append(Checkpoint(39.0, 390_000, 0.2, np.zeros(3, np.float32)))
     return run
+
+
+@pytest.mark.parametrize("growth", TEXT_SIZES.values())
+def test_every_hint_has_room_in_its_frame(growth: float) -> None:
+    typeface.grow(growth)
+    try:
+        canvas = Canvas(pygame.Surface((1280, 720)))
+        for said in texts.HINTS.values():
+            assert len(wrapped(canvas, said, SMALL, 384 - 28)) <= 2, said
+        assert set(texts.HINTS) == {rule.name for rule in RULES}
+    finally:
+        typeface.grow(1.0)
+
+
+def test_while_something_else_waits_no_hint_asks(context: Context, collapsed: History) -> None:
+    form = Form(context)
+    advice = Advice(form, pygame.Rect(868, 612, 384, 60), lambda *_: None, lambda _: None)
+    advice._lay(Hint("overfed", {"num_envs": 256}))
+    assert advice.shown
+    advice.hush(True)
+    assert not advice.shown
+    assert not form.widgets
+    advice.hush(False)
+    assert [each.label for each in form.widgets] == [texts.HINT_APPLY, texts.HINT_DISMISS]
 
 
 def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, collapsed: History) -> None:
@@ -49,6 +79,8 @@ def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, colla
     applied = dict(turned)
     assert applied["learning_rate"] < MODERN.learning_rate
     assert advice.shown, "the way back is offered"
+    assert advice.done.startswith("Learning rate")
+    assert "200,000" in advice.done, "and what was done is said"
     form.widgets[0].press()
     assert gone_to == [200_000, 399_000]
     assert dict(turned)["learning_rate"] == MODERN.learning_rate

@@ -375,3 +375,25 @@ def words_drawn(game: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:
         patch.setattr(Canvas, "text", text)
         game.frames(1)
     return written
+
+
+def test_a_sabotage_that_waits_is_explained_and_the_run_keeps_its_name(
+    panel: tuple[Driver, Panel], monkeypatch: pytest.MonkeyPatch
+):
+    game, scene = panel
+    scene.knobs.set_running(True)
+    game.click(scene.word(texts.SABOTAGE).box.center)
+    word, sentence, measured = texts.SABOTAGES["no_n_step"]
+    game.click(scene.word(word).box.center)
+    assert scene.knobs.name == "Modern", "that is what still flies"
+    assert not scene.knobs.changed
+    written = " ".join(words_drawn(game, monkeypatch))
+    assert texts.KNOBS_STARTS_ANEW_AS.format(name=word) in written
+    assert sentence in written
+    assert measured in written
+    game.click(scene.word(texts.KNOBS_UNDO).box.center)
+    assert not scene.knobs.waiting
+    game.click(scene.word(texts.SABOTAGE).box.center)
+    game.click(scene.word(word).box.center)
+    game.click(scene.word(texts.KNOBS_APPLY).box.center)
+    assert scene.knobs.name == word
