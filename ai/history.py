@@ -237,8 +237,7 @@ class History:
 
 def _check(entry: Checkpoint | Alteration | Validation) -> None:
     """Raise ValueError if a number of this entry is none, or what should be a name or a table is not."""
-    numbers = [value for name in ("decisions", "seconds", "success", "mean_return")
-               if (value := getattr(entry, name, 0.0)) is not None]  # fmt: skip
+    numbers = [getattr(entry, name, 0.0) for name in ("decisions", "seconds", "success", "mean_return")]
     if not all(finite(number) for number in numbers) or not 0 <= entry.decisions == int(entry.decisions):
         raise ValueError(f"{type(entry).__name__} with numbers that make no sense: {numbers}")
     if isinstance(entry, Alteration) and not isinstance(entry.name, str):
