@@ -136,7 +136,8 @@ def _keep_training(training: Training, clock: TrainingClock, output: Path) -> in
     except ValueError as error:
         return fail(f"{stopped}Nothing new is kept in {output}: {error}")
     if stopped:
-        return fail(f"{stopped}What was best until then is kept in {output}.")
+        kept = "What was best until then" if training.best else "The last network, which has not been measured,"
+        return fail(f"{stopped}{kept} is kept in {output}.")
     print(f"kept in {output}: {training.best}")
     return exit_code(stop)
 

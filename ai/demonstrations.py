@@ -51,7 +51,7 @@ class Demonstration:
         if self.spawn not in tuple(SPAWNS) or not 0 < len(self.actions) <= _LONGEST:
             raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {brief(repr(self.spawn), 40)}")
         if max(self.actions) >= NUM_ACTIONS:
-            raise ValueError(f"there are {NUM_ACTIONS} actions, from 0 on, and {max(self.actions)} is none of them")
+            raise ValueError(f"this is no flight: actions are below {NUM_ACTIONS}, and one was {max(self.actions)}")
 
 
 def takeover(hands: Sequence[bool]) -> int:
