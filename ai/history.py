@@ -202,6 +202,8 @@ class History:
                 described = json.loads(str(arrays["described"]))
                 history._restore(described, arrays["points"], arrays["values"])
             history.reward_scale = float(described.get("reward_scale") or _scale_beside(file))
+            if not 0.0 < history.reward_scale < np.inf:
+                raise ValueError(f"a reward scale of {history.reward_scale}")
         except FileNotFoundError:
             return cls()
         except (OSError, ValueError, KeyError, TypeError, EOFError, MemoryError, BadZipFile, zlib.error) as error:
