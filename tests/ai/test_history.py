@@ -213,3 +213,12 @@ def test_a_history_tells_in_which_unit_its_values_are_and_an_older_one_takes_it_
     read = History.read(tmp_path)
     assert read.reward_scale == 0.01
     assert read["mean_q"].tolist() == history["mean_q"].tolist()
+
+
+@pytest.mark.parametrize("scale", [-1.0, float("nan"), float("inf"), "much"])
+def test_a_unit_that_makes_no_sense_is_refused(tmp_path, scale):
+    history = full_history()
+    history.reward_scale = scale
+    history.write(tmp_path)
+    with pytest.raises(ModelFormatError):
+        History.read(tmp_path)
