@@ -30,7 +30,7 @@ class SettingsWriter:
         self._since = settings.to_dict()  # as they were written last
         self._unread = settings.unread  # until what could not be read is put aside
         self._problems: SimpleQueue[str] = SimpleQueue()
-        self._wanted: SimpleQueue[Settings | Event] = SimpleQueue()
+        self._wanted: SimpleQueue[Settings | Event | None] = SimpleQueue()
         self._thread: Thread | None = None
 
     def save(self, settings: Settings) -> None:
@@ -52,19 +52,21 @@ class SettingsWriter:
             done.wait()
 
     def close(self, settings: Settings) -> None:
-        """Write the settings for the last time, and wait for that."""
+        """Write the settings for the last time, and wait until that is done and the thread has ended."""
         self.save(settings)
-        self.wait()
+        self._tell(None)
+        if self._thread:
+            self._thread.join()
+            self._thread = None
 
-    def _tell(self, wanted: Settings | Event) -> None:
+    def _tell(self, wanted: Settings | Event | None) -> None:
         if self._thread is None:
             self._thread = Thread(target=self._work, name="settings", daemon=True)
             self._thread.start()
         self._wanted.put(wanted)
 
     def _work(self) -> None:
-        while True:
-            wanted = self._wanted.get()
+        while (wanted := self._wanted.get()) is not None:
             if isinstance(wanted, Event):
                 wanted.set()
                 continue

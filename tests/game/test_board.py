@@ -8,6 +8,8 @@ from ai.history import COLUMNS, History, Point
 from ai.live import live
 from ai.messages import Begun
 from game import texts
+from game.learner import Beside
+from game.library import Library
 from game.student import Student
 from game.ui.board import Board
 from game.ui.chart import Chart, Series
@@ -27,10 +29,10 @@ def test_mean_q_is_drawn_in_points_of_reward_whatever_the_networks_count_in(monk
     drawn: dict[str, list[Series]] = {}
     monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: series}))
     board = Board()
-    runs = [(name, run(PRESETS[name], 80.0)) for name in ("modern", "classic")]
-    assert runs[0][1]["mean_q"][0] != runs[1][1]["mean_q"][0]
+    modern, classic = (run(PRESETS[name], 80.0) for name in ("modern", "classic"))
+    assert modern["mean_q"][0] != classic["mean_q"][0]
     for _ in range(24):
-        board.look(runs)
+        board.look(modern, [Beside("classic", classic, 1)])
     assert len(drawn[texts.TRAIN_CHARTS["mean_q"]]) == 2
     for series in drawn[texts.TRAIN_CHARTS["mean_q"]]:
         np.testing.assert_allclose(series.y, 80.0, rtol=1e-6)
@@ -50,7 +52,7 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
         def poll(self) -> tuple[object, ...]:
             return tuple(message for message in told if isinstance(message, Begun))
 
-    student = Student.__new__(Student)
-    student.history, student._worker = History(), Tells()  # type: ignore[assignment]
+    student = Student(Library(tmp_path))
+    student._worker = Tells()  # type: ignore[assignment]
     student.poll()
     assert student.history.reward_scale == config.reward_scale

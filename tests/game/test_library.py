@@ -32,6 +32,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     training = Training(SMALL, seed=5)
     training.task.validation_episodes = 4
     training.advance()
+    training.conclude()
     save_run(training, folder)
     return folder
 

@@ -250,7 +250,8 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
     driver.frames(30)
     assert scene(driver).flight.hand is Hand.HUMAN
     assert "weights" in scene(driver)._network.problem
-    assert scene(driver)._network.problem in driver.app._notes._text
+    begins = scene(driver)._network.problem[:18]  # a long one is shortened in its middle
+    assert begins in driver.app._notes._text
 
 
 def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_other_flight(open_game: Open, context):

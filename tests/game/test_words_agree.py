@@ -8,6 +8,7 @@ import numpy as np
 import pygame
 import pytest
 
+from ai.decision import Decision, decide
 from ai.lander import PARAMS, Outcome
 from ai.missions import MISSIONS
 from game import networks, texts
@@ -39,7 +40,10 @@ class Weighs:
         return np.where(falls[:, None], [0, 1, 1, 9, 5, 5], [9, 6, 6, 0, 1, 1]).astype(np.float32)
 
     def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.q_values(observation).argmax(axis=1)
+        return self.decide(observation, held=held).action
+
+    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
+        return decide(observation, self.q_values(observation), held)
 
 
 class OnlyFlies:
