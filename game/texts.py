@@ -21,6 +21,7 @@ FAULT_BACK: Final = "{key}  back to the menu"
 
 # Keys' names and hints
 ARROWS: Final = "↑ ↓"
+ARROWS_ASIDE: Final = "← →"
 HINT_MOVE: Final = "move"
 HINT_CHOOSE: Final = "choose"
 HINT_CHANGE: Final = "change"
