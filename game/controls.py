@@ -172,6 +172,11 @@ class Controls:
         """What moves the focus."""
         return self.pad_sign(glyphs.CROSS) if self.pad_in_use else texts.ARROWS
 
+    @property
+    def arrows_aside(self) -> str:
+        """What moves a slider."""
+        return self.pad_sign(glyphs.CROSS) if self.pad_in_use else texts.ARROWS_ASIDE
+
     def key_names(self, meaning: Meaning) -> list[str]:
         """Name every key of a meaning, as written on the keyboard."""
         if meaning is Command.BACK:  # in a form, what pauses goes back; its own keys are less known

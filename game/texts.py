@@ -21,6 +21,7 @@ FAULT_BACK: Final = "{key}  back to the menu"
 
 # Keys' names and hints
 ARROWS: Final = "↑ ↓"
+ARROWS_ASIDE: Final = "← →"
 HINT_MOVE: Final = "move"
 HINT_CHOOSE: Final = "choose"
 HINT_CHANGE: Final = "change"
@@ -712,7 +713,7 @@ HINTS: Final = {
 }
 
 # Train: the run that the last visit left without a name
-TRAIN_LEFT: Final = "Here is a run that was never given a name."
+TRAIN_LEFT: Final = "Your last run can go on where it stopped."
 TRAIN_LEFT_FIGURES: Final = "Its best network landed {percent:.0f}% of its trials after {seconds:.0f} s of learning."
 TRAIN_LEFT_YOUNG: Final = "It has learnt for {seconds:.0f} s."
 TRAIN_LEFT_GO_ON: Final = "Go on with it"
@@ -1169,6 +1170,7 @@ TUTORIAL_AGAIN: Final = "Once more, from the top."
 TUTORIAL_NETWORK_LANDED: Final = "The network has landed it: now you."
 TUTORIAL_LANDED_EARLY: Final = "Landed already, with more to be learnt before."
 TUTORIAL_TOO_HIGH: Final = "Let go of  {main} : the area ends above you."
+TUTORIAL_RISES: Final = "Let go of  {main} : you are rising."
 TUTORIAL_TOO_FAST: Final = "{main}  now: too fast, so near the ground."
 TUTORIAL_TOO_TILTED: Final = "{other}  to stand upright before you touch."
 TUTORIAL_AWAY: Final = "The pad is far: lean towards it with  {inward} , and fire."

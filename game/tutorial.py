@@ -38,6 +38,7 @@ _SINKING: Final = (0.0, 16.0, 0.0, -2.0, 0.0, 0.0)
 _LEAN: Final = 0.15  # rad
 _UPRIGHT: Final = (0.08, 0.15)  # rad, rad/s
 _SLOW: Final = 1.0  # m/s
+_RISING: Final = 0.3  # m/s, faster than which it is no longer braking
 _MARGIN: Final = 2.0, 1.4  # metres, and shares of the way to brake, within which that is more urgent than a lesson
 _NEAR: Final = 4.0  # metres above the pad, where one had better stand upright
 _TOLD_WHY: Final = 240  # steps that it is said why a lesson begins again, once it flies
@@ -94,7 +95,7 @@ def _stands_upright(flight: Flight) -> bool:
 
 
 def _brakes(flight: Flight) -> bool:
-    return bool(-_SLOW <= flight.env.velocity[0, 1] <= 0.3)
+    return bool(-_SLOW <= flight.env.velocity[0, 1] <= _RISING)
 
 
 def _turned(env: LanderEnv) -> float:
@@ -295,6 +296,8 @@ class Tutorial(Course):
             return texts.TUTORIAL["take_back"][0]
         if lesson.name not in ("lean", "fall") and abs(float(env.position[0, 0])) > _SIDEWAYS:
             return texts.TUTORIAL_AWAY
+        if lesson.name == "brake" and env.velocity[0, 1] > _RISING:
+            return texts.TUTORIAL_RISES
         if lesson.name == "upright" and abs(_turned(env)) < _UPRIGHT[0]:
             return texts.TUTORIAL_STANDS
         return told[1] if self._begun > 2 and told[1] else told[0]
@@ -314,6 +317,10 @@ class Tutorial(Course):
         """Say why the lesson begins again, until it has flown for a while; empty if it does not."""
         return self._why if self._over or self._flown_for < _TOLD_WHY else ""
 
+    def _why_beside(self, flight: Flight) -> str:
+        """Return what is said of it beside the craft: nothing while a wreck says it itself."""
+        return "" if flight.outcome is Outcome.CRASHED else self.why
+
     def draw(self, canvas: Canvas, view: View, flight: Flight, scene: Moment) -> None:
         """Write what to do beside the craft, below it why it is to be done again."""
         if flight.over and self.through:
@@ -322,14 +329,15 @@ class Tutorial(Course):
         words = self.words(flight, scene.controls, waiting=scene.waiting, stuck=scene.stuck)
         praised = bool(self._praise) and words == texts.TUTORIAL_GOOD[self.lesson.name]
         tick = 22 if praised else 0
-        width = max(canvas.text_width(words, size=_SIZE) + tick, canvas.text_width(self.why, size=SMALL))
+        why = self._why_beside(flight)
+        width = max(canvas.text_width(words, size=_SIZE) + tick, canvas.text_width(why, size=SMALL))
         right = float(view.points((x + _BESIDE, y))[0])
         left = float(view.points((x - _BESIDE, y))[0]) - width - 28
         at = right if right + width + 28 + _EDGE < scene.clear.right else max(left, _EDGE)
         row = min(max(float(view.points((x, y))[1]), _ROWS[0]), _ROWS[1])
-        canvas.panel((at, row - 18, width + 28, 36 + (_WHY if self.why else 0)))
+        canvas.panel((at, row - 18, width + 28, 36 + (_WHY if why else 0)))
         at += 14
-        canvas.text(self.why, (at, row + 6 + _WHY), size=SMALL, colour=MUTE)
+        canvas.text(why, (at, row + 6 + _WHY), size=SMALL, colour=MUTE)
         if praised:
             canvas.marker("check", (at + 6, row), 12, canvas.palette.good)
             at += 22

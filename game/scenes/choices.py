@@ -112,7 +112,7 @@ class ChoicesScene:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
         self._draw_skill(canvas)
         word = self._context.controls.word
-        hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.BACK), texts.HINT_BACK)]
+        hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
     @property

@@ -77,9 +77,9 @@ class Replay:
         """Keep everything for the way back."""
 
     def close(self) -> None:
-        """Leave a moving picture that is not done."""
+        """Leave a moving picture that is not done, and say so."""
         if self._export:
-            self._export.close()
+            self._stop_export()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Stop, wind, choose; take over."""
@@ -219,9 +219,13 @@ class Replay:
             ]  # fmt: skip
             more = texts.EXPORT_GIF_ONLY if KINDS[".mp4"].missing else texts.EXPORT_MORE
             return Push(Asking(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
+        self._stop_export()
+        return None
+
+    def _stop_export(self) -> None:
+        assert self._export is not None
         self._export.close()
         self._end_export(texts.EXPORT_STOPPED)
-        return None
 
     def _begin_export(self, suffix: str) -> None:
         assert self._context is not None

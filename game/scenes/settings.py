@@ -89,7 +89,7 @@ class SettingsScene:
         self._draw_sound(canvas)
         self._draw_keys(canvas)
         word = self._context.controls.word
-        hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.BACK), texts.HINT_BACK)]
+        hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
     def _changes(self, name: str) -> Callable[[bool], None]:

@@ -235,7 +235,7 @@ class Chart:
                 sheet.line((plot.x, y), (plot.right, y), LINE)
                 if number in (0, len(lines) - 1):
                     text = plotting.round_number(self._value(float(value)))
-                    sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES, tabular=True)
+                    sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES)
         if self._log:
             for word, y in zip(texts.CHART_LOG, (plot.centery - 2, plot.centery + 9), strict=True):
                 sheet.text(word, (plot.right + 6, y), size=_AXES_SIZE, colour=_AXES)

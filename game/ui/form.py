@@ -7,6 +7,7 @@ from typing import Final, TypeVar
 
 import pygame
 
+from game import texts
 from game.context import Context
 from game.controls import Command, Controls, presses_main, translate
 from game.scene import Transition
@@ -50,6 +51,13 @@ class Form:
     def typing(self) -> bool:
         """Whether letters are being typed into a widget: every key and button is the form's, then."""
         return self.focused is not None and self.focused.typing
+
+    @property
+    def change_hint(self) -> tuple[str, str]:
+        """What changes the widget in focus: the arrows where there is nothing to press."""
+        by_arrows = self.focused is not None and self.focused.by_arrows
+        key = self.controls.arrows_aside if by_arrows else self.controls.word(Command.CONFIRM)
+        return key, texts.HINT_CHANGE
 
     @property
     def hints(self) -> list[tuple[str, str]]:

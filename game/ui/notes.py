@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Final
+
+import pygame
 
 from game.ui.canvas import Canvas
 from game.ui.tokens import FAINT, INK, SMALL, VIEW_SIZE
@@ -12,6 +15,9 @@ _STEPS_FADING: Final = 20
 _LONGEST: Final = 150
 _HEIGHT: Final = 32
 _TOPS: Final = (68, 640, 104, 24, 600, 140, 560, 176, 520, 212, 480, 248, 440)  # where it may stand, the best first
+_SHIFTS: Final = (0, -200, 200)  # and how far beside the middle, if there is no place in it
+_VIEW: Final = pygame.FRect(0, 0, *VIEW_SIZE)
+_PLACES: Final = tuple((VIEW_SIZE[0] / 2 + shift, top) for shift, top in product(_SHIFTS, _TOPS))
 _COVER: Final = 0.96  # it comes over whatever is there
 
 
@@ -21,30 +27,34 @@ class Notes:
     def __init__(self) -> None:
         self._text = ""
         self._left = 0
-        self._top = _TOPS[0]
+        self._place = _PLACES[0]
 
     def show(self, text: str) -> None:
         """Show a message in place of the last one."""
         if len(text) > _LONGEST:  # the end of a path or a reason says the most
             text = text[: _LONGEST // 3] + " … " + text[-_LONGEST * 2 // 3 :]
-        self._text, self._left, self._top = text, _STEPS_SHOWN, _TOPS[0]
+        self._text, self._left, self._place = text, _STEPS_SHOWN, _PLACES[0]
 
     def update(self, canvas: Canvas) -> None:
         """Let 1/60 s pass; move to where it hides the least of the words, widgets and panels of the last picture."""
         self._left = max(0, self._left - 1)
         if not self._left:
             return
-        covered = {top: self._covers(canvas, top) for top in _TOPS}
-        if covered[self._top] > min(covered.values()):
-            self._top = min(_TOPS, key=covered.__getitem__)
+        covered = {place: self._covers(canvas, place) for place in _PLACES}
+        if covered[self._place] > min(covered.values()):
+            self._place = min(_PLACES, key=covered.__getitem__)
 
-    def _box(self, canvas: Canvas, top: float) -> tuple[float, float, float, float]:
-        width = canvas.text_width(self._text, size=SMALL)
-        return VIEW_SIZE[0] / 2 - width / 2 - 16, top, width + 32, _HEIGHT
+    def _box(self, canvas: Canvas) -> pygame.FRect:
+        return self._box_at(canvas, self._place)
 
-    def _covers(self, canvas: Canvas, top: float) -> int:
+    def _box_at(self, canvas: Canvas, place: tuple[float, float]) -> pygame.FRect:
+        width = canvas.text_width(self._text, size=SMALL) + 32
+        box = pygame.FRect(place[0] - width / 2, place[1], width, _HEIGHT)
+        return box.clamp(_VIEW) if width < _VIEW.w else box
+
+    def _covers(self, canvas: Canvas, at: tuple[float, float]) -> int:
         """Return how many pixels of what is to be read it would hide there."""
-        place = canvas.rect(*self._box(canvas, top))
+        place = canvas.rect(*self._box_at(canvas, at))
         return sum(place.clip(area).w * place.clip(area).h for area in canvas.words)
 
     def draw(self, canvas: Canvas) -> None:
@@ -52,9 +62,9 @@ class Notes:
         if not self._left:
             return
         alpha = min(1.0, self._left / _STEPS_FADING)
-        box = self._box(canvas, self._top)
+        box = self._box(canvas)
         with canvas.unnoted():  # it gives way to the page, not to itself
             canvas.panel(box, _COVER * alpha)
             canvas.outline(box, 8, FAINT, alpha=alpha)
-            middle = (VIEW_SIZE[0] / 2, self._top + 20)
+            middle = (box.centerx, box.top + 20)
             canvas.text(self._text, middle, size=SMALL, colour=INK, align="centre", alpha=alpha)

@@ -60,6 +60,7 @@ class Widget(UIElement):
     Attributes:
         focused: whether the form's focus is here.
         typing: whether letters are for this widget alone, and no commands.
+        by_arrows: whether left and right alone change it, and to press it does nothing.
         spells: whether it is letters that are typed into it.
         warmth: 0 to 1, follows `focused` gently.
         help: a sentence about it, for a screen that shows one for what is in focus.
@@ -67,7 +68,7 @@ class Widget(UIElement):
 
     """
 
-    spells = False
+    spells = by_arrows = False
 
     def __init__(self, manager: PointsManager, box: pygame.typing.RectLike, label: str) -> None:
         super().__init__(pygame.Rect(box), manager, None, starting_height=1, layer_thickness=1)

@@ -105,6 +105,8 @@ class Toggle(Widget):
 class Slider(Widget):
     """A number on a thin track with a round handle; label on the left, figure on the right."""
 
+    by_arrows = True
+
     def __init__(
         self,
         manager: PointsManager,

@@ -17,7 +17,9 @@ from game.context import Context
 from game.export import KINDS, Export, Kind
 from game.film import film, frames
 from game.flight_file import Record
+from game.scene import Push
 from game.scenes import replay as module
+from game.scenes.menu import Menu
 from game.scenes.replay import Replay
 from tests.game.driver import Driver
 from tests.game.flights import kept, scripted
@@ -267,3 +269,36 @@ def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, Replay], t
     assert "File exists" in driver.app._notes._text
     assert "Errno" not in driver.app._notes._text
     assert driver.frames(2)
+
+
+def test_who_leaves_a_replay_is_told_that_its_film_was_not_saved(
+    open_game: Callable[..., Driver], context: Context, record: Record, small: None, monkeypatch: pytest.MonkeyPatch
+):
+    pytest.importorskip("PIL")
+    scene = Replay(record)
+    driver = open_game(Menu())
+    driver.app.scenes.apply(Push(scene))
+    driver.frames(2)
+    monkeypatch.setattr(module, "Export", Endless)
+    scene._begin_export(".gif")
+    driver.frames(2)
+    told: list[str] = []
+    monkeypatch.setattr(context, "note", told.append)
+    driver.key(pygame.K_ESCAPE)
+    assert isinstance(driver.top, Menu)
+    assert told == [texts.EXPORT_STOPPED]
+
+
+class Endless:
+    """An export that never ends by itself."""
+
+    share, over, problem = 0.0, False, ""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        self.closed = False
+
+    def poll(self) -> None:
+        """Go on."""
+
+    def close(self) -> None:
+        self.closed = True

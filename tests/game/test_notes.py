@@ -16,7 +16,9 @@ from game.scenes.pause import Pause
 from game.scenes.play import Play
 from game.scenes.runs import Runs
 from game.scenes.settings import SettingsScene
+from game.scenes.train import Train
 from game.scenes.watch import Watch
+from game.ui.tokens import VIEW_SIZE
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]
@@ -27,7 +29,7 @@ def scenes() -> dict[str, Scene]:
     return {
         "menu": Menu(), "settings": SettingsScene(), "logbook": Logbook(), "missions": Missions(), "runs": Runs(),
         "digits": Digits(), "play": Play(seed=1), "watch": Watch(seed=1), "pause": Pause(Menu()),
-        "choices": Play(seed=1), "naming": Menu(),
+        "choices": Play(seed=1), "naming": Menu(), "train": Train(),
     }  # fmt: skip
 
 
@@ -44,8 +46,21 @@ def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, nam
     driver.app.context.note(NOTE)
     driver.frames(2)
     notes, canvas = driver.app._notes, driver.app.canvas
-    place = canvas.rect(*notes._box(canvas, notes._top))
+    place = canvas.rect(*notes._box(canvas))
     written = [area for area in canvas._covered if area.colliderect(place)]
-    assert not written, (notes._top, written)
+    assert not written, (notes._place, written)
     driver.frames(30)
-    assert place == canvas.rect(*notes._box(canvas, notes._top))  # and it stays there
+    assert place == canvas.rect(*notes._box(canvas))  # and it stays there
+
+
+def test_a_note_moves_aside_where_the_middle_is_taken_in_every_row(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    driver = open_game(Menu())
+    driver.frames(2)
+    notes, canvas = driver.app._notes, driver.app.canvas
+    taken = canvas.rect(800, 0, VIEW_SIZE[0] - 800, VIEW_SIZE[1])
+    monkeypatch.setattr(canvas, "words", [taken])
+    notes.show(NOTE)
+    notes.update(canvas)
+    box = canvas.rect(*notes._box(canvas))
+    assert not box.colliderect(taken)
+    assert canvas.surface.get_rect().contains(box)

@@ -1,6 +1,7 @@
 import json
 from collections.abc import Callable, Iterator
 
+import numpy as np
 import pygame
 import pytest
 
@@ -11,6 +12,7 @@ from game import networks, texts
 from game.bindings import Held
 from game.context import Context
 from game.flight import Hand
+from game.outcomes import crash_reason
 from game.records import Records
 from game.scene import Push
 from game.scenes.menu import Menu
@@ -19,6 +21,7 @@ from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
 from game.settings import FILE_NAME
 from game.tutorial import LESSONS, Tutorial
+from tests.game.drawn import Drawn
 from tests.game.driver import Driver
 from tests.game.flights import play
 from tests.game.listener import Listener
@@ -126,6 +129,37 @@ def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, con
     assert not Records(context.user_dir).entries()
     driver.frames(120)
     assert play(driver).flight.env.steps[0] == 0
+
+
+def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    driver = open_game(Play(0, course=Tutorial()))
+    for _ in range(2):
+        driver.key(pygame.K_n)  # to the fall, and the braking
+    driver.key(pygame.K_LEFT)
+    first = play(driver).flight
+    while not first.over:
+        driver.frames(1)
+    drawn = Drawn(monkeypatch)
+    reason = crash_reason(first.env)
+    while play(driver).flight is first:
+        drawn.clear()
+        driver.frames(1)
+        assert drawn.words.count(reason) <= 1
+    drawn.clear()
+    driver.frames(1)
+    assert drawn.words.count(reason) == 1
+
+
+def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
+    driver = open_game(Play(0, course=Tutorial()))
+    course = tutorial(driver)
+    for _ in range(2):
+        driver.key(pygame.K_n)
+    assert course.lesson.name == "brake"
+    scene = play(driver)
+    assert course._line(scene.flight, False, False) == texts.TUTORIAL["brake"][0]
+    scene.flight.env.place(np.ones(1, bool), np.array([[0.0, 12.0, 0.0, 0.5, 0.0, 0.0]]))
+    assert course._line(scene.flight, False, False) == texts.TUTORIAL_RISES
 
 
 def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):

@@ -6,8 +6,13 @@ import numpy as np
 import pygame
 import pytest
 
+from game import texts
 from game.context import Context
+from game.controls import Command
 from game.scene import Pop, Transition
+from game.scenes.choices import ChoicesScene
+from game.scenes.play import Play
+from game.scenes.settings import SettingsScene
 from game.ui import focus, typeface
 from game.ui.canvas import Canvas
 from game.ui.form import Form
@@ -272,3 +277,21 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
     for _ in range(40):
         choice.shift(1)
     assert choice.index == 29
+
+
+@pytest.mark.parametrize("scene", [SettingsScene, ChoicesScene])
+def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver], scene: type):
+    driver = open_game(SettingsScene() if scene is SettingsScene else Play(seed=1))
+    driver.frames(2)
+    if scene is ChoicesScene:
+        driver.key(pygame.K_c)
+    assert isinstance(driver.top, scene)
+    form = driver.top._form
+    seen = set()
+    for widget in form.widgets:
+        form.focus(widget)
+        by_arrows = isinstance(widget, Slider)
+        seen.add(by_arrows)
+        expected = texts.ARROWS_ASIDE if by_arrows else driver.app.context.controls.word(Command.CONFIRM)
+        assert form.change_hint == (expected, texts.HINT_CHANGE)
+    assert seen == {True, False}
