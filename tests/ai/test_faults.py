@@ -63,7 +63,9 @@ def little_memory(megabytes: int = 100):
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("saved") / "run"
-    save_run(Training(SMALL, validation_episodes=1), folder)
+    training = Training(SMALL, validation_episodes=1)
+    training.conclude()  # so that it has a score
+    save_run(training, folder)
     return folder
 
 
@@ -427,6 +429,13 @@ def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
         first.release()  # once more, which must not free what another holds
         assert take(tmp_path / "a.lock") is None
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes")
+def test_a_pipe_in_place_of_a_lock_lets_nobody_wait(tmp_path):
+    os.mkfifo(tmp_path / ".run.lock")
+    waiter = "from ai.nn.lock import take_folder; import sys; take_folder(sys.argv[1]).release()"
+    subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=30)
 
 
 def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(run, monkeypatch):
