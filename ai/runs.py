@@ -145,7 +145,7 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             training.best = _read_score(training, described["best"])
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
-        training.seconds = float(number_of(described["seconds"]))
+        training.seconds = float(number_of(described["seconds"], 0))
         training.flights.load(described.get("flights", Flights(0).to_json()))  # runs of old say nothing of them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error

@@ -144,10 +144,12 @@ def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
     return value
 
 
-def number_of(value: Any) -> float:
-    """Return a finite number that a file has given, as it is; raises ValueError if it is none."""
+def number_of(value: Any, least: float = -math.inf) -> float:
+    """Return a finite number that a file has given, as it is; raises ValueError if it is none, or too small."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < math.inf:
         raise ValueError(f"{brief(repr(value), 40)} is no finite number")
+    if value < least:
+        raise ValueError(f"{brief(repr(value), 40)} is below {least:g}")
     return value
 
 

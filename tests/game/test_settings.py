@@ -79,7 +79,7 @@ def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path, monkeypatch):
     assert "No space left" in file.problem
     monkeypatch.undo()
     assert file.load().model == "old"
-    assert sorted(path.name for path in tmp_path.iterdir()) == [f".{FILE_NAME}.lock", FILE_NAME]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [FILE_NAME]
 
 
 def test_a_folder_that_cannot_be_made_is_a_message(tmp_path: Path):
