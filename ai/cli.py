@@ -9,6 +9,7 @@ import argparse
 import json
 import sys
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,7 +21,10 @@ from ai.command_line import (
     configured,
     exit_code,
     fail,
+    fail_diverged,
     folder,
+    keep,
+    keep_checkpoint,
     out_of_range,
     reason,
     refuse_fixed,
@@ -117,7 +121,7 @@ def _resumed(arguments: argparse.Namespace) -> Training:
 
 def _keep_training(training: Training, clock: TrainingClock, output: Path) -> int:
     """Train, keep what comes of it, and return the exit code."""
-    from ai.runs import rewind
+    from ai.runs import rewind, save_run
 
     stopped = ""
     try:
@@ -128,32 +132,17 @@ def _keep_training(training: Training, clock: TrainingClock, output: Path) -> in
                 stopped = f"training stopped: {error}. "
                 rewind(training)
             # At once: measuring takes seconds, and who wants this to end may not wait.
-            output = _keep(training, output)
+            output, _ = keep(partial(save_run, training), output)
         if not stopped:
-            output = _keep(training, output, final=True)
+            output, _ = keep(partial(save_run, training, final=True), output)
     except OSError as error:
         return fail(f"{stopped}could not write to {output}: {error.strerror or error}")
     except ValueError as error:
         return fail(f"{stopped}Nothing new is kept in {output}: {error}")
     if stopped:
-        kept = "What was best until then" if training.best else "The last network, which has not been measured,"
-        return fail(f"{stopped}{kept} is kept in {output}.")
+        return fail_diverged(stopped, output, measured=training.best is not None)
     print(f"kept in {output}: {training.best}")
     return exit_code(stop)
-
-
-def _keep(training: Training, output: Path, *, final: bool = False) -> Path:
-    """Save, and return where: what was put in that place meanwhile is not to be lost either."""
-    from ai.nn.folder import free_folder
-    from ai.runs import save_run
-
-    try:
-        save_run(training, output, final=final)
-    except FileExistsError as error:
-        print(error, file=sys.stderr)
-        output = free_folder(output)
-        save_run(training, output, final=final)
-    return output
 
 
 def _advance(training: Training, clock: TrainingClock, output: Path, stop: list[int]) -> None:
@@ -161,6 +150,7 @@ def _advance(training: Training, clock: TrainingClock, output: Path, stop: list[
     from tqdm import tqdm
 
     from ai.config import LANDER
+    from ai.runs import save_run
 
     lander, trouble = training.config.env == LANDER, ""
     form = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
@@ -176,21 +166,10 @@ def _advance(training: Training, clock: TrainingClock, output: Path, stop: list[
             if stop:
                 break
             if clock.checkpoint_due():
-                new = _checkpoint(training, output)
+                new = keep_checkpoint(partial(save_run, training), output)
                 if new and new != trouble:
                     bar.write(new, file=sys.stderr)
                 trouble = new
-
-
-def _checkpoint(training: Training, output: Path) -> str:
-    """Save, and say what went wrong, if something did: a disk that is full now may have room again by the end."""
-    from ai.runs import save_run
-
-    try:
-        save_run(training, output)
-    except OSError as error:
-        return f"could not write to {output}: {error.strerror or error}; training goes on"
-    return ""
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ai.knobs import Knobs
 
     Settings = TypeVar("Settings", bound=Knobs)
+    Kept = TypeVar("Kept")
 
 FAILED: Final = 1
 LONGEST: Final = 400  # letters of one line that is told: what is in a file or an argument may be of any length
@@ -106,6 +107,37 @@ def refuse_fixed(begun: Settings, wanted: Settings, begun_seed: int, seed: int |
         fixed.append("seed")
     if fixed:
         raise ValueError(f"a run that has begun cannot change {', '.join(fixed)}; without --resume, a new run can")
+
+
+def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
+    """Save a run, and return where, and what `save` has to say.
+
+    What somebody has put in that place meanwhile stays, and the run goes beside it. Raises OSError if the disk does
+    not take it.
+    """
+    from ai.nn.folder import free_folder
+
+    try:
+        return output, save(output)
+    except FileExistsError as error:
+        print(error, file=sys.stderr)
+        beside = free_folder(output)
+        return beside, save(beside)
+
+
+def keep_checkpoint(save: Callable[[Path], object], output: Path) -> str:
+    """Save, and say what went wrong, if something did: a disk that is full now may have room again by the end."""
+    try:
+        save(output)
+    except OSError as error:
+        return f"could not write to {output}: {error.strerror or error}; training goes on"
+    return ""
+
+
+def fail_diverged(stopped: str, output: Path, *, measured: bool) -> int:
+    """Say that numbers ran away, what is kept of the run, and whether that was measured; return the exit code."""
+    kept = "What was best until then" if measured else "The last network, which has not been measured,"
+    return fail(f"{stopped}{kept} is kept in {output}.")
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,6 +22,8 @@ from ai.nn import (
 )
 from ai.nn.activations import ACTIVATIONS
 from ai.nn.costs import COSTS
+
+MOST_VALUES: Final = 20_000_000  # of one layer for one batch: some 450 MB with all that a step makes of them
 
 
 @dataclass(frozen=True)
@@ -61,20 +64,22 @@ class DigitConfig(Knobs):
                            needs="augmentation")
     # fmt: on
 
-
-DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {
-    "modern": DigitConfig(),
-    "classic": DigitConfig(
-        learning_rate=3e-3, cost="mse", smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
-        output_activation=True, dropout=0.0, augmentation=0.8, original=0.2, epochs=60, batch_size=100,
-    ),
-    # The classic network as it was first described: all 60,000 images once, and plain steps.
-    "as-described": DigitConfig(
-        learning_rate=0.2, final_learning_rate=0.2, warm_up=0.0, epochs=1, batch_size=500, optimizer="sgd",
-        cost="mse", smoothing=0.0, averaging=0.0, held_out=0, convolutions=False, hidden=(100, 50),
-        activation="tanh", output_activation=True, dropout=0.0, augmentation=0.0,
-    ),
-}  # fmt: skip
+    def problems(self) -> list[str]:
+        """Say what is wrong with the values, alone and together."""
+        problems = super().problems()
+        if problems:
+            return problems
+        try:
+            network = build_digit_network(self, np.random.default_rng(0))  # nothing is drawn before it is asked for
+        except ValueError as error:
+            return [str(error)]
+        widest = max(math.prod(np.atleast_1d(layer.outputs)) for layer in network.layers if layer.outputs is not None)
+        if self.batch_size * widest > MOST_VALUES:
+            problems.append(
+                f"batch_size is at most {MOST_VALUES // widest:,} with this network, whose layers make up to"
+                f" {widest:,} values of an image; not {self.batch_size:,}"
+            )
+        return problems
 
 
 def build_digit_network(config: DigitConfig, rng: np.random.Generator) -> NeuralNetwork:
@@ -105,3 +110,18 @@ def build_digit_network(config: DigitConfig, rng: np.random.Generator) -> Neural
     if config.output_activation:
         network.add_layer(activation())
     return network
+
+
+DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {
+    "modern": DigitConfig(),
+    "classic": DigitConfig(
+        learning_rate=3e-3, cost="mse", smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
+        output_activation=True, dropout=0.0, augmentation=0.8, original=0.2, epochs=60, batch_size=100,
+    ),
+    # The classic network as it was first described: all 60,000 images once, and plain steps.
+    "as-described": DigitConfig(
+        learning_rate=0.2, final_learning_rate=0.2, warm_up=0.0, epochs=1, batch_size=500, optimizer="sgd",
+        cost="mse", smoothing=0.0, averaging=0.0, held_out=0, convolutions=False, hidden=(100, 50),
+        activation="tanh", output_activation=True, dropout=0.0, augmentation=0.0,
+    ),
+}  # fmt: skip

@@ -55,7 +55,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
         preset = DIGIT_PRESETS[described["preset"]].to_json()
         config = DigitConfig.from_json(preset | described["changes"])
         training = DigitTraining(config, count_of(described["seed"], most=10**40), **options)
-        training.step, training.seconds = count_of(described["step"]), float(number_of(described["seconds"], 0.0))
+        training.step, training.seconds = count_of(described["step"]), float(number_of(described["seconds"], 0))
         training.best = None if described["held_out"] is None else float(number_of(described["held_out"]))
         training.history = [_epoch(entry) for entry in described["history"]]
     except OSError as error:

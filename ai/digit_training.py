@@ -167,6 +167,11 @@ class DigitTraining:
         self.average[...] = values
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
 
+    def rewind(self) -> None:
+        """Let the network be the best one so far, if there is one: what ran away is nothing to go on from."""
+        if self.best_values is not None:
+            self.go_back(self.best_values)
+
     def best_classifier(self) -> DigitClassifier:
         """Return the classifier that read the images held out best, or the current one."""
         classifier = self.current()

@@ -10,6 +10,7 @@ import json
 import sys
 import time
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,10 @@ from ai.command_line import (
     configured,
     exit_code,
     fail,
+    fail_diverged,
     folder,
+    keep,
+    keep_checkpoint,
     out_of_range,
     reason,
     refuse_fixed,
@@ -101,18 +105,24 @@ def _keep_training(training: DigitTraining, seconds: float | None, output: Path)
     """Train, keep what comes of it, and return the exit code."""
     from ai.digit_runs import save_digit_run
 
+    stopped = ""
     try:
         with stoppable() as stop:
-            _advance(training, seconds, output, stop)
-            save_digit_run(training, output)  # at once: measuring takes a while, and who wants this to end may not wait
-        described = save_digit_run(training, output, final=True)
-    except FloatingPointError as error:
-        kept = f"What was kept at the last epoch is in {output}." if training.history else "No epoch was over."
-        return fail(f"training stopped: {error}. {kept}")
+            try:
+                _advance(training, seconds, output, stop)
+            except FloatingPointError as error:
+                stopped = f"training stopped: {error}. "
+                training.rewind()
+            # At once: measuring takes a while, and who wants this to end may not wait.
+            output, described = keep(partial(save_digit_run, training), output)
+        if not stopped:
+            output, described = keep(partial(save_digit_run, training, final=True), output)
     except OSError as error:
-        return fail(f"could not write to {output}: {error.strerror or error}")
+        return fail(f"{stopped}could not write to {output}: {error.strerror or error}")
     except ValueError as error:
-        return fail(str(error))
+        return fail(f"{stopped}{error}")
+    if stopped:
+        return fail_diverged(stopped, output, measured=training.best is not None)
     print(f"kept in {output}: {described['test']:.2%} of MNIST's test images read right")
     return exit_code(stop)
 
@@ -120,6 +130,8 @@ def _keep_training(training: DigitTraining, seconds: float | None, output: Path)
 def _advance(training: DigitTraining, seconds: float | None, output: Path, stop: list[int]) -> None:
     """Train until the last epoch, the clock or the user says stop, and keep the work after each epoch."""
     from tqdm import tqdm
+
+    from ai.digit_runs import save_digit_run
 
     form = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
     trouble = ""
@@ -132,23 +144,12 @@ def _advance(training: DigitTraining, seconds: float | None, output: Path, stop:
             best = f", held out {progress.best:.2%}" if progress.best is not None else ""
             bar.set_postfix_str(f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}", refresh=False)
             if progress.step % training.steps_per_epoch == 0 and not training.done:
-                new = _checkpoint(training, output)
+                new = keep_checkpoint(partial(save_digit_run, training), output)
                 if new and new != trouble:
                     bar.write(new, file=sys.stderr)
                 trouble = new
             if seconds is not None and training.seconds >= seconds:
                 break
-
-
-def _checkpoint(training: DigitTraining, output: Path) -> str:
-    """Save, and say what went wrong, if something did: a disk that is full now may have room again by the end."""
-    from ai.digit_runs import save_digit_run
-
-    try:
-        save_digit_run(training, output)
-    except OSError as error:
-        return f"could not write to {output}: {error.strerror or error}; training goes on"
-    return ""
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:

@@ -7,6 +7,7 @@ A rule is a row of `RULES`: a condition and a remedy. The words that a player re
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any, Final, NamedTuple
@@ -108,7 +109,9 @@ class Recent:
                 began = 0 if each is None else each.decisions
             if each is None or each.name == REVERTED:
                 break
-            config, since = config.changed(**{each.name: each.before}), each.decisions
+            since = each.decisions
+            with suppress(ValueError):  # a file may say what no knob can be
+                config = config.changed(**{each.name: each.before})
         return began
 
     def best_moment(self) -> int | None:

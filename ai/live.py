@@ -292,7 +292,7 @@ class _LiveRun:
             new = [lesson for lesson in read(command.path) if lesson not in self._lessons]
             used = teach(agent, new)
         except (OSError, ValueError) as error:
-            self._told.append(Refused(command, str(error)))
+            self._told.append(Refused(command, getattr(error, "strerror", None) or str(error)))
             return
         self._lessons.update(new)
         if not used:

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from ai.agent import KIND, LAST, DeepQAgent
 from ai.config import LANDER, PRESETS
 from ai.flights import Flights
@@ -115,11 +113,9 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
 
 
 def rewind(training: Training) -> None:
-    """Let the networks be the best ones found so far, if there are any, when their numbers have run away."""
-    agent = training.agent
-    sound = all(np.isfinite(network.values).all() for network in (agent.online, agent.target))
-    if not sound and training.best_values is not None:
-        agent.go_back(training.best_values, deepcopy(training.best_scale))
+    """Let the networks be the best ones found so far, if there are any: what ran away is nothing to go on from."""
+    if training.best_values is not None:
+        training.agent.go_back(training.best_values, deepcopy(training.best_scale))
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
@@ -149,7 +145,7 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             training.best = _read_score(training, described["best"])
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
-        training.seconds = float(number_of(described["seconds"], 0.0))
+        training.seconds = float(number_of(described["seconds"], 0))
         training.flights.load(described.get("flights", Flights(0).to_json()))  # runs of old say nothing of them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error

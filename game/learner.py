@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
 from ai.messages import Change
+from game import texts
 from game.worker import State, Worker
 
 Kind = TypeVar("Kind")
@@ -40,12 +41,16 @@ class Learner:
 
     Attributes:
         grace: seconds that a run has to end by itself when the window leaves it.
+        name: what the run is called, among others.
+        runs: how many there have been.
 
     """
 
     grace = 0.5
 
     def __init__(self) -> None:
+        self.name, self.runs = "", 0
+        self._named = False  # whether the run was saved under its name
         self._worker: Worker | None = None
         self._launch: Callable[[], str] | None = None  # starts the run that waits; returns what there is to know
         self._asked: list[Callable[[Worker], None]] = []  # of that run
@@ -71,6 +76,11 @@ class Learner:
     def problem(self) -> str:
         """Why the run failed, in words; empty if it did not."""
         return self._worker.problem if self._worker and self.state is State.FAILED else ""
+
+    def call(self, settings: str) -> None:
+        """Call the run by what its settings are called, and a number, unless it was saved under a name."""
+        if not self._named:
+            self.name = texts.TRAIN_RUN.format(name=settings or texts.TRAIN_THIS, number=self.runs)
 
     def pause(self) -> None:
         """Let it rest."""

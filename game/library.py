@@ -83,8 +83,8 @@ def _figures(described: dict[str, Any]) -> dict[str, Any]:
     best = described["best"]  # a young run has not been tried yet
     success = None if not best or best["success"] is None else float(number_of(best["success"]))
     seed, decisions = count_of(described["seed"], most=_MOST_SEED), count_of(described["decisions"], most=_MOST)
-    seconds = float(number_of(described["seconds"]))
-    if not (0 <= seconds < _MOST and 0 <= (success or 0) <= 1):
+    seconds = float(number_of(described["seconds"], 0))
+    if not (seconds < _MOST and 0 <= (success or 0) <= 1):
         raise ValueError("a figure that no run comes to")
     return {
         "preset": brief(described["preset"], LONGEST_NAME), "changes": len(described["changes"]), "seed": seed,

@@ -1,13 +1,11 @@
-"""The lock of a file, which the game shares with the commands: see `ai.nn.lock`."""
+"""A lock that is held for a moment, to change a file that another game may be changing."""
 
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ai.nn.lock import Lock, take, take_folder
-
-__all__ = ["Lock", "held", "take", "take_folder"]
+from ai.nn.lock import take
 
 
 @contextmanager

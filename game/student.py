@@ -28,7 +28,6 @@ class Student(Learner):
     Attributes:
         history: what has been told of the run that goes on, or of the last one.
         sight, insight, in_force: the latest of their kind; None until a run has told of any.
-        name: what that run is called, among others.
         earlier: the runs that stand beside it, the latest first.
 
     """
@@ -44,8 +43,6 @@ class Student(Learner):
         self.insight: Insight | None = None
         self.in_force: InForce | None = None
         self.earlier: list[Beside[History]] = []
-        self.name = ""
-        self.runs = 0
         self.begun = False  # whether a run has said with what it was begun, since this was last set to False
         self.pace = len(PACES) - 1
 
@@ -65,9 +62,9 @@ class Student(Learner):
         self.config, self.seed = config, seed
         self.sight = self.insight = self.in_force = None
         self.runs += 1
-        self.name = texts.TRAIN_RUN.format(name=name or texts.TRAIN_THIS, number=self.runs)
-        if resume is not None and resume != self.library.unsaved:
-            self.name = resume.name
+        self._named = resume is not None and resume != self.library.unsaved
+        self.name = resume.name if resume else ""
+        self.call(name)
         started = self._start(lambda: self._begin(config, seed, resume))
         return " ".join(filter(None, [note, started]))
 

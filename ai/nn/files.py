@@ -149,7 +149,7 @@ def number_of(value: Any, least: float = -math.inf) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < math.inf:
         raise ValueError(f"{brief(repr(value), 40)} is no finite number")
     if value < least:
-        raise ValueError(f"{brief(repr(value), 40)} is less than {least:g}")
+        raise ValueError(f"{brief(repr(value), 40)} is below {least:g}")
     return value
 
 

@@ -47,7 +47,7 @@ class Kind:
         except (OSError, ValueError):
             return f"no {CONFIG} that can be read"
         if not isinstance(said, dict) or said.get("format") != self.format:
-            return f"no {self.format}"
+            return f"{CONFIG} of another kind"
         for path in folder.iterdir():
             known = path.is_file() and any(fnmatchcase(path.name, name) for name in (CONFIG, *_DESKTOP, *self.files))
             if path.is_dir() and not path.is_symlink() and path.name in self.folders:

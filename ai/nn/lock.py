@@ -2,6 +2,7 @@
 
 import errno
 import os
+import stat
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -51,7 +52,7 @@ def take(path: Path) -> Lock | None:
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         while True:
-            file = path.open("ab")
+            file = _open(path)
             try:
                 _hold(file)
             except (BlockingIOError, PermissionError):  # what Linux and Windows say of a lock that is held
@@ -81,6 +82,16 @@ def lock_of(folder: str | Path) -> Path:
     """Return the file that stands for a folder: beside it, since the folder itself is replaced as a whole."""
     path = Path(os.path.realpath(folder))
     return path.parent / f".{path.name.removeprefix('.')}.lock"
+
+
+def _open(path: Path) -> IO[bytes]:
+    """Open an ordinary file, which is made if need be; raises OSError for anything else, and never waits."""
+    flags = os.O_RDWR | os.O_CREAT | os.O_APPEND | getattr(os, "O_NONBLOCK", 0)
+    file = os.fdopen(os.open(path, flags, 0o666), "ab")
+    if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        file.close()
+        raise OSError(errno.EINVAL, "is not an ordinary file", str(path))
+    return file
 
 
 def _is_there(file: IO[bytes], path: Path) -> bool:

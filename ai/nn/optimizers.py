@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ai.nn.files import MOST
 from ai.nn.parameter import Array
 
 
@@ -83,7 +84,7 @@ class Optimizer(ABC):
         """
         kind = type(self).__name__
         steps = np.asarray(state.get("steps", -1))
-        if steps.shape != () or steps.dtype.kind not in "iu" or steps < 0:
+        if steps.shape != () or steps.dtype.kind not in "iu" or not 0 <= steps <= MOST:
             raise ValueError(f"not a state of {kind}: it does not say after how many steps")
         names = self.remembers if steps else ()
         if set(state) != {"steps", *names}:

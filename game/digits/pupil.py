@@ -103,8 +103,6 @@ class Pupil(Learner):
         self.test: float | None = None
         self.kept_epoch: int | None = None
         self.earlier: list[Beside[Curves]] = []
-        self.name = ""
-        self.runs = 0
         self.stopping = False
         self._saving: list[Path] = []  # where it was asked to save itself, and has not answered
 
@@ -157,7 +155,7 @@ class Pupil(Learner):
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
-        self.name = texts.TRAIN_RUN.format(name=name or texts.TRAIN_THIS, number=self.runs)
+        self.call(name)
         started = self._start(lambda: self._begin(config, seed, resume))
         return " ".join(filter(None, [note, started]))
 

@@ -131,6 +131,7 @@ class DigitTrainingScene:
         if self.pupil.begun:
             self.pupil.begun = False
             self.knobs.set_config(self.pupil.config, self.pupil.seed)
+            self.pupil.call(self.knobs.name)  # of one that goes on, that is known only now
         if self.pupil.alive != self._alive:
             self._alive = self.pupil.alive
             self.knobs.set_running(self._alive)

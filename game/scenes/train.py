@@ -120,6 +120,7 @@ class Train:
         if student.begun:
             student.begun = False
             self.knobs.set_config(student.config, student.seed)
+            student.call(self.knobs.name)  # of one that goes on, that is known only now
         self._advice.hush(bool(self.knobs.waiting))
         if student.alive:
             self.knobs.show_in_force(student.in_force)

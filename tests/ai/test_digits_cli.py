@@ -1,3 +1,4 @@
+import errno
 import json
 import os
 import subprocess
@@ -7,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import ai.digit_runs
 import ai.digit_training
+import ai.digits_cli
 from ai.digit_config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digit_runs import resume_digit_run, save_digit_run
 from ai.digit_training import LIVE, SPLIT_SEED, DigitTraining, run_digits
@@ -188,6 +191,63 @@ def test_what_cannot_be_done_is_said_in_a_line(arguments, message, capsys, tmp_p
     assert message in told
     assert "Traceback" not in told
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("few")
+@pytest.mark.parametrize("trouble", ["", "full", "unmeasured"])
+def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, capsys, monkeypatch, trouble):
+    advance = DigitTraining.advance
+
+    def diverging(training):
+        if training.step < 8:  # an epoch is five
+            return advance(training)
+        training.classifier.network.values[:] = 1e30
+        raise FloatingPointError("the cost was not finite at learning step 9")
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(DigitTraining, "advance", diverging)
+    if trouble == "full":
+        monkeypatch.setattr(ai.digit_runs, "atomic_folder", full)
+    held_out = 0 if trouble == "unmeasured" else 100
+    small = ["--preset", "classic", "--set", "hidden=[8]", "--set", f"held_out={held_out}", "--set", "averaging=0"]
+    run = tmp_path / "run"
+    assert main(["train-digits", *small, "--output", str(run)]) == 1
+    told = capsys.readouterr().err
+    assert "learning step 9" in told
+    assert {"": "What was best until then is", "full": "No space", "unmeasured": "has not been measured"}[
+        trouble
+    ] in told
+    assert run.exists() == (trouble != "full")
+    if not trouble:
+        assert resume_digit_run(run).classifier.network.values.max() < 1e30, "a wreck is nothing to go on from"
+
+
+@pytest.mark.usefixtures("few")
+def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, capsys, monkeypatch):
+    def advance(training, seconds, output, stop):
+        output.mkdir()
+        (output / "diary").write_text("dear")
+
+    monkeypatch.setattr(ai.digits_cli, "_advance", advance)
+    small = ["--preset", "classic", "--set", "hidden=[8]", "--set", "held_out=100"]
+    assert main(["train-digits", *small, "--output", str(tmp_path / "run")]) == 0
+    assert (tmp_path / "run" / "diary").read_text() == "dear"
+    assert DigitClassifier.load(tmp_path / "run 2")
+    assert "run 2" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("few_values", [{"batch_size": 5000}, {"batch_size": 100, "filters": (256,), "kernel": 1}])
+def test_a_batch_cannot_ask_for_more_memory_than_there_is(few_values):
+    with pytest.raises(ValueError, match="batch_size is at most"):
+        DigitConfig(**few_values)
+    DIGIT_PRESETS["classic"].changed(batch_size=5000)
+
+
+def test_windows_that_do_not_fit_are_refused_before_there_is_a_run():
+    with pytest.raises(ValueError, match="a kernel of 9 does not fit"):
+        DigitConfig(filters=(16, 16, 16), kernel=9)
 
 
 @pytest.mark.usefixtures("few")

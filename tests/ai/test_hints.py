@@ -10,7 +10,7 @@ import pytest
 
 from ai.config import PRESETS, Config
 from ai.hints import HOLD, REST, RULES, STAY, Adviser, Hint, Recent, returns
-from ai.history import Checkpoint, History, Point
+from ai.history import Alteration, Checkpoint, History, Point
 from ai.rewards import RewardWeights
 from ai.sabotage import sabotaged
 from ai.training import Training
@@ -128,6 +128,15 @@ def test_no_number_stops_a_rule(column: str):
     for when in (0.0, 0.5, 0.999):
         holding(later(when, **{column: NAN}))
     holding(points(**{column: NAN}), points=1)
+
+
+@pytest.mark.parametrize("before", [None, "x", -1, 1e9, True, [1], {"a": 1}])
+def test_no_value_that_a_file_holds_of_a_rate_stops_a_rule(before: Any):
+    run = history(points())
+    run.append(Alteration(200_000, "learning_rate", before, 1e-3))
+    assert Recent(run, MODERN).damaged_at() is None
+    run.append(Alteration(300_000, "learning_rate", 1.0, 1e-3))
+    assert Recent(run, MODERN).damaged_at() == 0, "before that, it may have been so from the start"
 
 
 def test_what_a_flight_can_pay_follows_the_weights():

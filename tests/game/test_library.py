@@ -29,8 +29,7 @@ DESCRIBED = {
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("trained") / "run"
-    training = Training(SMALL, seed=5)
-    training.task.validation_episodes = 4
+    training = Training(SMALL, seed=5, validation_episodes=4)
     training.advance()
     training.conclude()
     save_run(training, folder)

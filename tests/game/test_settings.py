@@ -10,7 +10,8 @@ from threading import Event, Thread, current_thread
 import pytest
 
 from ai.nn.files import write_text
-from game.lock import held, take
+from ai.nn.lock import take
+from game.lock import held
 from game.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
 from game.settings_writer import SettingsWriter
 

@@ -114,6 +114,19 @@ def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game:
     assert scene.student.config.num_envs == SMALL.num_envs
 
 
+def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_game: Callable[..., Driver]) -> None:
+    train.top.knobs.set_config(PRESETS["classic"].changed(hidden=(8,)), 3)
+    start(train)
+    assert train.top.student.name == "Classic 1"
+    train.app.close()
+    driver = open_game(Train())
+    driver.frames(2)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: driver.top.student.sight)
+    driver.frames(2)
+    assert driver.top.student.name == "Classic 1"
+
+
 def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game: Callable[..., Driver]) -> None:
     start(train)
     train.app.close()

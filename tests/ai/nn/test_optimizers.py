@@ -91,6 +91,7 @@ def test_a_wrong_state_is_refused():
         ({"gradient_sum": np.array(["a", "b", "c"])}, "gradient_sum holds"),
         ({"square_sum": np.array([1.0, -1.0, 1.0])}, "square_sum holds numbers below 0"),
         ({"steps": np.array(-1)}, "after how many steps"),
+        ({"steps": np.array(2**64 - 1, np.uint64)}, "after how many steps"),
         ({"steps": np.array(2.5)}, "after how many steps"),
         ({"steps": np.array([1, 2])}, "after how many steps"),
         ({"steps": np.array("seven")}, "after how many steps"),

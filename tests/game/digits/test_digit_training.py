@@ -57,7 +57,9 @@ def test_every_setting_has_a_knob_and_a_word():
     for dial in turned:
         assert len(dial.stops) > 1
         for stop in dial.stops:
-            config = dial.write(DIGIT_PRESETS["modern"], stop)
+            # Some batches are too large for what convolutions make of them; the panel then says so.
+            preset = "classic" if dial.field == "batch_size" else "modern"
+            config = dial.write(DIGIT_PRESETS[preset], stop)
             assert dial.read(config) == stop
             if dial.page == "network":
                 network = build_digit_network(config, np.random.default_rng(0))
