@@ -39,6 +39,8 @@ _STICK_SIGNS: Final[dict[Meaning, int]] = {
     Command.SLOWER: glyphs.STICK_LEFT,
     Command.FASTER: glyphs.STICK_RIGHT,
 }
+# Keys of the keypad that write something.
+_KEYPAD: Final = frozenset({code for name, code in KEYBOARD.names.items() if name[:2] == "kp"} - {pygame.K_KP_ENTER})
 _KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
 _STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
 
@@ -88,8 +90,10 @@ def _command(event: pygame.event.Event, keys: Bindings, buttons: Bindings) -> Co
 
 def _types(event: pygame.event.Event) -> bool:
     """Tell whether a press writes a letter: SDL numbers such keys by what they write, and others beyond all letters."""
+    if event.type != pygame.KEYDOWN:
+        return False
     held = getattr(event, "mod", 0) & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META)
-    return event.type == pygame.KEYDOWN and not held and event.key < 0x110000 and chr(event.key).isprintable()
+    return not held and (event.key in _KEYPAD or (event.key < 0x110000 and chr(event.key).isprintable()))
 
 
 @dataclass

@@ -12,6 +12,7 @@ import numpy as np
 import pygame
 
 from ai.lander import LanderEnv
+from ai.rules import tenths
 from game import texts
 from game.ui.canvas import Canvas, Point
 from game.ui.hints import draw_hints, hints_width
@@ -103,7 +104,7 @@ def _time(env: LanderEnv, slot: int) -> Readout:
 
 def _fuel(env: LanderEnv, slot: int) -> Readout:
     """Say what was burnt, or, where the tank is small, what is left."""
-    burnt, tank = float(env.fuel[slot]), env.conditions.tank
+    burnt, tank = tenths(float(env.fuel[slot])), env.conditions.tank  # as the card has it, and as medals go by
     if tank == math.inf:
         return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
     left = max(0.0, tank - burnt)

@@ -12,7 +12,7 @@ from ai.config import LANDER
 from ai.nn.files import brief, count_of, inside, number_of, read_json
 from ai.runs import TRAINING_FILE
 from game import texts
-from game.collection import LONGEST_NAME, Collection, LibraryError, claims, leads_nowhere, reason, there
+from game.collection import LONGEST_NAME, Collection, LibraryError, claims, leads_nowhere, reason, there, told
 from game.networks import PARTS, PLAYERS
 
 _CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of them is a run, whole or not
@@ -122,10 +122,15 @@ class Library(Collection):
         self.throw_away(self.existing(name), name)
 
     def import_folder(self, path: Path) -> Path:
-        """Copy a run from anywhere into the library, under its own name or one near it; return where the copy is."""
-        if not path.is_dir() or not any(there(path / part) for part in self.parts):
-            raise LibraryError(texts.LIBRARY_NO_RUN.format(name=path.name))
-        return super().import_folder(path)
+        """Copy a run from anywhere into the library, under its own name or one near it; return where the copy is.
+
+        A file of the run stands for its folder.
+        """
+        with told(texts.LIBRARY_NOT_IMPORTED, brief(path.name, LONGEST_NAME)):
+            folder = path if path.is_dir() else path.parent
+            if not any(there(folder / part) for part in self.parts):
+                raise LibraryError(texts.LIBRARY_NO_RUN.format(name=folder.name))
+        return super().import_folder(folder)
 
     # What was never given a name
 

@@ -268,7 +268,7 @@ class Runs:
 
     def _import(self, path: Path) -> None:
         def copy(_: str) -> str:
-            run = self._library.import_folder(path if path.is_dir() else path.parent)
+            run = self._library.import_folder(path)
             self._reload(run)
             return texts.RUN_IMPORTED.format(name=run.name)
 

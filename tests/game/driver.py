@@ -13,6 +13,7 @@ from game.scene import Scene
 class Driver:
     def __init__(self, app: App) -> None:
         self.app = app
+        self._skipped = 0
 
     @property
     def top(self) -> Scene:
@@ -27,10 +28,11 @@ class Driver:
             goes_on = self.app.tick()
         return goes_on
 
-    def skip(self, number: int) -> None:
-        """Play frames of which only every tenth is drawn: drawing is most of the work."""
-        for frame in range(number):
-            self.app.window.minimised = frame % 10 > 0
+    def skip(self, number: int = 1) -> None:
+        """Play frames of which only every tenth is drawn, of many calls too: drawing is most of the work."""
+        for _ in range(number):
+            self._skipped += 1
+            self.app.window.minimised = self._skipped % 10 > 0  # anew each time: events may have shown the window
             self.frames(1)
         self.app.window.minimised = False
 

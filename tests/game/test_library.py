@@ -371,11 +371,20 @@ def test_a_library_that_is_a_file_is_said(tmp_path: Path):
 def test_an_import_copies_a_run_under_a_free_name(library: Library, trained: Path, tmp_path: Path):
     for name in ("run", "run 2"):
         assert library.import_folder(trained).name == name
+    assert library.import_folder(trained / "config.json").name == "run 3"  # which stands for its folder
     assert trained.is_dir()
     (tmp_path / "empty").mkdir()
-    for strange in (tmp_path / "empty", tmp_path / "nowhere", trained / "config.json"):
+    for strange in (tmp_path / "empty", tmp_path / "nowhere"):
         with pytest.raises(LibraryError, match="no folder with a network"):
             library.import_folder(strange)
+
+
+@pytest.mark.parametrize("name", ["a" * 300, "link", "nul\0", "not/text/\udcff"])
+def test_what_can_not_be_looked_at_is_not_imported_and_it_is_said(library: Library, tmp_path: Path, name: str):
+    (tmp_path / "link").symlink_to("link")
+    with pytest.raises(LibraryError) as refused:
+        library.import_folder(tmp_path / name)
+    assert len(str(refused.value)) < 200
 
 
 def test_what_had_no_name_when_the_game_died_can_be_kept(library: Library, trained: Path):

@@ -77,12 +77,10 @@ def learn(pupil: Player) -> Iterator[str]:
 def wait_for_another(driver: Driver) -> None:
     """Let what flies come to its end, and the next flight begin."""
     first = play(driver).flight
-    driver.app.window.minimised = True
     for _ in range(1500):
         if play(driver).flight is not first:
-            driver.app.window.minimised = False
             return
-        driver.frames(1)
+        driver.skip()
     raise AssertionError("nothing begins again")
 
 

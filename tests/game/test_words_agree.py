@@ -245,9 +245,8 @@ def land(driver: Driver) -> None:
     x, y = env.pad[0].tolist()
     env.place(np.ones(1, bool), np.array([[x, y + PARAMS.stand + 0.002, 0, 0, 0, 0]]))
     driver.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
-    driver.app.window.minimised = True
     for _ in range(400):
-        driver.frames(1)
+        driver.skip()
         if play(driver).flight.over:
             break
     assert play(driver).flight.outcome is Outcome.LANDED
