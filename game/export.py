@@ -73,7 +73,7 @@ class Export:
 
     def close(self) -> None:
         """Let it be; what was drawn so far is thrown away."""
-        self._worker.close()
+        self._worker.close(0.0)  # the window may go on: it waits for no goodbye
         with suppress(OSError, ValueError):  # the process has most often done so itself
             unfinished(self.path).unlink()
 

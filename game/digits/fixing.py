@@ -88,7 +88,7 @@ class Fixing:
         if done or self._worker.state in (State.ENDED, State.FAILED):
             self.problem = self._worker.problem or (texts.FIX_NOT_KEPT.format(problem=done.problem)
                                                     if done and done.problem else "")  # fmt: skip
-            self.close()
+            self._let_go(0.0)  # it has said all it had to say: the window goes on
         return done
 
     def undo(self, name: str) -> bool:
@@ -107,9 +107,12 @@ class Fixing:
         return True
 
     def close(self) -> None:
-        """End what goes on."""
+        """End what goes on, for leaving; what is just being written has a moment to be whole."""
+        self._let_go(0.5)
+
+    def _let_go(self, grace: float) -> None:
         if self._worker:
-            self._worker.close()
+            self._worker.close(grace)
         self._worker, self.step = None, None
 
 

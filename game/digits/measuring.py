@@ -65,4 +65,4 @@ class Measuring:
     def close(self) -> None:
         """End the process."""
         if self._worker:
-            self._worker.close()
+            self._worker.close(0.0)  # there is nothing to be kept, and the window may go on

@@ -356,7 +356,7 @@ class Train:
 
     def _draw_title(self, canvas: Canvas) -> None:
         history, sight = self.student.history, self.student.sight
-        height, line, share = 66, texts.TRAIN_LINE, ""
+        height, line, share = 66, texts.TRAIN_BEGINS if self.student.alive else texts.TRAIN_LINE, ""
         if len(history) and sight is not None:
             line = texts.TRAIN_FIGURES.format(
                 count=len(sight.outcome), seconds=history.points[-1][0], decisions=int(sight.decisions)

@@ -35,6 +35,7 @@ from game.ui.words import GAP
 from game.world.backdrop import landscape
 from game.world.pad import draw_pad
 from game.world.paths import Trails
+from game.world.scenery import mark_lost
 from game.world.stage import Stage
 
 COUNTS: Final = (1, 16, 64, 256)
@@ -295,6 +296,9 @@ class Watch:
         return others
 
     def _draw_shown(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        if self.swarm.env.outcome[self.shown] == Outcome.OUT_OF_BOUNDS:
+            mark_lost(canvas, view, pose)
+            return
         size = min(1.0, 1.5 * self._size)
         self._stage.draw_lander(canvas, view, pose, self.shown, size)
         if COUNTS[self._count] > 1:

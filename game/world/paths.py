@@ -82,19 +82,18 @@ class Trails:
 
     def draw(self, canvas: Canvas, view: View, shown: int, head: float = 0.0) -> None:
         """Draw the trails of ended flights, newest brightest, and the one of slot `shown` so far, below the `head`."""
-        head *= canvas.scale
         for rank, trail in enumerate(reversed(self._done)):
             strength = 0.55 * self._fade**rank * max(0.0, 1 - trail.age / 40)
             landed = trail.outcome == Outcome.LANDED
             colour = canvas.palette.good if landed else canvas.palette.warn
             if strength > 0.06:
-                draw_faint(canvas.surface, view.pixels(trail.points), colour, strength, head)
-                if not landed:
-                    end = view.points(trail.points[-1]).tolist()
+                draw_faint(canvas.surface, view.pixels(trail.points), colour, strength, head * canvas.scale)
+                end = view.points(trail.points[-1]).tolist()
+                if not landed and end[1] > head:
                     canvas.marker("cross", end, 7, colour, min(1.0, strength * 1.8))
         way = self._open[shown]
         if len(way) > 1:
-            draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6, head)
+            draw_faint(canvas.surface, view.pixels(np.array(way)), NET, 0.6, head * canvas.scale)
 
 
 def _thinned(points: Doubles) -> Doubles:

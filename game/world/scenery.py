@@ -123,7 +123,7 @@ class Scenery:
         """
         view, pose = self.view(canvas.scale, alpha), self._flight.poses.at(alpha)[0]
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
-            _mark_lost(canvas, view, pose)
+            mark_lost(canvas, view, pose)
             return
         self._moments.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
@@ -133,7 +133,7 @@ class Scenery:
             self._moments.draw_words(canvas, view, pose if shown is None else shown)
 
 
-def _mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:
+def mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:
     """Mark where a craft has left the area, or the nearest place to it that is clear of words."""
     x, y = view.points(pose[:2]).tolist()
     place = (min(max(x, _EDGE), VIEW_SIZE[0] - _EDGE), min(max(y, framing.ALL.head), _LOWEST))

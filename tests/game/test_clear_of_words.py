@@ -11,6 +11,7 @@ from game import networks
 from game.cockpit.insight import PANEL
 from game.context import Context
 from game.scenes.play import Play
+from game.scenes.watch import Watch
 from game.ui.canvas import Canvas
 from tests.game.driver import Driver
 from tests.game.flights import play
@@ -113,3 +114,27 @@ def test_the_word_beside_a_craft_keeps_off_the_panel(shared: Driver, monkeypatch
         pose = np.array([*view.metres((x, 200.0)), 0.0])
         overrides.draw_word(shared.app.canvas, view, pose, clear)
         assert boxes[-1].right <= clear.right
+
+
+@pytest.mark.parametrize("count", [1, 16])
+def test_what_is_lost_in_a_swarm_lies_on_no_words_either(open_game: Open, monkeypatch, count: int):
+    driver = open_game(Watch(count, seed=2))
+    driver.frames(2)
+    watch, swarm = driver.top, driver.top.swarm
+    lost = np.zeros((count, 6))
+    lost[:, 1], lost[:, 3] = swarm.env.limits.ceiling - 0.1, 6.0  # through the top, behind the words at the head
+    for _ in range(3):
+        swarm.env.place(np.ones(count, bool), lost)
+        swarm.since_end[:] = 0
+        for _ in range(8):
+            watch._fly()
+    assert swarm.env.outcome[0] == Outcome.OUT_OF_BOUNDS
+    crafts: list[object] = []
+    monkeypatch.setattr(watch._stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    places = drawn(monkeypatch, "marker")
+    canvas, view = driver.app.canvas, watch._camera.view(driver.app.canvas.scale)
+    watch._trails.draw(canvas, view, 0, 80.0)
+    watch._draw_shown(canvas, view, swarm.poses.at(1.0)[0])
+    assert not crafts
+    assert places
+    assert all(80 < y < READ_OUTS for _, y in places)

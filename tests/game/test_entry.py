@@ -183,17 +183,20 @@ def test_letters_are_commands_again_afterwards(page: tuple[Driver, Page]):
     assert (scene.commands, scene.entry.text) == ("n", "Modern 3")
 
 
-def test_a_letter_that_is_bound_to_full_screen_is_typed_and_switches_nothing(page: tuple[Driver, Page]):
+@pytest.mark.parametrize(("key", "letter"), [(pygame.K_f, "f"), (pygame.K_KP_PERIOD, "."), (pygame.K_KP_MINUS, "-")])
+def test_a_letter_that_is_bound_to_full_screen_is_typed_and_switches_nothing(
+    page: tuple[Driver, Page], key: int, letter: str
+):
     driver, scene = page
     context = driver.app.context
-    context.controls.keys.bind(Command.FULLSCREEN, pygame.K_f)
+    context.controls.keys.bind(Command.FULLSCREEN, key)
     driver.key(pygame.K_RETURN)
-    driver.key(pygame.K_f)
-    driver.post(pygame.TEXTINPUT, text="f")
-    assert scene.entry.text == "f"
+    driver.key(key)
+    driver.post(pygame.TEXTINPUT, text=letter)
+    assert scene.entry.text == letter
     assert not context.settings.full_screen
     driver.key(pygame.K_RETURN)
-    driver.key(pygame.K_f)  # which nobody types any more
+    driver.key(key)  # which nobody types any more
     assert context.settings.full_screen
 
 

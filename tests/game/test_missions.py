@@ -75,6 +75,9 @@ def test_whoever_flies_the_printed_limit_has_kept_it_and_a_tenth_more_is_too_muc
             figures = {label: float(value) for label, value, _ in flight_figures(env)}
             kept = mission.medal(float(env.fuel[0]), float(env.time[0])) >= medal
             assert kept == (figures[texts.FUEL] <= most_fuel)
+            if env.conditions.tank == np.inf:
+                (burnt,) = (each.figure for each in flight_readouts(env) if each.label == texts.FUEL_USED)
+                assert float(burnt) == figures[texts.FUEL]
         env.side_steps[:] = 0
         for steps in range(round(60 * longest) - 9, round(60 * longest) + 10):
             env.steps[:] = steps

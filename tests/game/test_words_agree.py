@@ -39,11 +39,11 @@ class Weighs:
         falls = observation[:, 3] < -0.5
         return np.where(falls[:, None], [0, 1, 1, 9, 5, 5], [9, 6, 6, 0, 1, 1]).astype(np.float32)
 
-    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
-        return self.decide(observation, held=held).action
-
     def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
         return decide(observation, self.q_values(observation), held)
+
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
+        return self.decide(observation, held=held).action
 
 
 class OnlyFlies:
@@ -218,7 +218,9 @@ def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, sc
     for name, value in {**settings, "reduced_motion": True}.items():
         setattr(context.settings, name, value)
     context.settings_file.save(context.settings)
-    return Reading(open_game(first), monkeypatch)
+    reading, flight = Reading(open_game(first), monkeypatch), first.flight
+    assert (flight.copilot is not None) == (flight.network is not None and flight.shares)  # or nothing is shared here
+    return reading
 
 
 def set_off(reading: Reading, way: str) -> None:
@@ -240,16 +242,29 @@ def set_off(reading: Reading, way: str) -> None:
 
 
 def land(driver: Driver) -> None:
+    end(driver, Outcome.LANDED)
+
+
+def end(driver: Driver, outcome: Outcome) -> None:
+    """Bring the flight to an end of that kind."""
     play(driver).waiting = False
     env = play(driver).flight.env
     x, y = env.pad[0].tolist()
-    env.place(np.ones(1, bool), np.array([[x, y + PARAMS.stand + 0.002, 0, 0, 0, 0]]))
     driver.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    state = {
+        Outcome.LANDED: (x, y + PARAMS.stand + 0.002, 0, 0, 0, 0),
+        Outcome.CRASHED: (x, y + PARAMS.stand + 0.1, 0, -9, 0, 0),
+        Outcome.OUT_OF_BOUNDS: (-env.limits.half_width + 0.1, 15, -8, 0, 0, 0),
+        Outcome.TIMED_OUT: (x, 15, 0, 0, 0, 0),
+    }[outcome]
+    env.place(np.ones(1, bool), np.array([state]))
+    if outcome is Outcome.TIMED_OUT:
+        env.steps[:] = round(60 * env.limits.time) - 3
     for _ in range(400):
         driver.skip()
         if play(driver).flight.over:
             break
-    assert play(driver).flight.outcome is Outcome.LANDED
+    assert play(driver).flight.outcome is outcome
 
 
 def assert_book_agrees(reading: Reading, entry: Entry) -> None:
@@ -260,7 +275,8 @@ def assert_book_agrees(reading: Reading, entry: Entry) -> None:
     page = reading.page(2)
     assert reading.driver.top.chosen == entry
     assert (texts.NOT_COUNTED[entry.bar] in page.words) if entry.bar else not page.counts
-    assert f"({entry.score})" in page.words if entry.bar else f"{entry.score}" in page.words
+    if entry.landed:
+        assert f"({entry.score})" in page.words if entry.bar else f"{entry.score}" in page.words
 
 
 @pytest.mark.parametrize("network", [OnlyFlies(), None])
@@ -326,3 +342,41 @@ def test_a_change_after_the_end_changes_nothing_of_what_was_flown(open_game: Ope
         setattr(reading.driver.app.context.settings, name, value)
     after = reading.check(4)
     assert (after.flew, after.counts) == (before.flew, before.counts) == ({"you"}, set())
+
+
+LOST = [Outcome.CRASHED, Outcome.OUT_OF_BOUNDS, Outcome.TIMED_OUT]
+MEDALS_AND_POINTS = [pattern(text) for text in (*texts.MEDALS, texts.SCORE, texts.SCORE_BEST, texts.MEDAL_NEXT)]
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings", "way", "outcome"),
+    [(scene, more, WAYS[(number + 2 * row) % len(WAYS)], outcome)
+     for row, (scene, more) in enumerate([*((name, {}) for name in SCENES), ("free", {"pace": 0.5}),
+                                          ("free", {"check_flights": True, "assist": 0.5}), ("free", {"assist": 0.5})])
+     for number, outcome in enumerate(LOST)],
+)  # fmt: skip
+def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch,
+    scene: str, settings: dict, way: str, outcome: Outcome,
+):  # fmt: skip
+    reading = begin(open_game, context, monkeypatch, scene, settings)
+    set_off(reading, way)
+    end(reading.driver, outcome)
+    if scene == "tutorial":  # which begins again, and says why
+        page, course = reading.page(), play(reading.driver)._course
+        assert page.flew == {flew(play(reading.driver).flight.recording.hands)}
+        assert course.why in page.words
+        return
+    page = reading.check(100)
+    title = texts.OUTCOMES[outcome.name][0]
+    titles = {word for word in page.words if word in {each for each, _ in texts.OUTCOMES.values()}}
+    assert title in titles
+    assert titles <= {title, *texts.RIVAL_RESULTS.values()}
+    assert not [word for word in page.words if any(says.match(word) for says in MEDALS_AND_POINTS)]
+    entry = Records(context.user_dir).entries()[-1]
+    assert (entry.outcome, entry.medal, entry.score) == (outcome.name, 0, 0)
+    assert entry.alone == (not entry.bar)
+    assert False not in page.counts or entry.bar
+    assert _row(entry)[2] == title
+    assert _row(entry)[-1] == flew(play(reading.driver).flight.recording.hands)
+    assert_book_agrees(reading, entry)

@@ -18,7 +18,10 @@ from ai.history import Checkpoint, History
 from ai.live import Change, Refused, Save, Saved, live
 from ai.runs import resume_run
 from ai.training import Training
-from game import texts, worker
+from game import export, texts, worker
+from game.assets import MODELS_DIR
+from game.digits import fixing, measuring
+from game.digits.reader import Switches
 from game.worker import State, Worker
 from game.worker_process import CREDIT, MOST_WAITING, Waiting
 from tests.game import chores
@@ -440,3 +443,31 @@ def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path
     assert np.array_equal(headless.agent.online.values, saved.online.values)
     kept = resume_run(tmp_path / "keep").agent
     assert kept.decisions >= saved.decisions
+
+
+def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    """A process takes up to half a second to end by itself; a killed one is gone at once."""
+    graces: list[float] = []
+
+    class Ending:
+        state, problem, patience = State.ENDED, "", 0.0
+
+        def __init__(self, *_: object, **__: object) -> None: ...
+        def poll(self) -> list[object]:
+            return []
+
+        def pause(self) -> None: ...
+        def send(self, command: object) -> None: ...
+        def close(self, grace: float = 0.5) -> None:
+            graces.append(grace)
+
+    for module in (export, fixing, measuring):
+        monkeypatch.setattr(module, "Worker", Ending)
+    export.Export(None, tmp_path / "film.gif").close()
+    fix = fixing.Fixing(tmp_path, MODELS_DIR)
+    fix.begin("classic", np.ones((28, 28), np.float32), 3)
+    fix.poll()
+    measured = measuring.Measuring(dict)
+    measured.ask(Switches())
+    measured.anew(Switches())
+    assert graces == [0.0, 0.0, 0.0]
