@@ -517,8 +517,8 @@ PRESETS: Final = {
     "classic": (
         "Classic",
         (
-            "Deep Q-learning as one first meets it: slow, and never quite steady."
-            " Added: clipped gradients, scaled rewards, a cost of time."
+            "Deep Q-learning as one first meets it: slow. Ours: clipped gradients, scaled rewards, a cost of time,"
+            " four steps a decision, alignment as a potential."
         ),
     ),
 }
