@@ -5,6 +5,7 @@ import pytest
 
 from game.scenes.digits import Digits
 from game.scenes.quiz import Quiz
+from game.ui.pointer import Pointer
 from tests.game.player import DEVICES, Player
 from tests.game.test_walks import reader
 
@@ -18,7 +19,7 @@ def player(request: pytest.FixtureRequest, open_game) -> Player:
 
 def take_the_pen(player: Player) -> None:
     for direction in ["left"] * 2 + ["down"] * 14 + ["left"] * 2:
-        if player.form.focused is player.top._pen:
+        if isinstance(player.form.focused, Pointer):
             break
         player.press(direction)
     player.press("confirm")
