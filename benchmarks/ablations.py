@@ -22,9 +22,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 
 import numpy as np
 
-from ai.config import PRESETS, Config
-from ai.rewards import RewardWeights
-from ai.training import VALIDATION_SEED, Training, evaluate
+from ai.agent.config import PRESETS, Config
+from ai.lander.rewards import RewardWeights
+from ai.training.loop import VALIDATION_SEED, Training, evaluate
 
 EVERY = 25_000
 FLIGHTS = 300

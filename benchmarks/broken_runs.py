@@ -3,7 +3,7 @@
     python -m benchmarks.broken_runs [--only WORD] [--output tests/ai/broken_runs.npz]
 
 Every case is a real run of the live training, single-threaded: each knob that matters at its lowest and highest
-value for either preset, healthy runs, and runs in which a knob is turned on the way. What the rules of `ai.hints`
+value for either preset, healthy runs, and runs in which a knob is turned on the way. What the rules of `ai.training.hints`
 look at is written down: the points of the curves, silent units, gradients that were cut short. Seconds are those
 of a clock that ticks with the decisions, as on a machine with much else to do, so that the same seed makes the same
 file. A file that is there is added to; --only records the cases with that word in their names, also anew.
@@ -26,13 +26,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent import build_network
-from ai.config import PRESETS, Config
-from ai.history import Point
-from ai.inspect import NetworkHealth
-from ai.lander import NUM_ACTIONS, NUM_FEATURES
-from ai.live import Change, Insight, live
-from ai.sabotage import SABOTAGES, sabotaged
+from ai.agent.agent import build_network
+from ai.agent.config import PRESETS, Config
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.nn.inspection import NetworkHealth
+from ai.training.history import Point
+from ai.training.sabotage import SABOTAGES, sabotaged
+from ai.training.session import Change, Insight, live
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",

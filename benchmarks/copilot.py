@@ -17,10 +17,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ai.agent import DeepQAgent
-from ai.copilot import CoPilot, Mode
-from ai.ground import Ground, hilly
-from ai.lander import NUM_ACTIONS, LanderEnv
+from ai.agent.agent import DeepQAgent
+from ai.copilot.copilot import CoPilot, Mode
+from ai.lander.environment import NUM_ACTIONS, LanderEnv
+from ai.lander.ground import Ground, hilly
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 

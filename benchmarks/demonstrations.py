@@ -20,10 +20,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ai.config import PRESETS, Config
-from ai.demonstrations import Demonstration, demonstrate, taught, teach
-from ai.pilots import ScriptedPilot
-from ai.training import Training
+from ai.agent.config import PRESETS, Config
+from ai.lander.pilots import ScriptedPilot
+from ai.training.demonstrations import Demonstration, demonstrate, taught, teach
+from ai.training.loop import Training
 from benchmarks.learning import Checkpoint, race
 
 SHARE = 0.95

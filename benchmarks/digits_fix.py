@@ -13,11 +13,11 @@ import time
 
 import numpy as np
 
-from ai.digit_fix import steps_to_fix
-from ai.digit_training import SPLIT_SEED, accuracy
-from ai.digits import DigitClassifier
-from ai.mnist import TRAIN, load_part
-from game.assets import MODELS_DIR
+from ai.digits.classifier import DigitClassifier
+from ai.digits.fix import steps_to_fix
+from ai.digits.mnist import TRAIN, load_part
+from ai.digits.training import SPLIT_SEED, accuracy
+from game.core.assets import MODELS_DIR
 
 HELD_OUT = 5_000
 

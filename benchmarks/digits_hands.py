@@ -26,10 +26,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pygame
 
-from game.app import App
-from game.context import Context
+from game.core.settings import Settings
 from game.scenes.digits import Digits
-from game.settings import Settings
+from game.shell.app import App
+from game.ui.context import Context
 
 # Strokes through points in percent of a box, y down.
 RING = [(52, 2), (18, 14), (2, 50), (18, 88), (52, 99), (86, 84), (98, 48), (84, 14), (50, 1)]

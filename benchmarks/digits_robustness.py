@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ai.digit_training import accuracy
-from ai.digits import DigitClassifier, load_part, preprocess
-from ai.ink import enlarge
-from ai.strokes import draw_strokes
+from ai.digits.classifier import DigitClassifier, load_part, preprocess
+from ai.digits.preprocessing import enlarge
+from ai.digits.strokes import draw_strokes
+from ai.digits.training import accuracy
 
 MODELS = Path(__file__).parents[1] / "models" / "digits"
 ROUND_TRIPS, TEMPLATES_EACH = 2000, 60

@@ -28,10 +28,10 @@ import numpy as np
 import pygame
 
 from benchmarks.digits_robustness import template_strokes
-from game.app import App
-from game.context import Context
+from game.core.settings import Settings
 from game.scenes.digits import Digits
-from game.settings import Settings
+from game.shell.app import App
+from game.ui.context import Context
 
 LIMIT = 16.0
 EACH = 10

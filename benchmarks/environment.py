@@ -22,7 +22,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from ai.lander import NUM_ACTIONS, LanderEnv
+from ai.lander.environment import NUM_ACTIONS, LanderEnv
 
 SIZES = (1, 16, 64, 256, 1024)
 THEIR_ACTIONS = 4

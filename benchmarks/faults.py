@@ -37,24 +37,24 @@ from typing import Any
 
 import numpy as np
 
-from ai import demonstrations
-from ai.config import PRESETS
-from ai.demonstrations import Demonstration
-from ai.digit_config import DIGIT_PRESETS
-from ai.digit_runs import resume_digit_run, save_digit_run
-from ai.digit_training import DigitTraining
-from ai.digits import DigitClassifier
-from ai.history import Alteration, Checkpoint, History, Point, Validation
+from ai.agent.config import PRESETS
+from ai.digits.checkpoints import resume_digit_run, save_digit_run
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.training import DigitTraining
 from ai.nn import FullyConnectedLayer, ModelFormatError, NeuralNetwork
 from ai.nn.costs import CostFunctions
-from ai.runs import resume_run, snapshot
-from ai.training import Training
-from game import flight_file
-from game.flight import Hand, Recording
-from game.flight_file import Entry, Record
-from game.library import Library
-from game.records import Records
-from game.settings import Settings, SettingsFile
+from ai.training import demonstrations
+from ai.training.checkpoints import resume_run, snapshot
+from ai.training.demonstrations import Demonstration
+from ai.training.history import Alteration, Checkpoint, History, Point, Validation
+from ai.training.loop import Training
+from game.core.settings import Settings, SettingsFile
+from game.flight import flight_file
+from game.flight.flight import Hand, Recording
+from game.flight.flight_file import Entry, Record
+from game.flight.logbook import Records
+from game.training.library import Library
 
 SECONDS = 2.0  # that a reader may take
 MEGABYTES = 500  # of memory, all in all

@@ -37,22 +37,22 @@ from typing import Any
 import numpy as np
 import pygame
 
-from ai.missions import MISSIONS
+from ai.lander.missions import MISSIONS
 from benchmarks.tour import makers, scene_types, stock
-from game.app import App
-from game.context import Context
-from game.course import Flown
+from game.core.scene import Scene
+from game.core.settings import Settings
 from game.exhibits import EXHIBITS
-from game.scene import Scene
+from game.play.challenge import Flown
 from game.scenes.dialog import Asking, Naming, Picking
-from game.scenes.fault import Fault
+from game.scenes.error_screen import Fault
 from game.scenes.menu import Menu
 from game.scenes.pause import Pause
 from game.scenes.physics import Physics
 from game.scenes.play import Play
 from game.scenes.watch import COUNTS, Watch
-from game.settings import Settings
-from game.world.backdrop import Backdrop, landscape
+from game.shell.app import App
+from game.ui.context import Context
+from game.world.landscape.backdrop import Backdrop, landscape
 
 FRAMES = 1000
 RUNS = 3

@@ -34,13 +34,13 @@ import pygame
 
 from benchmarks.monkey import playground, resident
 from benchmarks.tour import makers, stock
-from game.app import App
-from game.context import Context
-from game.scene import Pop, Push
+from game.core.scene import Pop, Push
+from game.core.settings import Settings
 from game.scenes.digits import Digits
-from game.scenes.fault import Fault
+from game.scenes.error_screen import Fault
 from game.scenes.quiz import Quiz
-from game.settings import Settings
+from game.shell.app import App
+from game.ui.context import Context
 
 WARM = 5  # minutes, in which every scene has its turn
 GROWTH = 20.0  # megabytes

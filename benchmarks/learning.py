@@ -29,12 +29,12 @@ from typing import Any
 
 import numpy as np
 
-from ai.cli import configured
-from ai.config import PRESETS, Config
-from ai.env import Floats, Ints
-from ai.lander_task import Evaluation
-from ai.pilots import Pilot
-from ai.training import TEST_SEED, VALIDATION_SEED, Training, evaluate
+from ai.agent.config import PRESETS, Config
+from ai.cli.lander import configured
+from ai.common.environment import Floats, Ints
+from ai.lander.pilots import Pilot
+from ai.training.lander_task import Evaluation
+from ai.training.loop import TEST_SEED, VALIDATION_SEED, Training, evaluate
 
 VALIDATION_FLIGHTS = 500
 TEST_FLIGHTS = 2000
@@ -46,7 +46,7 @@ TUNED = {
     "exploration_final_eps": 0.1, "policy_kwargs": {"net_arch": [256, 256]},
 }  # fmt: skip
 TUNED_STEPS = 100_000
-LANDER = "ai.gym_lander:tranquility/Lander-v0"
+LANDER = "ai.gym.lander:tranquility/Lander-v0"
 
 
 @dataclass

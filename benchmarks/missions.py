@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ai.agent import DeepQAgent
-from ai.lander import Cause, LanderEnv, Outcome
-from ai.missions import MISSIONS, Mission
+from ai.agent.agent import DeepQAgent
+from ai.lander.environment import Cause, LanderEnv, Outcome
+from ai.lander.missions import MISSIONS, Mission
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
 REACH = np.array([0.5, 0.5, 0.2, 0.2, 0.05, 0.05])

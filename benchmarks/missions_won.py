@@ -19,13 +19,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ai.lander import OBSERVATION_SCALE, LanderEnv, Outcome
-from ai.missions import MISSIONS, Mission
-from game.assets import ASSETS_DIR
-from game.flight import DECISION_STEPS, Hand, Recording
-from game.flight_file import Record, write
-from game.records import describe
-from game.tape import Rerun
+from ai.lander.environment import OBSERVATION_SCALE, LanderEnv, Outcome
+from ai.lander.missions import MISSIONS, Mission
+from game.core.assets import ASSETS_DIR
+from game.flight.flight import DECISION_STEPS, Hand, Recording
+from game.flight.flight_file import Record, write
+from game.flight.logbook import describe
+from game.flight.replay import Rerun
 
 SLOTS = 320
 BEST = 32

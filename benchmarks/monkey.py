@@ -46,14 +46,14 @@ from numpy.typing import NDArray
 
 from benchmarks.monkey_deeds import DEEDS, Hands
 from benchmarks.tour import dialogs, makers, scene_types, stock
-from game.app import App
-from game.assets import MODELS_DIR
-from game.context import Context
-from game.scene import Pop, Push, Scene
+from game.audio.instruments import INSTRUMENTS, Instrument
+from game.audio.mixer import Sound
+from game.core.assets import MODELS_DIR
+from game.core.scene import Pop, Push, Scene
+from game.core.settings import SettingsFile
 from game.scenes.menu import Menu
-from game.settings import SettingsFile
-from game.sound import Sound
-from game.sounds.instruments import INSTRUMENTS, Instrument
+from game.shell.app import App
+from game.ui.context import Context
 
 LOOKS = 10  # times that it is looked whether anything is left behind
 GROWTH = 30.0  # megabytes from the third look to the last that are no leak

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pygame
 
-from game.app import App
-from game.scene import Scene
+from game.core.scene import Scene
+from game.shell.app import App
 from game.ui.form import Form
 
 try:

@@ -11,16 +11,15 @@ from inspect import Parameter, isclass, signature
 from shutil import copytree
 
 import game.scenes
-from ai.digits import DigitClassifier
-from ai.missions import MISSIONS
-from ai.pilots import ScriptedPilot
-from game.collection import name_problem
-from game.context import Context
-from game.course import Daily, Flown
+from ai.digits.classifier import DigitClassifier
+from ai.lander.missions import MISSIONS
+from ai.lander.pilots import ScriptedPilot
+from game.core.collection import name_problem
+from game.core.scene import Scene
 from game.exhibits import EXHIBITS
-from game.flight import Flight
-from game.records import Records
-from game.scene import Scene
+from game.flight.flight import Flight
+from game.flight.logbook import Records
+from game.play.challenge import Daily, Flown
 from game.scenes.dialog import Asking, Naming, Picking
 from game.scenes.dream import Dream
 from game.scenes.physics import Physics
@@ -29,6 +28,7 @@ from game.scenes.quiz import Quiz
 from game.scenes.race import race
 from game.scenes.replay import Replay
 from game.scenes.watch import COUNTS, Watch
+from game.ui.context import Context
 
 FLIGHTS = 2
 _PARTS = ("enter", "exit", "handle_event", "update", "draw")

@@ -30,15 +30,15 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pygame
 
-from ai.config import PRESETS
-from ai.history import History
-from ai.runs import resume_run
-from game.app import App
-from game.context import Context
-from game.scene import Push
+from ai.agent.config import PRESETS
+from ai.training.checkpoints import resume_run
+from ai.training.history import History
+from game.core.scene import Push
+from game.core.settings import Settings
+from game.core.worker import State
 from game.scenes.train import Train
-from game.settings import Settings
-from game.worker import State
+from game.shell.app import App
+from game.ui.context import Context
 
 PATIENCE = 60.0  # seconds
 

@@ -38,11 +38,11 @@ def run(seed: int, limit: float) -> tuple[float, list[float], list[float]]:
     import numpy as np
     import pygame
 
-    from ai.config import PRESETS
-    from game.app import App
-    from game.context import Context
+    from ai.agent.config import PRESETS
+    from game.core.settings import Settings
     from game.scenes.train import Train
-    from game.settings import Settings
+    from game.shell.app import App
+    from game.ui.context import Context
 
     frames, spent = [], []
     with TemporaryDirectory() as folder:

@@ -23,18 +23,18 @@ import numpy as np
 import pygame
 from PIL import Image
 
-from ai.missions import MISSIONS
-from game.app import App
-from game.context import Context
-from game.course import Flown
-from game.scene import Scene
+from ai.lander.missions import MISSIONS
+from game.core.scene import Scene
+from game.core.settings import Settings
+from game.play.challenge import Flown
 from game.scenes.digits import Digits
 from game.scenes.menu import Menu
 from game.scenes.physics import Physics
 from game.scenes.play import Play
 from game.scenes.train import Train
 from game.scenes.watch import Watch
-from game.settings import Settings
+from game.shell.app import App
+from game.ui.context import Context
 
 IMAGES = Path(__file__).resolve().parent / "images"
 # Name, scene, and what is pressed at which frame until the picture is taken.

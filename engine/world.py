@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.body import Body
-from engine.detect import Detector
+from engine.contacts import Detector
 from engine.integrate import Movers, integrate_position, integrate_velocity
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Contacts, Solver

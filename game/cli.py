@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from game import texts
+from game.core import texts
 
 
 def add_commands(commands: Any) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from game.scene import Scene
+    from game.core.scene import Scene
 
 _HINTS: Final[dict[str, str]] = {
     "PYGAME_HIDE_SUPPORT_PROMPT": "1",
@@ -36,12 +36,12 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Cal
 
     """
     tell_sdl()
-    from game import texts
-    from game.app import App, log_to
-    from game.assets import user_dir
-    from game.context import Context
-    from game.settings import SettingsFile
-    from game.window import NoDisplayError
+    from game.core import texts
+    from game.core.assets import user_dir
+    from game.core.settings import SettingsFile
+    from game.shell.app import App, log_to
+    from game.shell.window import NoDisplayError
+    from game.ui.context import Context
 
     folder = folder or user_dir()
     log_to(folder)

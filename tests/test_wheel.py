@@ -22,8 +22,8 @@ def places():
 def session():
     from tranquility.__main__ import find_own_folders, main
     find_own_folders()
-    from game.app import App
-    from game.worker import Worker
+    from game.shell.app import App
+    from game.core.worker import Worker
     run, worker = App.run, Worker(places)
     App.run = lambda app: run(app, max_frames=20)
     assert main(["--user-dir", "player"]) == 0

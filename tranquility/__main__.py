@@ -75,7 +75,7 @@ def _discard_output() -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from ai.command_line import Parser, folder  # once its folder has been found
+    from ai.cli.command_line import Parser, folder  # once its folder has been found
 
     parser = Parser(prog="tranquility", description="Land on the moon by hand, by network, or share the stick.")
     parser.set_defaults(run=None)
@@ -85,7 +85,7 @@ def _parser() -> argparse.ArgumentParser:
     screen.add_argument("--windowed", dest="full_screen", action="store_false", default=None)
     screen.add_argument("--fullscreen", dest="full_screen", action="store_true", default=None)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for module in ("game.cli", "ai.cli", "ai.digits_cli", "ai.copilot_cli"):
+    for module in ("game.cli", "ai.cli.lander", "ai.cli.digits", "ai.cli.copilot"):
         if find_spec(module) is not None:
             import_module(module).add_commands(commands)
     return parser

@@ -8,24 +8,24 @@ from typing import Final
 
 import pygame
 
-from ai.env import Doubles
-from ai.lander import Outcome
-from game import texts
-from game.cockpit.dial import Dial, draw_title
-from game.cockpit.hands import OWN
-from game.cockpit.insight import PADS_HIGH, PANEL, Insight
-from game.cockpit.lesson import keep_lesson
+from ai.common.environment import Doubles
+from ai.lander.environment import Outcome
+from game.cockpit.assist_dial import Dial, draw_title
+from game.cockpit.copilot_panel import PADS_HIGH, PANEL, Insight
+from game.cockpit.hud import CARD, Card
 from game.cockpit.overrides import Overrides
 from game.cockpit.track import Track
-from game.controls import Command, translate
-from game.credit import Credit
-from game.flight import Flight
-from game.hud import CARD, Card
-from game.outcomes import outcome_card
-from game.render import Clear, View
-from game.settings import Settings
-from game.ui.canvas import Canvas
-from game.ui.tokens import MARGIN, VIEW_SIZE
+from game.core import texts
+from game.core.settings import Settings
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import MARGIN, VIEW_SIZE
+from game.flight.credit import Credit
+from game.flight.demonstrations import keep_lesson
+from game.flight.flight import Flight
+from game.flight.handicap import OWN
+from game.flight.outcomes import outcome_card
+from game.input.controls import Command, translate
+from game.world.camera import Clear, View
 
 MODES: Final = ("tolerance", "guardian")
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends

@@ -7,15 +7,15 @@ from collections import deque
 from itertools import groupby
 from typing import Final
 
-from ai.env import Doubles
-from ai.pilots import COAST
-from game import texts
-from game.flight import DECISION_STEPS, Flight, Hand
-from game.render import Clear, View
-from game.ui.canvas import Canvas
-from game.ui.shapes import Shape
-from game.ui.tokens import HUMAN, NET, SMALL, VIEW_SIZE, Colour
+from ai.common.environment import Doubles
+from ai.lander.pilots import COAST
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.shapes import Shape
+from game.drawing.tokens import HUMAN, NET, SMALL, VIEW_SIZE, Colour
+from game.flight.flight import DECISION_STEPS, Flight, Hand
 from game.world import lander as art
+from game.world.camera import Clear, View
 
 _LASTS: Final = 40  # steps that a word stays after the last override: long enough to be read
 _FADES: Final = 14

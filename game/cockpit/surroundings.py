@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from ai.lander import PARAMS, LanderEnv, Outcome
-from game import texts
-from game.ui.canvas import Canvas
-from game.ui.tokens import INK, MARGIN, MUTE, SMALL
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, MARGIN, MUTE, SMALL
 
 _FIRST: Final = 98.0  # the first row, under what is asked of the flight
 _ROW: Final = 20.0

@@ -9,11 +9,11 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Doubles
-from game.flight import Flight, Hand
-from game.render import Clear, View
-from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN, NET
+from ai.common.environment import Doubles
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, NET
+from game.flight.flight import Flight, Hand
+from game.world.camera import Clear, View
 from game.world.paths import draw_faint
 
 _STRIDE: Final = 4  # steps between points

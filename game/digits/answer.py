@@ -7,13 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from game import texts
+from game.core import texts
 from game.digits.fixing import Fixing
 from game.digits.reader import LEAST_INK, Numbers, Reading, Verdict
-from game.digits.shelf import called
-from game.ui.canvas import Canvas
-from game.ui.prose import wrapped
-from game.ui.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
+from game.training.digit_models import called
 from game.ui.widget import PointsManager, Widget, mix
 
 LEFT: Final = 624.0

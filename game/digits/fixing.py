@@ -8,19 +8,19 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from ai.digit_fix import Fixed, FixStep, fix
-from ai.ink import Image
+from ai.digits.fix import Fixed, FixStep, fix
+from ai.digits.preprocessing import Image
 from ai.nn.files import read_json
-from game import texts
+from game.core import texts
+from game.core.worker import State, Worker
 from game.digits import PATIENCE
-from game.digits.shelf import shelf
-from game.worker import State, Worker
+from game.training.digit_models import shelf
 
 _UNDONE: Final = ".undone"  # beside the fixes, until it is removed
 
 
 class Fixing:
-    """One fix at a time; `poll` once a frame. Networks are found by the names that `game.digits.shelf` gives them.
+    """One fix at a time; `poll` once a frame. Networks are found by the names that `game.training.digit_models` gives them.
 
     Every fix is a folder of its own and none is ever thrown away but by `undo`.
 

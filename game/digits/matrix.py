@@ -7,12 +7,12 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.digit_live import Confusion
-from game import texts
-from game.controls import Command, translate
+from ai.digits.session import Confusion
+from game.core import texts
 from game.digits.pictures import picture
-from game.ui.canvas import Canvas
-from game.ui.tokens import INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, Colour
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, Colour
+from game.input.controls import Command, translate
 from game.ui.widget import PointsManager, Widget
 
 _DIGITS: Final = 10

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
-from ai.digit_stages import StageAccuracy, stage_accuracy
-from game import texts
+from ai.digits.ablation import StageAccuracy, stage_accuracy
+from game.core import texts
+from game.core.worker import State, Worker
 from game.digits import PATIENCE
 from game.digits.answer import percent
 from game.digits.reader import Switches
-from game.digits.shelf import called
-from game.worker import State, Worker
+from game.training.digit_models import called
 
 
 class Measuring:

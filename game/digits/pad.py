@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from ai.strokes import Canvas as Ink
-from ai.strokes import draw_segments
+from ai.digits.strokes import Canvas as Ink
+from ai.digits.strokes import draw_segments
 from game.digits.stroke import PEN_WIDTH, Point, Stroke
-from game.ui.canvas import Canvas
-from game.ui.tokens import INK, LINE, NIGHT0, Colour
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, LINE, NIGHT0, Colour
 
 _RADIUS: Final = 12.0
 _MOST_UNDONE: Final = 100

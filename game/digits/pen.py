@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from game import texts
+from game.core import texts
 from game.digits.pad import DrawingPad
-from game.ui.pointer import Pointer
+from game.ui.virtual_pointer import Pointer
 from game.ui.widget import PointsManager
 
 _PACE: Final = 4.5  # points in a step of 1/60 s: slow enough for a digit

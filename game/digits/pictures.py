@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pygame
 
-from game.ui.tokens import HUMAN, INK, MUTE, NET, NIGHT0, PALETTE, Colour
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, PALETTE, Colour
 
 Numbers = npt.NDArray[np.float32]
 _GAP: Final = 255  # the colour that is none

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.ink import SIDE, Image, Stages, stages, stroke_stages
+from ai.digits.preprocessing import SIDE, Image, Stages, stages, stroke_stages
 from ai.nn.files import brief
 
 if TYPE_CHECKING:
-    from ai.digits import DigitClassifier
+    from ai.digits.classifier import DigitClassifier
 
 SURE: Final = 0.9  # nine in ten test images that are read rightly are read with more than that
 LIKELY: Final = 0.65  # and 99 in a hundred
@@ -38,7 +38,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Switches:
-    """Which steps of preprocessing are taken; `ai.ink.stages` says what each means."""
+    """Which steps of preprocessing are taken; `ai.digits.preprocessing.stages` says what each means."""
 
     crop: bool = True
     fit: bool = True
@@ -46,7 +46,7 @@ class Switches:
     centre: bool = True
 
     def prepare(self, strokes: Image, canvas: npt.ArrayLike) -> Stages:
-        """Return strokes, as `ai.ink.redrawn` has drawn them anew, and the canvas with them, at every stage."""
+        """Return strokes, as `ai.digits.preprocessing.redrawn` has drawn them anew, and the canvas with them, at every stage."""
         if self.crop and self.fit and self.width:
             return stroke_stages(strokes, canvas, centre=self.centre)
         return stages(canvas, **vars(self))
@@ -113,7 +113,7 @@ class Reader:
 
     def _load(self, name: str, folder: Path) -> str:
         """Read one network, or return what is wrong with it."""
-        from ai.digits import DigitClassifier
+        from ai.digits.classifier import DigitClassifier
         from ai.nn import ModelFormatError
 
         try:

@@ -10,7 +10,7 @@ import numpy as np
 from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.shapes import Point
 from engine.vector import Array
-from game.grip import Grip
+from game.world.grip import Grip
 
 # How much of the view's width can be seen above the ground without meeting the words at the top.
 CLEAR: Final = 0.35

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from engine import Body, Circle, Polygon
-from game import texts
+from game.core import texts
 from game.exhibits.exhibit import Exhibit, Label, height, speed
 
 # Below the ground line, where names of columns stand; points become metres by an exhibit's width.

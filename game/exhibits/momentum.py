@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from engine import DT, Body, Circle, Polygon
-from game import texts
+from game.core import texts
 from game.exhibits.exhibit import CLEAR, Exhibit, Label, height, speed
 
 _MOVES: Final = 0.05  # metres a second

@@ -7,16 +7,16 @@ from typing import Final
 
 import pygame
 
-from game import texts
-from game.bindings import Bindings, Meaning
-from game.context import Context
-from game.controls import Command, Controls, key_name, names, translate
-from game.scene import Pop, Transition
-from game.ui.canvas import Canvas
+from game.core import texts
+from game.core.scene import Pop, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.sky import NightSky
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
+from game.input.bindings import Bindings, Meaning
+from game.input.controls import Command, Controls, key_name, names, translate
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.sky import NightSky
-from game.ui.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
 from game.ui.widget import PointsManager, Widget, mix
 from game.ui.widgets import Word
 

@@ -8,21 +8,21 @@ from typing import Final
 
 import pygame
 
-from game import texts
 from game.cockpit.cockpit import MODES
-from game.cockpit.hands import HANDS
-from game.cockpit.lesson import lessons
-from game.cockpit.skill import Skill
-from game.context import Context
-from game.controls import Command, translate
-from game.records import RECENT_OWN
-from game.scene import Pop, Scene, Transition
+from game.core import texts
+from game.core.scene import Pop, Scene, Transition
+from game.core.settings import GRAVITY_SHARES, PACES
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.flight.demonstrations import lessons
+from game.flight.handicap import HANDS
+from game.flight.logbook import RECENT_OWN
+from game.flight.skill import Skill
+from game.input.controls import Command, translate
 from game.scenes.pause import Blurred
-from game.settings import GRAVITY_SHARES, PACES
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.ui.widget import Widget
 from game.ui.widgets import Choice, Slider, Toggle, Word
 

@@ -7,19 +7,19 @@ from typing import Final
 
 import pygame
 
-from game import texts
-from game.collection import LONGEST_NAME, fitting
-from game.context import Context
-from game.controls import Command
-from game.scene import Pop, Scene, Transition
-from game.ui import typeface
-from game.ui.canvas import Canvas
+from game.core import texts
+from game.core.collection import LONGEST_NAME, fitting
+from game.core.scene import Pop, Scene, Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.tokens import FAINT, MUTE, NIGHT0, SMALL, TEXT
+from game.input.controls import Command
+from game.ui.context import Context
 from game.ui.entry import Entry
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, Row
-from game.ui.prose import wrapped
-from game.ui.tokens import FAINT, MUTE, NIGHT0, SMALL, TEXT
 from game.ui.widget import OnPress
 from game.ui.widgets import Word
 

@@ -7,39 +7,39 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.digit_config import DIGIT_PRESETS, DigitConfig
-from ai.digit_live import Turned
-from ai.history import REVERTED
-from ai.schedule import InForce
-from game import texts
-from game.context import Context
-from game.controls import Command, translate
-from game.dials import dials, figure, label
+from ai.agent.schedule import InForce
+from ai.digits.config import DIGIT_PRESETS, DigitConfig
+from ai.digits.session import Turned
+from ai.training.history import REVERTED
+from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
+from game.charts.charts import Charts
+from game.core import texts
+from game.core.scene import Pop, Push, Transition
+from game.core.worker import State
 from game.digits.matrix import Matrix
-from game.digits.pupil import Curves, Pupil
-from game.digits.shelf import runs_dir
-from game.learner import Beside
-from game.scene import Pop, Push, Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.sky import NightSky
+from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
+from game.input.controls import Command, translate
+from game.panels.knobs import Knobs
+from game.panels.run_status import draw_problem, draw_standing, start_word
 from game.scenes.dialog import Asking
-from game.tuning import Family
-from game.ui import typeface
-from game.ui.canvas import Canvas
-from game.ui.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
-from game.ui.charts import Charts
+from game.training.dials import dials, figure, label
+from game.training.digit_models import runs_dir
+from game.training.digit_run import Curves, Pupil
+from game.training.run_settings import Family
+from game.training.training_run import Beside
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.knobs import Knobs
-from game.ui.pointer import Pointer
-from game.ui.prose import wrapped
-from game.ui.sky import NightSky
-from game.ui.standing import draw_problem, draw_standing, start_word
-from game.ui.tokens import HUMAN, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
+from game.ui.virtual_pointer import Pointer
 from game.ui.widget import OnPress
 from game.ui.widgets import Word
-from game.worker import State
 
 if TYPE_CHECKING:
-    from ai.digits import DigitClassifier
+    from ai.digits.classifier import DigitClassifier
 
 _OFFERED: Final = {name: DIGIT_PRESETS[name] for name in texts.PUPIL_PRESETS}
 FAMILY: Final = Family(tuple(dials(DigitConfig)), _OFFERED, texts.PUPIL_PRESETS, "images")
@@ -280,7 +280,7 @@ class DigitTrainingScene:
 
     def _classifier(self) -> DigitClassifier | None:
         """Return the network as it was last kept; if there is none, say so."""
-        from ai.digits import DigitClassifier
+        from ai.digits.classifier import DigitClassifier
 
         if not self.pupil.kept:
             self._say(texts.PUPIL_NOTHING)

@@ -11,32 +11,32 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.ink import redrawn
-from game import texts
-from game.context import Context
-from game.controls import Command, translate
+from ai.digits.preprocessing import redrawn
+from game.core import texts
+from game.core.scene import Pop, Push, Scene, Transition
 from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
+from game.digits.explanation import LEFT as SIGHT_LEFT
+from game.digits.explanation import STEPS, Sight, StageSwitch
 from game.digits.fixing import Fixing
 from game.digits.measuring import Measuring
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
 from game.digits.reader import Explanation, Numbers, Reader, Switches, Verdict
-from game.digits.shelf import NAMES, called
-from game.digits.sight import LEFT as SIGHT_LEFT
-from game.digits.sight import STEPS, Sight, StageSwitch
-from game.scene import Pop, Push, Scene, Transition
-from game.ui import typeface
-from game.ui.canvas import Canvas
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.sky import NightSky
+from game.drawing.tokens import LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.input.controls import Command, translate
+from game.training.digit_models import NAMES, called
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.pick import Pick
-from game.ui.prose import wrapped
-from game.ui.sky import NightSky
-from game.ui.tokens import LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.ui.widgets import Choice, Word
 
 if TYPE_CHECKING:
-    from ai.digits import DigitClassifier
+    from ai.digits.classifier import DigitClassifier
 
 PAD: Final = pygame.Rect(40, 70, 520, 520)
 _TABS: Final = (LEFT, 26, 252, 24)  # the networks, above what the chosen one says

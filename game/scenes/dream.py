@@ -8,27 +8,27 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.digit_dream import STEPS
-from ai.digit_dream import Dream as Image
-from ai.ink import SIDE
-from game import texts
-from game.context import Context
-from game.controls import Command, translate
+from ai.digits.dream import STEPS
+from ai.digits.dream import Dream as Image
+from ai.digits.preprocessing import SIDE
+from game.core import texts
+from game.core.scene import Pop, Transition
 from game.digits.answer import LEFT, DigitRow, percent
 from game.digits.pictures import Numbers, picture
-from game.scene import Pop, Transition
-from game.ui import typeface
-from game.ui.canvas import Canvas
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.sky import NightSky
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.input.controls import Command, translate
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.prose import wrapped
-from game.ui.sky import NightSky
-from game.ui.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.ui.widget import PointsManager, Widget
 from game.ui.widgets import Choice, Slider, Word
 
 if TYPE_CHECKING:
-    from ai.digits import DigitClassifier
+    from ai.digits.classifier import DigitClassifier
 
 _DIGITS: Final = 10
 _FRAME: Final = pygame.Rect(40, 86, 504, 504)  # eighteen points to a pixel

@@ -8,23 +8,23 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.rules import tenths
-from game import texts
-from game.context import Context
-from game.controls import Command
-from game.flight_file import Entry, Record
-from game.records import Records, Totals, best, skill, totals
-from game.scene import Pop, Push, Transition
-from game.ui.canvas import Canvas
-from game.ui.chart import Chart, Series
-from game.ui.charts import Charts
+from ai.lander.rules import tenths
+from game.charts.chart import Chart, Series
+from game.charts.charts import Charts
+from game.core import texts
+from game.core.scene import Pop, Push, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.sky import NightSky
+from game.drawing.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.flight.flight_file import Entry, Record
+from game.flight.logbook import Records, Totals, best, skill, totals
+from game.input.controls import Command
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
-from game.ui.pointer import Pointer
-from game.ui.prose import wrapped
-from game.ui.sky import NightSky
-from game.ui.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.ui.virtual_pointer import Pointer
 from game.ui.widget import Widget
 from game.ui.widgets import Choice, Word
 

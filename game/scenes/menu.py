@@ -7,15 +7,15 @@ from typing import Final
 
 import pygame
 
-from game import texts
-from game.context import Context
-from game.controls import Command
-from game.scene import Push, Quit, Scene, Transition
-from game.scenes.vista import Vista
-from game.ui.canvas import Canvas
+from game.core import texts
+from game.core.scene import Push, Quit, Scene, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
+from game.input.controls import Command
+from game.scenes.menu_background import Vista
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
 from game.ui.widgets import Word
 
 _TITLE_SIZE: Final = 88.0

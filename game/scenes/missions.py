@@ -8,24 +8,25 @@ from typing import Final
 
 import pygame
 
-from ai.missions import FIRST, MISSIONS
-from ai.rules import tenths
-from game import flight_file, texts
-from game.context import Context
-from game.controls import Command
-from game.course import Course, Daily, Flown
-from game.flight_file import Entry, Record
-from game.records import Records, rank
-from game.scene import Pop, Push, Transition
-from game.tutorial import Tutorial
-from game.ui.canvas import Canvas
+from ai.lander.missions import FIRST, MISSIONS
+from ai.lander.rules import tenths
+from game.core import texts
+from game.core.scene import Pop, Push, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.glyphs import icon
+from game.drawing.prose import wrapped
+from game.drawing.sky import NightSky
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MEDALS, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.flight import flight_file
+from game.flight.flight_file import Entry, Record
+from game.flight.logbook import Records, rank
+from game.input.controls import Command
+from game.play.challenge import Course, Daily, Flown
+from game.play.tutorial import Tutorial
+from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.glyphs import icon
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing
-from game.ui.prose import wrapped
-from game.ui.sky import NightSky
-from game.ui.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MEDALS, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.ui.widgets import Choice, Word
 
 _LIST: Final = pygame.Rect(MARGIN, 164, 560, 416)

@@ -7,14 +7,14 @@ from typing import Final
 
 import pygame
 
-from game import texts
-from game.context import Context
-from game.controls import Command
-from game.scene import Pop, Push, Scene, Transition
-from game.ui.canvas import Canvas
+from game.core import texts
+from game.core.scene import Pop, Push, Scene, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import MARGIN, NIGHT0, VIEW_SIZE
+from game.input.controls import Command
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.tokens import MARGIN, NIGHT0, VIEW_SIZE
 from game.ui.widget import OnPress
 from game.ui.widgets import Word
 

@@ -12,24 +12,25 @@ import numpy as np
 import pygame
 
 from engine.vector import Array
-from game import hud, texts
-from game.clock import Tempo
-from game.context import Context
-from game.controls import Command, translate
+from game.cockpit import hud
+from game.core import texts
+from game.core.clock import Tempo
+from game.core.scene import Pop, Push, Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.figures import write_figures
+from game.drawing.sky import NightSky
+from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
 from game.exhibits import EXHIBITS, Label
-from game.grip import Grip
-from game.render import POINTS_PER_METRE, WORLD_WIDTH, View
-from game.scene import Pop, Push, Transition
-from game.ui import typeface
-from game.ui.canvas import Canvas
-from game.ui.figures import write_figures
+from game.input.controls import Command, translate
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.pointer import Pointer
-from game.ui.sky import NightSky
-from game.ui.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
+from game.ui.virtual_pointer import Pointer
 from game.ui.widgets import Choice
 from game.world.bodies import Outlines, draw_contacts, draw_grip
+from game.world.camera import POINTS_PER_METRE, WORLD_WIDTH, View
+from game.world.grip import Grip
 
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)

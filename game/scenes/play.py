@@ -6,25 +6,28 @@ from typing import Final
 
 import pygame
 
-from game import flight_words, hud, networks, texts
+from game.audio.flight_sounds import FlightSound
+from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
-from game.cockpit.hands import HANDS, OWN
-from game.cockpit.skill import Skill
-from game.context import Context
-from game.controls import Command, translate
-from game.course import Course, Duel, Moment
-from game.credit import Credit
-from game.difficulty import Difficulty
-from game.ending import Ending, write_down
-from game.flight import Flight, Hand
-from game.mouse_stick import MouseStick
-from game.outlook import Outlook
-from game.pace import Pace
-from game.records import Records
-from game.scene import Pop, Push, Transition
-from game.sounds.flight import FlightSound
-from game.ui.canvas import Canvas
+from game.core import texts
+from game.core.pace import Pace
+from game.core.scene import Pop, Push, Transition
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.credit import Credit
+from game.flight.difficulty import Difficulty
+from game.flight.flight import Flight, Hand
+from game.flight.handicap import HANDS, OWN
+from game.flight.logbook import Records
+from game.flight.skill import Skill
+from game.input.controls import Command, translate
+from game.input.mouse import MouseStick
+from game.play import captions as flight_words
+from game.play.challenge import Course, Duel, Moment
+from game.play.ending import Ending, write_down
+from game.ui.context import Context
 from game.ui.widget import OnPress
+from game.world.path_preview import Outlook
 from game.world.scenery import Scenery
 
 # Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
@@ -78,7 +81,7 @@ class Play:
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
         if self._course is None and self._seed is None and not context.settings.tutored:
-            from game.tutorial import Tutorial
+            from game.play.tutorial import Tutorial
 
             self._course = Tutorial()
         self._records = Records(context.user_dir)

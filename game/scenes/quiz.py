@@ -8,30 +8,44 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.ink import preprocess_strokes
-from ai.mnist import TEST, MnistError, load_part
-from game import texts
-from game.context import Context
-from game.controls import Command, translate
+from ai.digits.mnist import TEST, MnistError, load_part
+from ai.digits.preprocessing import preprocess_strokes
+from game.core import texts
+from game.core.scene import Pop, Transition
 from game.digits.answer import LEFT, percent
-from game.digits.contest import ROUNDS, Contest, Round
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
 from game.digits.pictures import picture
-from game.scene import Pop, Transition
-from game.ui import typeface
-from game.ui.canvas import Canvas
+from game.digits.quiz_rules import ROUNDS, Contest, Round
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.sky import NightSky
+from game.drawing.tokens import (
+    FIGURE,
+    HUMAN,
+    INK,
+    LABEL,
+    LINE,
+    MUTE,
+    NET,
+    NIGHT0,
+    SMALL,
+    TEXT,
+    TITLE,
+    VIEW_SIZE,
+    Colour,
+)
+from game.input.controls import Command, translate
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.pointer import Pointer
-from game.ui.prose import wrapped
-from game.ui.sky import NightSky
-from game.ui.tokens import FIGURE, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT0, SMALL, TEXT, TITLE, VIEW_SIZE, Colour
+from game.ui.virtual_pointer import Pointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Word
 
 if TYPE_CHECKING:
-    from ai.digits import DigitClassifier
+    from ai.digits.classifier import DigitClassifier
 
 _PAD: Final = pygame.Rect(40, 86, 504, 504)
 _QUESTION: Final = 132.0  # the baselines of what is asked, and of what came of it

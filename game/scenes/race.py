@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 
-from ai.missions import MISSIONS
-from game import texts
-from game.course import Flown, FlyOn, Race
-from game.flight_file import Record
+from ai.lander.missions import MISSIONS
+from game.core import texts
+from game.flight.flight_file import Record
+from game.flight.replay import Tape
+from game.play.challenge import Flown, FlyOn, Race
 from game.scenes.play import Play
-from game.tape import Tape
 
 
 def race(record: Record) -> Play:

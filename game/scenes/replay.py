@@ -10,29 +10,30 @@ from typing import Final
 
 import pygame
 
-from ai.lander import Outcome
-from game import hud, texts
-from game.clock import STEP
-from game.collection import LONGEST_NAME, exports_dir, fitting, free_path
-from game.context import Context
-from game.controls import Command, translate
-from game.export import KINDS, Export
-from game.flight import Hand
-from game.flight_file import Record
-from game.pace import Pace
-from game.render import Clear, View
-from game.scene import Pop, Push, Transition
-from game.sounds.flight import FlightSound
-from game.tape import Tape
-from game.ui import typeface
-from game.ui.canvas import Canvas
+from ai.lander.environment import Outcome
+from game.audio.flight_sounds import FlightSound
+from game.cockpit import hud
+from game.core import texts
+from game.core.clock import STEP
+from game.core.collection import LONGEST_NAME, exports_dir, fitting, free_path
+from game.core.pace import Pace
+from game.core.scene import Pop, Push, Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
+from game.export.export import KINDS, Export
+from game.flight.flight import Hand
+from game.flight.flight_file import Record
+from game.flight.replay import Tape
+from game.input.controls import Command, translate
+from game.panels.timeline import Timeline, runs
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.timeline import Timeline, runs
-from game.ui.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.ui.widget import OnPress
 from game.ui.widgets import Choice, Word
 from game.ui.words import GAP
+from game.world.camera import Clear, View
 from game.world.paths import draw_faint
 from game.world.scenery import Scenery
 

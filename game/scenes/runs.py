@@ -8,20 +8,21 @@ from typing import Final
 
 import pygame
 
-from game import networks, texts
-from game.collection import LONGEST_NAME, LibraryError, fitting
-from game.context import Context
-from game.controls import Command
-from game.library import Library, SavedRun, read_run
-from game.scene import Pop, Push, Transition
-from game.ui.canvas import Canvas
+from game.core import texts
+from game.core.collection import LONGEST_NAME, LibraryError, fitting
+from game.core.scene import Pop, Push, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.sky import NightSky
+from game.drawing.tokens import LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.flight import networks
+from game.input.controls import Command
+from game.panels.run_page import draw_run, row, suggestion
+from game.training.library import Library, SavedRun, read_run
+from game.ui.context import Context
 from game.ui.entry import Entry
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
-from game.ui.run_page import draw_run, row, suggestion
-from game.ui.sky import NightSky
-from game.ui.tokens import LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Word
 

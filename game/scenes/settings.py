@@ -7,16 +7,16 @@ from typing import Final
 
 import pygame
 
-from game import texts
-from game.context import Context
-from game.controls import Command, Held, names
-from game.scene import Pop, Push, Transition
-from game.sounds.instruments import GROUPS, altitude_key
-from game.ui.canvas import Canvas
+from game.audio.instruments import GROUPS, altitude_key
+from game.core import texts
+from game.core.scene import Pop, Push, Transition
+from game.drawing.canvas import Canvas
+from game.drawing.sky import NightSky
+from game.drawing.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
+from game.input.controls import Command, Held, names
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.sky import NightSky
-from game.ui.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
 from game.ui.widgets import Choice, Slider, Toggle, Word
 
 ROWS: Final = ("full_screen", "reduced_motion", "colour_safe", "show_hints")
@@ -148,8 +148,8 @@ def _loudness(volume: float) -> str:
 
 
 def _fly_first_flight() -> Transition:
+    from game.play.tutorial import Tutorial
     from game.scenes.play import Play
-    from game.tutorial import Tutorial
 
     return Push(Play(0, course=Tutorial()))
 

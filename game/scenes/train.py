@@ -9,30 +9,30 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.config import PRESETS, Config
-from ai.live import agent_of
-from game import texts
-from game.cockpit.lesson import FILE_NAME, lessons
-from game.collection import LibraryError
-from game.context import Context
-from game.controls import Command, translate
-from game.library import Library, SavedRun
-from game.scene import Pop, Push, Transition
-from game.student import PACES, Student
-from game.ui.advice import Advice
-from game.ui.board import Board
-from game.ui.canvas import Canvas
+from ai.agent.config import PRESETS, Config
+from ai.training.session import agent_of
+from game.charts.scrubber import Scrubber
+from game.core import texts
+from game.core.collection import LibraryError
+from game.core.scene import Pop, Push, Transition
+from game.core.worker import State
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
+from game.flight.demonstrations import FILE_NAME, lessons
+from game.input.controls import Command, translate
+from game.panels.advice import Advice
+from game.panels.knobs import Knobs
+from game.panels.network_panel import Inside
+from game.panels.run_status import draw_problem, draw_standing, start_word
+from game.panels.training_charts import Board
+from game.training.lander_run import PACES, Student
+from game.training.library import Library, SavedRun
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.inside import Inside
-from game.ui.knobs import Knobs
-from game.ui.pointer import Pointer
-from game.ui.scrubber import Scrubber
-from game.ui.standing import draw_problem, draw_standing, start_word
-from game.ui.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
+from game.ui.virtual_pointer import Pointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, Word
-from game.worker import State
 from game.world.swarm import LearningSwarm
 
 _WIDTH: Final = 836.0  # of the swarm and the charts; the panel has the rest

@@ -9,31 +9,34 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.decision import Decision
-from ai.env import Bools, Doubles
-from ai.lander import Outcome
-from game import framing, hud, networks, texts
-from game.clock import STEP, Tempo
-from game.context import Context
-from game.controls import Command, translate
-from game.flight import DECISION_STEPS, REST_STEPS, Swarm
-from game.mind import PANEL, draw_mind
-from game.render import Camera, Clear, View
-from game.scene import Pop, Push, Transition
-from game.settings import Settings
-from game.sounds.flight import FlightSound
-from game.ui import typeface
-from game.ui.canvas import Canvas
+from ai.common.decision import Decision
+from ai.common.environment import Bools, Doubles
+from ai.lander.environment import Outcome
+from game.audio.flight_sounds import FlightSound
+from game.cockpit import hud
+from game.cockpit.decision_panel import PANEL, draw_mind
+from game.core import texts
+from game.core.clock import STEP, Tempo
+from game.core.scene import Pop, Push, Transition
+from game.core.settings import Settings
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
+from game.flight import networks
+from game.flight.flight import DECISION_STEPS, REST_STEPS, Swarm
+from game.input.controls import Command, translate
+from game.panels.run_status import rate_colour
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.pick import Pick
-from game.ui.standing import rate_colour
-from game.ui.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
 from game.ui.widget import OnPress
 from game.ui.widgets import Choice
 from game.ui.words import GAP
-from game.world.backdrop import landscape
-from game.world.pad import draw_pad
+from game.world import framing
+from game.world.camera import Camera, Clear, View
+from game.world.landscape.backdrop import landscape
+from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
 from game.world.scenery import mark_lost
 from game.world.stage import Stage

@@ -11,11 +11,11 @@ from typing import Final
 
 import pygame
 
-from game.controls import Command, translate
-from game.scene import Transition
-from game.ui import typeface
-from game.ui.canvas import Canvas
-from game.ui.tokens import FAINT, HUMAN, INK, LABEL, MUTE, TEXT
+from game.core.scene import Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, TEXT
+from game.input.controls import Command, translate
 from game.ui.widget import PointsManager, Widget
 
 Fits = Callable[[str], str]

@@ -7,12 +7,12 @@ from typing import Final, TypeVar
 
 import pygame
 
-from game import texts
-from game.context import Context
-from game.controls import Command, Controls, presses_main, translate
-from game.scene import Transition
+from game.core import texts
+from game.core.scene import Transition
+from game.drawing.canvas import Canvas
+from game.input.controls import Command, Controls, presses_main, translate
 from game.ui import focus
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from game.ui.widget import OnPress, PointsManager, Widget
 
 W = TypeVar("W", bound=Widget)

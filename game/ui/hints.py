@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from game import texts
-from game.controls import Controls, Held, KeyName
-from game.ui.canvas import Canvas
-from game.ui.tokens import INK, MUTE, SMALL
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, MUTE, SMALL
+from game.input.controls import Controls, Held, KeyName
 
 _GAPS: Final = 8.0, 24.0  # from a key to its meaning, from there to the next key
 _LINE: Final = 18.0  # how far above its baseline a hint can be clicked

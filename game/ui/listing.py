@@ -8,10 +8,10 @@ from typing import Final
 
 import pygame
 
-from game.controls import Command, translate
-from game.scene import Transition
-from game.ui.canvas import Canvas
-from game.ui.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
+from game.core.scene import Transition
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
+from game.input.controls import Command, translate
 from game.ui.widget import PointsManager, Widget, mix
 
 Row = tuple[str, ...]  # what it is called, and a few words for each column

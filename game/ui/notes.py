@@ -7,8 +7,8 @@ from typing import Final
 
 import pygame
 
-from game.ui.canvas import Canvas
-from game.ui.tokens import FAINT, INK, SMALL, VIEW_SIZE
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, INK, SMALL, VIEW_SIZE
 
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20

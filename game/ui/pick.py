@@ -7,10 +7,10 @@ from typing import Final
 
 import pygame
 
-from game.scene import Transition
-from game.ui import typeface
-from game.ui.canvas import Canvas
-from game.ui.tokens import SMALL
+from game.core.scene import Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import SMALL
 from game.ui.widget import OnPress, PointsManager
 from game.ui.widgets import Choice
 from game.ui.words import WordRow

@@ -15,10 +15,10 @@ from pygame_gui.core import UIElement
 from pygame_gui.core.ui_appearance_theme import UIAppearanceTheme
 from pygame_gui.core.utility import set_default_manager
 
-from game.controls import Controls
-from game.scene import Transition
-from game.ui.canvas import Canvas
-from game.ui.tokens import INK, MUTE, VIEW_SIZE, Colour
+from game.core.scene import Transition
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, MUTE, VIEW_SIZE, Colour
+from game.input.controls import Controls
 
 OnPress = Callable[[], Transition | None]
 EASE: Final = 0.22  # of the way that is left, in every sixtieth of a second

@@ -8,10 +8,10 @@ from typing import Final
 
 import pygame
 
-from game.scene import Transition
-from game.ui.canvas import Canvas
-from game.ui.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, Colour
-from game.ui.typeface import Weight
+from game.core.scene import Transition
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, Colour
+from game.drawing.typeface import Weight
 from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
 from game.ui.words import GAP as CHOICE_GAP
 from game.ui.words import WordRow

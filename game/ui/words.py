@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from typing import Final
 
-from game.ui import typeface
-from game.ui.canvas import Canvas
-from game.ui.tokens import INK, MUTE, NET, Colour
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, MUTE, NET, Colour
 
 GAP: Final = 24  # between two words
 _ARROW: Final = 24  # room for one on either side

@@ -13,11 +13,11 @@ import pygame
 
 from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.vector import Array, dot, right_of, rotate
-from game.render import View
-from game.ui import shapes
-from game.ui.canvas import Canvas
-from game.ui.tokens import EMBER, FAINT, HUMAN, INK, MUTE, NET, NIGHT1, Colour
-from game.world.paint import mix
+from game.drawing import shapes
+from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
+from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, MUTE, NET, NIGHT1, Colour
+from game.world.camera import View
 
 _MARK: Final = (0.45, 0.82)  # of a disc's radius, from and to, so that its turning is seen
 _EDGE: Final = 1.2  # points

@@ -8,14 +8,14 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Doubles
-from ai.lander import FOOT_CENTRE, FOOT_SIZE, PARAMS
-from game.render import View
-from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN, NET
+from ai.common.environment import Doubles
+from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, PARAMS
+from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
+from game.drawing.tokens import HUMAN, NET
 from game.world import lander as art
+from game.world.camera import View
 from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume, plumes
-from game.world.paint import mix
 
 STAND: Final = PARAMS.stand
 _FIRELIGHT: Final = 0.35  # what a craft's own fire adds by night

@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Doubles
-from game.ui.tokens import Colour
-from game.world.paint import light
+from ai.common.environment import Doubles
+from game.drawing.paint import light
+from game.drawing.tokens import Colour
 
 LEVELS: Final = 8
 FLICKERS: Final = 5

@@ -1,6 +1,6 @@
 """The lander, drawn as facets in its own frame (metres) and lit from where the sun will rise.
 
-Its outline is the physics' own: the hull's corners and the feet of `ai.lander`.
+Its outline is the physics' own: the hull's corners and the feet of `ai.lander.environment`.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Doubles
-from ai.lander import FOOT_CENTRE, FOOT_SIZE
+from ai.common.environment import Doubles
+from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE
 from engine import Sprite
-from game.ui.tokens import Colour
-from game.world.sheet import fitted
+from game.drawing.tokens import Colour
+from game.world.landscape.sheet import fitted
 
 Corner = tuple[float, float]
 

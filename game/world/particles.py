@@ -11,12 +11,12 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles, Ints
-from game.clock import STEP
-from game.render import View
-from game.ui.tokens import Colour
-from game.world.paint import mix
-from game.world.relief import Relief
+from ai.common.environment import Bools, Doubles, Ints
+from game.core.clock import STEP
+from game.drawing.paint import mix
+from game.drawing.tokens import Colour
+from game.world.camera import View
+from game.world.landscape.relief import Relief
 
 _LEVELS: Final = 8
 _FINE: Final = 8  # pixels up to which there is a picture for every radius

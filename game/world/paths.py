@@ -10,11 +10,11 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles, Ints
-from ai.lander import Outcome
-from game.render import View
-from game.ui.canvas import Canvas, Point
-from game.ui.tokens import NET, Colour
+from ai.common.environment import Bools, Doubles, Ints
+from ai.lander.environment import Outcome
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import NET, Colour
+from game.world.camera import View
 
 _SPACING: Final = 0.62  # metres between dots
 _TRAIL_STRIDE: Final = 6  # steps between points of a trail

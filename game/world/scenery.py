@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from ai.env import Doubles
-from ai.lander import Outcome
-from game import framing
-from game.clock import STEP
-from game.flight import Flight, Hand
-from game.render import Camera, Clear, Shot, View
-from game.ui.canvas import Canvas
-from game.ui.tokens import VIEW_SIZE
-from game.world.backdrop import EARTH, landscape
-from game.world.ground import draw_ground
-from game.world.looks import LOOKS, look_of
-from game.world.moments import Moments
+from ai.common.environment import Doubles
+from ai.lander.environment import Outcome
+from game.core.clock import STEP
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import VIEW_SIZE
+from game.flight.flight import Flight, Hand
+from game.world import framing
+from game.world.callouts import Moments
+from game.world.camera import Camera, Clear, Shot, View
+from game.world.landscape.backdrop import EARTH, landscape
+from game.world.landscape.ground import draw_ground
+from game.world.landscape.themes import LOOKS, look_of
 from game.world.particles import DUST
 from game.world.stage import Stage
 

@@ -10,19 +10,19 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles
-from ai.lander import LanderEnv, Outcome
+from ai.common.environment import Bools, Doubles
+from ai.lander.environment import LanderEnv, Outcome
 from engine import Sprite
-from game.flight import surface_height
-from game.render import View
-from game.ui.canvas import Canvas
-from game.ui.tokens import HUMAN, NET, Colour
+from game.drawing.canvas import Canvas
+from game.drawing.paint import light, mix
+from game.drawing.tokens import HUMAN, NET, Colour
+from game.flight.flight import surface_height
 from game.world import lander as art
+from game.world.camera import View
 from game.world.craft import STAND, draw_craft, draw_crowd, draw_fires, foot_place, scaling, shaded, stand
-from game.world.paint import light, mix
+from game.world.landscape.relief import Relief
+from game.world.landscape.wind import Wind
 from game.world.particles import DUST, Particles
-from game.world.relief import Relief
-from game.world.wind import Wind
 from game.world.wreck import Wreck
 
 _IGNITE: Final = 0.34  # share of the way to full thrust, and to none, in a step

@@ -8,17 +8,17 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.env import Bools, Doubles
-from ai.lander import PARAMS, Outcome
-from ai.live import CAREFUL, Sight
-from game import texts
-from game.render import HOME, POINTS_PER_METRE, View
-from game.ui.canvas import Canvas
-from game.ui.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
-from game.world.backdrop import Backdrop
+from ai.common.environment import Bools, Doubles
+from ai.lander.environment import PARAMS, Outcome
+from ai.training.session import CAREFUL, Sight
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
+from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft, draw_crowd, draw_fires
 from game.world.lander import LANDER
-from game.world.pad import draw_pad
+from game.world.landscape.backdrop import Backdrop
+from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
 
 _SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # landers up to, how large they are drawn

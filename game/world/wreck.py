@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from ai.env import Doubles
-from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
+from ai.common.environment import Doubles
+from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
 from engine import Polygon, Sprite, World
 from game.world.lander import SIZE, WRECK
 

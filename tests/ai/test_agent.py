@@ -3,13 +3,13 @@ import json
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent, Symmetry
-from ai.config import PRESETS, Config
-from ai.env import StepResult
-from ai.lander import NUM_ACTIONS, NUM_FEATURES
+from ai.agent.agent import DeepQAgent, Symmetry
+from ai.agent.config import PRESETS, Config
+from ai.agent.replay import MemoryCell
+from ai.common.environment import StepResult
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
-from ai.replay import MemoryCell
-from ai.training import LANDER_SYMMETRY
+from ai.training.loop import LANDER_SYMMETRY
 
 SMALL = Config(hidden=(16,), batch_size=8, updates=2, warm_up=8, replay_size=200, n_step=1, num_envs=4, mirror=False)
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from ai.augment import Strength, augment
-from ai.mnist import load_part
+from ai.digits.augmentation import Strength, augment
+from ai.digits.mnist import load_part
 
 
 @pytest.fixture(scope="module")

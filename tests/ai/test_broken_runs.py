@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.config import PRESETS, Config
-from ai.hints import Adviser, Hint, Recent
-from ai.history import REVERTED, Alteration, Checkpoint, History, Point
-from ai.live import turned
-from ai.rewards import RewardWeights
-from ai.schedule import idle
+from ai.agent.config import PRESETS, Config
+from ai.agent.schedule import idle
+from ai.lander.rewards import RewardWeights
+from ai.training.hints import Adviser, Hint, Recent
+from ai.training.history import REVERTED, Alteration, Checkpoint, History, Point
+from ai.training.session import turned
 
 FILE = Path(__file__).with_name("broken_runs.npz")
 

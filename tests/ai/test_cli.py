@@ -8,12 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import ai.runs
-from ai.agent import DeepQAgent
-from ai.lander_task import Evaluation, LanderTask
-from ai.runs import save_run
-from ai.task import VALIDATION_SEED
-from ai.training import Training
+import ai.training.checkpoints
+from ai.agent.agent import DeepQAgent
+from ai.training.checkpoints import save_run
+from ai.training.lander_task import Evaluation, LanderTask
+from ai.training.loop import Training
+from ai.training.task import VALIDATION_SEED
 from main import main
 
 ROOT = Path(__file__).parents[2]
@@ -83,7 +83,7 @@ def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, cap
 
 TELLING = """
 import sys
-from ai.training import Training
+from ai.training.loop import Training
 from main import main
 
 def first(training, advance=Training.advance):
@@ -122,11 +122,11 @@ def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkey
         saves.append((training.agent.decisions, final))
         save_run(training, folder, final)
 
-    monkeypatch.setattr(ai.runs, "save_run", keep)
+    monkeypatch.setattr(ai.training.checkpoints, "save_run", keep)
 
     def kept(name, decisions, pauses):
         now, folder = [0.0], tmp_path / name
-        monkeypatch.setattr(ai.runs, "time", SimpleNamespace(monotonic=lambda: now[0]))
+        monkeypatch.setattr(ai.training.checkpoints, "time", SimpleNamespace(monotonic=lambda: now[0]))
         advance = Training.advance
 
         def slow(training):
@@ -208,15 +208,15 @@ def full(*_, **__):
 
 
 def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(ai.runs, "CHECKPOINT_SECONDS", -1.0)
+    monkeypatch.setattr(ai.training.checkpoints, "CHECKPOINT_SECONDS", -1.0)
     advance = Training.advance
 
     def filling(training):
         progress = advance(training)
-        monkeypatch.setattr(ai.runs.Snapshot, "save", full if progress.decisions < 160 else save)
+        monkeypatch.setattr(ai.training.checkpoints.Snapshot, "save", full if progress.decisions < 160 else save)
         return progress
 
-    save = ai.runs.Snapshot.save
+    save = ai.training.checkpoints.Snapshot.save
     monkeypatch.setattr(Training, "advance", filling)
     assert main(["train", "--decisions", "240", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]) == 0
     assert capsys.readouterr().err.count("No space left on device; training goes on") == 1
@@ -238,7 +238,7 @@ def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, 
 
     monkeypatch.setattr(Training, "advance", diverging)
     if trouble == "full":
-        monkeypatch.setattr(ai.runs.Snapshot, "save", full)
+        monkeypatch.setattr(ai.training.checkpoints.Snapshot, "save", full)
     if trouble == "best":
         monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     run = tmp_path / "run"

@@ -16,15 +16,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.config import PRESETS
-from ai.digit_config import DIGIT_PRESETS
-from ai.digit_runs import save_digit_run
-from ai.digit_training import DigitTraining
-from ai.history import HISTORY_FILE, Alteration, Checkpoint, History, Validation
-from ai.lander import LanderEnv
+from ai.agent.config import PRESETS
+from ai.digits.checkpoints import save_digit_run
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.training import DigitTraining
+from ai.lander.environment import LanderEnv
 from ai.nn import ModelFormatError
-from ai.runs import TRAINING_FILE, save_run
-from ai.training import Training
+from ai.training.checkpoints import TRAINING_FILE, save_run
+from ai.training.history import HISTORY_FILE, Alteration, Checkpoint, History, Validation
+from ai.training.loop import Training
 from main import main
 
 ROOT = Path(__file__).parents[2]
@@ -180,7 +180,7 @@ WRONG_OF = [
 @pytest.mark.parametrize(("kind", "name", "value"), WRONG_OF, ids=lambda value: ascii(str(value)[:12])[1:-1])
 def test_a_run_that_says_nonsense_of_itself_is_not_gone_on_with(refused, runs, monkeypatch, kind, name, value):
     images, labels = np.zeros((200, 28, 28), np.float32), np.zeros(200, np.uint8)
-    monkeypatch.setattr("ai.digit_training.load_part", lambda part: (images, labels))
+    monkeypatch.setattr("ai.digits.training.load_part", lambda part: (images, labels))
     file = runs / kind / TRAINING_FILE
     sound = file.read_text()
     described = json.loads(sound)

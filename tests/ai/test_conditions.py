@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from ai.conditions import CALM, Conditions
-from ai.lander import PARAMS, LanderEnv, Outcome
-from ai.pilots import ScriptedPilot
+from ai.lander.conditions import CALM, Conditions
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
+from ai.lander.pilots import ScriptedPilot
 
 REST = PARAMS.pad_top + PARAMS.stand
 

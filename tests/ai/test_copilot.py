@@ -3,8 +3,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ai.copilot import GUARDIAN_MARGIN, CoPilot, Mode, Rule
-from ai.pilots import COAST
+from ai.copilot.copilot import GUARDIAN_MARGIN, CoPilot, Mode, Rule
+from ai.lander.pilots import COAST
 
 
 def valuer(*rows):

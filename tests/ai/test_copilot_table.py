@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import main
-from ai import copilot_table
-from ai.agent import DeepQAgent
-from ai.copilot import Mode
-from ai.copilot_cli import MODEL
-from ai.copilot_table import ALONE, OPEN, one_pad, three_pads
+from ai.agent.agent import DeepQAgent
+from ai.cli.copilot import MODEL
+from ai.copilot import measurement as copilot_table
+from ai.copilot.copilot import Mode
+from ai.copilot.measurement import ALONE, OPEN, one_pad, three_pads
 
 
 @pytest.fixture(scope="module")

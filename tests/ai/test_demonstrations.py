@@ -4,14 +4,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.config import PRESETS
-from ai.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, taught, teach, write
-from ai.ground import hilly
-from ai.history import Alteration
-from ai.lander import LanderEnv
-from ai.live import TAUGHT, Insight, Refused, Sight, Teach, live
-from ai.pilots import ScriptedPilot
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import PRESETS
+from ai.lander.environment import LanderEnv
+from ai.lander.ground import hilly
+from ai.lander.pilots import ScriptedPilot
+from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, taught, teach, write
+from ai.training.history import Alteration
+from ai.training.session import TAUGHT, Insight, Refused, Sight, Teach, live
 
 MODERN = PRESETS["modern"]
 
@@ -117,7 +117,7 @@ def test_two_games_can_write_at_once_and_a_full_disk_leaves_nothing(landings, tm
     write(path, landings)
     assert read(path) == landings
     with monkeypatch.context() as patch:
-        patch.setattr("ai.demonstrations.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
+        patch.setattr("ai.training.demonstrations.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
         with pytest.raises(OSError, match="full"):
             write(path, landings[:1])
     assert read(path) == landings

@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.digit_dream import INK, STEPS, Dream
-from ai.digits import DigitClassifier
+from ai.digits.classifier import DigitClassifier
+from ai.digits.dream import INK, STEPS, Dream
 
 MODELS = Path(__file__).parents[2] / "models" / "digits"
 

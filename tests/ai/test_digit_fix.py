@@ -3,9 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.digit_fix import ENOUGH, STEPS, Fixed, FixStep, fix, steps_to_fix
-from ai.digits import DigitClassifier
-from ai.mnist import load_part
+from ai.digits.classifier import DigitClassifier
+from ai.digits.fix import ENOUGH, STEPS, Fixed, FixStep, fix, steps_to_fix
+from ai.digits.mnist import load_part
 from ai.nn import ModelFormatError
 
 CLASSIC = Path(__file__).parents[2] / "models" / "digits" / "classic"

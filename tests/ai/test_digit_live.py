@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from ai import digit_live
-from ai.digit_config import DIGIT_PRESETS
-from ai.digit_live import Confusion, DigitPoint, DigitsBegun, Finish, GoBack, Kept, Score, Turned, live_digits
-from ai.digit_runs import resume_digit_run
-from ai.digit_training import DigitTraining, confusion
-from ai.digits import DigitClassifier
-from ai.history import REVERTED
-from ai.messages import Change, Refused, Save
-from ai.mnist import load_part
+from ai.digits import session as digit_live
+from ai.digits.checkpoints import resume_digit_run
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.mnist import load_part
+from ai.digits.session import Confusion, DigitPoint, DigitsBegun, Finish, GoBack, Kept, Score, Turned, live_digits
+from ai.digits.training import DigitTraining, confusion
+from ai.training.history import REVERTED
+from ai.training.messages import Change, Refused, Save
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, averaging=0.9)
 

@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.digit_stages import drawings, stage_accuracy
-from ai.digits import load_part
+from ai.digits.ablation import drawings, stage_accuracy
+from ai.digits.classifier import load_part
 from ai.nn import ModelFormatError
 
 MODELS = Path(__file__).parents[2] / "models" / "digits"

@@ -3,8 +3,17 @@ import json
 import numpy as np
 import pytest
 
-from ai.digits import DigitClassifier, MnistError, load_mnist, load_part, preprocess, preprocess_strokes, stages
-from ai.mnist import FOLDER
+from ai.digits.classifier import (
+    DigitClassifier,
+    MnistError,
+    load_mnist,
+    load_part,
+    preprocess,
+    preprocess_strokes,
+    stages,
+)
+from ai.digits.mnist import FOLDER
+from ai.digits.strokes import draw_strokes
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -13,7 +22,6 @@ from ai.nn import (
     ModelFormatError,
     NeuralNetwork,
 )
-from ai.strokes import draw_strokes
 
 MODELS = FOLDER.parents[1] / "models" / "digits"
 SEVEN = np.array([(0, 0), (100, 0), (40, 160)])  # wider above: its centre of mass is not that of its box

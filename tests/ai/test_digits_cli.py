@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import ai.digit_runs
-import ai.digit_training
-import ai.digits_cli
-from ai.digit_config import DIGIT_PRESETS, DigitConfig, build_digit_network
-from ai.digit_runs import resume_digit_run, save_digit_run
-from ai.digit_training import LIVE, SPLIT_SEED, DigitTraining, run_digits
-from ai.digits import DigitClassifier
-from ai.mnist import load_part
+import ai.cli.digits
+import ai.digits.checkpoints
+import ai.digits.training
+from ai.digits.checkpoints import resume_digit_run, save_digit_run
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
+from ai.digits.mnist import load_part
+from ai.digits.training import LIVE, SPLIT_SEED, DigitTraining, run_digits
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -40,7 +40,7 @@ def data():
 @pytest.fixture
 def few(monkeypatch, data):
     """Let the commands learn from few images."""
-    monkeypatch.setattr(ai.digit_training, "load_part", lambda part: data)
+    monkeypatch.setattr(ai.digits.training, "load_part", lambda part: data)
 
 
 def test_a_run_learns_and_tells_how_it_stands(data):
@@ -209,7 +209,7 @@ def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, 
 
     monkeypatch.setattr(DigitTraining, "advance", diverging)
     if trouble == "full":
-        monkeypatch.setattr(ai.digit_runs, "atomic_folder", full)
+        monkeypatch.setattr(ai.digits.checkpoints, "atomic_folder", full)
     held_out = 0 if trouble == "unmeasured" else 100
     small = ["--preset", "classic", "--set", "hidden=[8]", "--set", f"held_out={held_out}", "--set", "averaging=0"]
     run = tmp_path / "run"
@@ -230,7 +230,7 @@ def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, ca
         output.mkdir()
         (output / "diary").write_text("dear")
 
-    monkeypatch.setattr(ai.digits_cli, "_advance", advance)
+    monkeypatch.setattr(ai.cli.digits, "_advance", advance)
     small = ["--preset", "classic", "--set", "hidden=[8]", "--set", "held_out=100"]
     assert main(["train-digits", *small, "--output", str(tmp_path / "run")]) == 0
     assert (tmp_path / "run" / "diary").read_text() == "dear"

@@ -14,13 +14,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.agent import KIND, DeepQAgent
-from ai.config import PRESETS
-from ai.demonstrations import Demonstration
-from ai.digits import DigitClassifier
-from ai.gym_task import gym_config
-from ai.history import History
-from ai.lander_task import LanderTask
+from ai.agent.agent import KIND, DeepQAgent
+from ai.agent.config import PRESETS
+from ai.digits.classifier import DigitClassifier
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -34,8 +30,12 @@ from ai.nn.budget import MOST_LAYERS
 from ai.nn.files import inside, parse_json, read_arrays, read_bytes, read_json, write_text
 from ai.nn.folder import claimed_folder, recover_folder
 from ai.nn.lock import take, take_folder
-from ai.runs import resume_run, save_run
-from ai.training import Training
+from ai.training.checkpoints import resume_run, save_run
+from ai.training.demonstrations import Demonstration
+from ai.training.gym_task import gym_config
+from ai.training.history import History
+from ai.training.lander_task import LanderTask
+from ai.training.loop import Training
 from benchmarks.faults import SUBJECTS, damaged, killed, limited
 from main import main
 
@@ -398,7 +398,7 @@ def test_places_that_cannot_be_written_are_told_in_a_sentence(output, tmp_path, 
 
 
 def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, monkeypatch, capsys):
-    from ai import cli
+    from ai.cli import lander as cli
 
     def advance(training, clock, output, stop):
         output.mkdir()

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from ai.ground import PADS, Ground, Pad, clearance, hilly
-from ai.lander import NUM_ACTIONS, PARAMS, Cause, LanderEnv, Outcome
+from ai.lander.environment import NUM_ACTIONS, PARAMS, Cause, LanderEnv, Outcome
+from ai.lander.ground import PADS, Ground, Pad, clearance, hilly
 
 THREE = Ground(
     (Pad(-9.0, 2.0, 6.0), Pad(0.0, 1.6, 4.4, 3), Pad(9.0, 2.5, 3.6, 5)), (((3.0, 1.0), (4.5, 2.2), (6.0, 1.0)),)

@@ -5,15 +5,15 @@ import warnings
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.gym_task import GymTask, gym_config
+from ai.agent.agent import DeepQAgent
+from ai.agent.normalizer import RunningScale
 from ai.nn import ModelFormatError
-from ai.runs import resume_run
-from ai.scaling import RunningScale
-from ai.training import Training
+from ai.training.checkpoints import resume_run
+from ai.training.gym_task import GymTask, gym_config
+from ai.training.loop import Training
 from main import main
 
-LANDER = "ai.gym_lander:tranquility/Lander-v0"
+LANDER = "ai.gym.lander:tranquility/Lander-v0"
 
 
 def test_a_running_scale_is_the_scale_of_all_it_saw():

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ai.config import PRESETS, Config
-from ai.hints import HOLD, REST, RULES, STAY, Adviser, Hint, Recent, returns
-from ai.history import Alteration, Checkpoint, History, Point
-from ai.rewards import RewardWeights
-from ai.sabotage import sabotaged
-from ai.training import Training
+from ai.agent.config import PRESETS, Config
+from ai.lander.rewards import RewardWeights
+from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, Recent, returns
+from ai.training.history import Alteration, Checkpoint, History, Point
+from ai.training.loop import Training
+from ai.training.sabotage import sabotaged
 
 MODERN = PRESETS["modern"]
 NAN = float("nan")

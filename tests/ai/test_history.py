@@ -4,7 +4,8 @@ import pickle
 import numpy as np
 import pytest
 
-from ai.history import (
+from ai.nn import ModelFormatError
+from ai.training.history import (
     CAPACITY,
     COLUMNS,
     HISTORY_FILE,
@@ -16,7 +17,6 @@ from ai.history import (
     Point,
     Validation,
 )
-from ai.nn import ModelFormatError
 
 
 def point(number):

@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
 
-from ai.agent import build_network
-from ai.config import Config
-from ai.inspect import dead_units, links, traces
+from ai.agent.agent import build_network
+from ai.agent.config import Config
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,
@@ -13,6 +12,7 @@ from ai.nn import (
     FullyConnectedLayer,
     NeuralNetwork,
 )
+from ai.nn.inspection import dead_units, links, traces
 
 OBSERVATION = np.linspace(-1, 1, 9).astype(np.float32)
 

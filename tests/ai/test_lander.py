@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from ai.lander import (
+from ai.lander.environment import (
     LIMITS,
     MIRROR_ACTIONS,
     MIRROR_FEATURES,
@@ -12,8 +12,8 @@ from ai.lander import (
     LanderEnv,
     Outcome,
 )
-from ai.rewards import RewardWeights
-from ai.spawns import SPAWNS, Curriculum
+from ai.lander.rewards import RewardWeights
+from ai.lander.spawns import SPAWNS, Curriculum
 from engine import DT
 
 STAND = PARAMS.pad_top + PARAMS.stand

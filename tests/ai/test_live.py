@@ -6,13 +6,18 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ai import live as module
-from ai.agent import DeepQAgent
-from ai.config import Config
-from ai.history import PARTS, Alteration, Checkpoint, History, Point, Validation
-from ai.lander import Outcome
-from ai.lander_task import LanderTask
-from ai.live import (
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.agent.schedule import exploration_of_each
+from ai.lander.environment import Outcome
+from ai.lander.rewards import RewardWeights
+from ai.nn import ModelFormatError
+from ai.training import session as module
+from ai.training.checkpoints import resume_run
+from ai.training.history import PARTS, Alteration, Checkpoint, History, Point, Validation
+from ai.training.lander_task import LanderTask
+from ai.training.loop import Training
+from ai.training.session import (
     CAREFUL,
     REVERTED,
     Begun,
@@ -27,11 +32,6 @@ from ai.live import (
     live,
     turned,
 )
-from ai.nn import ModelFormatError
-from ai.rewards import RewardWeights
-from ai.runs import resume_run
-from ai.schedule import exploration_of_each
-from ai.training import Training
 
 TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000, spawn="near")
 
@@ -382,7 +382,7 @@ def test_there_must_be_a_run_to_go_on_with(begin, tmp_path):
 
 def test_only_landers_can_be_looked_into(begin):
     pytest.importorskip("gymnasium")
-    from ai.gym_task import gym_config
+    from ai.training.gym_task import gym_config
 
     with pytest.raises(ValueError, match="CartPole"):
         next(begin(gym_config("CartPole-v1")))

@@ -3,9 +3,9 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from ai.lander import OBSERVATION_SCALE, LanderEnv, Outcome
-from ai.pilots import LaggyPilot, NoisyPilot, NoPilot, ScriptedPilot, SensorPilot
-from ai.training import evaluate
+from ai.lander.environment import OBSERVATION_SCALE, LanderEnv, Outcome
+from ai.lander.pilots import LaggyPilot, NoisyPilot, NoPilot, ScriptedPilot, SensorPilot
+from ai.training.loop import evaluate
 
 
 class Always:

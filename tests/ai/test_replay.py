@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ai.memory import Episodes, NStep
-from ai.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer, SumTree
+from ai.agent.n_step import Episodes, NStep
+from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer, SumTree
 
 
 def cells(first, count):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ai.config import PRESETS
-from ai.lander import NUM_ACTIONS, LanderEnv, Outcome
-from ai.rewards import REWARDS, Change, RewardWeights, Situation
+from ai.agent.config import PRESETS
+from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
+from ai.lander.rewards import REWARDS, Change, RewardWeights, Situation
 
 SHAPING = ("distance", "speed", "alignment")
 

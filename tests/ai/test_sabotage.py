@@ -3,10 +3,10 @@ from typing import Any
 
 import pytest
 
-from ai.config import PRESETS, Config
-from ai.sabotage import SABOTAGES, sabotaged
-from ai.schedule import exploration_of_each
-from ai.training import Training
+from ai.agent.config import PRESETS, Config
+from ai.agent.schedule import exploration_of_each
+from ai.training.loop import Training
+from ai.training.sabotage import SABOTAGES, sabotaged
 
 CASES = [(base, name) for base in PRESETS for name in SABOTAGES]
 

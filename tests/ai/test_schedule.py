@@ -5,11 +5,11 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from ai.config import PRESETS, Config
-from ai.digit_config import DIGIT_PRESETS
-from ai.live import Change, Sight, live
-from ai.schedule import InForce, idle, in_force
-from ai.training import Training
+from ai.agent.config import PRESETS, Config
+from ai.agent.schedule import InForce, idle, in_force
+from ai.digits.config import DIGIT_PRESETS
+from ai.training.loop import Training
+from ai.training.session import Change, Sight, live
 
 TINY = Config(
     hidden=(8,), num_envs=16, warm_up=32, batch_size=16, updates=1, replay_size=2000, spawn="near", horizon=1000,

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from ai.config import PRESETS, Config
+from ai.agent.config import PRESETS, Config
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from ai.digits import preprocess, preprocess_strokes
-from ai.ink import redrawn, stroke_stages
-from ai.strokes import draw_segments, draw_strokes, spaced
+from ai.digits.classifier import preprocess, preprocess_strokes
+from ai.digits.preprocessing import redrawn, stroke_stages
+from ai.digits.strokes import draw_segments, draw_strokes, spaced
 
 WAVE = np.stack([np.linspace(20, 90, 200), 60 + 25 * np.sin(np.linspace(0, 7, 200))], axis=1)
 

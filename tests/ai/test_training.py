@@ -3,13 +3,13 @@ import json
 import numpy as np
 import pytest
 
-from ai.config import Config
-from ai.lander import LIMITS, LanderEnv, Outcome
+from ai.agent.config import Config
+from ai.agent.schedule import geometric, linear
+from ai.lander.environment import LIMITS, LanderEnv, Outcome
+from ai.lander.pilots import NoPilot, ScriptedPilot
 from ai.nn import ModelFormatError
-from ai.pilots import NoPilot, ScriptedPilot
-from ai.runs import TrainingClock, resume_run, save_run
-from ai.schedule import geometric, linear
-from ai.training import Evaluation, Training, evaluate, run
+from ai.training.checkpoints import TrainingClock, resume_run, save_run
+from ai.training.loop import Evaluation, Training, evaluate, run
 
 SMALL = Config(hidden=(16,), batch_size=16, updates=1, warm_up=32, replay_size=2000, num_envs=8, spawn="near")
 QUICK = {"evaluate_every": 0, "validation_episodes": 4}

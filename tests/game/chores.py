@@ -118,7 +118,7 @@ def ending_well(file, stubborn=False):
 
 def looking_around():
     """Tells what this process is like."""
-    import ai.live  # noqa: F401 - brings NumPy
+    import ai.training.session  # noqa: F401 - brings NumPy
 
     yield [
         {
@@ -131,16 +131,16 @@ def looking_around():
 
 def eager(config, seed, keep):
     """A live run that saves itself all the time."""
-    from ai import live
+    from ai.training import session as live
 
     live.KEEP_SECONDS = 0.0
     yield from live.live(config, seed, keep=keep)
 
 
 def biased_fix(folder, image, digit, keep, before=None):
-    """In place of `ai.digit_fix.fix`: keeps a network that finds the digit everywhere."""
-    from ai.digit_fix import Fixed, FixStep
-    from ai.digits import DigitClassifier
+    """In place of `ai.digits.fix.fix`: keeps a network that finds the digit everywhere."""
+    from ai.digits.classifier import DigitClassifier
+    from ai.digits.fix import Fixed, FixStep
 
     classifier = DigitClassifier.load(folder)
     yield [FixStep(0, 0.1)]

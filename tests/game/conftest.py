@@ -14,13 +14,13 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.pilots import ScriptedPilot
-from game import networks
-from game.app import App
-from game.context import Context
-from game.scene import Scene
-from game.settings import Settings, SettingsFile
-from game.ui import typeface
+from ai.lander.pilots import ScriptedPilot
+from game.core.scene import Scene
+from game.core.settings import Settings, SettingsFile
+from game.drawing import typeface
+from game.flight import networks
+from game.shell.app import App
+from game.ui.context import Context
 from tests.game.driver import Driver
 
 pygame.font.init()  # as long as the tests run, in whatever order

@@ -8,9 +8,9 @@ from typing import Any
 import pygame
 import pytest
 
-from ai.lander import ACTION_NAMES
-from game import texts
-from game.ui.canvas import Canvas
+from ai.lander.environment import ACTION_NAMES
+from game.core import texts
+from game.drawing.canvas import Canvas
 
 
 class Drawn:

@@ -6,8 +6,8 @@ from typing import Any
 
 import pygame
 
-from game.app import App
-from game.scene import Scene
+from game.core.scene import Scene
+from game.shell.app import App
 
 
 class Driver:

@@ -1,11 +1,11 @@
 """Flights as tests fly them: to the end, by the scripted pilot."""
 
-from ai.pilots import ScriptedPilot
-from game.context import Context
-from game.flight import Flight
-from game.flight_file import Record
-from game.records import Records
+from ai.lander.pilots import ScriptedPilot
+from game.flight.flight import Flight
+from game.flight.flight_file import Record
+from game.flight.logbook import Records
 from game.scenes.play import Play
+from game.ui.context import Context
 from tests.game.driver import Driver
 
 NOON = 1_700_000_000.0

@@ -1,5 +1,5 @@
-from game.sound import Sound
-from game.sounds.instruments import INSTRUMENTS
+from game.audio.instruments import INSTRUMENTS
+from game.audio.mixer import Sound
 
 
 class Listener(Sound):

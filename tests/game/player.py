@@ -2,7 +2,7 @@
 
 import pygame
 
-from ai.pilots import Pilot, ScriptedPilot
+from ai.lander.pilots import Pilot, ScriptedPilot
 from game.scenes.play import Play
 from game.ui.form import Form
 from game.ui.listing import Listing

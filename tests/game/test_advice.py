@@ -6,17 +6,17 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.config import PRESETS
-from ai.hints import RULES, Hint
-from ai.history import Checkpoint, History
-from game import texts
-from game.context import Context
-from game.ui import typeface
-from game.ui.advice import Advice
-from game.ui.canvas import Canvas
+from ai.agent.config import PRESETS
+from ai.training.hints import RULES, Hint
+from ai.training.history import Checkpoint, History
+from game.core import texts
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.tokens import SMALL, TEXT_SIZES
+from game.panels.advice import Advice
+from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.prose import wrapped
-from game.ui.tokens import SMALL, TEXT_SIZES
 from tests.ai.test_hints import HEALTHY
 
 MODERN = PRESETS["modern"]

@@ -6,14 +6,14 @@ from pathlib import Path
 import pygame
 import pytest
 
-from game.app import LOG_NAME, App, log_to
-from game.context import Context
-from game.scene import Pop, Push, Quit, Replace
+from game.core.scene import Pop, Push, Quit, Replace
+from game.core.settings import Settings, SettingsFile
 from game.scenes.menu import Menu
 from game.scenes.pause import Pause
 from game.scenes.settings import SettingsScene
-from game.settings import Settings, SettingsFile
-from game.window import NoDisplayError
+from game.shell.app import LOG_NAME, App, log_to
+from game.shell.window import NoDisplayError
+from game.ui.context import Context
 from tests.game.driver import Driver
 
 SIZES = [(1280, 720), (1920, 1080), (1000, 800), (640, 360), (2000, 500)]

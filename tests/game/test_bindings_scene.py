@@ -3,8 +3,8 @@ import json
 import pygame
 import pytest
 
-from game import texts
-from game.bindings import Command, Held
+from game.core import texts
+from game.input.bindings import Command, Held
 from game.scenes.bindings import BindingsScene
 from tests.game.driver import Driver
 

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from ai.config import PRESETS, Config
-from ai.history import COLUMNS, History, Point
-from ai.live import live
-from ai.messages import Begun
-from game import texts
-from game.learner import Beside
-from game.library import Library
-from game.student import Student
-from game.ui.board import Board
-from game.ui.chart import Chart, Series
+from ai.agent.config import PRESETS, Config
+from ai.training.history import COLUMNS, History, Point
+from ai.training.messages import Begun
+from ai.training.session import live
+from game.charts.chart import Chart, Series
+from game.core import texts
+from game.panels.training_charts import Board
+from game.training.lander_run import Student
+from game.training.library import Library
+from game.training.training_run import Beside
 
 
 def run(config: Config, points: float) -> History:

@@ -3,15 +3,15 @@ import math
 import numpy as np
 import pytest
 
-from ai.conditions import Conditions
-from ai.ground import Ground, hilly
-from ai.lander import LIMITS, PARAMS, LanderEnv
-from game import framing
-from game.flight import Flight
-from game.flight_words import BELOW_OPENING
-from game.render import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, Shot, View
-from game.ui.tokens import VIEW_SIZE
-from game.world.sheet import Sheet
+from ai.lander.conditions import Conditions
+from ai.lander.environment import LIMITS, PARAMS, LanderEnv
+from ai.lander.ground import Ground, hilly
+from game.drawing.tokens import VIEW_SIZE
+from game.flight.flight import Flight
+from game.play.captions import BELOW_OPENING
+from game.world import framing
+from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, Shot, View
+from game.world.landscape.sheet import Sheet
 
 
 def placed(start: list[float], ground: Ground | None = None, conditions: Conditions | None = None) -> LanderEnv:

@@ -7,14 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ai.history import Alteration, History
-from game import texts
-from game.ui import plotting, typeface
-from game.ui.board import _ticks
-from game.ui.canvas import Canvas
-from game.ui.chart import RUN_STYLES, Chart, Series, Tick
-from game.ui.charts import Charts
-from game.ui.strip import PART_COLOURS, Strip, signed
+from ai.training.history import Alteration, History
+from game.charts import plotting
+from game.charts.chart import RUN_STYLES, Chart, Series, Tick
+from game.charts.charts import Charts
+from game.core import texts
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.panels.reward_bar import PART_COLOURS, Strip, signed
+from game.panels.training_charts import _ticks
 from tests.ai.test_hints import HEALTHY
 
 BOX = (40, 450, 372, 128)
@@ -234,7 +235,7 @@ def test_the_cursor_reads_the_nearest_point_of_each_run(canvas: Canvas, monkeypa
 
 
 def test_the_readout_stays_inside_the_box(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    from game.ui import chart as module
+    from game.charts import chart as module
 
     boxes = []
     original = module.draw_tooltip
@@ -405,7 +406,7 @@ def test_a_single_wild_value_is_marked_though_the_line_hardly_shows_it(drawn: Ca
 
 
 def test_a_turned_knob_is_told_before_a_checkpoint(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    from game.ui import chart as module
+    from game.charts import chart as module
 
     told: list[list[str]] = []
     monkeypatch.setattr(module, "draw_tooltip", lambda canvas, point, box, lines, rows: told.append(lines))
@@ -534,8 +535,8 @@ def test_the_mouse_finds_a_part() -> None:
 
 
 def test_every_part_of_the_reward_has_a_colour_and_a_sentence() -> None:
-    from ai.rewards import REWARDS
-    from game import texts
+    from ai.lander.rewards import REWARDS
+    from game.core import texts
 
     assert set(REWARDS) == set(PART_COLOURS)
     assert set(REWARDS) <= set(texts.REWARD_PARTS)

@@ -6,13 +6,13 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import Outcome
-from game import networks
-from game.cockpit.insight import PANEL
-from game.context import Context
+from ai.lander.environment import Outcome
+from game.cockpit.copilot_panel import PANEL
+from game.drawing.canvas import Canvas
+from game.flight import networks
 from game.scenes.play import Play
 from game.scenes.watch import Watch
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.flights import play
 from tests.game.test_words_agree import Weighs

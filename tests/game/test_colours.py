@@ -6,9 +6,9 @@ import numpy as np
 import pygame
 import pytest
 
-from game import hud
-from game.ui.canvas import Canvas
-from game.ui.tokens import (
+from game.cockpit import hud
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import (
     COLOUR_SAFE,
     EMBER,
     HUMAN,

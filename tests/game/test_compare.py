@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ai.history import Checkpoint, History
-from game import texts
-from game.learner import EARLIER, Beside, put_beside
-from game.ui.board import Board
+from ai.training.history import Checkpoint, History
+from game.core import texts
+from game.panels.training_charts import Board
+from game.training.training_run import EARLIER, Beside, put_beside
 from tests.ai.test_hints import HEALTHY
 
 

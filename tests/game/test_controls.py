@@ -2,10 +2,10 @@ import numpy as np
 import pygame
 import pytest
 
-from game.bindings import FIXED_KEYS, KEYBOARD, KEYS, PAD, Bindings, Command, Held
-from game.controls import Controls, key_name, presses_main, translate
-from game.settings import Settings
-from game.ui.glyphs import SIGN, family_of, sign
+from game.core.settings import Settings
+from game.drawing.glyphs import SIGN, family_of, sign
+from game.input.bindings import FIXED_KEYS, KEYBOARD, KEYS, PAD, Bindings, Command, Held
+from game.input.controls import Controls, key_name, presses_main, translate
 
 
 def send(controls: Controls, event_type: int, **values) -> pygame.event.Event:

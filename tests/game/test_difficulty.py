@@ -6,20 +6,21 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import PARAMS
-from ai.missions import MISSIONS
-from ai.pilots import ScriptedPilot
-from game import flight_file, texts
-from game.cockpit.skill import Skill
-from game.context import Context
-from game.course import Flown
-from game.flight import Flight, Recording
-from game.flight_file import Record
-from game.records import Records, best, describe
+from ai.lander.environment import PARAMS
+from ai.lander.missions import MISSIONS
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.core.settings import Settings
+from game.flight import flight_file
+from game.flight.flight import Flight, Recording
+from game.flight.flight_file import Record
+from game.flight.logbook import Records, best, describe
+from game.flight.replay import Rerun, Tape
+from game.flight.skill import Skill
+from game.play.challenge import Flown
 from game.scenes.choices import ChoicesScene
 from game.scenes.play import Play
-from game.settings import Settings
-from game.tape import Rerun, Tape
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.player import Player
 

@@ -7,13 +7,13 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.digit_stages import stage_accuracy
-from ai.ink import preprocess_strokes
+from ai.digits.ablation import stage_accuracy
+from ai.digits.preprocessing import preprocess_strokes
 from benchmarks.digits_robustness import TEMPLATES
-from game.context import Context
 from game.digits.reader import Switches, Verdict
+from game.drawing.tokens import INK
 from game.scenes.digits import Digits
-from game.ui.tokens import INK
+from game.ui.context import Context
 from tests.game.chores import biased_fix
 from tests.game.driver import Driver
 

@@ -9,11 +9,11 @@ import pygame
 import pytest
 
 from benchmarks.tour import stock
-from game.context import Context
-from game.sound import Sound
-from game.ui.canvas import Canvas
-from game.ui.kept import Kept
-from game.ui.sky import NightSky
+from game.audio.mixer import Sound
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import Kept
+from game.drawing.sky import NightSky
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.test_text_size import FLOWN, opened
 from tests.game.test_walks import OVER_OTHERS, SCREENS

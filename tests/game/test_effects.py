@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from ai.ground import hilly
-from ai.lander import PARAMS, LanderEnv, Outcome
-from ai.missions import MISSIONS
-from ai.pilots import ScriptedPilot
-from game.flight import Flight
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
+from ai.lander.ground import hilly
+from ai.lander.missions import MISSIONS
+from ai.lander.pilots import ScriptedPilot
+from game.flight.flight import Flight
+from game.world.landscape.relief import Relief
 from game.world.particles import Kind, Particles
-from game.world.relief import Relief
 from game.world.stage import Stage
 from game.world.wreck import Wreck
 

@@ -3,12 +3,12 @@ from collections.abc import Callable
 import pygame
 import pytest
 
-from game.bindings import Command
-from game.collection import fitting
-from game.context import Context
-from game.scene import Pop, Transition
+from game.core.collection import fitting
+from game.core.scene import Pop, Transition
+from game.drawing.canvas import Canvas
+from game.input.bindings import Command
 from game.ui import entry
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from game.ui.entry import Entry, Line, digits, printable
 from game.ui.form import Form
 from game.ui.listing import Listing

@@ -8,13 +8,13 @@ import numpy as np
 import pygame
 import pytest
 
-from game import texts
+from game.core import texts
 from game.exhibits import EXHIBITS, Exhibit
 from game.exhibits.falls import Bounce, DragRace, Slopes
 from game.exhibits.momentum import Impacts, Spin
 from game.exhibits.piles import Heap, Stack
-from game.grip import Grip
 from game.scenes.physics import GRAVITIES, Physics
+from game.world.grip import Grip
 from tests.game.driver import Driver
 
 MOON, EARTH = GRAVITIES

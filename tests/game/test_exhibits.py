@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import texts
+from game.core import texts
 from game.exhibits import EXHIBITS, Exhibit
 from game.exhibits.falls import Bounce, DragRace
 from game.exhibits.momentum import Impacts

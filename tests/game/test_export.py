@@ -12,15 +12,15 @@ import numpy as np
 import pygame
 import pytest
 
-from game import texts
-from game.context import Context
-from game.export import KINDS, Export, Kind
-from game.film import film, frames
-from game.flight_file import Record
-from game.scene import Push
+from game.core import texts
+from game.core.scene import Push
+from game.export.export import KINDS, Export, Kind
+from game.export.film import film, frames
+from game.flight.flight_file import Record
 from game.scenes import replay as module
 from game.scenes.menu import Menu
 from game.scenes.replay import Replay
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.flights import kept, scripted
 
@@ -66,7 +66,7 @@ def test_a_film_is_written_whole_and_told_of(suffix: str, record: Record, small:
 
 def test_a_gif_shows_what_was_put_in(tmp_path: Path):
     image = pytest.importorskip("PIL.Image")
-    from game.gif import GifWriter
+    from game.export.gif import GifWriter
 
     ramp = np.linspace(0, 60, 160).astype(np.uint8)  # a dark sky, in which every step of a palette would be seen
     first = np.zeros((90, 160, 3), np.uint8) + ramp[:, None]
@@ -88,7 +88,7 @@ def test_a_gif_shows_what_was_put_in(tmp_path: Path):
 
 def test_what_does_not_change_takes_no_room_in_a_gif(tmp_path: Path):
     pytest.importorskip("PIL")
-    from game.gif import GifWriter
+    from game.export.gif import GifWriter
 
     frame = np.random.default_rng(1).integers(0, 255, (90, 160, 3), np.uint8)
     with GifWriter(tmp_path / "a.gif", (160, 90), [frame], 0.05) as gif:
@@ -102,7 +102,7 @@ def test_what_does_not_change_takes_no_room_in_a_gif(tmp_path: Path):
 
 def test_an_mp4_has_every_frame_in_its_colours(tmp_path: Path):
     av = pytest.importorskip("av")
-    from game.mp4 import Mp4Writer
+    from game.export.mp4 import Mp4Writer
 
     frame = np.full((90, 160, 3), (200, 120, 40), np.uint8)
     with Mp4Writer(tmp_path / "a.mp4", (160, 90), 60) as mp4:

@@ -6,13 +6,14 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import PARAMS, Outcome
-from game import networks, texts
-from game.flight_words import BELOW_OPENING
-from game.render import View
+from ai.lander.environment import PARAMS, Outcome
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.replay import Rerun
+from game.play.captions import BELOW_OPENING
 from game.scenes.play import Play
-from game.tape import Rerun
-from game.ui.canvas import Canvas
+from game.world.camera import View
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]

@@ -3,14 +3,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.lander import LIMITS, NUM_ACTIONS, NUM_FEATURES, PARAMS, Cause, LanderEnv, Outcome
-from ai.pilots import ScriptedPilot
-from game import networks, texts
-from game.assets import MODELS_DIR
-from game.flight import DECISION_STEPS, Flight, Hand, Swarm
-from game.forecast import Forecast, coast_path
-from game.outcomes import outcome_card
+from ai.agent.agent import DeepQAgent
+from ai.lander.environment import LIMITS, NUM_ACTIONS, NUM_FEATURES, PARAMS, Cause, LanderEnv, Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.flight import networks
+from game.flight.flight import DECISION_STEPS, Flight, Hand, Swarm
+from game.flight.forecast import Forecast, coast_path
+from game.flight.outcomes import outcome_card
 
 STANDING = PARAMS.pad_top + PARAMS.stand
 

@@ -4,15 +4,15 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import PARAMS, LanderEnv, Outcome
-from ai.pilots import ScriptedPilot
-from game import networks
-from game.flight import DECISION_STEPS, Flight, Hand
-from game.ghost import Ghost
-from game.render import Camera, View
-from game.scene import Push
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core.scene import Push
+from game.flight import networks
+from game.flight.flight import DECISION_STEPS, Flight, Hand
+from game.play.ghost import Ghost
 from game.scenes.menu import Menu
 from game.scenes.play import Play
+from game.world.camera import Camera, View
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]

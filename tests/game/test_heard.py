@@ -3,13 +3,13 @@
 import pygame
 import pytest
 
-from game import texts
-from game.context import Context
-from game.flight import Hand
+from game.core import texts
+from game.flight.flight import Hand
 from game.scenes.menu import Menu
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
 from game.scenes.watch import Watch
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.listener import Listener
 

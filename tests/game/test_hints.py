@@ -5,18 +5,18 @@ from collections import Counter
 import pygame
 import pytest
 
-from ai.missions import FIRST, MISSIONS
-from game.bindings import KEYBOARD, Bindings, Command, Held
-from game.context import Context
-from game.controls import Controls, key_name
-from game.course import Flown
-from game.scene import Push
+from ai.lander.missions import FIRST, MISSIONS
+from game.core.scene import Push
+from game.drawing import glyphs, typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, VIEW_SIZE
+from game.input.bindings import KEYBOARD, Bindings, Command, Held
+from game.input.controls import Controls, key_name
+from game.play.challenge import Flown
 from game.scenes.menu import Menu
 from game.scenes.play import Play
-from game.ui import glyphs, typeface
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from game.ui.hints import draw_hints
-from game.ui.tokens import INK, VIEW_SIZE
 from tests.game.test_walks import OVER_OTHERS, SCREENS
 
 NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,

@@ -2,8 +2,8 @@
 
 import pygame
 
-from game.ui.canvas import Canvas
-from game.ui.kept import Kept
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import Kept
 
 
 def painted(kept: Kept, canvas: Canvas, *shown: object) -> list[object]:

@@ -5,15 +5,15 @@ from typing import Any
 import pygame
 import pytest
 
-from ai.config import PRESETS, Config
-from ai.schedule import in_force
-from game import texts
-from game.context import Context
-from game.scene import Pop, Transition
-from game.ui.canvas import Canvas
+from ai.agent.config import PRESETS, Config
+from ai.agent.schedule import in_force
+from game.core import texts
+from game.core.scene import Pop, Transition
+from game.drawing.canvas import Canvas
+from game.panels.knob import Knob, SeedKnob, SliderKnob
+from game.panels.knobs import Knobs
+from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.knob import Knob, SeedKnob, SliderKnob
-from game.ui.knobs import Knobs
 from game.ui.widgets import Choice, Word
 from tests.game.driver import Driver
 

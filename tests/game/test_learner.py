@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from game.learner import Learner
-from game.worker import State, Worker
+from game.core.worker import State, Worker
+from game.training.training_run import Learner
 from tests.game.chores import keep
 
 
@@ -96,7 +96,7 @@ def test_of_two_that_wait_the_last_one_is_meant(notebook: Notebook):
 
 
 def test_one_that_does_not_end_is_ended(notebook: Notebook, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("game.worker.STOP_SECONDS", 0.3)
+    monkeypatch.setattr("game.core.worker.STOP_SECONDS", 0.3)
     notebook.begin("one", 60.0)
     wait(notebook, lambda: notebook.state is State.RUNNING)
     notebook.begin("two")

@@ -6,12 +6,12 @@ from collections.abc import Callable
 import pygame
 import pytest
 
-from ai.lander import Outcome
-from ai.pilots import ScriptedPilot
-from game import texts
-from game.bindings import Command, Held
+from ai.lander.environment import Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.input.bindings import Command, Held
+from game.play.tutorial import Tutorial
 from game.scenes.play import Play
-from game.tutorial import Tutorial
 from tests.game.driver import Driver
 from tests.game.flights import play
 

@@ -9,15 +9,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.config import Config
-from ai.runs import resume_run, save_run
-from ai.training import Training
-from game import collection as module
-from game import networks, texts
-from game.collection import LONGEST_NAME, UNSAVED, LibraryError, is_valid_name
-from game.library import Library, read_run
-from game.ui.run_page import row
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.training.checkpoints import resume_run, save_run
+from ai.training.loop import Training
+from game.core import collection as module
+from game.core import texts
+from game.core.collection import LONGEST_NAME, UNSAVED, LibraryError, is_valid_name
+from game.flight import networks
+from game.panels.run_page import row
+from game.training.library import Library, read_run
 
 SMALL = Config(hidden=(8,), num_envs=4, warm_up=16, replay_size=100, batch_size=16)
 DESCRIBED = {

@@ -4,29 +4,30 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.lander import PARAMS, Cause, Outcome
-from ai.missions import MISSIONS
+from ai.agent.agent import DeepQAgent
+from ai.lander.environment import PARAMS, Cause, Outcome
+from ai.lander.missions import MISSIONS
 from benchmarks.missions import fly
-from game import flight_file, networks, texts
-from game.assets import ASSETS_DIR, MODELS_DIR
+from game.cockpit.hud import Card, flight_readouts
 from game.cockpit.surroundings import surroundings
-from game.context import Context
-from game.course import Flown
-from game.credit import Credit
-from game.difficulty import Difficulty
-from game.flight import Flight, Hand
-from game.flight_file import Record
-from game.hud import Card, flight_readouts
-from game.outcomes import flight_figures, landing_score
-from game.records import Records
+from game.core import texts
+from game.core.assets import ASSETS_DIR, MODELS_DIR
+from game.core.settings import Settings
+from game.drawing.canvas import Canvas
+from game.flight import flight_file, networks
+from game.flight.credit import Credit
+from game.flight.difficulty import Difficulty
+from game.flight.flight import Flight, Hand
+from game.flight.flight_file import Record
+from game.flight.logbook import Records
+from game.flight.outcomes import flight_figures, landing_score
+from game.flight.replay import Rerun, Tape
+from game.play.challenge import Flown
 from game.scenes.logbook import Logbook
 from game.scenes.missions import Missions
 from game.scenes.play import Play
 from game.scenes.replay import Replay
-from game.settings import Settings
-from game.tape import Rerun, Tape
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.flights import kept, play, scripted
 

@@ -5,9 +5,9 @@ import pytest
 
 from benchmarks.monkey import Monkey, playground
 from benchmarks.tour import dialogs, makers, scene_types
-from game.context import Context
+from game.core.settings import Settings
 from game.scenes.menu import Menu
-from game.settings import Settings
+from game.ui.context import Context
 
 
 @pytest.fixture

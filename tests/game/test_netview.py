@@ -4,14 +4,14 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent import build_network
-from ai.config import Config
-from ai.lander import ACTION_NAMES, FEATURE_NAMES
+from ai.agent.agent import build_network
+from ai.agent.config import Config
+from ai.lander.environment import ACTION_NAMES, FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
-from game import texts
-from game.ui.canvas import Canvas
-from game.ui.netplan import Plan, steady_choice, strongest_edges
-from game.ui.netview import NetView
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.panels.network_plan import Plan, steady_choice, strongest_edges
+from game.panels.network_view import NetView
 from tests.game.test_draw import state_of
 
 BOX = (868, 420, 384, 180)

@@ -5,7 +5,8 @@ from collections.abc import Callable
 import pygame
 import pytest
 
-from game.scene import Push, Scene
+from game.core.scene import Push, Scene
+from game.drawing.tokens import VIEW_SIZE
 from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import Naming
 from game.scenes.digits import Digits
@@ -18,7 +19,6 @@ from game.scenes.runs import Runs
 from game.scenes.settings import SettingsScene
 from game.scenes.train import Train
 from game.scenes.watch import Watch
-from game.ui.tokens import VIEW_SIZE
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]

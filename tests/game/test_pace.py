@@ -1,6 +1,6 @@
 import pytest
 
-from game.pace import Pace
+from game.core.pace import Pace
 
 
 def test_at_its_own_pace_every_update_is_a_step():

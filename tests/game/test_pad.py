@@ -4,7 +4,7 @@ import pytest
 
 from game.digits.pad import DrawingPad
 from game.digits.stroke import PEN_WIDTH, Stroke
-from game.ui.canvas import Canvas
+from game.drawing.canvas import Canvas
 
 RECT = pygame.Rect(40, 70, 520, 520)
 

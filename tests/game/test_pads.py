@@ -8,10 +8,10 @@ from pathlib import Path
 import pygame
 import pytest
 
-from game import texts
-from game.controls import Command
+from game.core import texts
+from game.drawing.glyphs import SIGN
+from game.input.controls import Command
 from game.scenes.play import Play
-from game.ui.glyphs import SIGN
 from tests.game.driver import Driver
 
 GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15

@@ -8,12 +8,12 @@ import pygame
 import pytest
 
 from game.cli import add_commands
+from game.drawing.tokens import HUMAN, NET
 from game.exhibits import EXHIBITS
 from game.exhibits.falls import Slopes
 from game.exhibits.momentum import Spin
 from game.exhibits.piles import Stack
 from game.scenes.physics import GRAVITIES, Physics
-from game.ui.tokens import HUMAN, NET
 from tests.game.driver import Driver
 from tests.game.window import ROOT
 
@@ -213,7 +213,7 @@ def test_the_command_opens_the_exhibit_over_the_menu(monkeypatch, tmp_path):
         app.close()
         return 0
 
-    monkeypatch.setattr("game.app.App.run", stay)
+    monkeypatch.setattr("game.shell.app.App.run", stay)
     parser = argparse.ArgumentParser()
     add_commands(parser.add_subparsers())
     arguments = parser.parse_args(["physics", "--exhibit", "drag"])

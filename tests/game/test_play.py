@@ -6,17 +6,18 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.config import Config
-from ai.lander import PARAMS, Outcome
-from ai.pilots import ScriptedPilot
-from game import networks, texts
-from game.assets import MODELS_DIR
-from game.context import Context
-from game.flight import Hand
-from game.records import Records
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.lander.environment import PARAMS, Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.flight import Hand
+from game.flight.logbook import Records
 from game.scenes.play import Play
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]

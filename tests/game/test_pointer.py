@@ -6,16 +6,16 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent import build_network
-from ai.config import Config
-from ai.lander import NUM_ACTIONS, NUM_FEATURES
-from game.context import Context
-from game.flight import Flight
-from game.records import Records
+from ai.agent.agent import build_network
+from ai.agent.config import Config
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from game.flight.flight import Flight
+from game.flight.logbook import Records
 from game.scenes.logbook import Logbook
 from game.scenes.physics import Physics
 from game.scenes.train import Train
-from game.ui.pointer import Pointer
+from game.ui.context import Context
+from game.ui.virtual_pointer import Pointer
 from tests.game.driver import Driver
 from tests.game.flights import NOON, fly_out
 from tests.game.player import DEVICES, Player

@@ -6,13 +6,13 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.ink import redrawn
-from game import texts
-from game.assets import MODELS_DIR
+from ai.digits.preprocessing import redrawn
+from game.core import texts
+from game.core.assets import MODELS_DIR
 from game.digits.answer import draw_answer, draw_fix
 from game.digits.fixing import Fixing
 from game.digits.reader import Reader, Reading, Switches, Verdict
-from game.ui.canvas import Canvas
+from game.drawing.canvas import Canvas
 
 
 @pytest.fixture(scope="module")

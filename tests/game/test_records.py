@@ -7,13 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ai.lander import Outcome
-from ai.missions import MISSIONS
-from ai.pilots import ScriptedPilot
-from game import flight_file, records, texts
-from game.flight import Flight, Hand, Recording
-from game.flight_file import Entry, Record, from_text, to_text
-from game.records import Records, best, skill, totals
+from ai.lander.environment import Outcome
+from ai.lander.missions import MISSIONS
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.flight import flight_file
+from game.flight import logbook as records
+from game.flight.flight import Flight, Hand, Recording
+from game.flight.flight_file import Entry, Record, from_text, to_text
+from game.flight.logbook import Records, best, skill, totals
 from game.scenes.logbook import _row
 from game.scenes.missions import _best_by_course
 from tests.game.flights import NOON, fly_out, scripted

@@ -5,17 +5,17 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import Outcome
-from ai.pilots import ScriptedPilot
-from game import texts
-from game.context import Context
-from game.flight import Flight, Hand
-from game.flight_file import Record
-from game.records import Records
+from ai.lander.environment import Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight.flight import Flight, Hand
+from game.flight.flight_file import Record
+from game.flight.logbook import Records
+from game.flight.replay import Rerun, Tape
 from game.scenes.logbook import Logbook
 from game.scenes.replay import Replay
-from game.tape import Rerun, Tape
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.flights import NOON, fly_out, kept, scripted
 

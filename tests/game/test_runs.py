@@ -8,15 +8,15 @@ from types import SimpleNamespace
 import pygame
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.config import Config
-from game import collection as collection_module
-from game import texts
-from game.context import Context
-from game.library import Library
-from game.scene import Pop, Push
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from game.core import collection as collection_module
+from game.core import texts
+from game.core.scene import Pop, Push
 from game.scenes.menu import Menu
 from game.scenes.runs import Runs
+from game.training.library import Library
+from game.ui.context import Context
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]

@@ -11,9 +11,9 @@ import pytest
 
 from ai.nn.files import write_text
 from ai.nn.lock import take
-from game.lock import held
-from game.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
-from game.settings_writer import SettingsWriter
+from game.core.lock import held
+from game.core.settings import DAMAGED_NAME, FILE_NAME, Settings, SettingsFile
+from game.core.settings_writer import SettingsWriter
 
 DAMAGED = [
     b"",
@@ -103,7 +103,7 @@ def test_a_file_that_cannot_be_read_is_put_aside_and_never_overwritten(tmp_path:
     file.save(Settings(model="precious"))
     locked = PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     with monkeypatch.context() as patch:
-        patch.setattr("game.settings.read_text", raising(locked))
+        patch.setattr("game.core.settings.read_text", raising(locked))
         settings = file.load()
         assert "Permission denied" in file.problem
     with monkeypatch.context() as patch:
@@ -228,7 +228,7 @@ def test_a_kill_at_any_moment_leaves_a_whole_file(tmp_path: Path):
     """A process that changes settings without end is killed, again and again."""
     SettingsFile(tmp_path).save(Settings(model="eagle"))
     script = (
-        "import sys; from pathlib import Path; from game.settings import *; from game.settings_writer import *\n"
+        "import sys; from pathlib import Path; from game.core.settings import *; from game.core.settings_writer import *\n"
         "file = SettingsFile(Path(sys.argv[1])); settings = file.load(); writer = SettingsWriter(file, settings)\n"
         "print(flush=True)\n"
         "while True:\n"

@@ -8,18 +8,18 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.copilot import Mode
-from ai.decision import Decision
-from ai.lander import Outcome
-from game import texts
-from game.cockpit.insight import Insight
-from game.context import Context
-from game.flight import DECISION_STEPS, Flight
-from game.mind import draw_mind
+from ai.agent.agent import DeepQAgent
+from ai.common.decision import Decision
+from ai.copilot.copilot import Mode
+from ai.lander.environment import Outcome
+from game.cockpit.copilot_panel import Insight
+from game.cockpit.decision_panel import draw_mind
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight.flight import DECISION_STEPS, Flight
+from game.panels.q_values import SPAN
 from game.scenes.watch import Watch
-from game.ui.canvas import Canvas
-from game.ui.q_values import SPAN
+from game.ui.context import Context
 from tests.game.drawn import Drawn, Panel, number, read_panel
 from tests.game.driver import Driver
 

@@ -3,10 +3,10 @@
 import pygame
 import pytest
 
-from game.context import Context
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import VIEW_SIZE
 from game.scenes.settings import SettingsScene
-from game.ui.canvas import Canvas
-from game.ui.tokens import VIEW_SIZE
+from game.ui.context import Context
 from tests.game.driver import Driver
 
 SIZES = [(1366, 768), (1000, 700), (3440, 1440), (640, 360), (720, 1280), (1921, 1079), (2560, 1600)]

@@ -7,9 +7,9 @@ import numpy as np
 import pygame
 import pytest
 
-from game.settings import Settings
-from game.sound import Sound
-from game.sounds.instruments import Instrument
+from game.audio.instruments import Instrument
+from game.audio.mixer import Sound
+from game.core.settings import Settings
 
 ENGINE, PAD, FIRST_VOICE = 0, 1, 2
 

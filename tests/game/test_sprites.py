@@ -6,15 +6,15 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import LanderEnv, Outcome
+from ai.lander.environment import LanderEnv, Outcome
 from engine import Circle, Polygon, Sprite, World
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import EMBER, HUMAN, INK
 from game.exhibits import EXHIBITS
-from game.render import View
-from game.ui.canvas import Canvas
-from game.ui.tokens import EMBER, HUMAN, INK
 from game.world import bodies
 from game.world import lander as art
 from game.world.bodies import Outlines
+from game.world.camera import View
 from game.world.stage import Stage
 
 MIDDLE = (640, 360)

@@ -6,20 +6,20 @@ from dataclasses import replace
 import pygame
 import pytest
 
-from ai.missions import MISSIONS
+from ai.lander.missions import MISSIONS
 from benchmarks.tour import stock
-from game import texts
-from game.context import Context
-from game.course import Flown
-from game.records import Records
-from game.scene import Push, Scene
+from game.core import texts
+from game.core.scene import Push, Scene
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import LABEL, SMALL, TEXT, TEXT_SIZES, TITLE, VIEW_SIZE
+from game.flight.logbook import Records
+from game.play.challenge import Flown
 from game.scenes.menu import Menu
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
 from game.scenes.watch import Watch
-from game.ui import typeface
-from game.ui.canvas import Canvas
-from game.ui.tokens import LABEL, SMALL, TEXT, TEXT_SIZES, TITLE, VIEW_SIZE
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.test_walks import OVER_OTHERS, SCREENS
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from game import texts
+from game.core import texts
 
 GAME = Path(texts.__file__).parent
 WORDS = re.compile(r"[A-Za-z]{2,} [a-zA-Z]{2,}")

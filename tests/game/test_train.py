@@ -11,30 +11,30 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.config import PRESETS
-from ai.demonstrations import demonstrate, write
-from ai.history import History
-from ai.live import TAUGHT
-from ai.pilots import ScriptedPilot
-from ai.rewards import RewardWeights
-from ai.runs import resume_run
-from ai.training import Training
-from game import texts
-from game.cockpit.lesson import FILE_NAME
-from game.library import Library
-from game.scene import Push
+from ai.agent.config import PRESETS
+from ai.lander.pilots import ScriptedPilot
+from ai.lander.rewards import RewardWeights
+from ai.training.checkpoints import resume_run
+from ai.training.demonstrations import demonstrate, write
+from ai.training.history import History
+from ai.training.loop import Training
+from ai.training.session import TAUGHT
+from game.charts.scrubber import Scrubber
+from game.core import texts
+from game.core.scene import Push
+from game.core.worker import State
+from game.flight.demonstrations import FILE_NAME
+from game.panels.network_panel import Inside
+from game.panels.network_view import NetView
 from game.scenes.dialog import Asking, Naming
 from game.scenes.menu import Menu
 from game.scenes.play import Play
 from game.scenes.train import Train
-from game.student import Student
+from game.training.lander_run import Student
+from game.training.library import Library
 from game.ui import focus
-from game.ui.inside import Inside
-from game.ui.netview import NetView
-from game.ui.scrubber import Scrubber
 from game.ui.widget import Widget
 from game.ui.widgets import Choice
-from game.worker import State
 from tests.game.driver import Driver
 
 SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1)

@@ -3,12 +3,12 @@ from typing import Any
 
 import pytest
 
-from ai.config import PRESETS, Config
-from ai.rewards import RewardWeights
-from ai.sabotage import SABOTAGES, sabotaged
-from game import texts
-from game.dials import dials, figure, pages
-from game.tuning import LANDER, Tuning
+from ai.agent.config import PRESETS, Config
+from ai.lander.rewards import RewardWeights
+from ai.training.sabotage import SABOTAGES, sabotaged
+from game.core import texts
+from game.training.dials import dials, figure, pages
+from game.training.run_settings import LANDER, Tuning
 
 DIALS = {dial.name: dial for dial in dials()}
 

@@ -5,22 +5,23 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import Outcome
-from ai.missions import FIRST
-from ai.pilots import ScriptedPilot
-from game import networks, texts
-from game.bindings import Held
-from game.context import Context
-from game.flight import Hand
-from game.outcomes import crash_reason
-from game.records import Records
-from game.scene import Push
+from ai.lander.environment import Outcome
+from ai.lander.missions import FIRST
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.core.scene import Push
+from game.core.settings import FILE_NAME
+from game.flight import networks
+from game.flight.flight import Hand
+from game.flight.logbook import Records
+from game.flight.outcomes import crash_reason
+from game.input.bindings import Held
+from game.play.tutorial import LESSONS, Tutorial
 from game.scenes.menu import Menu
 from game.scenes.missions import Missions
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
-from game.settings import FILE_NAME
-from game.tutorial import LESSONS, Tutorial
+from game.ui.context import Context
 from tests.game.drawn import Drawn
 from tests.game.driver import Driver
 from tests.game.flights import play

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.lander import Outcome
-from game.context import Context
-from game.scenes.vista import Vista
+from ai.lander.environment import Outcome
+from game.scenes.menu_background import Vista
+from game.ui.context import Context
 
 
 @pytest.mark.parametrize("folder", [None, "nothing here"], ids=["network", "no network"])

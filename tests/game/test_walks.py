@@ -8,17 +8,16 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.digits import DigitClassifier
-from ai.lander import Outcome
+from ai.digits.classifier import DigitClassifier
+from ai.lander.environment import Outcome
 from benchmarks.tour import scene_types
-from game import texts
-from game.assets import MODELS_DIR
-from game.cockpit.skill import Skill
-from game.context import Context
-from game.controls import Command
-from game.flight import Hand
-from game.flight_file import Record
-from game.scene import Push, Scene
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.core.scene import Push, Scene
+from game.flight.flight import Hand
+from game.flight.flight_file import Record
+from game.flight.skill import Skill
+from game.input.controls import Command
 from game.scenes.bindings import BindingsScene
 from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import Asking, Naming, Picking
@@ -37,6 +36,7 @@ from game.scenes.runs import Runs
 from game.scenes.settings import SettingsScene
 from game.scenes.train import Train
 from game.scenes.watch import Watch
+from game.ui.context import Context
 from game.ui.widget import Widget
 from tests.game.driver import Driver
 from tests.game.flights import kept, scripted

@@ -5,17 +5,17 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent import DeepQAgent
-from ai.config import Config
-from game.context import Context
-from game.flight import DECISION_STEPS
-from game.library import Library
-from game.render import Camera
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from game.core.settings import SettingsFile
+from game.drawing.canvas import Canvas
+from game.flight.flight import DECISION_STEPS
+from game.panels.run_status import draw_standing
 from game.scenes.runs import Runs
 from game.scenes.watch import Watch
-from game.settings import SettingsFile
-from game.ui.canvas import Canvas
-from game.ui.standing import draw_standing
+from game.training.library import Library
+from game.ui.context import Context
+from game.world.camera import Camera
 from tests.game.driver import Driver
 
 Open = Callable[..., Driver]

@@ -6,18 +6,19 @@ import numpy as np
 import pygame
 import pytest
 
-from game import texts
-from game.context import Context
-from game.controls import Command
-from game.scene import Pop, Transition
+from game.core import texts
+from game.core.scene import Pop, Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, SMALL, VIEW_SIZE
+from game.input.controls import Command
 from game.scenes.choices import ChoicesScene
 from game.scenes.play import Play
 from game.scenes.settings import SettingsScene
-from game.ui import focus, typeface
-from game.ui.canvas import Canvas
+from game.ui import focus
+from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.listing import shortened
-from game.ui.tokens import INK, SMALL, VIEW_SIZE
 from game.ui.widget import PointsManager
 from game.ui.widgets import CHOICE_GAP, Choice, Slider, Toggle, Word
 from tests.game.driver import Driver
@@ -244,7 +245,7 @@ def test_rectangles_that_touch_in_points_touch_in_pixels(canvas: Canvas):
 
 
 def test_texts_are_kept_and_forgotten_with_the_size(tmp_path: Path):
-    from game.ui import typeface
+    from game.drawing import typeface
 
     canvas = Canvas(pygame.Surface((1280, 720)))
     canvas.text("kept", (0, 50))

@@ -8,24 +8,25 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.decision import Decision, decide
-from ai.lander import PARAMS, Outcome
-from ai.missions import MISSIONS
-from game import networks, texts
-from game.context import Context
-from game.course import Daily, Flown
-from game.flight import Flight, Hand
-from game.flight_file import Entry
-from game.records import Records
+from ai.common.decision import Decision, decide
+from ai.lander.environment import PARAMS, Outcome
+from ai.lander.missions import MISSIONS
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.flight import Flight, Hand
+from game.flight.flight_file import Entry
+from game.flight.logbook import Records
+from game.flight.replay import Tape
+from game.play.challenge import Daily, Flown
+from game.play.tutorial import Tutorial
 from game.scenes.choices import ChoicesScene
 from game.scenes.logbook import Logbook, _row
 from game.scenes.missions import Missions
 from game.scenes.play import Play
 from game.scenes.race import fly_on, race
 from game.scenes.replay import Replay
-from game.tape import Tape
-from game.tutorial import Tutorial
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.flights import fly_out, kept, play
 
@@ -269,7 +270,7 @@ def end(driver: Driver, outcome: Outcome) -> None:
 
 def assert_book_agrees(reading: Reading, entry: Entry) -> None:
     """Open the logbook at that flight: it is told as the card told it."""
-    from game.scene import Push
+    from game.core.scene import Push
 
     reading.driver.app.scenes.apply(Push(Logbook()))
     page = reading.page(2)

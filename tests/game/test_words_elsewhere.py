@@ -7,16 +7,17 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import Outcome
-from game import networks, texts
-from game.context import Context
+from ai.lander.environment import Outcome
+from game.core import texts
+from game.core.worker import State
 from game.digits.answer import best_two, percent
-from game.learner import Learner
+from game.flight import networks
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import Digits
 from game.scenes.train import Train
 from game.scenes.watch import COUNTS, Watch
-from game.worker import State
+from game.training.training_run import Learner
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.test_digits import draw, strokes
 from tests.game.test_words_agree import COUNTS as EARNED

@@ -13,17 +13,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.config import Config
-from ai.history import Checkpoint, History
-from ai.live import Change, Refused, Save, Saved, live
-from ai.runs import resume_run
-from ai.training import Training
-from game import export, texts, worker
-from game.assets import MODELS_DIR
+from ai.agent.config import Config
+from ai.training.checkpoints import resume_run
+from ai.training.history import Checkpoint, History
+from ai.training.loop import Training
+from ai.training.session import Change, Refused, Save, Saved, live
+from game.core import texts, worker
+from game.core.assets import MODELS_DIR
+from game.core.worker import State, Worker
+from game.core.worker_process import CREDIT, MOST_WAITING, Waiting
 from game.digits import fixing, measuring
 from game.digits.reader import Switches
-from game.worker import State, Worker
-from game.worker_process import CREDIT, MOST_WAITING, Waiting
+from game.export import export
 from tests.game import chores
 from tests.game.chores import Echo, Latest, Tick, Trace
 
@@ -360,7 +361,7 @@ def test_a_worker_that_is_forgotten_ends():
 
 PARENT = """
 import sys, time
-from game.worker import State, Worker
+from game.core.worker import State, Worker
 from tests.game import chores
 if __name__ == "__main__":
     workers = [Worker(chores.counting), Worker(chores.counting), Worker(chores.hanging)]

@@ -2,22 +2,22 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.lander import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv, Outcome
-from ai.missions import MISSIONS
-from game.render import Camera, View
-from game.ui.canvas import Canvas
-from game.ui.sky import NightSky, beside
+from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, HULL, PARAMS, LanderEnv, Outcome
+from ai.lander.missions import MISSIONS
+from game.drawing.canvas import Canvas
+from game.drawing.sky import NightSky, beside
 from game.world import lander as art
-from game.world.backdrop import Backdrop
+from game.world.camera import Camera, View
 from game.world.craft import stand
 from game.world.flame import HUMAN_PLUME, LEVELS, plume
-from game.world.looks import LOOKS, look_of
-from game.world.pad import draw_pad
+from game.world.landscape.backdrop import Backdrop
+from game.world.landscape.pad import draw_pad
+from game.world.landscape.relief import Relief
+from game.world.landscape.themes import LOOKS, look_of
+from game.world.landscape.wind import Wind
 from game.world.particles import DUST, Particles
 from game.world.paths import Trails, draw_dotted, draw_faint, draw_stretch
-from game.world.relief import Relief
 from game.world.stage import Stage
-from game.world.wind import Wind
 from tests.game.driver import Driver
 
 SIZES = [(1280, 720), (640, 360), (1000, 800)]

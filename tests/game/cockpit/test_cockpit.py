@@ -6,17 +6,18 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.decision import Decision, decide
-from ai.lander import PARAMS, Outcome
-from game import networks, texts
+from ai.common.decision import Decision, decide
+from ai.lander.environment import PARAMS, Outcome
 from game.cockpit.overrides import difference
-from game.context import Context
-from game.flight import Hand
-from game.flight_file import Entry
-from game.records import LOGBOOK, Records
+from game.core import texts
+from game.core.settings import SettingsFile
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.flight import Hand
+from game.flight.flight_file import Entry
+from game.flight.logbook import LOGBOOK, Records
 from game.scenes.play import Play
-from game.settings import SettingsFile
-from game.ui.canvas import Canvas
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.flights import play
 

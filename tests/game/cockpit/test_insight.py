@@ -2,12 +2,12 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.copilot import Mode
-from ai.decision import Decision, decide
-from game import texts
-from game.cockpit.insight import Insight
-from game.flight import Flight
-from game.ui.canvas import Canvas
+from ai.common.decision import Decision, decide
+from ai.copilot.copilot import Mode
+from game.cockpit.copilot_panel import Insight
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight.flight import Flight
 from tests.game.drawn import Drawn, read_panel
 
 

@@ -3,11 +3,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.config import Config
-from ai.demonstrations import read, relive
-from ai.pilots import ScriptedPilot
-from game.cockpit.lesson import FILE_NAME, keep_lesson, lessons
-from game.flight import Flight, Hand
+from ai.agent.config import Config
+from ai.lander.pilots import ScriptedPilot
+from ai.training.demonstrations import read, relive
+from game.flight.demonstrations import FILE_NAME, keep_lesson, lessons
+from game.flight.flight import Flight, Hand
 
 
 def flown_by_hand(seed: int, pads: int = 1, network_until: int = 0) -> Flight:

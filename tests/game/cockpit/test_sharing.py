@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from ai.copilot import Mode
-from ai.decision import Decision, decide
-from ai.lander import Outcome
-from game.cockpit.hands import HANDS, OWN, Hands
-from game.flight import DECISION_STEPS, Flight, Hand, surface_height
-from game.forecast import coast_path
+from ai.common.decision import Decision, decide
+from ai.copilot.copilot import Mode
+from ai.lander.environment import Outcome
+from game.flight.flight import DECISION_STEPS, Flight, Hand, surface_height
+from game.flight.forecast import coast_path
+from game.flight.handicap import HANDS, OWN, Hands
 
 COAST, LEFT, RIGHT, MAIN = range(4)
 

@@ -1,7 +1,7 @@
 import pytest
 
-from game.cockpit.skill import Skill
-from game.flight_file import Entry
+from game.flight.flight_file import Entry
+from game.flight.skill import Skill
 
 
 def flown(landed: bool, *, alone: bool, **more) -> Entry:

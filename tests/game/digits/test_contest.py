@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ai.digits import DigitClassifier, load_part
-from game.assets import MODELS_DIR
-from game.digits.contest import ROUNDS, Contest
+from ai.digits.classifier import DigitClassifier, load_part
+from game.core.assets import MODELS_DIR
+from game.digits.quiz_rules import ROUNDS, Contest
 
 
 @pytest.fixture(scope="module")

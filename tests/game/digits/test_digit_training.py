@@ -9,20 +9,20 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.digit_config import DIGIT_PRESETS, DigitConfig, build_digit_network
-from ai.digit_live import Confusion
-from ai.digit_runs import save_digit_run
-from ai.digit_training import DigitTraining
-from ai.digits import DigitClassifier
-from game import texts
-from game.dials import dials
-from game.digits.pupil import Pupil
+from ai.digits.checkpoints import save_digit_run
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
+from ai.digits.session import Confusion
+from ai.digits.training import DigitTraining
+from game.core import texts
+from game.core.worker import State
 from game.scenes.dialog import Asking, Naming
 from game.scenes.digit_training import FAMILY, DigitTrainingScene
 from game.scenes.dream import Dream
 from game.scenes.quiz import Quiz
-from game.tuning import Tuning
-from game.worker import State
+from game.training.dials import dials
+from game.training.digit_run import Pupil
+from game.training.run_settings import Tuning
 from tests.game.driver import Driver
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)

@@ -7,11 +7,11 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.digits import DigitClassifier
-from ai.mnist import MnistError
-from game import texts
-from game.assets import MODELS_DIR
-from game.digits.contest import ROUNDS
+from ai.digits.classifier import DigitClassifier
+from ai.digits.mnist import MnistError
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.digits.quiz_rules import ROUNDS
 from game.scenes import quiz
 from game.scenes.dream import Dream
 from game.scenes.quiz import Quiz

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.digits import DigitClassifier, load_part
-from game.assets import MODELS_DIR
+from ai.digits.classifier import DigitClassifier, load_part
+from game.core.assets import MODELS_DIR
 from game.digits.fixing import Fixing
 from game.digits.reader import Reader
 

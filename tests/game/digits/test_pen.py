@@ -5,7 +5,7 @@ import pytest
 
 from game.scenes.digits import Digits
 from game.scenes.quiz import Quiz
-from game.ui.pointer import Pointer
+from game.ui.virtual_pointer import Pointer
 from tests.game.player import DEVICES, Player
 from tests.game.test_walks import reader
 

@@ -7,14 +7,14 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.digit_config import DIGIT_PRESETS, build_digit_network
-from ai.digits import DigitClassifier
-from game.assets import MODELS_DIR
-from game.context import Context
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, build_digit_network
+from game.core.assets import MODELS_DIR
 from game.digits.reader import Reader
-from game.digits.shelf import called, runs_dir, shelf
 from game.scenes.dialog import Picking
 from game.scenes.digits import Digits
+from game.training.digit_models import called, runs_dir, shelf
+from game.ui.context import Context
 from tests.game.driver import Driver
 from tests.game.test_digits import draw, guess, strokes
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from ai.lander import PARAMS, LanderEnv, Outcome
-from ai.pilots import ScriptedPilot
-from game.flight import Flight
-from game.sounds.flight import HEIGHTS, FlightSound
-from game.sounds.instruments import RUNGS
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.audio.flight_sounds import HEIGHTS, FlightSound
+from game.audio.instruments import RUNGS
+from game.flight.flight import Flight
 from tests.game.listener import Listener
 
 STANDING = PARAMS.pad_top + PARAMS.stand

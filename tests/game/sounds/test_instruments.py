@@ -4,10 +4,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from game.settings import Settings
-from game.sounds import synth
-from game.sounds.instruments import GROUPS, INSTRUMENTS, RUNGS, altitude_key, rung
-from game.sounds.synth import RATE
+from game.audio import synth
+from game.audio.instruments import GROUPS, INSTRUMENTS, RUNGS, altitude_key, rung
+from game.audio.synth import RATE
+from game.core.settings import Settings
 
 LOOPS = [key for key, instrument in INSTRUMENTS.items() if instrument.loops]
 SHORT = [key for key in INSTRUMENTS if key not in LOOPS]

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from game.sounds import synth
-from game.sounds.synth import RATE
+from game.audio import synth
+from game.audio.synth import RATE
 
 
 def spectrum(signal):

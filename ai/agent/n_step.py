@@ -1,0 +1,75 @@
+"""From steps to memories: n-step returns, and whole episodes that ended well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ai.agent.replay import MemoryCell
+from ai.common.environment import Bools, Floats, Ints
+
+
+class NStep:
+    """Sums the rewards of up to `n` decisions into one transition (Sutton and Barto 2018, section 7.1)."""
+
+    def __init__(self, n: int, discount: float) -> None:
+        self.n, self.discount = n, discount
+        self._states: Floats | None = None
+
+    def add(
+        self, state: Floats, action: Ints, reward: Floats, next_state: Floats, terminal: Bools, ended: Bools
+    ) -> tuple[MemoryCell, Ints]:
+        """Take one decision of every slot; return the transitions that are now complete, and their slots.
+
+        Slots that have ended before and wait for a reset must not be passed on with a new decision.
+        """
+        if self._states is None or self._states.shape[1:] != state.shape:
+            self._start(state)
+        assert self._states is not None
+        place = self._count % self.n
+        self._states[place], self._actions[place] = state, action
+        self._returns[place], self._ages[place] = 0.0, 0
+        self._open[place] = True
+        self._count += 1
+        self._returns += np.float32(self.discount) ** self._ages.astype(np.float32) * reward * self._open
+        self._ages += 1
+        full = np.zeros_like(self._open)
+        full[self._count % self.n] = self._ages[self._count % self.n] >= self.n
+        done = self._open & (full | ended)
+        self._open &= ~done
+        # Oldest first, so that a pruned memory loses the oldest.
+        row, slot = done.nonzero()
+        order = np.argsort(-self._ages[row, slot], kind="stable")
+        row, slot = row[order], slot[order]
+        cells = MemoryCell(
+            self._states[row, slot], next_state[slot], self._actions[row, slot], self._returns[row, slot],
+            terminal[slot], self._ages[row, slot].copy(),
+        )  # fmt: skip
+        return cells, slot
+
+    def _start(self, state: Floats) -> None:
+        shape = (self.n, len(state))
+        self._count = 0
+        self._states = np.zeros((*shape, state.shape[1]), dtype=np.float32)
+        self._actions = np.zeros(shape, dtype=np.intp)
+        self._returns = np.zeros(shape, dtype=np.float32)
+        self._ages = np.zeros(shape, dtype=np.intp)
+        self._open = np.zeros(shape, dtype=bool)
+
+
+class Episodes:
+    """Collects each slot's transitions until its episode ends, and passes on those that ended well."""
+
+    def __init__(self) -> None:
+        self._parts: dict[int, list[MemoryCell]] = {}
+
+    def add(self, cells: MemoryCell, slots: Ints, ended: Bools, success: Bools) -> Iterator[MemoryCell]:
+        """Take new transitions with their slots; yield every successful episode that is now whole."""
+        for slot in np.unique(slots).tolist():
+            mine = slots == slot
+            self._parts.setdefault(slot, []).append(MemoryCell(*(part[mine] for part in cells)))
+            if ended[slot]:
+                parts = self._parts.pop(slot)
+                if success[slot]:
+                    yield MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True)))

@@ -1,0 +1,54 @@
+"""Observations brought to one scale, whatever their units."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from ai.common.environment import Doubles, Floats
+from ai.nn.files import count_of
+
+REACH: Final = 10.0  # spreads from the mean: what lies further out is cut off
+
+
+class RunningScale:
+    """Shifts and stretches observations to mean 0 and spread 1, as far as they are known."""
+
+    def __init__(self, num_features: int) -> None:
+        self.count = 0
+        self.mean: Doubles = np.zeros(num_features)
+        self.squares: Doubles = np.zeros(num_features)  # summed squares of the distances from the mean
+        self._refresh()
+
+    def watch(self, observations: Floats) -> None:
+        """Take n more observations (n, features) into account (Chan, Golub and LeVeque 1983)."""
+        new, mean = len(observations), observations.mean(axis=0, dtype=float)
+        shift, total = mean - self.mean, self.count + new
+        self.squares += ((observations - mean) ** 2).sum(axis=0) + shift**2 * (self.count * new / total)
+        self.mean += shift * (new / total)
+        self.count = total
+        self._refresh()
+
+    def __call__(self, observations: Floats) -> Floats:
+        """Scale observations (n, features)."""
+        scaled: Floats = np.clip((observations - self._shift) * self._factor, -REACH, REACH)
+        return scaled
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values."""
+        return {"count": self.count, "mean": self.mean.tolist(), "squares": self.squares.tolist()}
+
+    def load(self, values: dict[str, Any]) -> None:
+        """Take over what `to_json` gave; raises KeyError, TypeError or ValueError for anything else."""
+        mean, squares = (np.array(values[name], dtype=float) for name in ("mean", "squares"))
+        finite = np.isfinite(mean).all() and np.isfinite(squares).all() and (squares >= 0).all()
+        if mean.shape != self.mean.shape or squares.shape != mean.shape or not finite:
+            raise ValueError(f"the scale of observations needs {len(self.mean)} finite means and squares")
+        self.count, self.mean, self.squares = count_of(values["count"]), mean, squares
+        self._refresh()
+
+    def _refresh(self) -> None:
+        spread = np.sqrt(self.squares / max(1, self.count))
+        self._shift = self.mean.astype(np.float32)
+        self._factor = (1.0 / np.where(spread > 1e-6, spread, 1.0)).astype(np.float32)

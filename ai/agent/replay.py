@@ -1,0 +1,167 @@
+"""Experience replay: what happened, kept in arrays, and drawn from at random."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ai.common.environment import Doubles, Floats, Ints
+
+
+class MemoryCell(NamedTuple):
+    """One transition, or a batch of them stacked field by field.
+
+    With n-step returns, `reward` is the discounted sum over `steps` decisions and `next_state` what came after
+    them. `terminal` means that nothing comes after; a flight ended by the clock is not terminal.
+    """
+
+    state: Any  # (features,) or (n, features) float32
+    next_state: Any
+    action: Any  # () or (n,)
+    reward: Any
+    terminal: Any
+    steps: Any = 1
+
+
+class ReplayBuffer:
+    """The last `capacity` transitions. When it is full, the oldest `prune` make room at once."""
+
+    def __init__(self, capacity: int, num_features: int, prune: int = 1) -> None:
+        if not 1 <= prune <= capacity:
+            raise ValueError(f"prune must lie between 1 and the capacity of {capacity}, not {prune}")
+        self.capacity, self.prune = capacity, prune
+        # One record for each transition: drawing one from a memory larger than the cache waits for it once.
+        fields = [
+            ("state", np.float32, num_features), ("next_state", np.float32, num_features), ("action", np.int32),
+            ("reward", np.float32), ("terminal", bool), ("steps", np.int32),
+        ]  # fmt: skip
+        self.records = np.zeros(capacity, np.dtype(fields, align=True))
+        self.cells = _fields(self.records)
+        self.start = 0  # where the oldest lies
+        self.size = 0
+        self.added = 0  # ever, those that had to go included
+
+    def __len__(self) -> int:
+        return self.size
+
+    def add(self, cells: MemoryCell) -> Ints:
+        """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
+        count = len(cells.action)
+        self.added += count
+        if count > self.capacity:
+            cells = MemoryCell(*(np.broadcast_to(part, (count,))[-self.capacity:] if np.ndim(part) == 0
+                                 else part[-self.capacity:] for part in cells))  # fmt: skip
+            count = self.capacity
+        if self.size + count > self.capacity:
+            self._drop(min(self.size, max(self.prune, self.size + count - self.capacity)))
+        rows = (self.start + self.size + np.arange(count)) % self.capacity
+        for kept, new in zip(self.cells, cells, strict=True):
+            kept[rows] = new
+        self.size += count
+        return rows
+
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+        """Draw `count` transitions; return them, where they lie, and the weight of each in the cost."""
+        rows = rng.integers(self.size, size=count)
+        rows += self.start
+        rows %= self.capacity
+        return self.at(rows), rows, np.ones(count, dtype=np.float32)
+
+    def at(self, rows: Ints) -> MemoryCell:
+        """Return the transitions that lie at `rows`, stacked."""
+        return _fields(self.records.take(rows))
+
+    def surprise(self, rows: Ints, errors: Floats) -> None:
+        """Take note of how wrong the network was about some transitions; here, it makes no difference."""
+
+    def _drop(self, count: int) -> None:
+        self.start = (self.start + count) % self.capacity
+        self.size -= count
+
+
+def _fields(records: NDArray[np.void]) -> MemoryCell:
+    """Return the fields of records as views."""
+    return MemoryCell(*(records[name] for name in MemoryCell._fields))
+
+
+class PrioritisedReplayBuffer(ReplayBuffer):
+    """Draws a transition with a chance proportional to |error|^exponent (Schaul et al. 2016).
+
+    New ones get the largest priority seen, so that each is drawn soon. `importance`, which the owner raises
+    towards 1, says how far the weights undo the bias that this brings.
+    """
+
+    def __init__(
+        self, capacity: int, num_features: int, prune: int = 1, exponent: float = 0.6, importance: float = 0.4
+    ) -> None:
+        super().__init__(capacity, num_features, prune)
+        self.exponent, self.importance = exponent, importance
+        self.tree = SumTree(capacity)
+        self._largest = 1.0
+
+    def add(self, cells: MemoryCell) -> Ints:
+        """Keep a batch of n transitions, oldest first, and return where they lie, (n,)."""
+        rows = super().add(cells)
+        self.tree.set(rows, np.full(len(rows), self._largest))
+        return rows
+
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+        """Draw `count` transitions; return them, where they lie, and the weight of each in the cost."""
+        # One draw from each of `count` equal parts of the total: less noise than independent draws.
+        rows = self.tree.find((np.arange(count) + rng.random(count)) / count * self.tree.total)
+        rng.shuffle(rows)
+        chance = self.tree.leaves[rows] / self.tree.total
+        weights = (chance * self.size) ** -self.importance
+        return self.at(rows), rows, (weights / weights.max()).astype(np.float32)
+
+    def surprise(self, rows: Ints, errors: Floats) -> None:
+        """Take note of how wrong the network was about some transitions."""
+        priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
+        self._largest = max(self._largest, float(priorities.max()))
+        self.tree.set(rows, priorities)
+
+    def _drop(self, count: int) -> None:
+        self.tree.set((self.start + np.arange(count)) % self.capacity, np.zeros(count))
+        super()._drop(count)
+
+
+class SumTree:
+    """A binary tree of sums: priorities are set, and found by cumulative weight, in O(log capacity) batches."""
+
+    def __init__(self, capacity: int) -> None:
+        self.depth = max(1, int(np.ceil(np.log2(capacity))))
+        self.first_leaf = 1 << self.depth
+        self.nodes: Doubles = np.zeros(2 * self.first_leaf)  # node k has children 2k and 2k + 1
+
+    @property
+    def total(self) -> float:
+        """Sum of all priorities."""
+        return float(self.nodes[1])
+
+    @property
+    def leaves(self) -> Doubles:
+        """The priorities, as a view."""
+        return self.nodes[self.first_leaf :]
+
+    def set(self, rows: Ints, priorities: Doubles) -> None:
+        """Set the priorities of some rows; of a row named twice, the last counts."""
+        nodes = rows + self.first_leaf
+        self.nodes[nodes] = priorities
+        for _ in range(self.depth):
+            nodes = np.unique(nodes >> 1) if len(nodes) > 64 else nodes >> 1
+            self.nodes[nodes] = self.nodes[2 * nodes] + self.nodes[2 * nodes + 1]
+
+    def find(self, weights: Doubles) -> Ints:
+        """Rows (n,) in which the running sum of priorities passes `weights` (n,), each below the total."""
+        nodes = np.ones(len(weights), dtype=np.intp)
+        left_over = weights.copy()
+        for _ in range(self.depth):
+            nodes *= 2
+            left = self.nodes[nodes]
+            # Rounding may leave a hair too much: never walk into an empty branch.
+            right = (left_over >= left) & (self.nodes[nodes + 1] > 0)
+            left_over -= left * right
+            nodes += right
+        return nodes - self.first_leaf

@@ -1,0 +1,111 @@
+"""Numbers that change as training goes on, by step count and never by the clock: a seed must be reproducible.
+
+Also which settings such a schedule has left behind: `idle` asks the very functions that training asks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, ClassVar, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ai.agent.config import Config
+    from ai.common.environment import Doubles
+
+# The settings that schedules are made of, each with the one that acts in its place once it has no effect.
+_SCHEDULED: Final = {
+    "learning_rate": "final_learning_rate", "final_learning_rate": "learning_rate", "horizon": "final_learning_rate",
+    "care": "horizon", "epsilon_start": "epsilon_end", "epsilon_end": "epsilon_start", "epsilon_decay": "epsilon_end",
+    "epsilon_decisions": "epsilon_end", "epsilon_spread": "num_envs",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class InForce:
+    """What schedules have made of the settings at one moment of a run.
+
+    Attributes:
+        values: what acts now, by the name of the setting that it began as.
+        idle: settings that change nothing any more, each with the one that acts, or decides, in its place.
+
+    """
+
+    newest_only: ClassVar = True
+
+    values: Mapping[str, float]
+    idle: Mapping[str, str]
+
+
+def linear(start: float, end: float, done: int, total: int) -> float:
+    """From `start` to `end` in a straight line over `total` steps, then level."""
+    share = min(1.0, done / total) if total > 0 else 1.0
+    return start * (1.0 - share) + end * share
+
+
+def geometric(start: float, end: float, factor: float, done: int) -> float:
+    """`start` times `factor` for each of `done` steps, never below `end`."""
+    return max(end, start * factor**done)
+
+
+def learning_rate(config: Config, decisions: int) -> float:
+    """How far each step moves the weights after so many decisions."""
+    return linear(config.learning_rate, config.final_learning_rate, decisions, config.horizon)
+
+
+def importance(config: Config, decisions: int) -> float:
+    """How far the bias of prioritised replay is corrected."""
+    return linear(config.importance_exponent, 1.0, decisions, config.horizon)
+
+
+def care(config: Config, decisions: int) -> float:
+    """How hard a touch may be, as a share of the real limits."""
+    return linear(1.0, config.care, decisions, config.horizon)
+
+
+def exploration(config: Config, decisions: int, episodes: int) -> float:
+    """Share of random actions: ε, of the lander that explores the most carefully."""
+    start, end = config.epsilon_start, config.epsilon_end
+    start = geometric(start, end, config.epsilon_decay, episodes)
+    return linear(start, end, decisions, config.epsilon_decisions) if config.epsilon_decisions else start
+
+
+def exploration_of_each(config: Config, epsilon: float) -> Doubles:
+    """Each lander's share of random actions, (num_envs,): bold ones go on finding what careful ones never try."""
+    reach = np.linspace(1.0, 1.0 - config.epsilon_spread, config.num_envs)
+    return np.asarray(epsilon**reach)
+
+
+def in_force(config: Config, decisions: int, episodes: int) -> InForce:
+    """Return what acts after so many decisions and episodes."""
+    values = {
+        "learning_rate": learning_rate(config, decisions),
+        "epsilon_start": exploration(config, decisions, episodes),
+    }
+    return InForce(values, idle(config, decisions, episodes))
+
+
+@lru_cache(maxsize=8)
+def idle(config: Config, decisions: int = 0, episodes: int = 0) -> Mapping[str, str]:
+    """Return the settings that change nothing now or later, each with the one that acts, or decides, in its place."""
+    found = config.unused()
+    moments = ((decisions, episodes), (decisions + 1, episodes + 1))
+    for name, instead in _SCHEDULED.items():
+        described = type(config).__dataclass_fields__[name].metadata
+        extremes = [config.changed(**{name: described[end]}) for end in ("low", "high")]
+        if all(_scheduled(extremes[0], *moment) == _scheduled(extremes[1], *moment) for moment in moments):
+            found[name] = instead
+    if not any(exploration_of_each(config, exploration(config, *moment)).any() for moment in moments):
+        found["random_main"] = "epsilon_end"
+    return found
+
+
+def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ...]:
+    """Return all that schedules decide at one moment, but for errors of rounding."""
+    each = exploration_of_each(config, exploration(config, decisions, episodes))
+    corrected = importance(config, decisions) if config.prioritised else 0.0
+    decided = (learning_rate(config, decisions), care(config, decisions), corrected, float(each[0]), float(each[-1]))
+    return tuple(round(value, 12) for value in decided)

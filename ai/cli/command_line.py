@@ -1,0 +1,183 @@
+"""What all commands without a window share: refusals in one sentence, ranges of options, and an orderly stop."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Final, NoReturn, TypeVar
+
+if TYPE_CHECKING:
+    from ai.common.knobs import Knobs
+
+    Settings = TypeVar("Settings", bound=Knobs)
+    Kept = TypeVar("Kept")
+
+FAILED: Final = 1
+LONGEST: Final = 400  # letters of one line that is told: what is in a file or an argument may be of any length
+SEEDS: Final = (0, 2**63 - 1)
+SECONDS: Final = (0.001, 1e9)
+EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
+
+# What reading a path or settings that somebody has named can come to. A loop of links and JSON that is nested too
+# deeply are RuntimeErrors.
+REFUSED: Final = (OSError, ValueError, OverflowError, RuntimeError, ImportError, MemoryError)
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that complains in one line, and not in a page."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong with the arguments, and end the program with exit code 2."""
+        self.exit(2, f"{self.prog}: {readable(' '.join(message.split()))} (see {self.prog} --help)\n")
+
+
+def fail(message: str) -> int:
+    """Say what went wrong, and return the exit code of a failure."""
+    print("\n".join(readable(line) for line in message.splitlines()), file=sys.stderr)
+    return FAILED
+
+
+def readable(line: str) -> str:
+    """Return a line without its middle, if that is too long, and without what would steer a terminal."""
+    short = line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in short)
+
+
+def folder(text: str) -> Path:
+    """Return the path of a folder that somebody named; raises ArgumentTypeError for what can be none anywhere."""
+    try:
+        os.fsencode(text)
+        named = "\0" not in text and text.strip() != "" and Path(text).resolve().name != ""
+    except (ValueError, RuntimeError):  # letters that no file system takes, a loop of links
+        named = False
+    except OSError:  # whoever opens it will say what is wrong
+        named = True
+    if not named:
+        raise argparse.ArgumentTypeError(f"{text!r} cannot be the path of a folder")
+    return Path(text)
+
+
+def reason(error: BaseException) -> str:
+    """Say why something was refused, without the numbers and names that only help a programmer."""
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for that"
+    if isinstance(error, RecursionError):
+        return "a file or a setting is nested too deeply"
+    return str(error) or type(error).__name__
+
+
+def out_of_range(arguments: argparse.Namespace, **ranges: tuple[float, float]) -> str | None:
+    """Say which option lies outside its range, if one does; both ends belong to it, and "not a number" to none."""
+    for name, (low, high) in ranges.items():
+        value = getattr(arguments, name)
+        if value is not None and not low <= value <= high:
+            return f"--{name} lies between {low:,} and {high:,}, and was {value}"
+    return None
+
+
+def configured(preset: Settings, given: list[str]) -> Settings:
+    """Return the preset with some settings changed, each as NAME=VALUE; raises ValueError for nonsense."""
+    changes = {}
+    for change in given:
+        name, equals, text = change.partition("=")
+        if not equals or name not in preset.to_json():
+            raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
+        try:
+            changes[name] = json.loads(text)
+        except RecursionError:
+            raise ValueError(f"--set {name}: that is nested too deeply") from None
+        except ValueError:
+            changes[name] = text
+    return preset.from_json(preset.to_json() | changes)
+
+
+def refuse_fixed(begun: Settings, wanted: Settings, begun_seed: int, seed: int | None) -> None:
+    """Raise ValueError, with their names, if choices are wanted that a run which has begun cannot change."""
+    fixed = begun.fixed_differences(wanted)
+    if seed is not None and seed != begun_seed:
+        fixed.append("seed")
+    if fixed:
+        raise ValueError(f"a run that has begun cannot change {', '.join(fixed)}; without --resume, a new run can")
+
+
+def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
+    """Save a run, and return where, and what `save` has to say.
+
+    What somebody has put in that place meanwhile stays, and the run goes beside it. Raises OSError if the disk does
+    not take it.
+    """
+    from ai.nn.folder import free_folder
+
+    try:
+        return output, save(output)
+    except FileExistsError as error:
+        print(error, file=sys.stderr)
+        beside = free_folder(output)
+        return beside, save(beside)
+
+
+def keep_checkpoint(save: Callable[[Path], object], output: Path) -> str:
+    """Save, and say what went wrong, if something did: a disk that is full now may have room again by the end."""
+    try:
+        save(output)
+    except OSError as error:
+        return f"could not write to {output}: {error.strerror or error}; training goes on"
+    return ""
+
+
+def fail_diverged(stopped: str, output: Path, *, measured: bool) -> int:
+    """Say that numbers ran away, what is kept of the run, and whether that was measured; return the exit code."""
+    kept = "What was best until then" if measured else "The last network, which has not been measured,"
+    return fail(f"{stopped}{kept} is kept in {output}.")
+
+
+@contextmanager
+def stoppable() -> Iterator[list[int]]:
+    """Turn Ctrl-C and a request to end into entries of the list, so that a step and its save are never cut short.
+
+    An entry is the number of a signal. Meant for the main thread; afterwards, signals do what they did before.
+    """
+    stop: list[int] = []
+    terminals = [number for number in (1, 2) if os.isatty(number)]
+
+    def note(number: int, _: FrameType | None) -> None:
+        stop.append(number)
+        if number == getattr(signal, "SIGHUP", None):
+            _forget(terminals)
+
+    before = {number: signal.signal(number, note) for number in _requests()}
+    try:
+        yield stop
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _requests() -> list[int]:
+    """Return the signals that ask a program to end on this system; a hang-up that is ignored (nohup) is none."""
+    names = ["SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK"]
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        names.remove("SIGHUP")
+    return [getattr(signal, name) for name in names if hasattr(signal, name)]
+
+
+def _forget(terminals: list[int]) -> None:
+    """Write into the void from now on: a terminal that has been closed takes no more words."""
+    void = os.open(os.devnull, os.O_WRONLY)
+    for number in terminals:
+        os.dup2(void, number)
+    os.close(void)
+
+
+def exit_code(stop: list[int]) -> int:
+    """Return the exit code of a run that ended well: 0, also by Ctrl-C, or 128 and the signal that ended it."""
+    return 128 + stop[0] if stop and stop[0] != signal.SIGINT else 0

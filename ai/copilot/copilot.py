@@ -1,0 +1,215 @@
+"""The co-pilot: a person flies, and a network that values every action keeps them from harm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum, StrEnum
+from functools import cached_property
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.common.decision import in_points
+from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.copilot.intent import Wishes, in_question
+from ai.lander.environment import NUM_ACTIONS
+from ai.lander.pilots import COAST
+
+# Points of reward that the guardian's action must bring more than the pilot's, at an assist of one half.
+GUARDIAN_MARGIN: Final = 3.0
+_STEERS: Final = 3  # action = 3 * main + steer
+
+
+class Valuer(Protocol):
+    """Whoever knows what actions are worth, such as a DeepQAgent."""
+
+    def q_values(self, observation: Floats) -> Floats:
+        """Value of every action, (n, 6), for observations (n, 9)."""
+
+
+class Mode(StrEnum):
+    """When the co-pilot steps in."""
+
+    TOLERANCE = "tolerance"  # where the pilot's action is not nearly as good as the best
+    GUARDIAN = "guardian"  # only where its own is better for every pad, by a margin
+
+
+class Rule(IntEnum):
+    """Whose action it became, in the order in which they are tried."""
+
+    PILOT = 0  # the pilot's, untouched
+    PILOT_MAIN = 1  # the pilot's main engine with the co-pilot's steering
+    PILOT_STEER = 2  # the co-pilot's main engine with the pilot's steering
+    COPILOT = 3  # the co-pilot's
+    HANDS_OFF = 4  # the co-pilot's, because nothing is pressed
+
+
+@dataclass(frozen=True, eq=False)
+class SharedDecision:
+    """One decision of a pilot and a co-pilot, and all that explains it."""
+
+    observation: Floats  # (n, pads, 9) that it was made on
+    action: Ints  # (n,) what is flown
+    pilot: Ints  # (n,) what the pilot asked for
+    best: Ints  # (n,) what the co-pilot would do
+    rule: Ints  # (n,) of Rule
+    values: Floats  # (n, pads, 6) what each action is worth on the way to each pad
+    meant: Floats  # (n, pads, 6) the same, with the likeliest pad's in place of those that can't be meant
+    feasible: Bools  # (n, 6) which actions the pilot could have had
+    likely: Doubles  # (n, pads) how likely it is that each pad is meant
+    assist: float  # how much the co-pilot helped, 0 to 1
+    mode: Mode  # and when it stepped in
+    reward_scale: float  # what a point of reward is in the unit of `values`
+
+    @cached_property
+    def points(self) -> Floats:
+        """Values (n, pads, 6) in points of reward."""
+        return in_points(self.values, self.reward_scale)
+
+    @property
+    def gain(self) -> Floats:
+        """Points of reward that the co-pilot's action brings more than the pilot's, for every pad at least, (n,)."""
+        rows = np.arange(len(self.action))
+        more: Floats = (self.meant[rows, :, self.best] - self.meant[rows, :, self.pilot]).min(axis=1)
+        return in_points(more, self.reward_scale)
+
+    @property
+    def overridden(self) -> Bools:
+        """Whether something else is flown than the pilot asked for, (n,)."""
+        overridden: Bools = self.action != self.pilot
+        return overridden
+
+
+def guardian_margin(assist: Any) -> Any:
+    """Points of reward that the guardian's action must bring more than the pilot's, by assist (n,), 0 to 1."""
+    with np.errstate(divide="ignore"):
+        return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
+
+
+class CoPilot:
+    """Shares the stick between a pilot and an agent (Reddy, Dragan and Levine 2018).
+
+    `assist` runs from 0, where every action of the pilot's is flown, to 1, where only the best are good enough.
+    A pilot who asks for nothing has their hands off the stick: then the co-pilot flies, whatever the assist.
+
+    In tolerance mode an action is feasible if what it is worth above the worst is at least `assist` of what the
+    best is. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more
+    on the way to every pad by a margin, which falls from without limit at assist 0 to nothing at 1.
+
+    Of several pads, only those count that may still be meant, by what the pilot has done so far (`ai.copilot.intent`); with
+    `reads_wishes` off, all do. Hands off, the co-pilot flies to the likeliest. So it remembers from one decision to
+    the next, which should be some 1/15 s; `forget` makes it ready for another flight.
+
+    `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with.
+    """
+
+    def __init__(
+        self,
+        agent: Valuer,
+        assist: float = 0.5,
+        mode: Mode | str = Mode.TOLERANCE,
+        *,
+        reward_scale: float | None = None,
+        reads_wishes: bool = True,
+    ) -> None:
+        self.agent = agent
+        self.assist = assist
+        self.mode = Mode(mode)
+        config = agent.config if isinstance(agent, DeepQAgent) else Config()
+        self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
+        self.reads_wishes = reads_wishes
+        self._wishes = Wishes(self.reward_scale)
+
+    @property
+    def assist(self) -> float:
+        """How much the co-pilot helps, 0 to 1; setting anything else raises ValueError."""
+        return self._assist
+
+    @assist.setter
+    def assist(self, assist: float) -> None:
+        if not 0.0 <= assist <= 1.0:
+            raise ValueError(f"assist runs from 0 to 1, not {assist}")
+        self._assist = assist
+
+    def forget(self, mask: Bools | None = None) -> None:
+        """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
+        self._wishes.forget(mask)
+
+    def share(self, observation: Floats, pilot_action: Any) -> tuple[Ints, Bools]:
+        """Return the actions to fly (n,), and where they are not the pilot's, (n,).
+
+        `observation` is (n, 9), or (n, pads, 9) relative to each pad that may be meant; `pilot_action` is (n,)
+        of 0 to 5. Raises ValueError for others.
+        """
+        decision = self.decide(observation, pilot_action)
+        return decision.action, decision.overridden
+
+    def decide(self, observation: Floats, pilot_action: Any) -> SharedDecision:
+        """Do what `share` does, and say why."""
+        observation = np.atleast_2d(observation)
+        if observation.ndim == 2:
+            observation = observation[:, None]
+        slots, pads, features = observation.shape
+        pilot = np.atleast_1d(pilot_action)
+        if pilot.shape != (slots,) or pilot.dtype.kind not in "iu":
+            raise ValueError(f"pilot actions must be {slots} whole numbers, not {pilot.dtype} {pilot.shape}")
+        if ((pilot < 0) | (pilot >= NUM_ACTIONS)).any():
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
+        values = self.agent.q_values(observation.reshape(-1, features)).reshape(slots, pads, NUM_ACTIONS)
+        likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
+        assist = np.where(pilot == COAST, 1.0, self.assist)
+        weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
+        best, feasible = weigh(meant, pilot, assist)
+        candidates = np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS,
+                               best - best % _STEERS + pilot % _STEERS, best])  # fmt: skip
+        rows = np.arange(slots)
+        rule = feasible[rows, candidates].argmax(axis=0)
+        action = candidates[rule, rows]
+        rule[(pilot == COAST) & (action != pilot)] = Rule.HANDS_OFF
+        return SharedDecision(observation, action, pilot, best, rule, values, meant, feasible, likely,
+                              self.assist, self.mode, self.reward_scale)  # fmt: skip
+
+    def _read(self, values: Floats, pilot: Ints, away: Floats) -> tuple[Doubles, Floats]:
+        """Return how likely each pad is meant, (n, pads), and the values with the likeliest's where a pad is not."""
+        slots, pads, _ = values.shape
+        if pads == 1 or not self.reads_wishes:
+            return np.full((slots, pads), 1.0 / pads), values
+        likely = self._wishes.watch(values, pilot)
+        likeliest = (likely - 1e-6 * away).argmax(axis=1)[:, None]  # among equals, the nearest
+        open_ = in_question(likely) & (pilot != COAST)[:, None]
+        pad = np.where(open_, np.arange(pads), likeliest)
+        return likely, values[np.arange(slots)[:, None], pad]
+
+    def _tolerate(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
+        """Return the co-pilot's action (n,) and the feasible ones (n, 6): those as good as `assist` (n,) asks for."""
+        above = values - values.min(axis=2, keepdims=True)
+        most = above.max(axis=2, keepdims=True)
+        asked = assist.astype(above.dtype)[:, None, None] * most
+        # Whoever means one of several pads may do what is right for that one; the co-pilot, what is right for all.
+        feasible = (above >= asked).all(axis=1)
+        rows = np.arange(len(pilot))
+        feasible[rows, pilot] = (above[rows, :, pilot] >= asked[:, :, 0]).any(axis=1)
+        best = (above / np.maximum(most, np.finfo(above.dtype).tiny)).min(axis=1).argmax(axis=1)
+        return self._certain(values, pilot, best, feasible)
+
+    def _guard(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
+        """Return the co-pilot's action (n,) and the feasible (n, 6): its own, and the pilot's if not much worse."""
+        rows = np.arange(len(pilot))
+        gain = (values - values[rows, :, pilot][:, :, None]).min(axis=1)
+        best = gain.argmax(axis=1)
+        margin = guardian_margin(assist) * self.reward_scale
+        feasible = np.zeros(gain.shape, dtype=bool)
+        feasible[rows, best] = True
+        feasible[rows, pilot] = gain[rows, best] <= margin
+        return self._certain(values, pilot, best, feasible)
+
+    @staticmethod
+    def _certain(values: Floats, pilot: Ints, best: Ints, feasible: Bools) -> tuple[Ints, Bools]:
+        """Leave the pilot alone where a ruined network, or pads that ask for different things, leave no better."""
+        rows = np.arange(len(pilot))
+        worse = ~(values[rows, :, best] >= values[rows, :, pilot]).all(axis=1)
+        feasible[rows[worse], pilot[worse]] = True
+        feasible[rows, best] = True
+        return best, feasible

@@ -1,0 +1,154 @@
+"""How much the co-pilot helps: pilots good and bad, alone and with help, over many flights each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Final
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.common.environment import Doubles
+from ai.copilot.copilot import CoPilot, Mode
+from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.ground import Ground, hilly
+from ai.lander.pilots import LaggyPilot, NoisyPilot, NoPilot, Pilot, SensorPilot
+
+MakePilot = Callable[[Pilot, np.random.Generator], Pilot]
+
+PILOTS: Final[dict[str, MakePilot]] = {
+    "full": lambda good, _: good,
+    "laggy": LaggyPilot,
+    "noisy": NoisyPilot,
+    "noisier": lambda good, rng: NoisyPilot(good, rng, chance=0.3),
+    "sensor": lambda *_: SensorPilot(),
+    "none": lambda *_: NoPilot(),
+}
+WISHFUL: Final = ("full", "laggy", "noisy", "noisier")  # whoever has a pad in mind
+GROUNDS: Final = 5  # different hills for the flights with a hidden wish
+ALONE: Final = "alone"
+COPILOT: Final = "co-pilot"  # the pilot of the row in which the network flies alone
+OPEN: Final = "guardian, all pads open"  # the same rule, with nothing read into what the pilot does
+
+Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
+ONE_PAD: Final[tuple[Help, ...]] = (
+    (ALONE, 0.0), *((Mode.TOLERANCE, assist) for assist in (0.2, 0.4, 0.6, 0.8, 1.0)),
+    *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6)),
+)  # fmt: skip
+THREE_PADS: Final[tuple[Help, ...]] = (
+    (ALONE, 0.0), (Mode.TOLERANCE, 0.4), *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6, 0.8)), (OPEN, 0.4),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Row:
+    """What became of a number of flights of one pilot with one kind of help."""
+
+    pilot: str
+    mode: str
+    assist: float
+    episodes: int
+    success: float  # shares of the flights
+    crash: float
+    out_of_bounds: float
+    time_out: float
+    mean_return: float
+    overridden: float  # share of the decisions in which something else was flown than the pilot asked for
+    own_pad: float  # share of the flights that ended on the pad the pilot had in mind
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Crew:
+    """A pilot, and the help there is."""
+
+    name: str
+    pilot: Pilot
+    mode: str = ALONE
+    assist: float = 0.0
+    copilot: CoPilot | None = None
+
+
+def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[Row]:
+    """Fly every pilot of the table with every help to a single pad; yield the rows as they are done.
+
+    `agent` is the co-pilot, `good` the pilot that the imperfect ones are made of. All fly from the same starts,
+    and with the same mishaps, which follow from `seed`.
+    """
+    for name in PILOTS:
+        yield from _measure(_crews(agent, good, [name], ONE_PAD, seed), episodes, seed)
+    yield from _measure([Crew(COPILOT, agent)], episodes, seed)
+
+
+def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[Row]:
+    """Fly pilots with one of three pads in mind, which the co-pilot isn't told; yield the rows.
+
+    The flights are spread over several grounds, so `episodes` is rounded to a multiple of their number.
+    """
+    parts = []
+    for ground in range(GROUNDS):
+        rng = np.random.default_rng([seed, ground])
+        start = int(rng.integers(2**31))
+        crews = _crews(agent, good, WISHFUL, THREE_PADS, start)
+        parts.append(_measure(crews, max(1, round(episodes / GROUNDS)), start, hilly(rng)))
+    yield from (_mean(rows) for rows in zip(*parts, strict=True))
+
+
+def _crews(agent: DeepQAgent, good: Pilot, names: Sequence[str], helps: Sequence[Help], seed: int) -> list[Crew]:
+    crews = []
+    for name in names:
+        for mode, assist in helps:
+            copilot = None
+            if mode != ALONE:
+                copilot = CoPilot(agent, assist, Mode.GUARDIAN if mode == OPEN else mode, reads_wishes=mode != OPEN)
+            crews.append(Crew(name, PILOTS[name](good, np.random.default_rng(seed)), str(mode), assist, copilot))
+    return crews
+
+
+def _measure(crews: Sequence[Crew], episodes: int, seed: int, ground: Ground | None = None) -> list[Row]:
+    """Fly `episodes` flights of every crew, all at once and from the same starts."""
+    env = LanderEnv(len(crews) * episodes, seed, ground=ground)
+    for first in range(0, env.num_envs, episodes):
+        for slot, rng in enumerate(np.random.default_rng(seed).spawn(episodes), first):
+            env.draw_from(slot, rng)
+    wishes = np.random.default_rng(seed).integers(len(env.ground.pads), size=episodes)
+    env.target = np.tile(wishes, len(crews))
+    env.reset()
+    returns, overridden, decisions = _fly(env, crews)
+    rows = []
+    for number, crew in enumerate(crews):
+        mine = slice(number * episodes, (number + 1) * episodes)
+        _, landed, crashed, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
+        changed = float(overridden[mine].sum() / decisions[mine].sum())
+        own = float((env.landed_on[mine] == wishes).mean())
+        rows.append(Row(crew.name, crew.mode, crew.assist, episodes, landed, crashed, gone, late,
+                        float(returns[mine].mean()), changed, own))  # fmt: skip
+    return rows
+
+
+def _fly(env: LanderEnv, crews: Sequence[Crew]) -> tuple[Doubles, Doubles, Doubles]:
+    """Fly until all have ended; return every flight's return, overridden decisions, and decisions, (n,) each."""
+    returns, overridden, decisions = np.zeros((3, env.num_envs))
+    episodes = env.num_envs // len(crews)
+    while (flying := env.outcome == Outcome.FLYING).any():
+        seen, wished, actions = env.observe_pads(), env.observe(), env.actions.copy()
+        for row, crew in enumerate(crews):
+            mine = slice(row * episodes, (row + 1) * episodes)
+            if flying[mine].any():
+                asked = crew.pilot.act(wished[mine], held=env.actions[mine])
+                actions[mine] = asked if crew.copilot is None else crew.copilot.share(seen[mine], asked)[0]
+                overridden[mine] += flying[mine] & (actions[mine] != asked)
+        decisions += flying
+        returns += env.step(actions).reward
+    return returns, overridden, decisions
+
+
+def _mean(rows: Sequence[Row]) -> Row:
+    """Return the mean of rows of as many flights each."""
+    figures = {figure.name: float(np.mean([getattr(row, figure.name) for row in rows]))
+               for figure in fields(Row)[4:]}  # fmt: skip
+    return replace(rows[0], episodes=sum(row.episodes for row in rows), **figures)  # type: ignore[arg-type]

@@ -1,0 +1,102 @@
+"""Runs that teach a network to read digits, on disk: the best network, how it was made, what to go on with."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ai.common.knobs import nearest_preset
+from ai.digits.classifier import KIND, DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, DigitConfig
+from ai.digits.mnist import TEST, load_part
+from ai.digits.training import DigitTraining, accuracy
+from ai.nn import ModelFormatError, atomic_folder
+from ai.nn.files import brief, count_of, inside, number_of, read_arrays, read_json
+
+TRAINING_FILE: Final = "training.json"
+LAST_FILE: Final = "last.npz"  # as long as there are epochs to come
+_OPTIMIZERS: Final = "optimizer."  # what the names of its arrays begin with
+_SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
+
+
+def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = False) -> dict[str, Any]:
+    """Keep the best network of a run and what is needed to go on, whole or not at all; return what is said of it.
+
+    `final` measures it on MNIST's test images. Raises OSError if the disk does not take it, MnistError if there
+    are no test images.
+    """
+    best = training.best_classifier()
+    described = {
+        **nearest_preset(training.config.to_json(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}),
+        "seed": training.seed, "step": training.step, "epochs": training.step // training.steps_per_epoch,
+        "seconds": round(training.seconds, 3), "held_out": training.best, "history": training.history,
+    }  # fmt: skip
+    if final:
+        described["test"] = accuracy(best, *load_part(TEST))
+    with atomic_folder(folder, KIND) as temporary:
+        best.write(temporary)
+        (temporary / TRAINING_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+        if not training.done:
+            state = {f"{_OPTIMIZERS}{name}": array for name, array in training.optimizer.state().items()}
+            values = training.classifier.network.values
+            np.savez(temporary / LAST_FILE, allow_pickle=False, values=values, average=training.average, **state)
+    return described
+
+
+def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
+    """Go on from what `save_digit_run` kept of an unfinished run; raises ModelFormatError for anything else."""
+    folder = Path(folder)
+    best = DigitClassifier.load(folder).network.values
+    try:
+        described = read_json(inside(folder, TRAINING_FILE))
+        preset = DIGIT_PRESETS[described["preset"]].to_json()
+        config = DigitConfig.from_json(preset | described["changes"])
+        training = DigitTraining(config, count_of(described["seed"], most=10**40), **options)
+        training.step, training.seconds = count_of(described["step"]), float(number_of(described["seconds"], 0))
+        training.best = None if described["held_out"] is None else float(number_of(described["held_out"]))
+        training.history = [_epoch(entry) for entry in described["history"]]
+    except OSError as error:
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error.strerror or error}"]) from error
+    except (ValueError, KeyError, TypeError, ArithmeticError) as error:
+        said = f"{brief(error.args[0])} is missing or unknown" if isinstance(error, KeyError) else error
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error
+    if not (folder / LAST_FILE).exists():
+        raise ModelFormatError(folder, ["the run is finished: there is nothing to go on with"])
+    if best.shape != training.average.shape:
+        raise ModelFormatError(folder, ["the network's sizes are not those of the run's settings"])
+    try:
+        state = _read_last(inside(folder, LAST_FILE), training)
+        training.classifier.network.values, training.average[...] = state.pop("values"), state.pop("average")
+        known = {name.removeprefix(_OPTIMIZERS): array for name, array in state.items()}
+        training.optimizer.load_state(known, training.classifier.network.values)
+    except OSError as error:
+        raise ModelFormatError(folder, [f"{LAST_FILE}: {error.strerror or error}"]) from error
+    except (ValueError, KeyError) as error:
+        raise ModelFormatError(folder, [f"{LAST_FILE}: {error}"]) from error
+    training.best_values = None if training.best is None else best.copy()
+    return training
+
+
+def _read_last(path: Path, training: DigitTraining) -> dict[str, Any]:
+    """Read the arrays to go on with; raises OSError, or ValueError for others than such a run has."""
+    remembered = [f"{_OPTIMIZERS}{name}" for name in training.optimizer.remembers]
+    names = {"values", "average", *remembered}
+
+    def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+        steps = name == f"{_OPTIMIZERS}steps" and shape == () and dtype.kind in "iu"
+        if not steps and not (name in names and shape == training.average.shape and dtype == np.float32):
+            raise ValueError(f"{name} is no part of such a run")
+
+    state = read_arrays(path, len(names) * training.average.nbytes + _SLACK, expect)
+    if not all(np.isfinite(array).all() for array in state.values()):
+        raise ValueError("holds numbers that are not finite")
+    return state
+
+
+def _epoch(entry: Any) -> dict[str, Any]:
+    if not isinstance(entry, dict):
+        raise ValueError(f"{brief(repr(entry), 40)} is no epoch")
+    return {name: value if value is None else number_of(value) for name, value in entry.items()}

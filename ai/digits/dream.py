@@ -1,0 +1,102 @@
+"""What a network thinks a digit looks like: an image that climbs the gradient of the network's own answer."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ai.digits.classifier import DIGITS, DigitClassifier
+from ai.digits.preprocessing import SIDE, Image
+from ai.nn import Array
+from ai.nn.costs import softmax
+
+STEPS: Final = 150
+STEP: Final = 0.15  # how far the pixel that changes most is moved, at first
+INK: Final = 110.0  # pixels: some more than a digit of MNIST has
+_LAST: Final = 0.2  # of the step, at the end
+_SHIFT: Final = 1.5  # pixels at the most, to and fro
+_SOFT: Final = 0.1  # how far each step blurs what is there
+_NOISE: Final = 0.1
+
+
+class Dream:
+    """One image that grows towards what a network takes for a digit.
+
+    Gradient ascent on the input (Erhan et al. 2009, Simonyan et al. 2014). Left to itself it finds what no person
+    would read: `calm`, from 0 to 1, grants it no more ink than a digit needs, blurs it, and moves it to and fro, so
+    that only strokes stay that mean the same wherever they are (Yosinski et al. 2015, Mordvintsev et al. 2015).
+    It begins with `start`, an image (28, 28), or with noise. Raises ValueError for a digit that is none.
+
+    Attributes:
+        image: (28, 28), 0 to 1.
+        probabilities: (10,), what the network reads in it.
+        step: how many steps it has taken.
+
+    """
+
+    def __init__(
+        self,
+        classifier: DigitClassifier,
+        digit: int,
+        rng: np.random.Generator,
+        start: Image | None = None,
+        calm: float = 0.7,
+    ) -> None:
+        if digit not in range(DIGITS):
+            raise ValueError(f"a digit is a number from 0 to 9, not {digit!r}")
+        self.classifier, self.digit, self.calm = classifier, digit, calm
+        self._rng = rng
+        self.step = 0
+        first = _NOISE * rng.random((SIDE, SIDE)) if start is None else np.clip(np.nan_to_num(start), 0, 1)
+        self.image: Image = np.asarray(first, np.float32)
+        self.probabilities = classifier.predict(self.image)[0]
+
+    @property
+    def done(self) -> bool:
+        """Whether it has come as far as it goes."""
+        return self.step >= STEPS
+
+    def advance(self) -> None:
+        """Take one step, and let the network read the image anew."""
+        reach = round(_SHIFT * self.calm)
+        down, across = self._rng.integers(-reach, reach + 1, 2).tolist()
+        moved = np.roll(self.image, (down, across), axis=(0, 1))
+        gradient = _blurred(np.roll(self._gradient(moved), (-down, -across), axis=(0, 1)), self.calm)
+        gradient /= max(float(np.abs(gradient).max()), 1e-12)
+        length = STEP * (1 - (1 - _LAST) * self.step / STEPS)
+        image = _blurred(self.image, _SOFT * self.calm) + length * gradient
+        self.image = _with_ink(image, INK + (1 - self.calm) * (image.size - INK))
+        self.step += 1
+        self.probabilities = self.classifier.predict(self.image)[0]
+
+    def _gradient(self, image: Image) -> Image:
+        """Return which pixels speak for the digit and against the others: of cross-entropy, or of their difference."""
+        classifier, network = self.classifier, self.classifier.network
+        shaped = classifier.shaped(image)
+        error: Array = np.eye(1, DIGITS, self.digit, dtype=np.float32)
+        if network.cost.logits:
+            error -= softmax(network.predict(shaped))
+        else:
+            error -= (1 - error) / (DIGITS - 1)
+        return network.input_gradient(shaped, error).reshape(SIDE, SIDE)
+
+
+def _with_ink(image: Image, most: float) -> Image:
+    """Return the nearest image within 0 to 1 that has no more than so many pixels of ink, by bisection."""
+    low, high = 0.0, max(float(image.max()), 0.0)
+    if np.clip(image, 0, 1).sum() <= most:
+        return np.clip(image, 0, 1)
+    for _ in range(16):
+        middle = (low + high) / 2
+        low, high = (middle, high) if np.clip(image - middle, 0, 1).sum() > most else (low, middle)
+    inked: Image = np.clip(image - high, 0, 1)
+    return inked
+
+
+def _blurred(image: Image, strength: float) -> Image:
+    """Return an image mixed with what surrounds each pixel: 1 2 1 along each axis."""
+    padded = np.pad(image, 1)
+    rows = 0.25 * padded[:-2] + 0.5 * padded[1:-1] + 0.25 * padded[2:]
+    soft = 0.25 * rows[:, :-2] + 0.5 * rows[:, 1:-1] + 0.25 * rows[:, 2:]
+    return np.asarray(image + strength * (soft - image), np.float32)

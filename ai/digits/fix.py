@@ -1,0 +1,136 @@
+"""Putting one misread drawing right: a few learning steps on it, and what they cost on the test images."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from ai.digits.augmentation import Strength, augment
+from ai.digits.classifier import DIGITS, DigitClassifier, Image
+from ai.digits.mnist import TEST, TRAIN, Images, Labels, load_part
+from ai.digits.training import accuracy
+from ai.nn import Adam, Array
+
+STEPS: Final = 60  # at the most
+ENOUGH: Final = 0.9  # how probable the right digit shall be
+COPIES: Final = 16  # of the drawing in each batch, bent a little; and training images beside them
+REHEARSED: Final = 112
+LEARNING_RATE: Final = 3e-4
+
+
+@dataclass(frozen=True)
+class FixStep:
+    """How probable the network finds the right digit by now."""
+
+    newest_only: ClassVar = True
+
+    step: int
+    probability: float
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """What a fix has done.
+
+    Attributes:
+        digit: what the drawing is.
+        probability: how probable the network found that before, and finds it now.
+        accuracy: the part of the test images that it read before, and reads now.
+        steps: how many were taken; none if it was sure already.
+        folder: where the fixed network is; None if it was not kept.
+        problem: why not.
+
+    """
+
+    digit: int
+    probability: tuple[float, float]
+    accuracy: tuple[float, float]
+    steps: int
+    folder: Path | None = None
+    problem: str = ""
+
+
+def steps_to_fix(
+    classifier: DigitClassifier,
+    image: Image,
+    digit: int,
+    data: tuple[Images, Labels],
+    rng: np.random.Generator,
+    steps: int = STEPS,
+) -> Generator[FixStep, None, None]:
+    """Teach a classifier, in place, that an image (28, 28) is that digit; ends as soon as it is sure of it.
+
+    Each step learns from the image, bent a little, and from training images (`data`) at the same time: a network
+    that sees the new alone forgets the old (rehearsal, Robins 1995). Raises ValueError for a digit that is none,
+    or an image that is empty or not finite, and FloatingPointError if the numbers run away.
+    """
+    image = np.asarray(image, np.float32)
+    if digit not in range(DIGITS):
+        raise ValueError(f"a digit is a number from 0 to 9, not {digit!r}")
+    if not np.isfinite(image).all() or not image.any():
+        raise ValueError("there is nothing to learn from: the image is empty, or not finite")
+    network, (images, labels) = classifier.network, data
+    optimizer = Adam(LEARNING_RATE)
+    for step in range(steps):
+        if (probability := _probability(classifier, image, digit)) >= ENOUGH:
+            return
+        yield FixStep(step, probability)
+        chosen = rng.choice(len(images), min(REHEARSED, len(images)), replace=False)
+        copies = np.repeat(image[None], COPIES, axis=0)
+        copies[1:] = augment(copies[1:], rng, Strength().times(0.5))
+        batch = np.concatenate([copies, images[chosen]])
+        targets = _one_hot(np.concatenate([np.full(COPIES, digit), labels[chosen]]))
+        network.train_batch(classifier.shaped(batch), targets, optimizer)
+    yield FixStep(steps, _probability(classifier, image, digit))
+
+
+def fix(
+    folder: Path,
+    image: Image,
+    digit: int,
+    keep: Path,
+    *,
+    before: float | None = None,
+    train: tuple[Images, Labels] | None = None,
+    test: tuple[Images, Labels] | None = None,
+) -> Generator[list[FixStep | Fixed], Any, None]:
+    """Do so with the network in a folder, and write the fixed one to `keep`; for a worker.
+
+    `before` is its accuracy on the test images where that is known. Images are MNIST's, unless others are given.
+    Raises what `steps_to_fix`, `DigitClassifier.load` and `load_part` raise.
+    """
+    classifier = DigitClassifier.load(folder)
+    first = _probability(classifier, image, digit)
+    yield [FixStep(0, first)]
+    tested = test or load_part(TEST)
+    if before is None:
+        before = accuracy(classifier, *tested)
+    taken = 0
+    for step in steps_to_fix(classifier, image, digit, train or load_part(TRAIN), np.random.default_rng(digit)):
+        taken = step.step + 1
+        yield [step]
+    taken = min(taken, STEPS)
+    after = accuracy(classifier, *tested) if taken else before
+    probability = first, _probability(classifier, image, digit)
+    kept, problem = None, ""
+    if taken:
+        try:
+            classifier.save(keep, test=after, fixed={"digit": digit, "steps": taken, "before": before})
+            kept = keep
+        except (OSError, ValueError) as error:
+            problem = getattr(error, "strerror", None) or str(error)
+    yield [Fixed(digit, probability, (before, after), taken, kept, problem)]
+
+
+def _probability(classifier: DigitClassifier, image: Image, digit: int) -> float:
+    return float(classifier.predict(image)[0, digit])
+
+
+def _one_hot(labels: Any) -> Array:
+    targets: Array = np.zeros((len(labels), DIGITS), np.float32)
+    targets[np.arange(len(labels)), labels] = 1
+    return targets

@@ -1,0 +1,297 @@
+"""A run that teaches a network to read digits, to be watched and steered while it goes on; like `ai.training.session`."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.digits.checkpoints import resume_digit_run, save_digit_run
+from ai.digits.classifier import DIGITS, DigitClassifier
+from ai.digits.config import DigitConfig
+from ai.digits.training import LIVE, DigitTraining
+from ai.nn import Array
+from ai.training.history import REVERTED
+from ai.training.messages import Change, Refused, Save
+
+POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
+KEEP_SECONDS: Final = 20.0
+EXAMPLES: Final = 12  # misread images of a kind that are shown
+_SLICE: Final = 100  # images of those held out that are read between two steps
+_SHARE: Final = 0.25  # of the time that goes into reading them
+
+
+@dataclass(frozen=True)
+class DigitsBegun:
+    """The first word of a run: what it is made with, which for a resumed run is what it was begun with."""
+
+    config: DigitConfig
+    seed: int
+    step: int
+    steps: int  # there will be in all
+
+
+@dataclass(frozen=True)
+class DigitPoint:
+    """How a run stands; loss and accuracy are means of the batches since the last point."""
+
+    may_thin: ClassVar = True
+
+    seconds: float  # spent learning
+    step: int
+    epoch: float
+    loss: float
+    accuracy: float  # as they were learnt from: bent, and with dropout
+    learning_rate: float
+    images_per_second: float
+
+
+@dataclass(frozen=True)
+class Score:
+    """The part of the images held out that the network reads, as it would be kept now."""
+
+    seconds: float
+    accuracy: float
+
+
+@dataclass(frozen=True, eq=False)
+class Confusion:
+    """How the images held out are read.
+
+    Attributes:
+        table: (10, 10) how often each digit (row) was read as which (column).
+        cells: (n, 2) row and column of some that were misread, at most EXAMPLES of each kind.
+        images: (n, 28, 28) uint8, those images.
+
+    """
+
+    newest_only: ClassVar = True
+
+    table: npt.NDArray[np.int64]
+    cells: npt.NDArray[np.int64]
+    images: npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Turned:
+    """A knob was turned, or (REVERTED) the network is what it was at its best, which then is its accuracy."""
+
+    seconds: float
+    name: str
+    after: Any
+
+
+@dataclass(frozen=True)
+class Kept:
+    """The run is on the disk, or why it is not.
+
+    Attributes:
+        test: the accuracy on the test images, once it is finished.
+        epoch: after which epoch the network was best that is kept and was measured; None if it is the last one.
+
+    """
+
+    folder: Path
+    problem: str = ""
+    test: float | None = None
+    epoch: int | None = None
+
+
+@dataclass(frozen=True)
+class GoBack:
+    """Let the network be what it was when it read the images held out best."""
+
+
+@dataclass(frozen=True)
+class Finish:
+    """Take no more steps: keep the run, measure it, and end."""
+
+
+Message = DigitsBegun | DigitPoint | Score | Confusion | Turned | Kept | Refused
+Command = Change | Save | Finish | GoBack
+
+
+def live_digits(
+    config: DigitConfig, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None, data: Any = None
+) -> Generator[list[Message], Command | None, None]:
+    """Train to the last epoch; every turn is a learning step, and yields what there is to tell.
+
+    The steps are those of `ai.digits.training.run_digits`. A turn that is sent a `Change` turns a live knob, a `Save`
+    writes the run to one more folder, without a step, and a `Finish` ends it early. The run keeps itself in `keep`
+    now and then, when it is over and when it is closed. With `resume`, it goes on from what was kept there, with the
+    settings of that. Raises what `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when the
+    numbers run away.
+    """
+    early = yield []  # unpacking the images takes a while: let it be known that there is somebody
+    training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
+    run = _LiveDigits(training, keep)
+    command = (yield [DigitsBegun(training.config, training.seed, training.step, training.steps)]) or early
+    try:
+        while not training.done and not isinstance(command, Finish):
+            command = yield (run.advance() if command is None else run.carry_out(command))
+        yield from run.finish(command)
+    finally:
+        run.end()
+
+
+class _HeldOut:
+    """The images held out, read by the network as it was when this was begun, a slice at a time."""
+
+    def __init__(self, training: DigitTraining, classifier: DigitClassifier | None = None) -> None:
+        self._classifier = classifier or training.current()
+        self._images, self._labels = training.held_images, training.held_labels
+        self._read: list[npt.NDArray[np.intp]] = []
+        self._at = 0
+
+    def go_on(self) -> bool:
+        """Read a slice; whether that was the last."""
+        part = self._images[self._at : self._at + _SLICE]
+        self._read.append(self._classifier.predict(part).argmax(axis=1))
+        self._at += _SLICE
+        return self._at >= len(self._images)
+
+    @property
+    def values(self) -> Array:
+        """The network's parameters."""
+        return self._classifier.network.values
+
+    def told(self, at: float) -> tuple[Score, Confusion]:
+        """Return what there is to say of it, of a network that had learnt for so many seconds."""
+        labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
+        table = np.zeros((DIGITS, DIGITS), np.int64)
+        np.add.at(table, (labels, read), 1)
+        kinds = labels * DIGITS + read
+        wrong = np.flatnonzero(labels != read)
+        chosen = np.sort(np.concatenate([wrong[:0], *(wrong[kinds[wrong] == kind][:EXAMPLES]
+                                                      for kind in np.unique(kinds[wrong]))]))  # fmt: skip
+        images = (self._images[chosen] * 255).astype(np.uint8)
+        accuracy = float(table.trace() / len(labels))
+        return Score(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)
+
+
+class _LiveDigits:
+    """A DigitTraining, what has not been told of it yet, and where it is kept."""
+
+    def __init__(self, training: DigitTraining, keep: Path | None) -> None:
+        self.training, self._folder = training, keep
+        self._batches: list[tuple[float, float]] = []  # loss and accuracy
+        self._point_at = training.seconds
+        self._keep_at = training.seconds + KEEP_SECONDS
+        self._kept = training.step
+        self._trouble = ""
+        self._reading: _HeldOut | None = None
+        self._best: tuple[float, Array] | None = None  # of all that was read, the accuracy and the values
+        self._learning = self._looking = 0.0  # seconds
+
+    def advance(self) -> list[Message]:
+        """Take one step; return what there is to tell of it."""
+        training, told = self.training, list[Message]()
+        began = training.clock()
+        progress = training.advance()
+        stepped = training.clock()
+        training.seconds += stepped - began
+        self._learning += stepped - began
+        self._batches.append((progress.loss, progress.accuracy))
+        if training.seconds >= self._point_at:
+            self._point_at = training.seconds + POINT_SECONDS
+            loss, accuracy = np.mean(self._batches, axis=0).tolist()
+            self._batches.clear()
+            told.append(DigitPoint(training.seconds, progress.step, progress.epoch, loss, accuracy,
+                                   progress.learning_rate, progress.images_per_second))  # fmt: skip
+        if self._looking <= _SHARE * self._learning:
+            told += self._look()
+            self._looking += training.clock() - stepped
+        if self._folder and training.seconds >= self._keep_at:
+            self._keep_at = training.seconds + KEEP_SECONDS
+            told += self._keep()
+        return told
+
+    def carry_out(self, command: Command) -> list[Message]:
+        """Turn a live knob, for which the answer is a refusal or nothing, or save."""
+        if isinstance(command, Save):
+            return [Kept(command.folder, self._written(command.folder)[0])]
+        if isinstance(command, Finish):
+            return []
+        if isinstance(command, GoBack):
+            return self._go_back()
+        try:
+            if command.name not in LIVE:
+                raise ValueError(f"{command.name} cannot change while a run goes on")
+            self.training.change(self.training.config.changed(**{command.name: command.value}))
+        except ValueError as error:
+            return [Refused(command, str(error))]
+        return [Turned(self.training.seconds, command.name, command.value)]
+
+    def _go_back(self) -> list[Message]:
+        if self._best is None:
+            return []
+        accuracy, values = self._best
+        self.training.go_back(values)
+        self._reading = None  # it was reading for the network that is gone
+        return [Turned(self.training.seconds, REVERTED, accuracy)]
+
+    def finish(self, command: Command | None) -> Generator[list[Message], Command | None, None]:
+        """Read all that is held out once more, measure the test images, and keep what came of it.
+
+        What is asked for meanwhile is done as well.
+        """
+        for told in self._last_words():
+            while command is not None:
+                command = yield self.carry_out(command)
+            command = yield told
+        while command is not None:
+            command = yield self.carry_out(command)
+
+    def _last_words(self) -> Iterator[list[Message]]:
+        yield self._keep()  # measuring takes a while, and who is impatient is to lose nothing
+        if len(self.training.held_images):
+            reading = _HeldOut(self.training)
+            while not reading.go_on():
+                yield []
+            score, misread = reading.told(self.training.seconds)
+            yield [score, misread]
+            if self.training.best_epoch is not None:  # what is kept is another network: that one's slips are shown
+                reading = _HeldOut(self.training, self.training.best_classifier())
+                while not reading.go_on():
+                    yield []
+                yield [reading.told(self.training.seconds)[1]]
+        yield self._keep(final=True)
+
+    def end(self) -> None:
+        """Keep what has not been kept."""
+        if self._folder and self._kept != self.training.step:
+            self._keep()
+
+    def _look(self) -> list[Message]:
+        """Read some of what is held out."""
+        if not len(self.training.held_images):
+            return []
+        self._reading = self._reading or _HeldOut(self.training)
+        if not self._reading.go_on():
+            return []
+        reading, self._reading = self._reading, None
+        score, misread = reading.told(self.training.seconds)
+        if self._best is None or score.accuracy >= self._best[0]:
+            self._best = score.accuracy, reading.values.copy()
+        return [score, misread]
+
+    def _keep(self, final: bool = False) -> list[Message]:
+        """Write the run; tell of it when it is final, or when something new went wrong."""
+        if self._folder is None:
+            return []
+        problem, test = self._written(self._folder, final)
+        if not problem:
+            self._kept = self.training.step
+        new, self._trouble = problem != self._trouble, problem
+        return [Kept(self._folder, problem, test, self.training.best_epoch)] if final or new else []
+
+    def _written(self, folder: Path, final: bool = False) -> tuple[str, float | None]:
+        """Write the run; return what went wrong, and the accuracy on the test images if it is final."""
+        try:
+            return "", save_digit_run(self.training, folder, final=final).get("test")
+        except (OSError, ValueError) as error:
+            return getattr(error, "strerror", None) or str(error), None

@@ -1,0 +1,206 @@
+"""Teaching a network to read digits, as a generator like `ai.training.loop.run`, and its measurement."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.digits.augmentation import Strength, augment
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DigitConfig, build_digit_network
+from ai.digits.mnist import TRAIN, Images, Labels, load_part
+from ai.nn import OPTIMIZERS, Array
+
+SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
+
+
+@dataclass
+class DigitProgress:
+    """How a run stands after one learning step."""
+
+    epoch: float  # how often every image has been seen
+    step: int
+    steps: int  # there will be in all
+    loss: float  # of this batch
+    accuracy: float  # of this batch, as it was learnt from: augmented, and with dropout
+    learning_rate: float
+    images_per_second: float
+    held_out: float | None = None  # accuracy on the images held out, when an epoch ends
+    best: float | None = None  # the highest of those
+
+
+@dataclass
+class DigitTraining:
+    """A run: everything that changes as it goes on. `advance` takes one step of it."""
+
+    config: DigitConfig
+    seed: int = 0
+    data: tuple[Images, Labels] | None = None  # training images and labels; None for MNIST's
+    clock: Callable[[], float] = time.monotonic
+    step: int = 0
+    seconds: float = 0.0  # spent, as whoever runs it counts them
+    best: float | None = None
+    best_values: Array | None = None
+    history: list[dict[str, float]] = field(default_factory=list)  # an entry for each epoch
+
+    def __post_init__(self) -> None:
+        images, labels = self.data or load_part(TRAIN)
+        order = np.random.default_rng(SPLIT_SEED).permutation(len(images))
+        kept, held = np.split(order, [len(images) - self.config.held_out])
+        if not len(kept):
+            raise ValueError(f"held_out leaves none of {len(images)} images to learn from")
+        self.images, self.labels = images[kept], labels[kept]
+        self.held_images, self.held_labels = images[held], labels[held]
+        network = build_digit_network(self.config, np.random.default_rng(self.seed))
+        self.classifier = DigitClassifier(network)
+        self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
+        self.average = network.values.astype(np.float32, copy=True)
+        self._loss = self._accuracy = 0.0
+        self._order = np.empty(0, np.intp)
+
+    @property
+    def steps_per_epoch(self) -> int:
+        """Batches that every image is seen once in; the last may be smaller."""
+        return math.ceil(len(self.images) / self.config.batch_size)
+
+    @property
+    def steps(self) -> int:
+        """How long the run is."""
+        return self.config.epochs * self.steps_per_epoch
+
+    @property
+    def done(self) -> bool:
+        """Whether all epochs are over."""
+        return self.step >= self.steps
+
+    @property
+    def learning_rate(self) -> float:
+        """Rises in a straight line, then falls along half a cosine (Loshchilov & Hutter 2017)."""
+        config, warm = self.config, self.config.warm_up * self.steps_per_epoch
+        rise = min(1.0, (self.step + 1) / warm) if warm else 1.0
+        share = min(1.0, self.step / self.steps)
+        fall = 0.5 + 0.5 * math.cos(math.pi * share)
+        return rise * (config.final_learning_rate + (config.learning_rate - config.final_learning_rate) * fall)
+
+    def change(self, config: DigitConfig) -> None:
+        """Go on with other live knobs; the others stay as they are."""
+        self.config = self.config.with_live(config)
+
+    def advance(self) -> DigitProgress:
+        """Learn from one batch, and measure what is held out if an epoch ends with it."""
+        began, config, network = self.clock(), self.config, self.classifier.network
+        epoch, place = divmod(self.step, self.steps_per_epoch)
+        # Each step has a generator of its own, so a run that is resumed goes on as if it had never stopped.
+        if place == 0 or not len(self._order):
+            self._order = np.random.default_rng((self.seed, 1, epoch)).permutation(len(self.images))
+        batch = self._order[place * config.batch_size : (place + 1) * config.batch_size]
+        rng = np.random.default_rng((self.seed, 2, self.step))
+        images, labels = self._changed(self.images[batch], rng), self.labels[batch]
+        targets = np.full((len(batch), 10), config.smoothing / 10, np.float32)
+        targets[np.arange(len(batch)), labels] += 1 - config.smoothing
+
+        self.optimizer.learning_rate = rate = self.learning_rate
+        for layer in network.layers:
+            layer.rng = rng  # dropout's
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is found by the optimizer
+            outputs = network.forward_propagate(self.classifier.shaped(images))
+        accuracy = float((outputs.argmax(axis=1) == labels).mean())
+        loss = network.correct(outputs, targets, self.optimizer)
+        self.step += 1
+        # Young averages follow faster: the first weights are nothing to remember.
+        keep = min(config.averaging, self.step / (self.step + 10))
+        if keep:
+            self.average += (1 - keep) * (network.values - self.average)
+        else:
+            self.average[...] = network.values  # exactly, as a sum of differences would not be
+        self._loss += (loss - self._loss) * 0.05
+        self._accuracy += (accuracy - self._accuracy) * 0.05
+        held_out = self._measure() if self.step % self.steps_per_epoch == 0 else None
+        spent = self.clock() - began
+        return DigitProgress(
+            self.step / self.steps_per_epoch, self.step, self.steps, loss, accuracy, rate,
+            len(batch) / spent if spent > 0 else 0.0, held_out, self.best,
+        )  # fmt: skip
+
+    def _changed(self, images: Images, rng: np.random.Generator) -> Images:
+        if not self.config.augmentation:
+            return images
+        changed = augment(images, rng, Strength().times(self.config.augmentation))
+        same = rng.random(len(images)) < self.config.original
+        changed[same] = images[same]
+        return changed
+
+    def _measure(self) -> float | None:
+        """Measure the average on the images held out, and keep it if it is the best so far."""
+        epoch = self.step // self.steps_per_epoch
+        entry = {"epoch": epoch, "loss": self._loss, "accuracy": self._accuracy}
+        held_out = None
+        if len(self.held_images):
+            held_out = entry["held_out"] = accuracy(self.current(), self.held_images, self.held_labels)
+            if self.best is None or held_out >= self.best:
+                self.best, self.best_values = held_out, self.average.copy()
+        self.history.append(entry)
+        return held_out
+
+    def current(self) -> DigitClassifier:
+        """Return a classifier with the average of the weights as it is now."""
+        network = self.classifier.network.copy()
+        network.values = self.average
+        return DigitClassifier(network)
+
+    @property
+    def best_epoch(self) -> int | None:
+        """After which epoch the network was best; None if that is the one there is now, or none was measured."""
+        if self.best_values is None or np.array_equal(self.best_values, self.average):
+            return None
+        return next((int(each["epoch"]) for each in reversed(self.history) if each.get("held_out") == self.best), None)
+
+    def go_back(self, values: Array) -> None:
+        """Let the network and its average have those values again, (parameters,); the optimizer starts afresh."""
+        self.classifier.network.values = values
+        self.average[...] = values
+        self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
+
+    def rewind(self) -> None:
+        """Let the network be the best one so far, if there is one: what ran away is nothing to go on from."""
+        if self.best_values is not None:
+            self.go_back(self.best_values)
+
+    def best_classifier(self) -> DigitClassifier:
+        """Return the classifier that read the images held out best, or the current one."""
+        classifier = self.current()
+        if self.best_values is not None:
+            classifier.network.values = self.best_values
+        return classifier
+
+
+LIVE: Final = DigitConfig.live_names()  # the knobs that may change during a run
+
+
+def run_digits(
+    config: DigitConfig, seed: int = 0, **options: Any
+) -> Generator[DigitProgress, DigitConfig | None, None]:
+    """Train to the last epoch, yielding after each step; send a DigitConfig to change the live knobs."""
+    training = DigitTraining(config, seed, **options)
+    while not training.done:
+        changed = yield training.advance()
+        if changed is not None:
+            training.change(changed)
+
+
+def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> float:
+    """Return the share of images that are read right."""
+    return float((classifier.predict(images).argmax(axis=1) == labels).mean())
+
+
+def confusion(classifier: DigitClassifier, images: Images, labels: Labels) -> npt.NDArray[np.intp]:
+    """Return how often each digit (row) was read as which (column), (10, 10)."""
+    table = np.zeros((10, 10), np.intp)
+    np.add.at(table, (labels, classifier.predict(images).argmax(axis=1)), 1)
+    return table

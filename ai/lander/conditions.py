@@ -1,0 +1,70 @@
+"""What can make a flight harder than those that networks are trained on: wind, a small tank, failures, a moving pad."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Bools, Doubles
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """All of it follows from the time since a flight began; the defaults change nothing, bit for bit."""
+
+    wind: float = 0.0  # N to the right
+    gust: float = 0.0  # N, how far the wind swings to both sides of that
+    gust_period: float = 5.0  # seconds
+    tank: float = math.inf  # fuel there is, in seconds of main engine
+    outage: tuple[float, float] = (math.inf, math.inf)  # seconds from and to which the main engine is dead
+    swing: float = 0.0  # metres that the pad moves to both sides of its place
+    swing_period: float = 14.0  # seconds
+
+    def __post_init__(self) -> None:
+        numbers = (self.wind, self.gust, self.swing)
+        if not all(map(math.isfinite, numbers)) or self.gust_period <= 0 or self.swing_period <= 0 or self.tank < 0:
+            raise ValueError(f"forces and distances are finite, periods more than 0 and tanks not negative: {self}")
+
+    @cached_property
+    def pushes(self) -> bool:
+        """Whether there is any wind."""
+        return self.wind != 0 or self.gust != 0
+
+    @cached_property
+    def fails(self) -> bool:
+        """Whether an engine may do nothing when it is asked to fire."""
+        return math.isfinite(self.tank) or math.isfinite(self.outage[0])
+
+    @cached_property
+    def moves(self) -> bool:
+        """Whether the pad moves."""
+        return self.swing != 0
+
+    def push(self, time: Doubles) -> Doubles:
+        """Force of the wind to the right in N, at times (n,) in seconds."""
+        push: Doubles = self.wind + self.gust * np.sin(2 * np.pi / self.gust_period * time)
+        return push
+
+    def impulse(self, time: Doubles) -> Doubles:
+        """What the wind has given until times (n,) in seconds, to the right in N s: the integral of `push`."""
+        rate = 2 * np.pi / self.gust_period
+        given: Doubles = self.wind * time + self.gust / rate * (1 - np.cos(rate * time))
+        return given
+
+    def main_works(self, time: Doubles) -> Bools:
+        """Whether the main engine fires when it is asked to, (n,)."""
+        start, end = self.outage
+        works: Bools = (time < start) | (time >= end)
+        return works
+
+    def shift(self, time: Doubles) -> tuple[Doubles, Doubles]:
+        """How far the pad is to the right of its place, in metres, and its velocity, each (n,)."""
+        rate = 2 * np.pi / self.swing_period
+        return self.swing * np.sin(rate * time), self.swing * rate * np.cos(rate * time)
+
+
+CALM: Final = Conditions()

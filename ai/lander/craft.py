@@ -1,0 +1,168 @@
+"""The craft and its worlds: thrust, motion, and what can be read of them, before anybody judges a flight."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ai.common.environment import Bools, Doubles, Ints
+from ai.lander.conditions import Conditions
+from ai.lander.ground import Ground
+from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL, LanderParams
+from engine import DT, Polygon, World
+
+
+class Craft:
+    """`num_envs` landers, each in a world of its own over the same `ground`, and all under the same `conditions`.
+
+    Attributes:
+        actions: what each was last told to do, 0 to 5, (n,).
+        steps, main_steps, side_steps: physics steps of 1/60 s flown, with the main engine and with a jet, (n,).
+        target: the number of the pad that readings are relative to, (n,).
+
+    """
+
+    def __init__(self, num_envs: int, params: LanderParams, ground: Ground, conditions: Conditions) -> None:
+        self.num_envs = num_envs
+        self.params, self.ground, self.conditions = params, ground, conditions
+        self._build_world()
+        self.actions: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.main_steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.side_steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.target: Ints = np.zeros(num_envs, dtype=np.intp)
+
+    def _build_world(self) -> None:
+        params = self.params
+        self._up = params.main_thrust * np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])  # thrust of every action, N
+        self._aside = params.side_thrust * np.array([0.0, -1.0, 1.0, 0.0, -1.0, 1.0])  # along the craft's right
+        surface: dict[str, Any] = {"restitution": params.restitution, "friction": params.friction}
+        self.world = World(gravity=(0.0, -params.gravity), batch=self.num_envs, iterations=5)
+        foot_x, foot_y = FOOT_CENTRE
+        self.lander = self.world.add(
+            [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-foot_x, foot_y)), Polygon.box(*FOOT_SIZE, (foot_x, foot_y))],
+            (0.0, params.pad_top + params.stand),
+            mass=params.mass, inertia=params.inertia, centre_of_mass=(0.0, 0.0),
+            linear_drag=params.linear_drag, quadratic_drag=params.quadratic_drag,
+            angular_drag=params.angular_drag, angular_quadratic_drag=params.angular_quadratic_drag, **surface,
+        )  # fmt: skip
+        pads = self.ground.build(self.world, **surface)
+        self._pad_bodies = slice(pads[0].index, pads[-1].index + 1)
+
+    @property
+    def gravity(self) -> float:
+        """Metres a second squared; can be changed at any time, for all landers."""
+        return -float(self.world.gravity[1])
+
+    @gravity.setter
+    def gravity(self, gravity: float) -> None:
+        self.world.gravity = np.array([0.0, -gravity])
+
+    @property
+    def position(self) -> Doubles:
+        """Centre of mass, metres, (n, 2)."""
+        return self.lander.position
+
+    @property
+    def angle(self) -> Doubles:
+        """Radians counter-clockwise from upright, unwrapped, (n,)."""
+        return self.lander.angle
+
+    @property
+    def velocity(self) -> Doubles:
+        """Metres a second, (n, 2)."""
+        return self.lander.velocity
+
+    @property
+    def angular_velocity(self) -> Doubles:
+        """Radians a second, (n,)."""
+        return self.lander.angular_velocity
+
+    @property
+    def pad(self) -> Doubles:
+        """Middle of the target pad's top, (n, 2)."""
+        return self._top(self.target)
+
+    @property
+    def pad_shift(self) -> Doubles:
+        """How far the pads have moved to the right of their places, metres, (n,)."""
+        return self.conditions.shift(self.time)[0]
+
+    @property
+    def pad_velocity(self) -> Doubles:
+        """Metres a second to the right, (n,)."""
+        return self.conditions.shift(self.time)[1]
+
+    @property
+    def fired(self) -> Ints:
+        """The actions (n,) as far as there is fuel and the engines work."""
+        if not self.conditions.fails:
+            return self.actions
+        main = (self.actions >= 3) & self.conditions.main_works(self.time)
+        return np.where(self.fuel < self.conditions.tank, 3 * main + self.actions % 3, 0)
+
+    @property
+    def pad_width(self) -> Doubles:
+        """Metres, of the target pad, (n,)."""
+        return self.ground.widths[self.target]
+
+    @property
+    def time(self) -> Doubles:
+        """Seconds flown, (n,)."""
+        return self.steps * DT
+
+    @property
+    def fuel(self) -> Doubles:
+        """Fuel burnt, in seconds of main engine, (n,)."""
+        return (self.main_steps + self.params.jet_fuel * self.side_steps) * DT
+
+    @property
+    def tilt(self) -> Doubles:
+        """Radians from upright either way, 0 to pi, (n,)."""
+        tilt: Doubles = np.abs(np.mod(self.angle + np.pi, 2 * np.pi) - np.pi)
+        return tilt
+
+    @property
+    def altitude(self) -> Doubles:
+        """Metres between the level feet and the target pad's top, (n,)."""
+        return self.position[:, 1] - self.pad[:, 1] - self.params.stand
+
+    def _top(self, pad: Any) -> Doubles:
+        """Middle of the top of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""
+        middle: Doubles = self.ground.middles[pad]
+        if not self.conditions.moves:
+            return middle
+        return np.broadcast_to(middle, (self.num_envs, 2)) + np.stack([self.pad_shift, np.zeros(self.num_envs)], axis=1)
+
+    def _relative_velocity(self) -> Doubles:
+        """Velocity as seen from the pad, (n, 2)."""
+        if not self.conditions.moves:
+            return self.velocity
+        return self.velocity - np.stack([self.pad_velocity, np.zeros(self.num_envs)], axis=1)
+
+    def _move_pads(self) -> None:
+        """Put the pads where they are by now, moving as they do, so that what stands on them is carried along."""
+        state, bodies = self.world.state, self._pad_bodies
+        shift, velocity = self.conditions.shift(self.time)
+        state.pose[:, bodies, 0] = self.ground.middles[:, 0] + shift[:, None]
+        state.velocity[:, bodies, 0] = velocity[:, None]
+        self.world.detector.broad.forget_boxes()
+
+    def _move(self, flying: Bools, touching: bool = True) -> None:
+        """Push and move, without `touching` through whatever is in the way."""
+        state, body = self.world.state, self.lander.index
+        actions = self.fired
+        up, aside = self._up[actions], self._aside[actions]
+        cos, sin = state.cos[:, body], state.sin[:, body]
+        state.force[:, body, 0] = aside * cos - up * sin
+        state.force[:, body, 1] = aside * sin + up * cos
+        state.force[:, body, 2] = -aside * self.params.side_arm
+        if self.conditions.pushes:
+            state.force[:, body, 0] += self.conditions.push(self.time)
+        if self.conditions.moves:
+            self._move_pads()
+        self.world.step(touching)
+        self.steps += flying
+        self.main_steps += flying & (actions >= 3)
+        self.side_steps += flying & (actions % 3 > 0)

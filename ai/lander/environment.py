@@ -1,0 +1,320 @@
+"""The lunar lander: its rules on the engine, for any number of landers at once.
+
+Actions are `3 * main + steer`; `steer` is 0 for none, 1 for left, 2 for right. Observations are
+[rel_x, rel_y, vx, vy, sin θ, cos θ, ω, left contact, right contact], relative to standing on the middle of
+the pad and scaled by `OBSERVATION_SCALE`. `ai.lander.rules` has the numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, Final
+
+import numpy as np
+
+from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
+from ai.lander.conditions import CALM, Conditions
+from ai.lander.craft import Craft
+from ai.lander.ground import Ground
+from ai.lander.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, Change, RewardWeights, Situation
+from ai.lander.rules import (
+    ACTION_NAMES,
+    FEATURE_NAMES,
+    FOOT_CENTRE,
+    FOOT_SIZE,
+    HULL,
+    LIMITS,
+    MIRROR_ACTIONS,
+    MIRROR_FEATURES,
+    MIRROR_SIGNS,
+    NUM_ACTIONS,
+    NUM_FEATURES,
+    OBSERVATION_SCALE,
+    PARAMS,
+    Cause,
+    LanderParams,
+    Limits,
+    Outcome,
+    engines_switched,
+)
+from ai.lander.spawns import SPAWNS, Curriculum
+from engine import DT
+
+__all__ = [
+    "ACTION_NAMES", "FEATURE_NAMES", "FOOT_CENTRE", "FOOT_SIZE", "HULL", "LIMITS", "MIRROR_ACTIONS",
+    "MIRROR_FEATURES", "MIRROR_SIGNS", "NUM_ACTIONS", "NUM_FEATURES", "OBSERVATION_SCALE", "PARAMS", "Cause",
+    "LanderEnv", "LanderParams", "Limits", "Outcome", "engines_switched",
+]  # fmt: skip
+
+_COUNTERS: Final = ("outcome", "cause", "actions", "contacts", "impact", "steps", "main_steps", "side_steps",
+                    "touched", "_still", "_feet_steps")  # fmt: skip
+# No network has been farther from a pad in training; where there are several, one more so seems to be that far.
+_FAR: Final = 16.0
+
+
+class LanderEnv(Craft):
+    """`num_envs` landers, each in a world of its own, flown together.
+
+    `spawn` names a distribution of `ai.lander.spawns` or is a Curriculum, then followed by this environment's own
+    landings. `seed` is an int, a Generator or None; slot k draws from its own stream, so that a flight does
+    not depend on how many fly beside it. A `step` is `frame_skip` physics steps of 1/60 s with one action.
+
+    All fly over the same `ground`, by default a plain with one pad. Where that has several pads, a landing on any
+    of them counts; `target` (n,) says by number which one observations and rewards are about. `conditions` can make
+    flights harder; on a pad that moves, observations and the limits of a landing are relative to it.
+    """
+
+    num_actions = NUM_ACTIONS
+    num_features = NUM_FEATURES
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        seed: int | np.random.Generator | None = None,
+        spawn: str | Curriculum = "random",
+        frame_skip: int = 4,
+        *,
+        params: LanderParams = PARAMS,
+        ground: Ground | None = None,
+        limits: Limits = LIMITS,
+        conditions: Conditions = CALM,
+        weights: RewardWeights | None = None,
+    ) -> None:
+        if num_envs < 1 or frame_skip < 1:
+            raise ValueError(f"num_envs and frame_skip start from 1, not {num_envs} and {frame_skip}")
+        if not (isinstance(spawn, Curriculum) or (isinstance(spawn, str) and spawn in SPAWNS)):
+            raise ValueError(f"spawn is one of {', '.join(SPAWNS)}, or a Curriculum, not {spawn!r}")
+        super().__init__(num_envs, params, ground or Ground.flat(params), conditions)
+        self.frame_skip, self.limits, self.weights = frame_skip, limits, weights or RewardWeights()
+        self.spawn = spawn
+        self.landings = 0
+        self._rngs = np.random.default_rng(seed).spawn(num_envs)
+        self.outcome: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.cause: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.contacts: Bools = np.zeros((num_envs, 2), dtype=bool)  # left and right foot on a pad
+        self.touched: Ints = np.zeros(num_envs, dtype=np.intp)  # the pad that a foot was last on
+        self.impact: Doubles = np.zeros((num_envs, 3))
+        self._still: Ints = np.zeros(num_envs, dtype=np.intp)
+        self._feet_steps: Ints = np.zeros(num_envs, dtype=np.intp)
+        # Rows of the detector's pairs: which part of the craft touches, and whether it is the pad it touches.
+        pairs = self.world.detector.pairs
+        self._pair_part = pairs.min(axis=1)  # 0 hull, 1 left foot, 2 right foot
+        self._pair_pad = pairs.max(axis=1) - 3  # the pad's number; the plain and its hills come after the pads
+        self._pair_on_pad = self._pair_pad < len(self.ground.pads)
+        self._started = False
+
+    @property
+    def landed_on(self) -> Ints:
+        """Number of the pad a flight has landed on, -1 for those that have not, (n,)."""
+        return np.where(self.outcome == Outcome.LANDED, self.touched, -1)
+
+    @property
+    def stage(self) -> int:
+        """Stage of the curriculum, 0 without one."""
+        return self.spawn.stage(self.landings) if isinstance(self.spawn, Curriculum) else 0
+
+    def reset(self, mask: Bools | None = None) -> Floats:
+        """Begin a new flight in the slots of `mask` (n,), or in all; return every slot's observation."""
+        mask = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)
+        if mask.shape != (self.num_envs,):
+            raise ValueError(f"the mask must have one entry for each of {self.num_envs} slots, not {mask.shape}")
+        draw = SPAWNS[self.spawn.spawn(self.landings) if isinstance(self.spawn, Curriculum) else self.spawn]
+        slots = np.flatnonzero(mask)
+        start = np.array([draw(self._rngs[slot]) for slot in slots]).reshape(-1, 6)
+        self.place(mask, start)
+        return self.observe()
+
+    def draw_from(self, slot: int, rng: np.random.Generator) -> None:
+        """Let one slot draw its flights from a stream of its own."""
+        self._rngs[slot] = rng
+
+    def place(self, mask: Bools, start: Doubles) -> None:
+        """Begin a flight in the slots of `mask` at rows x, y, vx, vy, angle, spin of `start`, in the world's frame."""
+        self.lander.set(position=start[:, :2], velocity=start[:, 2:4], angle=start[:, 4],
+                        angular_velocity=start[:, 5], mask=mask)  # fmt: skip
+        for name in _COUNTERS:
+            getattr(self, name)[mask] = 0
+        self.outcome[mask] = Outcome.FLYING
+        self.lander.active = self.outcome == Outcome.FLYING
+        self._started = True
+
+    def step(self, actions: Any) -> StepResult:
+        """Fly one decision; `actions` (n,) are 0 to 5. Raises ValueError for others, RuntimeError before a reset."""
+        held = self.actions
+        self._take(actions)
+        flying = self.outcome == Outcome.FLYING
+        before = self._situation()
+        flown, tilted, feet = self.steps.copy(), np.zeros_like(self.steps), self._feet_steps.copy()
+        for _ in range(self.frame_skip):
+            still_flying = self.outcome == Outcome.FLYING
+            if not still_flying.any():
+                break
+            self._fly(still_flying)
+            tilted += still_flying & (self.tilt > TILT_ALLOWED)
+        ended = flying & (self.outcome != Outcome.FLYING)
+        flown = self.steps - flown
+        change = Change(
+            before, self._situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
+            switched=flying * engines_switched(held, self.actions),
+            feet_down=np.minimum(self._feet_steps, FEET_STEPS_PAID) - np.minimum(feet, FEET_STEPS_PAID),
+            landed=ended & (self.outcome == Outcome.LANDED),
+            lost=ended & ((self.outcome == Outcome.CRASHED) | (self.outcome == Outcome.OUT_OF_BOUNDS)),
+        )  # fmt: skip
+        components = {name: part(change, self.weights).astype(np.float32) for name, part in REWARDS.items()}
+        return StepResult(
+            observation=self.observe(),
+            reward=sum(components.values(), start=np.zeros(self.num_envs, dtype=np.float32)),
+            terminated=(self.outcome != Outcome.FLYING) & (self.outcome != Outcome.TIMED_OUT),
+            truncated=self.outcome == Outcome.TIMED_OUT,
+            outcome=self.outcome.copy(),
+            components=components,
+        )
+
+    def fly(self, actions: Any) -> None:
+        """Fly one decision as `step` does, where nobody asks what it pays; raises as that does."""
+        self._take(actions)
+        for _ in range(self.frame_skip):
+            flying = self.outcome == Outcome.FLYING
+            if flying.any():
+                self._fly(flying)
+
+    def glide(self, actions: Ints) -> Floats:
+        """Fly one decision in every slot as if there were nothing to touch; return what is sensed, (n, 9).
+
+        For looking ahead: the same as `step`, bit for bit, as long as nothing touches, but nothing is judged or
+        paid, and `actions` (n,) are not looked over.
+        """
+        self.actions = actions
+        flying = self.outcome == Outcome.FLYING
+        for _ in range(self.frame_skip):
+            self._move(flying, touching=False)
+        return self.observe()
+
+    def observe(self, pad: Any = None) -> Floats:
+        """What every lander senses now of its target, or of another `pad`, one number or (n,): (n, 9)."""
+        pad = self.target if pad is None else np.asarray(pad)
+        state, body = self.world.state, self.lander.index
+        sensed = np.empty((self.num_envs, NUM_FEATURES))
+        sensed[:, 0:2] = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
+        sensed[:, 2:4] = self._relative_velocity()
+        sensed[:, 4] = state.sin[:, body]
+        sensed[:, 5] = state.cos[:, body]
+        sensed[:, 6] = self.angular_velocity
+        sensed[:, 7:9] = self.contacts
+        if len(self.ground.pads) > 1:
+            sensed[:, 0].clip(-_FAR, _FAR, out=sensed[:, 0])
+            sensed[:, 7:9] *= (self.touched == pad)[:, None]
+        sensed *= OBSERVATION_SCALE
+        return sensed.astype(np.float32)
+
+    def observe_pads(self) -> Floats:
+        """What every lander senses of each pad, (n, pads, 9)."""
+        return np.stack([self.observe(pad) for pad in range(len(self.ground.pads))], axis=1)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Everything a flight depends on but its random streams, to be put back by `restore`."""
+        state = self.world.state
+        arrays = {name: getattr(self, name).copy() for name in (*_COUNTERS, "target")}
+        bodies = {field.name: getattr(state, field.name).copy() for field in fields(state)}
+        return {"counters": arrays, "bodies": bodies, "contacts": self.world.detector.memory()}
+
+    def restore(self, snapshot: dict[str, Any]) -> None:
+        """Go back to a snapshot of this environment, or of one with as many slots."""
+        for name, value in snapshot["counters"].items():
+            setattr(self, name, value.copy())
+        for name, value in snapshot["bodies"].items():
+            setattr(self.world.state, name, value.copy())
+        self.world.detector.recall_memory(snapshot["contacts"])
+        self._started = True
+
+    def _situation(self) -> Situation:
+        offset = self.position - self.pad
+        across, above = offset[:, 0], offset[:, 1] - self.params.stand
+        velocity = self._relative_velocity()
+        return Situation(
+            distance=np.sqrt(across**2 + above**2),
+            offset=np.abs(across),
+            speed=np.sqrt(velocity[:, 0] ** 2 + velocity[:, 1] ** 2),
+            tilt=self.tilt,
+        )
+
+    def _take(self, actions: Any) -> None:
+        """Let these actions be flown from now on, if they are such."""
+        actions = np.asarray(actions)
+        if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
+            raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")
+        if ((actions < 0) | (actions >= NUM_ACTIONS)).any():
+            raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {actions.min()} to {actions.max()}")
+        if not self._started:
+            raise RuntimeError("reset() must come before the first step()")
+        self.actions = actions.astype(np.intp)
+
+    def _fly(self, flying: Bools) -> None:
+        """One physics step of the slots that fly: push, move, judge."""
+        self._move(flying)
+        self._judge(flying)
+
+    def _judge(self, flying: Bools) -> None:
+        """Decide which flights have ended, and how."""
+        limits, position = self.limits, self.position
+        crashed = self._touch(flying)
+        gone = np.abs(position[:, 0]) > limits.half_width
+        gone |= position[:, 1] > limits.ceiling
+        late = self.steps * DT >= limits.time - 1e-9
+        landed = self._rest(flying)
+        if not (flying & (gone | late | crashed | landed)).any():
+            return
+        verdict = np.where(late, Outcome.TIMED_OUT, Outcome.FLYING)
+        for happened, outcome in (
+            (gone, Outcome.OUT_OF_BOUNDS),
+            (landed, Outcome.LANDED),
+            (crashed, Outcome.CRASHED),
+        ):
+            verdict[happened] = outcome
+        self.outcome = np.where(flying, verdict, self.outcome)
+        self.lander.active = self.outcome == Outcome.FLYING
+        self.landings += int((flying & (verdict == Outcome.LANDED)).sum())
+
+    def _rest(self, flying: Bools) -> Bools:
+        """Count for how long each has stood still on both feet; whether that is long enough, (n,)."""
+        limits, calm = self.limits, flying & self.contacts.all(axis=1)
+        if not calm.any():
+            self._still *= ~flying
+            return calm
+        self._feet_steps += calm
+        velocity = self._relative_velocity()
+        calm &= velocity[:, 0] ** 2 + velocity[:, 1] ** 2 < limits.rest_speed**2
+        calm &= (self.tilt < limits.rest_tilt) & (np.abs(self.angular_velocity) < limits.rest_spin)
+        self._still = np.where(flying, (self._still + 1) * calm, self._still)
+        return calm & (self._still >= limits.rest_steps)
+
+    def _touch(self, flying: Bools) -> Bools:
+        """Read the step's contacts: which feet are down, how hard the touch was, and which slots it wrecked."""
+        self.contacts = self.contacts & ~flying[:, None]
+        touches = self.world.contacts
+        if touches is None:
+            return np.zeros(self.num_envs, dtype=bool)
+        world, part, on_pad = touches.world, self._pair_part[touches.pair], self._pair_on_pad[touches.pair]
+        foot = (part > 0) & on_pad
+        self.contacts[world[foot], part[foot] - 1] = True
+        self.touched[world[foot]] = self._pair_pad[touches.pair[foot]]
+        felt = np.zeros((self.num_envs, 3))
+        np.maximum.at(felt[:, 0], world, touches.approach[:2].max(axis=0))
+        np.maximum.at(felt[:, 1], world, np.abs(touches.approach[2]))
+        felt[world, 2] = self.tilt[world]
+        self.impact = np.maximum(self.impact, felt)
+        wrong_part, wrong_place = np.zeros((2, self.num_envs), dtype=bool)
+        wrong_part[world[part == 0]] = True
+        wrong_place[world[~on_pad]] = True
+        limits = self.limits
+        faults = {
+            Cause.TILTED: felt[:, 2] > limits.touch_tilt,
+            Cause.SLIDING: felt[:, 1] > limits.slide_speed,
+            Cause.HARD: felt[:, 0] > limits.touch_speed,
+            Cause.HULL: wrong_part,
+            Cause.TERRAIN: wrong_place,
+        }
+        for cause, fault in faults.items():
+            self.cause[fault] = cause
+        crashed: Bools = self.cause != Cause.NONE
+        return crashed

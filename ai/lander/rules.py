@@ -1,0 +1,109 @@
+"""What the lander is made of, what it may do and senses, and what counts as a landing or a crash."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Ints
+
+NUM_ACTIONS: Final = 6
+NUM_FEATURES: Final = 9
+ACTION_NAMES: Final = ("coast", "left", "right", "main", "main + left", "main + right")
+FEATURE_NAMES: Final = ("x", "y", "vx", "vy", "sin θ", "cos θ", "ω", "left foot", "right foot")
+# A pad six metres wide spans about two units: near it, small differences must look large to a network.
+OBSERVATION_SCALE: Final = np.array([0.3, 0.3, 0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0])
+# Swaps left and right: multiply an observation by this, and swap its two contacts.
+MIRROR_SIGNS: Final = np.array([-1, 1, -1, 1, -1, 1, -1, 1, 1], dtype=np.float32)
+MIRROR_FEATURES: Final = np.array([0, 1, 2, 3, 4, 5, 6, 8, 7])
+MIRROR_ACTIONS: Final = np.array([0, 2, 1, 3, 5, 4])
+
+
+class Outcome(IntEnum):
+    """How a flight stands."""
+
+    FLYING = 0
+    LANDED = 1
+    CRASHED = 2
+    OUT_OF_BOUNDS = 3
+    TIMED_OUT = 4
+
+
+class Cause(IntEnum):
+    """What made a flight a crash."""
+
+    NONE = 0
+    HULL = 1  # something other than a foot touched
+    TERRAIN = 2  # touched beside the pad
+    HARD = 3  # came down too fast
+    SLIDING = 4  # moved sideways too fast while touching
+    TILTED = 5  # touched while leaning too far
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a touchdown may be, and what a landing must be."""
+
+    touch_speed: float = 2.0  # m/s into the surface
+    slide_speed: float = 2.0  # m/s along it
+    touch_tilt: float = 0.5  # rad
+    rest_speed: float = 0.5  # m/s
+    rest_tilt: float = 0.15  # rad
+    rest_spin: float = 0.3  # rad/s
+    rest_steps: int = 30  # physics steps with both feet down and all of the above
+    half_width: float = 22.0  # metres from the middle of the world
+    ceiling: float = 26.0  # metres
+    time: float = 25.0  # seconds
+
+    def stricter(self, share: float) -> Limits:
+        """The same limits, but for touches only `share` as hard: who learns under them keeps a margin."""
+        return replace(
+            self,
+            touch_speed=share * self.touch_speed,
+            slide_speed=share * self.slide_speed,
+            touch_tilt=share * self.touch_tilt,
+        )
+
+
+@dataclass(frozen=True)
+class LanderParams:
+    """The craft and its moon, in SI units."""
+
+    gravity: float = 1.62
+    mass: float = 1.0
+    inertia: float = 0.5
+    main_thrust: float = 4.2
+    side_thrust: float = 0.9
+    side_arm: float = 0.7  # metres above the centre of mass
+    linear_drag: float = 0.02
+    quadratic_drag: float = 0.005
+    angular_drag: float = 0.25
+    angular_quadratic_drag: float = 0.1
+    restitution: float = 0.15
+    friction: float = 0.6
+    ground: float = 1.0
+    pad_top: float = 1.6
+    pad_width: float = 6.0
+    stand: float = 0.96  # height of the centre of mass above what the feet stand on
+    jet_fuel: float = 0.1  # a second of jet, in seconds of main engine
+
+
+HULL: Final = ((-0.62, -0.45), (0.62, -0.45), (0.72, 0.05), (0.42, 0.75), (-0.42, 0.75), (-0.72, 0.05))
+FOOT_SIZE: Final = (0.40, 0.12)
+FOOT_CENTRE: Final = (0.85, -0.90)
+LIMITS: Final = Limits()
+PARAMS: Final = LanderParams()
+
+
+def tenths(seconds: float) -> float:
+    """Return a flight's fuel or time as it is printed and judged: to a tenth, rounded from the thousandth on disk."""
+    return round(round(seconds, 3), 1)
+
+
+def engines_switched(held: Ints, actions: Ints) -> Ints:
+    """How many engines, of main and jets, go on or off between two actions, each (n,)."""
+    switched: Ints = ((held >= 3) != (actions >= 3)) * 1 + ((held % 3) != (actions % 3))
+    return switched

@@ -1,0 +1,102 @@
+"""Where flights begin: named distributions, and the curriculum that moves from one to the next.
+
+A spawn is drawn as x, y, vx, vy, angle, spin: metres from the middle of the pad, metres above the ground
+line's zero, m/s, radians, rad/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Doubles
+
+Spawn = Callable[[np.random.Generator], Doubles]
+
+_MIDDLE: Final = np.array([0.0, 14.5, 0.0, -1.0, 0.0, 0.0])
+_REACH: Final = np.array([15.0, 5.5, 3.0, 2.0, np.radians(35), 0.5])
+_HARD_REACH: Final = np.array([15.0, 5.5, 3.0, 2.0, np.radians(90), 1.0])
+_WIDE_REACH: Final = np.array([17.0, 6.5, 4.0, 2.5, np.radians(50), 0.8])
+_EASY: Final = np.array([0.0, 4.0, 0.0, -0.3, 0.0, 0.0])
+_EASY_REACH: Final = np.array([1.0, 0.5, 0.3, 0.2, 0.05, 0.05])
+_NEAR: Final = np.array([0.0, 4.5, 0.0, -0.4, 0.0, 0.0])
+_NEAR_REACH: Final = np.array([5.0, 1.9, 1.2, 0.8, 0.35, 0.4])
+
+
+def _around(middle: Doubles, reach: Doubles) -> Spawn:
+    def draw(rng: np.random.Generator) -> Doubles:
+        return middle + reach * (2.0 * rng.random(6) - 1.0)
+
+    return draw
+
+
+def _at(height: float) -> Spawn:
+    def draw(_: np.random.Generator) -> Doubles:
+        return np.array([0.0, height, 0.0, 0.0, 0.0, 0.0])
+
+    return draw
+
+
+def _graded(rng: np.random.Generator) -> Doubles:
+    """Anything between an easy start above the pad and a fully random one."""
+    difficulty = rng.random()
+    middle = _EASY + difficulty * (_MIDDLE - _EASY)
+    reach = _EASY_REACH + difficulty * (_REACH - _EASY_REACH)
+    return _around(middle, reach)(rng)
+
+
+def _practice(rng: np.random.Generator) -> Doubles:
+    """What an agent trains on: a quarter close to the pad and past its edges, a quarter graded, half random.
+
+    Without the close starts, random play never once touches the pad, and nothing is learned.
+    """
+    kind = rng.random()
+    if kind < 0.25:
+        return SPAWNS["near"](rng)
+    return SPAWNS["graded" if kind < 0.5 else "random"](rng)
+
+
+def _thorough(rng: np.random.Generator) -> Doubles:
+    """Practice for a long run: half of the flights begin a little beyond what will be asked."""
+    kind = rng.random()
+    if kind < 0.2:
+        return SPAWNS["near"](rng)
+    return SPAWNS["graded" if kind < 0.4 else "wide"](rng)
+
+
+SPAWNS: Final[dict[str, Spawn]] = {
+    "fixed": _at(8.0),
+    "higher": _at(12.0),
+    "highest": _at(17.0),
+    "near": _around(_NEAR, _NEAR_REACH),
+    "graded": _graded,
+    "random": _around(_MIDDLE, _REACH),
+    "hard": _around(_MIDDLE, _HARD_REACH),
+    "wide": _around(_MIDDLE, _WIDE_REACH),
+    "practice": _practice,
+    "thorough": _thorough,
+}
+
+
+@dataclass(frozen=True)
+class Curriculum:
+    """Which spawn holds from how many landings on; the thresholds rise from 0."""
+
+    stages: tuple[tuple[int, str], ...] = ((0, "fixed"), (100, "higher"), (200, "highest"), (300, "random"))
+
+    def __post_init__(self) -> None:
+        thresholds = [threshold for threshold, _ in self.stages]
+        unknown = [name for _, name in self.stages if name not in SPAWNS]
+        if not thresholds or thresholds[0] != 0 or thresholds != sorted(set(thresholds)) or unknown:
+            raise ValueError(f"a curriculum needs rising thresholds from 0 and known spawns, not {self.stages}")
+
+    def stage(self, landings: int) -> int:
+        """Index of the stage that `landings` successes have led to."""
+        return sum(landings >= threshold for threshold, _ in self.stages) - 1
+
+    def spawn(self, landings: int) -> str:
+        """Name of the spawn of that stage."""
+        return self.stages[self.stage(landings)][1]

@@ -1,0 +1,165 @@
+"""Training runs on disk: the best network, the last one to go on from, and how they were made."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from ai.agent.agent import KIND, LAST, DeepQAgent
+from ai.agent.config import LANDER, PRESETS
+from ai.common.knobs import nearest_preset
+from ai.nn import ModelFormatError, atomic_folder
+from ai.nn.files import count_of, inside, number_of, read_json
+from ai.training.gym_task import gym_config
+from ai.training.history import History
+from ai.training.loop import Progress, Training
+from ai.training.statistics import Flights
+from ai.training.task import TEST_SEED, Score
+
+TRAINING_FILE: Final = "training.json"
+CHECKPOINT_SECONDS: Final = 20.0
+
+
+class TrainingClock:
+    """Ends a run after so many seconds of training or so many decisions, and says when a checkpoint is due.
+
+    Both are counted from the run's own beginning, however often it was interrupted in between.
+    """
+
+    def __init__(self, seconds: float | None = None, decisions: int | None = None) -> None:
+        self.seconds, self.decisions = seconds, decisions
+        self._saved = time.monotonic()
+
+    def share(self, training: Training) -> float:
+        """Return how much of its time or decisions a run has used up, from 0 to 1, whichever is more."""
+        elapsed = training.seconds / self.seconds if self.seconds else 0.0
+        taken = training.agent.decisions / self.decisions if self.decisions else 0.0
+        return min(1.0, max(elapsed, taken))
+
+    def run(self, training: Training) -> Iterator[Progress]:
+        """Advance until the time or the decisions are used up."""
+        while self.share(training) < 1.0:
+            before = time.monotonic()
+            progress = training.advance()
+            training.seconds += time.monotonic() - before
+            yield progress
+
+    def checkpoint_due(self) -> bool:
+        """Whether it is time to save; asking counts as having saved."""
+        due = time.monotonic() - self._saved > CHECKPOINT_SECONDS
+        if due:
+            self._saved = time.monotonic()
+        return due
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """All that is kept of a run, as it was at one moment: may be saved while training goes on."""
+
+    described: dict[str, Any]
+    best: DeepQAgent
+    last: DeepQAgent
+    history: History | None
+
+    def save(self, folder: str | Path) -> None:
+        """Write it, whole or not at all; raises OSError if the disk does not take it."""
+        with atomic_folder(folder, KIND) as temporary:
+            self.best.write(temporary)
+            self.last.write(temporary / LAST)
+            if self.history is not None:
+                self.history.write(temporary)
+            (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
+
+
+def snapshot(training: Training, history: History | None = None) -> Snapshot:
+    """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best.
+
+    This measures nothing: when it is called, the clock may say, and the clock has no say in which network is best.
+    """
+    agent, config = training.agent, training.config
+    presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
+    described = {
+        "env": config.env,
+        **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),
+        "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
+        "episodes": training.episodes, "landings": training.env.landings,
+        "seconds": round(training.seconds, 3), "best": training.best.to_json() if training.best else None,
+        "flights": training.flights.to_json(),
+    }  # fmt: skip
+    return Snapshot(
+        described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
+    )
+
+
+def save_run(training: Training, folder: str | Path, final: bool = False) -> None:
+    """Keep the best network of a run, and what is needed to go on with it, whole or not at all.
+
+    `final` lets the network of the last moment stand for election too, and measures the best one on spawns that
+    neither trained nor chose it. Raises OSError if the disk does not take it, and ValueError, with the disk left
+    as it was, if the numbers of the network are not finite.
+    """
+    if final:
+        training.conclude()
+    kept = snapshot(training)
+    if final:
+        score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
+        kept.described["evaluation"] = score.to_json()
+    kept.save(folder)
+
+
+def rewind(training: Training) -> None:
+    """Let the networks be the best ones found so far, if there are any: what ran away is nothing to go on from."""
+    if training.best_values is not None:
+        training.agent.go_back(training.best_values, deepcopy(training.best_scale))
+
+
+def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
+    """Go on from what `save_run` kept, with an empty memory; raises ModelFormatError for anything else.
+
+    `env` is the environment as the user names it, without which "module:Name" is refused: see `DeepQAgent.load`.
+    """
+    folder = Path(folder)
+    best = DeepQAgent.load(folder, env=env)
+    try:
+        last = DeepQAgent.load(inside(folder, LAST), env=env)
+        described = read_json(inside(folder, TRAINING_FILE))
+    except OSError as error:
+        raise ModelFormatError(folder, [f"{Path(error.filename or LAST).name}: {error.strerror or error}"]) from error
+    except ModelFormatError:
+        raise
+    except ValueError as error:
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {error}"]) from error
+    try:
+        training = Training(last.config, count_of(described["seed"], most=10**40))
+        for agent in (best, last):
+            if (agent.num_features, agent.num_actions) != (training.task.num_features, training.task.num_actions):
+                raise ValueError(f"its network is not made for {last.config.env}")
+        if described["best"] is not None:
+            if best.network.values.shape != training.agent.network.values.shape:
+                raise ValueError("the best network and the last one are of different sizes")
+            training.best = _read_score(training, described["best"])
+            training.best_values, training.best_scale = best.network.values.copy(), best.scale
+        training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
+        training.seconds = float(number_of(described["seconds"], 0))
+        training.flights.load(described.get("flights", Flights(0).to_json()))  # runs of old say nothing of them
+    except (KeyError, TypeError, ValueError, ArithmeticError) as error:
+        said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
+        raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error
+    training.agent.take_over(last)
+    return training
+
+
+def _read_score(training: Training, described: Any) -> Score:
+    """Read a score, and make sure that it can be compared and shown; raises ValueError or TypeError if not."""
+    score = training.task.read_score(described)
+    for value in score.to_json().values():
+        if value is not None:
+            number_of(value)
+    score.better_than(score)
+    str(score)
+    return score

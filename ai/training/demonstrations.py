@@ -1,0 +1,197 @@
+"""Good landings to learn from: a person's own, or a scripted pilot's.
+
+A flight follows from its seed and what was done in each physics step, so that is all that is kept. To learn from
+it, it is flown again, with the rewards of whoever learns.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.agent.n_step import NStep
+from ai.agent.replay import MemoryCell
+from ai.common.environment import Bools, Floats
+from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
+from ai.lander.ground import hilly
+from ai.lander.pilots import Pilot
+from ai.lander.spawns import SPAWNS
+from ai.nn.files import brief, read_json, write_text
+
+FORMAT: Final = "tranquility demonstrations"
+VERSION: Final = 1
+MOST: Final = 50  # flights kept; the oldest make room, since each takes a moment to be flown again
+_LONGEST: Final = 25 * 60  # physics steps of a flight
+_SEEDS: Final = 2**128  # a seed is below
+_PADS: Final = 1000  # far more than any ground has
+
+
+@dataclass(frozen=True)
+class Demonstration:
+    """A flight that landed, or the end of one, after a takeover. Raises ValueError for what can't have been flown."""
+
+    seed: int
+    actions: tuple[int, ...]  # one for each physics step from the start
+    spawn: str = "random"
+    begins: int = 0  # the physics step from which on it is an example
+    ground: int | None = None  # seed of the hills; None for the plain
+    pad: int = 0  # number of the pad landed on
+
+    def __post_init__(self) -> None:
+        whole = (self.seed, self.begins, self.pad, 0 if self.ground is None else self.ground, *self.actions)
+        if not all(type(number) is int and 0 <= number < _SEEDS for number in whole) or self.pad >= _PADS:
+            raise ValueError("seeds, steps, pad and actions of a demonstration are whole numbers from 0")
+        if self.spawn not in tuple(SPAWNS) or not 0 < len(self.actions) <= _LONGEST:
+            raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {brief(repr(self.spawn), 40)}")
+        if max(self.actions) >= NUM_ACTIONS:
+            raise ValueError(f"this is no flight: actions are below {NUM_ACTIONS}, and one was {max(self.actions)}")
+
+
+def takeover(hands: Sequence[bool]) -> int:
+    """The step in which a person took the stick for the last time, by whether they had it in each step.
+
+    The number of steps if they did not have it at the end: then there is nothing of theirs to learn from.
+    """
+    begins = len(hands)
+    while begins and hands[begins - 1]:
+        begins -= 1
+    return begins
+
+
+def demonstrate(pilot: Pilot, count: int, seed: int = 0, spawn: str = "random") -> list[Demonstration]:
+    """Let a pilot fly until it has landed `count` times, each flight from a seed of its own, and return those.
+
+    Raises ValueError for a pilot that crashes more than nine times out of ten.
+    """
+    found: list[Demonstration] = []
+    seeds = range(seed, seed + 10 * count)
+    env = LanderEnv(len(seeds), 0, spawn, frame_skip=4)
+    for slot, own in enumerate(seeds):
+        env.draw_from(slot, _stream(own))
+    observation, flown = env.reset(), []
+    while (env.outcome == Outcome.FLYING).any():
+        flown.append(pilot.act(observation, held=env.actions))
+        observation = env.step(flown[-1]).observation
+    for slot in np.flatnonzero(env.outcome == Outcome.LANDED)[:count].tolist():
+        actions = np.repeat([row[slot] for row in flown], env.frame_skip)[: env.steps[slot]]
+        found.append(Demonstration(seeds[slot], tuple(actions.tolist()), spawn))
+    if len(found) < count:
+        raise ValueError(f"of {len(seeds)} flights, only {len(found)} landed, not {count}")
+    return found
+
+
+def relive(demonstrations: Sequence[Demonstration], config: Config) -> list[MemoryCell | None]:
+    """Fly demonstrations again, and return the transitions of each as `config` would have remembered them.
+
+    None for one that doesn't land, as one made under other rules may not. A transition is a decision of
+    `config.frame_skip` physics steps with the action that was held longest in it.
+    """
+    found: list[MemoryCell | None] = [None] * len(demonstrations)
+    places: dict[tuple[str, int | None], list[int]] = {}
+    for number, demonstration in enumerate(demonstrations):
+        places.setdefault((demonstration.spawn, demonstration.ground), []).append(number)
+    for (spawn, ground), numbers in places.items():
+        flown = _fly_together([demonstrations[number] for number in numbers], spawn, ground, config)
+        for number, cells in zip(numbers, flown, strict=True):
+            found[number] = cells
+    return found
+
+
+def teach(agent: DeepQAgent, demonstrations: Sequence[Demonstration]) -> int:
+    """Put demonstrations into an agent's replay and its list of successes; return how many it could use.
+
+    The agent learns from the list in a second pass of its own, if `config.success_pass` is on, as `taught` has it.
+    """
+    landings = [cells for cells in relive(demonstrations, agent.config) if cells is not None]
+    for cells in landings:
+        agent.replay.add(cells)
+        agent.successes.add(cells)
+    return len(landings)
+
+
+def taught(config: Config) -> Config:
+    """Return the configuration that learns from demonstrations as well."""
+    return config.changed(success_pass=True)
+
+
+def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
+    """Keep the newest demonstrations in a file, whole or not at all. Raises OSError if the disk won't have it."""
+    kept = [asdict(demonstration) for demonstration in demonstrations[-MOST:]]
+    write_text(path, json.dumps({"format": FORMAT, "version": VERSION, "flights": kept}) + "\n")
+
+
+def read(path: Path) -> list[Demonstration]:
+    """Read what `write` wrote, oldest first, and no more than that keeps; nothing if there is no file yet.
+
+    Of more than there can be, those are the newest. Raises ValueError, which names the file and what is wrong with
+    it, and OSError if it can't be read.
+    """
+    try:
+        described = read_json(path)
+        if described["format"] != FORMAT or described["version"] != VERSION:
+            raise ValueError(f"this is no {FORMAT}, version {VERSION}")
+        flights = described["flights"]
+        if not isinstance(flights, list):
+            raise ValueError("flights is to be a list")
+        return [Demonstration(**flight | {"actions": tuple(flight["actions"])}) for flight in flights[-MOST:]]
+    except FileNotFoundError:
+        return []
+    except RecursionError as error:
+        raise ValueError(f"{path} is nested too deeply") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"{path}: {brief(error)}") from error
+
+
+def _stream(seed: int) -> np.random.Generator:
+    """What a lander that flies alone from this seed draws its start from."""
+    return np.random.default_rng(seed).spawn(1)[0]
+
+
+def _fly_together(
+    demonstrations: Sequence[Demonstration], spawn: str, ground: int | None, config: Config
+) -> Iterator[MemoryCell | None]:
+    """Fly demonstrations over the same ground side by side; give the transitions of each, or None."""
+    count, skip = len(demonstrations), config.frame_skip
+    hills = None if ground is None else hilly(np.random.default_rng(ground))
+    env = LanderEnv(count, 0, spawn, frame_skip=1, ground=hills, weights=config.weights)
+    lengths = np.array([len(demonstration.actions) for demonstration in demonstrations])
+    actions = np.zeros((-(-lengths.max() // skip) * skip, count), np.intp)
+    for slot, demonstration in enumerate(demonstrations):
+        env.draw_from(slot, _stream(demonstration.seed))
+        actions[: lengths[slot], slot] = demonstration.actions
+    pads = np.array([demonstration.pad for demonstration in demonstrations])
+    env.target[:] = np.minimum(pads, len(env.ground.pads) - 1)
+    observation = env.reset()
+    decisions: list[tuple[Floats, Floats, Floats, Bools, Bools]] = []
+    for first in range(0, len(actions), skip):
+        before, reward = observation, np.zeros(count, np.float32)
+        terminated, ended = np.zeros((2, count), bool)
+        for held in actions[first : first + skip]:
+            result = env.step(held)
+            reward += result.reward
+            terminated |= result.terminated
+            ended |= result.ended
+        observation = result.observation
+        decisions.append((before, reward * np.float32(config.reward_scale), observation, terminated, ended))
+    landed = (env.landed_on == pads) & (env.steps <= lengths)
+    for slot, demonstration in enumerate(demonstrations):
+        yield _transitions(demonstration, decisions, slot, config) if landed[slot] else None
+
+
+def _transitions(
+    demonstration: Demonstration, decisions: Sequence[tuple[Any, ...]], slot: int, config: Config
+) -> MemoryCell | None:
+    """Return what one of the flights is remembered as; None if nothing of it is an example."""
+    steps, parts, skip = NStep(config.n_step, config.discount), list[MemoryCell](), config.frame_skip
+    for number in range(-(-demonstration.begins // skip), -(-len(demonstration.actions) // skip)):
+        longest = np.bincount(demonstration.actions[number * skip : (number + 1) * skip]).argmax()
+        before, *after = (part[slot : slot + 1] for part in decisions[number])
+        parts.append(steps.add(before, np.array([longest]), *after)[0])
+    return MemoryCell(*(np.concatenate(column) for column in zip(*parts, strict=True))) if parts else None

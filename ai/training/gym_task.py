@@ -1,0 +1,188 @@
+"""Environments of Gymnasium as tasks to learn: numbers in, a few actions out. Comes with the extra `gym`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from ai.agent.agent import Symmetry
+from ai.agent.config import Config
+from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
+from ai.lander.pilots import Pilot
+from ai.training.task import checked_score
+
+if TYPE_CHECKING:
+    import gymnasium
+
+GOING_ON: Final = 0
+FAILED: Final = 2
+# Found by trial on CartPole-v1 and LunarLander-v3; docs/environments.md has the measurements.
+GYM: Final = Config(
+    env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0,
+    learning_rate=2e-3, final_learning_rate=3e-4, horizon=700_000, discount=0.995, n_step=3, batch_size=128,
+    updates=4, replay_size=1_000_000, warm_up=5_000, epsilon_decisions=40_000, epsilon_end=0.05, epsilon_spread=0.7,
+    hidden=(64, 64), target_rate=0.005, reward_scale=0.01,
+)  # fmt: skip
+
+
+def gym_config(env: str) -> Config:
+    """Return the settings to learn an environment of Gymnasium with."""
+    return GYM.changed(env=env)
+
+
+@dataclass(frozen=True)
+class GymScore:
+    """What a number of episodes brought, with no random actions in them."""
+
+    episodes: int
+    success: float | None  # share that reached the environment's own threshold; None if it names none
+    mean_return: float
+    return_spread: float  # standard deviation
+    mean_length: float  # decisions
+
+    def to_json(self) -> dict[str, float | None]:
+        """Plain values."""
+        return asdict(self)
+
+    def better_than(self, other: GymScore | None) -> bool:
+        """Whether this earned more."""
+        return other is None or self.mean_return > other.mean_return
+
+    @property
+    def figure(self) -> str:
+        """The mean return."""
+        return f"{self.mean_return:.1f}"
+
+    def __str__(self) -> str:
+        return f"a mean return of {self.figure} over {self.episodes} validation episodes"
+
+
+class GymEnv:
+    """Several environments side by side, one after the other, under the contract of `ai.common.environment.Env`."""
+
+    def __init__(
+        self, make: Callable[[], gymnasium.Env[Any, Any]], num_envs: int, rng: np.random.Generator,
+        threshold: float | None = None, frame_skip: int = 1,
+    ) -> None:  # fmt: skip
+        self.num_envs, self.threshold, self.frame_skip = num_envs, threshold, frame_skip
+        self.landings, self.stage = 0, 0
+        self._envs = [make() for _ in range(num_envs)]
+        self._seeds: list[int | None] = rng.integers(2**31, size=num_envs).tolist()
+        self._first_action = int(getattr(self._envs[0].action_space, "start", 0))
+        shape = self._envs[0].observation_space.shape
+        assert shape is not None
+        self._observation: Floats = np.zeros((num_envs, int(np.prod(shape))), dtype=np.float32)
+        self.returns: Doubles = np.zeros(num_envs)
+        self.lengths: Ints = np.zeros(num_envs, dtype=np.intp)
+        self.outcome: Ints = np.zeros(num_envs, dtype=np.intp)
+        self._terminated, self._truncated = np.zeros((2, num_envs), dtype=bool)
+
+    def reset(self, mask: Bools | None = None) -> Floats:
+        """Begin a new episode in the slots of `mask`, or in all; return every slot's observation."""
+        for slot in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
+            # Seeded once; from then on each environment goes on with its own stream.
+            observation, _ = self._envs[slot].reset(seed=self._seeds[slot])
+            self._seeds[slot] = None
+            self._observation[slot] = np.ravel(observation)
+            for kept in (self.returns, self.lengths, self.outcome, self._terminated, self._truncated):
+                kept[slot] = 0
+        return self._observation.copy()
+
+    def step(self, actions: Ints) -> StepResult:
+        """Take one action in every slot that has not ended."""
+        reward = np.zeros(self.num_envs, dtype=np.float32)
+        for slot in np.flatnonzero(self.outcome == GOING_ON).tolist():
+            reward[slot] = self._step_one(slot, int(actions[slot]) + self._first_action)
+        return StepResult(
+            self._observation.copy(), reward, self._terminated.copy(), self._truncated.copy(), self.outcome.copy()
+        )
+
+    def _step_one(self, slot: int, action: int) -> float:
+        total, ended = 0.0, False
+        for _ in range(self.frame_skip):
+            observation, reward, terminated, truncated, _ = self._envs[slot].step(action)
+            total += float(reward)
+            if ended := terminated or truncated:
+                break
+        self._observation[slot] = np.ravel(observation)
+        self._terminated[slot], self._truncated[slot] = terminated, truncated
+        self.returns[slot] += total
+        self.lengths[slot] += 1
+        if ended:
+            succeeded = self.threshold is not None and self.returns[slot] >= self.threshold
+            self.outcome[slot] = SUCCESS if succeeded else FAILED
+            self.landings += int(succeeded)
+        return total
+
+
+class GymTask:
+    """Learn an environment of Gymnasium, the one that `config.env` names."""
+
+    symmetry: Symmetry | None = None
+    action_chances: Floats | None = None
+    evaluate_every, validation_episodes, test_episodes = 40_000, 100, 100
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+        self._gymnasium = _gymnasium()
+        env = self._make()
+        observations, actions, spaces = env.observation_space, env.action_space, self._gymnasium.spaces
+        if not isinstance(observations, spaces.Box) or not isinstance(actions, spaces.Discrete):
+            raise ValueError(
+                f"{config.env} observes {observations} and acts in {actions}; "
+                "deep Q-learning needs a Box of observations and Discrete actions"
+            )
+        self.num_features, self.num_actions = int(np.prod(observations.shape)), int(actions.n)
+        self.threshold = env.spec.reward_threshold if env.spec else None
+        env.close()
+
+    def _make(self) -> gymnasium.Env[Any, Any]:
+        try:
+            env: gymnasium.Env[Any, Any] = self._gymnasium.make(self.config.env, disable_env_checker=True)
+        except (self._gymnasium.error.Error, ImportError, ValueError) as error:
+            hint = ""
+            if isinstance(error, self._gymnasium.error.DependencyNotInstalled):
+                # The advice of the error itself would bring plain pygame, which breaks pygame-ce.
+                hint = ". Do not take Gymnasium's own extras; for Box2D, pip install box2d"
+            raise ValueError(f"{self.config.env}: {error}{hint}") from error
+        return env
+
+    def make_env(self, rng: np.random.Generator) -> GymEnv:
+        """Make the environments to train with."""
+        return self._env(self.config.num_envs, rng)
+
+    def change(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
+        """Take over the live knobs of another configuration."""
+        self.config = config
+
+    def follow(self, decisions: int, env: Env) -> None:
+        """An environment stays as it is."""
+
+    def _env(self, num_envs: int, rng: np.random.Generator) -> GymEnv:
+        return GymEnv(self._make, num_envs, rng, self.threshold, self.config.frame_skip)
+
+    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> GymScore:
+        """Play so many episodes side by side, without exploration."""
+        env = self._env(episodes, np.random.default_rng(seed))
+        observation, actions = env.reset(), np.zeros(episodes, dtype=np.intp)
+        while (going_on := env.outcome == GOING_ON).any():
+            actions = np.where(going_on, pilot.act(observation, held=actions), actions)
+            observation = env.step(actions).observation
+        success = None if self.threshold is None else float((env.outcome == SUCCESS).mean())
+        return GymScore(episodes, success, float(env.returns.mean()), float(env.returns.std()),
+                        float(env.lengths.mean()))  # fmt: skip
+
+    def read_score(self, values: dict[str, Any]) -> GymScore:
+        """Read what `GymScore.to_json` gave; raises ValueError for anything else."""
+        return GymScore(**checked_score(values, ("success",)))
+
+
+def _gymnasium() -> Any:
+    try:
+        import gymnasium
+    except ImportError as error:
+        raise ImportError('this needs Gymnasium: pip install "tranquility[gym]"') from error
+    return gymnasium

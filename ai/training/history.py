@@ -1,0 +1,314 @@
+"""What is told of a training run as it goes on, and kept of it: points of its curves, checkpoints, turned knobs."""
+
+from __future__ import annotations
+
+import json
+from copy import copy
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from ai.agent.normalizer import RunningScale
+from ai.common.environment import Doubles, Floats
+from ai.lander.rewards import REWARDS
+from ai.nn import ModelFormatError
+from ai.nn.files import brief, count_of, inside, number_of, parse_json, read_arrays, read_json
+from ai.nn.files import described as array_said
+
+COLUMNS: Final = (
+    "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
+    "steps_per_second",
+)  # fmt: skip
+SHARES: Final = ("landed", "crashed", "out_of_bounds", "timed_out")  # in the order of ai.lander.environment.Outcome
+PARTS: Final = tuple(REWARDS)
+REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
+TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
+HISTORY_FILE: Final = "history.npz"
+CAPACITY: Final = 4000  # points
+MOST_CHECKPOINTS: Final = 200
+_VERSION: Final = 1
+_MOST_TEXT: Final = 1 << 22  # letters of what is said of the arrays
+_MOST_VALUES: Final = 1 << 26  # numbers in all checkpoints together: 256 MB
+_MOST_COLUMNS: Final = 1000
+
+
+@dataclass(frozen=True)
+class Point:
+    """How a run stood after one decision. Rates, shares and parts are of the last hundred flights.
+
+    What is not known is NaN: before the first flight has ended, and before the first learning step, which after a
+    resumption waits for new memories.
+    """
+
+    may_thin: ClassVar = True  # of those that nobody has fetched, every other may be dropped
+
+    seconds: float  # of training, pauses left out
+    decisions: float
+    episodes: float
+    success: float
+    mean_return: float
+    loss: float
+    mean_q: float
+    epsilon: float
+    stage: float
+    steps_per_second: float
+    landed: float = 0.0
+    crashed: float = 0.0
+    out_of_bounds: float = 0.0
+    timed_out: float = 0.0
+    parts: tuple[float, ...] = (0.0,) * len(PARTS)  # what each part of the reward has paid per flight, as in PARTS
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """The network that flew at one moment of a run; `ai.training.session.agent_of` makes an agent of it."""
+
+    seconds: float
+    decisions: int
+    success: float
+    values: Floats  # (parameters,) float32
+    scale: dict[str, Any] | None = None  # of the observations, as RunningScale.to_json gives it
+
+
+@dataclass(frozen=True)
+class Alteration:
+    """A knob that was turned during the run.
+
+    `amends` says that it takes the place of the last alteration of that name: what a drag passes through acts only
+    for a moment, and where it ends is what counts.
+    """
+
+    decisions: int
+    name: str
+    before: Any
+    after: Any
+    amends: bool = False
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What the network did on its own, in flights that neither train it nor will judge it."""
+
+    decisions: int
+    success: float
+    mean_return: float
+    best: bool  # of the run so far
+
+
+Entry = Point | Checkpoint | Alteration | Validation
+_NUMBERS: Final = (*COLUMNS, *SHARES)
+_COLUMN: Final = {name: column for column, name in enumerate((*_NUMBERS, *PARTS))}
+
+
+class History:
+    """What charts show of a run. Memory is bounded: when full, every other point goes, evenly along the run.
+
+    `history["success"]` is a column of the points, (n,); `history.parts` (n, len(PARTS)). Both are views: they
+    are as the run was when asked for, until the next `append`.
+
+    Attributes:
+        reward_scale: what a point of reward is in the unit of `history["mean_q"]`, which is the network's own.
+
+    """
+
+    def __init__(self) -> None:
+        self.checkpoints: list[Checkpoint] = []
+        self.alterations: list[Alteration] = []
+        self.validations: list[Validation] = []
+        self.reward_scale = 1.0
+        self._table: Doubles = np.empty((CAPACITY, len(_COLUMN)))
+        self._length = 0
+        self._stride = 1  # how many points told for one kept
+        self._told = 0
+
+    def __len__(self) -> int:
+        return self._length
+
+    @property
+    def points(self) -> Doubles:
+        """All points, (n, columns): COLUMNS, SHARES and PARTS."""
+        return self._table[: self._length]
+
+    @property
+    def parts(self) -> Doubles:
+        """What each part of the reward has paid per flight, (n, len(PARTS))."""
+        return self.points[:, -len(PARTS) :]
+
+    def __getitem__(self, name: str) -> Doubles:
+        """Return one column, (n,), by a name of COLUMNS, SHARES or PARTS."""
+        return self.points[:, _COLUMN[name]]
+
+    def append(self, entry: Entry) -> None:
+        """Take note of whatever a run tells."""
+        match entry:
+            case Point():
+                self._append_point(entry)
+            case Checkpoint():
+                self._append_checkpoint(entry)
+            case Alteration():
+                self._append_alteration(entry)
+            case Validation():
+                self.validations.append(entry)
+
+    def _append_point(self, point: Point) -> None:
+        # The latest point is always the last row; the next takes its place, unless its number is on the stride.
+        if self._length == 0 or (self._told - 1) % self._stride == 0:
+            if self._length == CAPACITY:
+                self._thin()
+            self._length += 1
+        row = self._table[self._length - 1]
+        row[: len(_NUMBERS)] = [getattr(point, name) for name in _NUMBERS]
+        row[len(_NUMBERS) :] = point.parts
+        self._told += 1
+
+    def _append_alteration(self, entry: Alteration) -> None:
+        if entry.amends:
+            last = next(each for each in reversed(self.alterations) if each.name == entry.name)
+            self.alterations.remove(last)
+            entry = replace(entry, before=last.before, amends=False)
+        if entry.before != entry.after:  # otherwise it is as if nobody had touched it
+            self.alterations.append(entry)
+
+    def _append_checkpoint(self, checkpoint: Checkpoint) -> None:
+        self.checkpoints.append(checkpoint)
+        if len(self.checkpoints) > MOST_CHECKPOINTS:
+            moments = np.array([each.decisions for each in self.checkpoints])
+            # The one whose neighbours are closest together is the least missed.
+            del self.checkpoints[1 + int((moments[2:] - moments[:-2]).argmin())]
+
+    def _thin(self) -> None:
+        kept = self._table[: self._length : 2].copy()
+        self._table[: len(kept)] = kept
+        self._length = len(kept)
+        self._stride *= 2
+
+    def checkpoint_at(self, decisions: float) -> Checkpoint | None:
+        """Return the last checkpoint up to that moment, or the first; None without any."""
+        earlier = [checkpoint for checkpoint in self.checkpoints if checkpoint.decisions <= decisions]
+        return earlier[-1] if earlier else self.checkpoints[0] if self.checkpoints else None
+
+    def copy(self) -> History:
+        """Return one that stays as it is while this one goes on; the checkpoints' networks are shared."""
+        twin = copy(self)
+        twin._table = self._table.copy()
+        twin.checkpoints, twin.alterations = self.checkpoints.copy(), self.alterations.copy()
+        twin.validations = self.validations.copy()
+        return twin
+
+    def write(self, folder: Path) -> None:
+        """Write the history into a run's folder; raises OSError if the disk does not take it."""
+        described = {
+            "version": _VERSION, "columns": list(_COLUMN), "reward_scale": self.reward_scale,
+            "stride": self._stride, "told": self._told,
+            "alterations": [_written(alteration) for alteration in self.alterations],
+            "validations": [asdict(validation) for validation in self.validations],
+            "checkpoints": [
+                {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.scale}
+                for each in self.checkpoints
+            ],
+        }  # fmt: skip
+        values = [checkpoint.values for checkpoint in self.checkpoints]
+        np.savez(
+            folder / HISTORY_FILE, allow_pickle=False, described=np.array(json.dumps(described)), points=self.points,
+            values=np.array(values, dtype=np.float32) if values else np.empty((0, 0), dtype=np.float32),
+        )  # fmt: skip
+
+    @classmethod
+    def read(cls, folder: str | Path) -> History:
+        """Read what `write` wrote; a run saved without a history has an empty one. Raises ModelFormatError."""
+        history = cls()
+        try:
+            arrays = read_arrays(inside(folder, HISTORY_FILE), _MOST_VALUES * 4 + _MOST_TEXT * 8, _expect)
+            described = parse_json(str(arrays["described"]))
+            history._restore(described, arrays["points"], arrays["values"])
+            scale = described.get("reward_scale")
+            history.reward_scale = _scale_beside(folder) if scale is None else _above_zero(scale)
+        except FileNotFoundError:
+            return cls()
+        except OSError as error:
+            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {error.strerror or error}"]) from error
+        except (ValueError, KeyError, TypeError, ArithmeticError) as error:
+            said = f"{brief(error.args[0])} is missing" if isinstance(error, KeyError) else error
+            raise ModelFormatError(folder, [f"{HISTORY_FILE}: {said}"]) from error
+        return history
+
+    def _restore(self, described: dict[str, Any], points: Doubles, values: Floats) -> None:
+        """Take over what was read; raises KeyError, TypeError or ValueError where it makes no sense."""
+        if described["version"] != _VERSION:
+            raise ValueError(f"version {described['version']!r}, not {_VERSION}")
+        if points.ndim != 2 or points.shape[1] != len(described["columns"]) or len(points) > CAPACITY:
+            raise ValueError(f"points of shape {points.shape}")
+        self._length, self._stride, self._told = len(points), *map(count_of, (described["stride"], described["told"]))
+        if self._stride < 1 or self._told < self._length:
+            raise ValueError(f"{self._length} points of {self._told}, at a stride of {self._stride}")
+        # By name, so that a run from before a part was added can still be looked at.
+        self.points[...] = 0.0
+        for column, name in enumerate(described["columns"]):
+            if name in _COLUMN:
+                self.points[:, _COLUMN[name]] = points[:, column]
+        if not np.isfinite(values).all():
+            raise ValueError("checkpoints that are not finite")
+        self.checkpoints = [
+            _checkpoint(told, row.astype(np.float32))
+            for told, row in zip(described["checkpoints"], values, strict=True)
+        ]
+        self.alterations = [_alteration(told) for told in described["alterations"]]
+        self.validations = [_validation(told) for told in described["validations"]]
+
+
+def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+    """Raise ValueError for an array that no history has."""
+    fits = {
+        "described": shape == () and dtype.kind == "U" and dtype.itemsize <= 4 * _MOST_TEXT,
+        "points": len(shape) == 2 and shape[0] <= CAPACITY and 0 <= shape[1] <= _MOST_COLUMNS and dtype == np.float64,
+        "values": len(shape) == 2 and 0 <= shape[0] <= MOST_CHECKPOINTS and shape[1] >= 0
+        and shape[0] * shape[1] <= _MOST_VALUES and dtype == np.float32,
+    }  # fmt: skip
+    if not fits.get(name):
+        raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
+
+
+def _checkpoint(told: dict[str, Any], values: Floats) -> Checkpoint:
+    """Read what is said of a checkpoint; raises KeyError, TypeError or ValueError for nonsense."""
+    scale = told["scale"]
+    if scale is not None:
+        RunningScale(len(scale["mean"])).load(scale)
+    return Checkpoint(
+        float(number_of(told["seconds"])), count_of(told["decisions"]), float(number_of(told["success"])), values, scale
+    )
+
+
+def _alteration(told: dict[str, Any]) -> Alteration:
+    if not isinstance(told["name"], str):
+        raise ValueError(f"{brief(repr(told['name']), 40)} is no name of a knob")
+    if not isinstance(told["after"], bool | int | float | str):
+        raise ValueError(f"{brief(repr(told['after']), 40)} is no value of a knob")
+    return Alteration(count_of(told["decisions"]), told["name"], told["before"], told["after"])
+
+
+def _validation(told: dict[str, Any]) -> Validation:
+    return Validation(
+        count_of(told["decisions"]), float(number_of(told["success"])), float(number_of(told["mean_return"])),
+        bool(told["best"]),
+    )  # fmt: skip
+
+
+def _scale_beside(folder: str | Path) -> float:
+    """Return the reward scale of the network beside a history from before it told its own; 1 if there is none."""
+    try:
+        return _above_zero(read_json(inside(folder, "config.json"))["config"]["reward_scale"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return 1.0
+
+
+def _above_zero(scale: Any) -> float:
+    if not number_of(scale) > 0:
+        raise ValueError(f"a reward scale of {brief(repr(scale), 40)} is not above 0")
+    return float(scale)
+
+
+def _written(alteration: Alteration) -> dict[str, Any]:
+    """Return what a file holds of it; that it amends another one only matters on its way."""
+    return {name: value for name, value in asdict(alteration).items() if name != "amends"}

@@ -1,0 +1,144 @@
+"""The lander as a task to learn, and how its pilots are measured."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from ai.agent.agent import Symmetry
+from ai.agent.config import CURRICULUM, Config
+from ai.agent.schedule import care
+from ai.common.environment import Doubles, Env, Floats
+from ai.lander.environment import (
+    LIMITS,
+    MIRROR_ACTIONS,
+    MIRROR_FEATURES,
+    MIRROR_SIGNS,
+    NUM_ACTIONS,
+    NUM_FEATURES,
+    LanderEnv,
+    Outcome,
+    engines_switched,
+)
+from ai.lander.pilots import Pilot
+from ai.lander.spawns import Curriculum
+from ai.training.task import checked_score
+
+LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What became of a number of flights with no random actions in them."""
+
+    episodes: int
+    success: float  # shares of the flights
+    crash: float
+    out_of_bounds: float
+    time_out: float
+    mean_return: float
+    mean_time: float | None  # seconds, of the landings; None without any
+    mean_fuel: float | None  # seconds of main engine, of the landings
+    switches: float  # times a second that an engine goes on or off, of all flights
+
+    def to_json(self) -> dict[str, float | None]:
+        """Plain values."""
+        return asdict(self)
+
+    def better_than(self, other: Evaluation | None) -> bool:
+        """Whether it earned more, where every flight that did not land counts as a thousand points less."""
+        return other is None or self.mean_return + 1000 * self.success > other.mean_return + 1000 * other.success
+
+    @property
+    def figure(self) -> str:
+        """The share that landed."""
+        return f"{self.success:.1%}"
+
+    def __str__(self) -> str:
+        took = "" if self.mean_time is None else f", in {self.mean_time:.1f} s on average"
+        return f"{self.figure} of {self.episodes} validation flights landed{took}"
+
+
+def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4) -> Evaluation:
+    """Fly `episodes` flights at once, without exploration, from spawns that follow from `seed`."""
+    going = trial(pilot, episodes, seed, spawn, frame_skip)
+    while True:
+        try:
+            next(going)
+        except StopIteration as done:
+            evaluation: Evaluation = done.value
+            return evaluation
+
+
+def trial(
+    pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4
+) -> Generator[None, None, Evaluation]:
+    """Do what `evaluate` does one decision at a time, for whoever has other things to do in between."""
+    env = LanderEnv(episodes, seed, spawn, frame_skip)
+    observation = env.reset()
+    returns: Doubles = np.zeros(episodes)
+    switches = 0
+    while (flying := env.outcome == Outcome.FLYING).any():
+        held = env.actions
+        # Asked for every slot, whether it still flies or not: each keeps its row, as a pilot with a memory needs.
+        actions = np.where(flying, pilot.act(observation, held=held), held)
+        switches += int(engines_switched(held, actions).sum())
+        result = env.step(actions)
+        observation = result.observation
+        returns += result.reward
+        yield
+    share = {outcome: float((env.outcome == outcome).mean()) for outcome in Outcome}
+    landed = env.outcome == Outcome.LANDED
+    return Evaluation(
+        episodes, share[Outcome.LANDED], share[Outcome.CRASHED], share[Outcome.OUT_OF_BOUNDS],
+        share[Outcome.TIMED_OUT], float(returns.mean()),
+        float(env.time[landed].mean()) if landed.any() else None,
+        float(env.fuel[landed].mean()) if landed.any() else None,
+        switches / float(env.time.sum()),
+    )  # fmt: skip
+
+
+class LanderTask:
+    """Learn to land."""
+
+    num_features, num_actions = NUM_FEATURES, NUM_ACTIONS
+    evaluate_every, validation_episodes, test_episodes = 100_000, 500, 1000
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+        self.symmetry: Symmetry | None = LANDER_SYMMETRY
+        self.action_chances: Floats | None = _action_chances(config)
+
+    def make_env(self, rng: np.random.Generator) -> LanderEnv:
+        """Make the landers to train with."""
+        config = self.config
+        spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
+        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.weights)
+
+    def change(self, config: Config, env: Env) -> None:
+        """Take over the live knobs of another configuration, here and in the landers."""
+        self.config = config
+        self.action_chances = _action_chances(config)
+        if isinstance(env, LanderEnv):
+            env.weights = config.weights
+
+    def follow(self, decisions: int, env: Env) -> None:
+        """Tighten the limits of a touch, from the real ones to as careful as is asked for."""
+        if isinstance(env, LanderEnv):
+            env.limits = LIMITS.stricter(care(self.config, decisions))
+
+    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
+        """Fly so many flights at once from random spawns."""
+        return evaluate(pilot, episodes, seed, "random", self.config.frame_skip)
+
+    def read_score(self, values: dict[str, Any]) -> Evaluation:
+        """Read what `Evaluation.to_json` gave; raises ValueError for anything else."""
+        return Evaluation(**checked_score(values, ("mean_time", "mean_fuel")))
+
+
+def _action_chances(config: Config) -> Floats:
+    main = config.random_main
+    return np.array([1 - main] * 3 + [main] * 3) / 3

@@ -1,0 +1,186 @@
+"""Training as a generator, evaluation, and the rule of the best checkpoint."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Generator
+from copy import deepcopy
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.agent.normalizer import RunningScale
+from ai.agent.schedule import exploration, exploration_of_each
+from ai.common.environment import Env, Floats, StepResult
+from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
+from ai.training.statistics import Flights
+from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task, task_of
+
+__all__ = [
+    "LANDER_SYMMETRY", "TEST_SEED", "VALIDATION_SEED", "Evaluation", "Progress", "Training", "evaluate", "run",
+]  # fmt: skip
+
+
+@dataclass
+class Progress:
+    """How a run stands after one decision of all landers, or whatever else learns."""
+
+    decisions: int  # of single landers
+    steps: int  # of their physics: a decision is several
+    updates: int
+    episodes: int
+    success_rate: float  # of the last 100 episodes, exploration included
+    mean_return: float  # of the same
+    loss: float
+    mean_q: float
+    epsilon: float
+    stage: int  # of the curriculum
+    steps_per_second: float  # over the last second or so, by the clock
+    shares: tuple[float, ...]  # of the same that ended in outcome 1, 2, 3 and 4
+    parts: tuple[float, ...]  # of the mean return, what each part of the reward brought
+    evaluation: Score | None = None  # when one was due
+    best: Score | None = None
+
+
+@dataclass
+class Training:
+    """A run of the lander, or of another task: everything that changes as it goes on."""
+
+    config: Config
+    seed: int = 0
+    evaluate_every: int | None = None  # decisions; 0 for never, None for as often as suits the task
+    validation_episodes: int | None = None  # None for as many as suit the task
+    task: Task = field(init=False)
+    agent: DeepQAgent = field(init=False)
+    env: Env = field(init=False)
+    best: Score | None = None
+    best_values: Floats | None = None
+    best_scale: RunningScale | None = None
+    seconds: float = 0.0  # spent, as whoever runs it counts them
+    clock: Callable[[], float] = time.monotonic
+    witness: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
+
+    def __post_init__(self) -> None:
+        self.task = task_of(self.config)
+        if self.evaluate_every is None:
+            self.evaluate_every = self.task.evaluate_every
+        if self.validation_episodes is None:
+            self.validation_episodes = self.task.validation_episodes
+        agent_rng, env_rng = np.random.default_rng(self.seed).spawn(2)
+        self.agent = self._new_agent(self.config, agent_rng)
+        self.env = self.task.make_env(env_rng)
+        self.observation = self.env.reset()
+        self.episodes = 0
+        self._evaluated: int | None = None  # how many decisions the network had taken that was measured last
+        self._moments: deque[float] = deque(maxlen=100)
+        self.flights = Flights(self.env.num_envs)
+        self._held = np.zeros(self.env.num_envs, dtype=np.intp)
+
+    def _new_agent(self, config: Config, rng: np.random.Generator | None = None) -> DeepQAgent:
+        task = self.task
+        return DeepQAgent(
+            task.num_features, task.num_actions, config, rng,
+            symmetry=task.symmetry, action_chances=task.action_chances,
+        )  # fmt: skip
+
+    @property
+    def epsilon(self) -> float:
+        """Share of random actions now."""
+        return exploration(self.agent.config, self.agent.decisions, self.episodes)
+
+    def advance(self) -> Progress:
+        """Let every lander take one decision, learn from it, and evaluate if it is time."""
+        agent, env, flights = self.agent, self.env, self.flights
+        before, epsilon = agent.decisions, self.epsilon
+        self.task.follow(agent.decisions, env)
+        actions = agent.act(self.observation, exploration_of_each(agent.config, epsilon), self._held)
+        result = env.step(actions)
+        agent.remember(self.observation, actions, result, result.succeeded)
+        self.observation = result.observation
+        flights.add(result)
+        if self.witness is not None:
+            self.witness(result)
+        if result.ended.any():
+            self.episodes += int(result.ended.sum())
+            flights.finish(result)
+            self.observation = env.reset(result.ended)
+        self._held = np.where(result.ended, 0, actions)
+        agent.learn()
+        evaluation = self.evaluate() if passed(before, agent.decisions, self.evaluate_every or 0) else None
+        return Progress(
+            agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
+            flights.success, flights.mean_return, agent.loss, agent.mean_q, epsilon, env.stage, self._pace(),
+            flights.shares, flights.parts, evaluation, self.best,
+        )  # fmt: skip
+
+    def _pace(self) -> float:
+        """Physics steps a second, by the moments of the last hundred decisions."""
+        self._moments.append(self.clock())
+        spent = self._moments[-1] - self._moments[0]
+        steps = (len(self._moments) - 1) * self.env.num_envs * self.config.frame_skip
+        return steps / spent if spent > 0 else 0.0
+
+    def change(self, config: Config) -> None:
+        """Take over the live knobs of another configuration; the others stay as they are."""
+        self.config = config = self.config.with_live(config)
+        self.task.change(config, self.env)
+        self.agent.change(config)
+        self.agent.action_chances = self.task.action_chances
+
+    def evaluate(self) -> Score:
+        """Try the validation episodes, and keep the network if it is the best so far."""
+        assert self.validation_episodes is not None
+        self._evaluated = self.agent.decisions
+        score = self.task.evaluate(self.agent, self.validation_episodes, VALIDATION_SEED)
+        self.consider(score, self.agent)
+        return score
+
+    def conclude(self) -> None:
+        """Measure the network as it is at the end of a run, unless that has just been done."""
+        if self._evaluated != self.agent.decisions:
+            self.evaluate()
+
+    def consider(self, score: Score, agent: DeepQAgent) -> bool:
+        """Keep an agent's network if its score is the best so far, and say whether it is."""
+        best = score.better_than(self.best)
+        if best:
+            self.best, self.best_values, self.best_scale = score, agent.network.values.copy(), deepcopy(agent.scale)
+        return best
+
+    def best_agent(self) -> DeepQAgent:
+        """Return an agent that flies with the best network found so far."""
+        agent = self._new_agent(self.agent.config)
+        values = self.agent.network.values if self.best_values is None else self.best_values
+        agent.online.values = agent.target.values = values
+        agent.scale = deepcopy(self.agent.scale if self.best_values is None else self.best_scale)
+        agent.decisions, agent.train_count = self.agent.decisions, self.agent.train_count
+        return agent
+
+    def last_agent(self) -> DeepQAgent:
+        """Return an agent as the one that learns is now, without its memories; it stays as it is."""
+        agent = self._new_agent(self.agent.config)
+        agent.take_over(self.agent)
+        agent.scale = deepcopy(self.agent.scale)
+        return agent
+
+
+def passed(before: int, now: int, every: int) -> bool:
+    """Whether a count has reached a multiple of `every` on its way from `before` to `now`; never, if that is 0.
+
+    The moments at which networks are measured depend on nothing else: not on the clock, and not on whether
+    a run was interrupted.
+    """
+    return every > 0 and now // every > before // every
+
+
+def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Config | None, None]:
+    """Train without end, yielding after each decision of all landers; send a Config to change the live knobs."""
+    training = Training(config, seed, **options)
+    while True:
+        changed = yield training.advance()
+        if changed is not None:
+            training.change(changed)

@@ -1,0 +1,99 @@
+"""What a live run tells, and what it can be told. All of it can be pickled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ai.agent.config import Config
+from ai.agent.schedule import InForce
+from ai.common.environment import Floats
+from ai.training.history import Alteration, Checkpoint, Point, Validation
+
+
+@dataclass(frozen=True)
+class Begun:
+    """The first word of a run: what it is made with, which for a resumed run is what it was begun with."""
+
+    config: Config
+    seed: int
+    decisions: int  # so far; 0 for a new run
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """All landers after one decision, before those whose flight has ended begin a new one."""
+
+    newest_only: ClassVar = True
+
+    position: NDArray[np.float32]  # (n, 2) metres, centre of mass
+    angle: NDArray[np.float32]  # (n,) radians
+    action: NDArray[np.int8]  # (n,) as flown in this decision
+    outcome: NDArray[np.int8]  # (n,) of ai.lander.environment.Outcome
+    earned: NDArray[np.float32]  # (n,) what the flight has earned so far
+    decisions: int
+
+
+@dataclass(frozen=True, eq=False)
+class Insight:
+    """The network that learns, from within. A few times a second."""
+
+    newest_only: ClassVar = True
+
+    values: Floats  # (parameters,) float32 of the online network
+    gradients: Floats  # (parameters,) of its last learning step
+    observation: Floats  # (9,) what the lander in slot CAREFUL senses now
+    decisions: int
+
+
+@dataclass(frozen=True)
+class Change:
+    """Turn a live knob, by its field's name in Config; "weights.time" is one part of the reward's weights."""
+
+    name: str
+    value: Any
+
+
+@dataclass(frozen=True)
+class Save:
+    """Save the run, as it is now, to a folder."""
+
+    folder: Path
+
+
+@dataclass(frozen=True)
+class Revert:
+    """Let the networks be again what they were at a checkpoint of the history; time does not go back."""
+
+    decisions: int
+
+
+@dataclass(frozen=True)
+class Teach:
+    """Learn from the demonstrations in a file as well, as far as this run has not done so yet."""
+
+    path: Path
+
+
+@dataclass(frozen=True)
+class Saved:
+    """What became of a save; no problem means that it is on the disk, whole."""
+
+    folder: Path
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A command that could not be carried out, and why. Nothing has changed."""
+
+    command: Change | Revert | Teach
+    problem: str
+
+
+Message = Begun | Sight | Insight | InForce | Point | Checkpoint | Validation | Alteration | Saved | Refused
+Command = Change | Save | Revert | Teach

@@ -1,0 +1,95 @@
+"""What training must know of whatever is to be learnt: the lander, or any other environment."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from ai.agent.agent import Symmetry
+from ai.agent.config import LANDER, Config
+from ai.common.environment import Env, Floats
+from ai.lander.pilots import Pilot
+from ai.nn.files import brief, number_of
+
+VALIDATION_SEED = 1_000_003  # episodes that choose the best checkpoint
+TEST_SEED = 2_000_003  # episodes that have no say in anything, to measure a finished network by
+
+
+class Score(Protocol):
+    """How well a pilot did over a number of episodes with no random actions in them."""
+
+    @property
+    def episodes(self) -> int:
+        """How many there were."""
+
+    @property
+    def success(self) -> float | None:
+        """Share that ended well; None where nobody has said what that is."""
+
+    @property
+    def mean_return(self) -> float:
+        """Mean sum of rewards."""
+
+    @property
+    def figure(self) -> str:
+        """The one figure that matters, in a few letters."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values."""
+
+    def better_than(self, other: Any) -> bool:
+        """Whether this beats another score of its kind, or None."""
+
+    def __str__(self) -> str: ...
+
+
+class Task(Protocol):
+    """An environment as an agent is to learn it. Made from a Config."""
+
+    num_features: int
+    num_actions: int
+    symmetry: Symmetry | None
+    action_chances: Floats | None  # (actions,) odds of random actions; None for uniform
+    evaluate_every: int  # decisions
+    validation_episodes: int
+    test_episodes: int
+
+    def make_env(self, rng: np.random.Generator) -> Env:
+        """Make the environment to train in."""
+
+    def change(self, config: Config, env: Env) -> None:
+        """Take over the live knobs of another configuration, here and in an environment that `make_env` made."""
+
+    def follow(self, decisions: int, env: Env) -> None:
+        """Bring what changes with experience up to date in an environment that `make_env` made."""
+
+    def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Score:
+        """Measure a pilot over so many episodes, which follow from `seed`."""
+
+    def read_score(self, values: dict[str, Any]) -> Score:
+        """Read what a score's `to_json` gave; raises TypeError or ValueError for anything else."""
+
+
+def checked_score(values: Any, may_be_none: tuple[str, ...]) -> dict[str, Any]:
+    """Return the values of a score from a file; raises ValueError if they are not finite numbers by name."""
+    if not isinstance(values, dict):
+        raise ValueError(f"{brief(repr(values), 40)} is no score")
+    return {
+        name: value if value is None and name in may_be_none else number_of(value) for name, value in values.items()
+    }
+
+
+def task_of(config: Config) -> Task:
+    """Make the task that a configuration names.
+
+    Raises ValueError for an environment that does not exist or cannot be learnt by Q-learning, and ImportError
+    where Gymnasium is needed and not installed.
+    """
+    if config.env == LANDER:
+        from ai.training.lander_task import LanderTask
+
+        return LanderTask(config)
+    from ai.training.gym_task import GymTask
+
+    return GymTask(config)

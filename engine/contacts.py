@@ -1,0 +1,173 @@
+"""From poses to contacts: the exact test for pairs that are near, and what is remembered of the last step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.broad_phase import BroadPhase
+from engine.collide import Manifold, Placed, collide_circles, collide_polygon_circle, collide_polygons
+from engine.solver import Contacts, colour
+from engine.state import BodyParams, BodyState, ShapeTable
+from engine.vector import Array, Bools, Ints, rotate
+
+_DEFAULT_FRICTION = 0.5
+# Shapes so near count as touching, metres: a contact that came and went with the last digits would start from
+# nothing each time, and a heap would never come to rest.
+MARGIN = 0.002
+
+
+@dataclass(frozen=True)
+class Memory:
+    """The k manifolds of the last step, in the order of their worlds and pairs."""
+
+    key: Ints  # (k,) world · pairs + pair, rising
+    feature: Ints  # (k, 2), 0 for a point that was not there
+    impulse: Array  # (3, k)
+
+    @classmethod
+    def of(cls, contacts: Contacts, pairs: int) -> Memory:
+        """What is worth remembering of a solved step."""
+        key = contacts.world * pairs + contacts.pair
+        rising = np.argsort(key)
+        feature = contacts.manifold.feature * contacts.manifold.valid
+        return cls(key[rising], feature[rising], contacts.impulse[:, rising])
+
+    def where(self, kept: Bools) -> Memory:
+        """Only these manifolds."""
+        return Memory(self.key[kept], self.feature[kept], self.impulse[:, kept])
+
+
+_NOTHING = Memory(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), np.zeros((3, 0)))
+
+
+class Detector:
+    """Finds what touches in every world, and remembers the impulses, so that a resting stack starts solved."""
+
+    def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
+        self.shapes = shapes
+        self.broad = BroadPhase(params, shapes, MARGIN)
+        self.pairs = self.broad.pairs  # (pairs, 2) of shapes, a polygon before a circle
+        self.body_pairs = shapes.body[self.pairs]
+        self.free = params.dynamic[self.body_pairs]  # (pairs, 2): which of the two can move
+        self.friction = _mix(params.friction[self.body_pairs], _geometric_mean, _DEFAULT_FRICTION)
+        self.restitution = _mix(params.restitution[self.body_pairs], np.maximum, 0.0)
+        self._kinds = shapes.is_circle[self.pairs].sum(axis=1)  # how many of the two are circles
+        self._memory = _NOTHING
+        self._colours = (np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), [0])  # of what, order, ends
+
+    def find(self, state: BodyState) -> Contacts | None:
+        """Return every touching pair of active bodies, in the solver's order; None if nothing touches."""
+        world, pair = self.broad.near(state)
+        if not len(world):
+            return None
+        manifold = self._touch(state, world, pair)
+        touching = np.flatnonzero(manifold.valid.any(axis=1))
+        if not len(touching):
+            return None
+        order, ends = self._colour(world[touching], pair[touching], state.pose.shape[1])
+        kept = touching[order]
+        world, pair, manifold = world[kept], pair[kept], manifold.rows(kept)
+        return Contacts(
+            world=world,
+            pair=pair,
+            body=self.body_pairs[pair],
+            manifold=manifold,
+            friction=self.friction[pair],
+            restitution=self.restitution[pair],
+            impulse=self._recall(world, pair, manifold),
+            approach=np.zeros((3, len(kept))),
+            colour_ends=ends,
+        )
+
+    def remember(self, contacts: Contacts | None) -> None:
+        """Keep the impulses of a step for the next one, and only for that."""
+        self._memory = Memory.of(contacts, len(self.pairs)) if contacts else _NOTHING
+
+    def memory(self) -> Memory:
+        """What `remember` has kept, to be put back by `recall_memory`."""
+        return self._memory
+
+    def recall_memory(self, memory: Memory) -> None:
+        """Return to what was kept at the time of a call of `memory`."""
+        self._memory = memory
+        self.broad.forget_boxes()
+
+    def forget(self, body: int, worlds: Bools | None) -> None:
+        """A body was put elsewhere: what it touched before has no bearing on what it touches next."""
+        if len(self._memory.key):
+            world, pair = np.divmod(self._memory.key, len(self.pairs))
+            gone = (self.body_pairs[pair] == body).any(axis=1)
+            if worlds is not None:
+                gone &= worlds[world]
+            self._memory = self._memory.where(~gone)
+
+    def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, list[int]]:
+        """Order and ends of the colours, as last time if the same pairs touch."""
+        key = world * len(self.pairs) + pair
+        if not np.array_equal(key, self._colours[0]):
+            slots = world[:, None] * bodies + self.body_pairs[pair]
+            self._colours = (key, *colour(slots, self.free[pair]))
+        return self._colours[1:]
+
+    def _touch(self, state: BodyState, world: Ints, pair: Ints) -> Manifold:
+        """Narrow phase: the manifolds of n pairs, whatever kinds of shape they are."""
+        kinds = self._kinds[pair]
+        if not kinds.any():
+            return self._touch_kind(0, state, world, pair)
+        manifold = Manifold.empty(len(pair))
+        for kind in (0, 1, 2):
+            rows = np.flatnonzero(kinds == kind)
+            if len(rows):
+                manifold.put(rows, self._touch_kind(kind, state, world[rows], pair[rows]))
+        return manifold
+
+    def _touch_kind(self, circles: int, state: BodyState, world: Ints, pair: Ints) -> Manifold:
+        a, b = self.pairs[pair].T
+        if circles == 0:
+            return collide_polygons(self._place(state, world, a), self._place(state, world, b), MARGIN)
+        radius = self.shapes.radius
+        if circles == 1:
+            disc = self.shapes.centres(state, world, b)
+            return collide_polygon_circle(self._place(state, world, a), disc, radius[b], MARGIN)
+        disc_a, disc_b = self.shapes.centres(state, world, a), self.shapes.centres(state, world, b)
+        return collide_circles(disc_a, radius[a], disc_b, radius[b], MARGIN)
+
+    def _place(self, state: BodyState, world: Ints, shape: Ints) -> Placed:
+        """Return polygons in their worlds, from their bodies' poses."""
+        body = self.shapes.body[shape]
+        cos, sin = state.cos[world, body, None], state.sin[world, body, None]
+        position = state.pose[world, body, None, :2]
+        start = rotate(self.shapes.start[shape], cos, sin)
+        start += position
+        end = rotate(self.shapes.end[shape], cos, sin)
+        end += position
+        return Placed(start, end, rotate(self.shapes.normal[shape], cos, sin))
+
+    def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> Array:
+        """Impulses (3, m) of the step before, at points that are made by the same faces as then."""
+        impulse = np.zeros((3, len(world)))
+        last = self._memory
+        if not len(last.key):
+            return impulse
+        key = world * len(self.pairs) + pair
+        row = np.minimum(last.key.searchsorted(key), len(last.key) - 1)
+        same = (last.key[row] == key)[:, None] & (last.feature[row] == manifold.feature) & manifold.valid
+        np.multiply(last.impulse[:2, row], same.T, out=impulse[:2])
+        rubs = same.all(axis=1) | (same.any(axis=1) & (manifold.valid.sum(axis=1) == 1))
+        np.multiply(last.impulse[2, row], rubs, out=impulse[2])
+        return impulse
+
+
+def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float) -> Array:
+    """One value per pair (pairs, 2): combined if both bodies name one, else the one named, else `default`."""
+    a, b = values.T
+    either = np.where(np.isnan(a), b, a)
+    both = ~np.isnan(a) & ~np.isnan(b)
+    return np.where(both, combine(a, b), np.where(np.isnan(either), default, either))
+
+
+def _geometric_mean(a: Array, b: Array) -> Array:
+    return np.sqrt(a * b)

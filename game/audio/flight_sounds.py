@@ -1,0 +1,123 @@
+"""What a flight sounds like: fire that follows the thrust, touches, warnings, and the height as a note."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Doubles
+from ai.lander.environment import LanderEnv, Outcome
+from game.audio.instruments import RUNGS, altitude_key
+from game.audio.mixer import Sound
+from game.core.pace import Pace
+
+_ENDS: Final = {
+    Outcome.LANDED: "landed",
+    Outcome.CRASHED: "crash",
+    Outcome.OUT_OF_BOUNDS: "lost",
+    Outcome.TIMED_OUT: "lost",
+}
+_HARD_BRAKING: Final = 0.8  # share of the greatest deceleration from which on a fall is worth a warning
+_REACTION: Final = 0.4  # seconds until a warned pilot brakes
+_WARN_TILT_BELOW: Final = 6.0  # metres
+_WARN_EVERY: Final = 40  # steps
+# The altitude tone has a note for every half metre near the ground, and for every metre above.
+HEIGHTS: Final = np.array([*np.arange(0.0, 4.0, 0.5), *np.arange(4.0, 4.0 + RUNGS - 8)])
+_STICKS: Final = 0.12  # metres beyond a note's bounds before the next is struck: who hovers there is left in peace
+_STRUCK_AGAIN: Final = 90  # steps
+_PAD_ASIDE: Final = 12.0  # metres to the pad at which its side can't be heard more clearly
+
+
+class FlightSound:
+    """Listens to one lander of an environment; `follow` once in every step.
+
+    Args:
+        sound: what plays.
+        env: the landers.
+        pace: that of what is seen: a crash in slow motion is heard so.
+        warns: whether it warns of what would be a crash.
+
+    """
+
+    def __init__(self, sound: Sound, env: LanderEnv, pace: Pace | None = None, *, warns: bool = True) -> None:
+        self._sound, self._env, self._pace, self._warns = sound, env, pace or Pace(), warns
+        self._slot = -1
+        self._time = 0.0
+        self._outcome = Outcome.FLYING
+        self._rest = self._turn = 0
+
+    def follow(self, thrust: Doubles, slot: int = 0) -> None:
+        """Sound as a lander does now; `thrust` (3,) is its main engine's, left-hand and right-hand jet's, 0 to 1."""
+        env = self._env
+        if slot != self._slot or env.time[slot] < self._time:
+            self._begin(slot)
+        self._time = float(env.time[slot])
+        for key, force in zip(("engine", "jet_left", "jet_right"), thrust.tolist(), strict=True):
+            self._sound.loop(key, force)
+        self._touch()
+        outcome = Outcome(int(env.outcome[slot]))
+        if outcome is not self._outcome and outcome in _ENDS:
+            self._sound.play("slow_crash" if self._pace.slow and outcome is Outcome.CRASHED else _ENDS[outcome])
+        self._outcome = outcome
+        if outcome is Outcome.FLYING:
+            self._sound_height()
+            if self._warns:
+                self._warn()
+
+    def _begin(self, slot: int) -> None:
+        """Turn to a lander as it is: what happened to it before was not heard here."""
+        env = self._env
+        self._slot, self._time = slot, float(env.time[slot])
+        self._outcome = Outcome(int(env.outcome[slot]))
+        self._down, self._fall = env.contacts[slot].copy(), 0.0
+        self._touched = bool(self._down.any())
+        self._rung, self._since_note = -1, 0
+
+    def _touch(self) -> None:
+        """A blow for every foot that comes down, as hard as it did; and contact light, once."""
+        env, slot = self._env, self._slot
+        down = env.contacts[slot]
+        if (down & ~self._down).any() and env.outcome[slot] != Outcome.CRASHED:
+            self._sound.play("touchdown", 0.15 + 0.85 * min(1.0, max(0.0, self._fall) / env.limits.touch_speed))
+            if not self._touched:
+                self._sound.play("contact")
+            self._touched = True
+        self._down, self._fall = down.copy(), -float(env.velocity[slot, 1])
+
+    def _warn(self) -> None:
+        """Warn of what would be a crash soon; of two things, in turns."""
+        env, slot = self._env, self._slot
+        warnings = []
+        if self._falls_too_fast():
+            warnings.append("too_fast")
+        if env.tilt[slot] > env.limits.touch_tilt and env.altitude[slot] < _WARN_TILT_BELOW:
+            warnings.append("too_tilted")
+        self._rest = max(0, self._rest - 1)
+        if warnings and not self._rest:
+            self._sound.play(warnings[self._turn % len(warnings)])
+            self._rest, self._turn = _WARN_EVERY, self._turn + 1
+
+    def _falls_too_fast(self) -> bool:
+        """Whether hardly less than full thrust, from now on, would bring it down as slowly as it must be."""
+        env, slot = self._env, self._slot
+        descent = -float(env.velocity[slot, 1])
+        if descent <= env.limits.touch_speed:
+            return False
+        braking = env.params.main_thrust / env.params.mass - env.gravity
+        left = float(env.altitude[slot]) - (0.0 if env.actions[slot] >= 3 else _REACTION * descent)
+        return descent**2 - env.limits.touch_speed**2 > 2 * max(left, 0.0) * _HARD_BRAKING * braking
+
+    def _sound_height(self) -> None:
+        """Strike a note for each step of height that is passed, so that their pace is the speed, on the pad's side."""
+        env, slot = self._env, self._slot
+        height = float(env.altitude[slot])
+        aside = float(env.pad[slot, 0] - env.position[slot, 0])
+        rung = int(np.clip(np.searchsorted(HEIGHTS, height, side="right") - 1, 0, RUNGS - 1))
+        low = HEIGHTS[self._rung] - _STICKS
+        high = HEIGHTS[min(self._rung + 1, RUNGS - 1)] + _STICKS
+        self._since_note += 1
+        passed = rung != self._rung and (self._rung < 0 or not low <= height <= high)
+        if passed or self._since_note >= _STRUCK_AGAIN:
+            self._rung, self._since_note = rung, 0
+            self._sound.play(altitude_key(rung), 1.0 if passed else 0.6, float(np.clip(aside / _PAD_ASIDE, -0.8, 0.8)))

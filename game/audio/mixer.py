@@ -1,0 +1,190 @@
+"""The game's one mixer: it plays what `game.sounds` makes, and stays silent where nothing can be heard."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import threading
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Final, TypeVar, cast
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from game.audio.instruments import GROUPS, INSTRUMENTS, Instrument
+from game.audio.synth import RATE, pan_gains
+from game.core.settings import Settings
+
+_BUFFER: Final = 512  # samples that the device takes at a time: a sound is heard 12 ms late
+_VOICES: Final = 16  # short sounds at a time
+_APART: Final = 3  # steps within which the same sound asked for again is the one that has just begun
+_EASE: Final = 0.3  # share of the way to its volume that a loop goes in a step
+_SWELL: Final = 0.015  # the same for ambience that comes in; it goes more quickly
+_GO: Final = 0.12
+_SILENT: Final = 0.002
+_FADE: Final = 120  # milliseconds
+_log = logging.getLogger("tranquility")
+_Method = TypeVar("_Method", bound=Callable[..., None])
+
+
+def _while_open(method: _Method) -> _Method:
+    """Do it only while there is a device; one that fails meanwhile is let go, and the game goes on in silence."""
+
+    @wraps(method)
+    def attempt(self: Sound, *args: object, **kwargs: object) -> None:
+        if not self.ready:
+            return
+        try:
+            method(self, *args, **kwargs)
+        except pygame.error as error:
+            self.problem = str(error)
+            self._let_go()
+
+    return cast(_Method, attempt)
+
+
+class Sound:
+    """Plays sounds by their keys in `instruments`; silent until it is opened, and without a device.
+
+    The sounds themselves are made in a thread of their own; one that is not ready yet is not heard.
+
+    Attributes:
+        ready: whether there is a device.
+        problem: why there is none.
+
+    """
+
+    def __init__(self, instruments: Mapping[str, Instrument] = INSTRUMENTS) -> None:
+        self.ready, self.problem = False, ""
+        self._instruments = instruments
+        self._loops = [key for key, instrument in instruments.items() if instrument.loops]
+        self._volumes = dict.fromkeys(GROUPS, 1.0)
+        self._waves: dict[str, NDArray[np.int16]] = {}
+        self._sounds: dict[str, pygame.mixer.Sound] = {}
+        self._asked: dict[str, float] = {}
+        self._levels = dict.fromkeys(self._loops, 0.0)
+        self._begun: dict[str, int] = {}  # the step in which a short sound was last played
+        self._step = 0
+        self._wanted = self._muted = False
+        self._studio: threading.Thread | None = None
+        self._closing = threading.Event()
+
+    def open(self) -> bool:
+        """Take the sound device, and begin to make the sounds. False without a device; that is no error."""
+        self._wanted = True
+        try:
+            pygame.mixer.init(RATE, -16, 2, _BUFFER, allowedchanges=0)
+            pygame.mixer.set_num_channels(len(self._loops) + _VOICES)
+            pygame.mixer.set_reserved(len(self._loops))
+        except (pygame.error, NotImplementedError) as error:  # NotImplementedError: pygame was built without a mixer
+            self.problem = str(error)
+            return False
+        self.ready, self.problem = True, ""
+        if self._studio is None:
+            self._studio = threading.Thread(target=self._synthesise, name="sounds", daemon=True)
+            self._studio.start()
+        return True
+
+    def close(self) -> None:
+        """Fall silent for good."""
+        self._wanted = False
+        self._closing.set()
+        if self._studio is not None:
+            self._studio.join()
+        if self.ready:
+            self._let_go()
+
+    def follow(self, settings: Settings) -> None:
+        """Take the volumes from the settings. The ear counts in ratios: half way up is a quarter of the sway."""
+        self._volumes = {group: getattr(settings, f"{group}_volume") ** 2 for group in GROUPS}
+
+    def handle_event(self, event: pygame.event.Event) -> None:
+        """Be silent while the window is not in use; follow devices that come and go."""
+        match event.type:
+            case pygame.WINDOWFOCUSLOST | pygame.WINDOWMINIMIZED:
+                self._mute()
+            case pygame.WINDOWFOCUSGAINED | pygame.AUDIODEVICEADDED:
+                self._muted = self._muted and event.type == pygame.AUDIODEVICEADDED
+                if self._wanted and not self.ready:
+                    self.open()
+            case pygame.AUDIODEVICEREMOVED if self.ready and not event.iscapture:
+                self._let_go()
+                self.open()  # on another device, if there is one
+
+    @_while_open
+    def play(self, key: str, volume: float = 1.0, pan: float = 0.0) -> None:
+        """Play a short sound once, from -1 on the left to 1 on the right."""
+        gain = volume * self._volumes[self._instruments[key].group]
+        since = self._step - self._begun.get(key, -_APART)
+        sound = self._sound(key)
+        if self._muted or gain < _SILENT or since < _APART or sound is None:
+            return
+        channel = sound.play()  # on none of those reserved for loops
+        if channel is not None:
+            channel.set_volume(*np.minimum(gain * pan_gains(pan), 1.0).tolist())
+            self._begun[key] = self._step
+
+    def loop(self, key: str, volume: float) -> None:
+        """Keep a sound going at that volume, 0 to 1, in this step; one not asked for again dies away."""
+        self._asked[key] = max(volume, self._asked.get(key, 0.0))
+
+    @_while_open
+    def update(self) -> None:
+        """Let 1/60 s pass."""
+        self._step += 1
+        asked, self._asked = self._asked, {}
+        for number, key in enumerate(self._loops):
+            always = self._instruments[key].group == "ambience"
+            wanted = 0.0 if self._muted else 1.0 if always else asked.get(key, 0.0)
+            level = self._levels[key]
+            ease = _EASE if not always else _SWELL if wanted > level else _GO
+            self._levels[key] = level + ease * (wanted - level)
+            self._keep_going(number, key)
+
+    def _keep_going(self, number: int, key: str) -> None:
+        """Let a loop sound at its level, on a channel of its own."""
+        gain = self._levels[key] * self._volumes[self._instruments[key].group]
+        channel, sound = pygame.mixer.Channel(number), self._sound(key)
+        if sound is None:
+            self._levels[key] = 0.0
+        elif gain < _SILENT:
+            channel.stop()
+        else:
+            sound.set_volume(gain)
+            if not channel.get_busy():
+                channel.play(sound, loops=-1)
+
+    def _sound(self, key: str) -> pygame.mixer.Sound | None:
+        """Return a sound for the mixer, once it has been made."""
+        if key not in self._sounds and key in self._waves:
+            self._sounds[key] = pygame.mixer.Sound(buffer=self._waves[key].tobytes())
+        return self._sounds.get(key)
+
+    def _synthesise(self) -> None:
+        """Make one sound after another, in the thread; one that fails is not heard."""
+        for key, instrument in self._instruments.items():
+            if self._closing.is_set():
+                return
+            try:
+                self._waves[key] = instrument.render(key)
+            except Exception:
+                _log.exception("making the sound %s", key)
+
+    def _mute(self) -> None:
+        self._muted = True
+        self._fade_out()
+
+    @_while_open
+    def _fade_out(self) -> None:
+        for number in range(len(self._loops), pygame.mixer.get_num_channels()):
+            pygame.mixer.Channel(number).fadeout(_FADE)
+
+    def _let_go(self) -> None:
+        """Leave the device; what was made is kept for the next one."""
+        self.ready = False
+        self._sounds.clear()
+        self._levels = dict.fromkeys(self._loops, 0.0)
+        with contextlib.suppress(pygame.error):
+            pygame.mixer.quit()

@@ -1,0 +1,312 @@
+"""A live line chart: smoothed lines over raw points, several runs, a cursor and a marker.
+
+It is drawn onto a sheet that is kept until its numbers, its limits or the window change; only what follows the
+mouse is drawn every frame.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+import pygame
+
+from game.charts import plotting
+from game.charts.curves import Axes, paint_run, trace_run
+from game.charts.plotting import Limits, Numbers
+from game.charts.series import RUN_STYLES, Run, Series, Tick, draw_legend
+from game.charts.tooltip import Row, draw_tooltip
+from game.core import texts
+from game.drawing.canvas import Align, Canvas, Point
+from game.drawing.paint import mix
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT
+
+__all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
+
+Painted = tuple[Canvas, list[Numbers]]  # a sheet, and each run's height in every column of it
+
+_HEADER: Final = 24.0  # from the top of the box to the highest line
+_FOOT: Final = 18.0  # from the lowest line to the bottom of the box
+_GUTTER: Final = 34.0  # for the lines' numbers, on the right
+_APART: Final = 8.0  # between what a chart shows and its latest number
+_MARGIN: Final = 6.0  # of the sheet around the box
+_AXES: Final = mix(FAINT, MUTE, 0.55)
+_AXES_SIZE: Final = LABEL - 1.5
+_REST: Final = 6  # sixtieths of a second between two drawings of new numbers
+_EASE: Final = 0.2
+_REACH: Final = 5.0  # points from a tick within which it tells what it stands for
+_TICK_SPACING: Final = 4.0
+_SLACK: Final = 0.02  # of the x axis: so far from its ends a run is still told of
+
+
+class Chart:
+    """One chart in a box of points.
+
+    `read` writes a value, `read_x` a place on the x axis. `limits` fixes the vertical axis; otherwise it
+    follows the numbers, and a few that have exploded are cut off and marked by an arrow. On a `log` axis, what is
+    not positive makes a gap. `empty` is said while there is nothing to show.
+    """
+
+    def __init__(
+        self,
+        box: pygame.typing.RectLike,
+        label: str,
+        *,
+        limits: Limits | None = None,
+        read: Callable[[float], str] = plotting.compact,
+        read_x: Callable[[float], str] = texts.CHART_SECONDS.format,
+        log: bool = False,
+        empty: str = texts.CHART_EMPTY,
+    ) -> None:
+        self.box = pygame.FRect(box)
+        self.label, self.read_x, self._empty = label, read_x, empty
+        self._value: Callable[[float], float] = (lambda height: 10.0**height) if log else float
+        self._make_grid = plotting.decades if log else plotting.grid
+        self._log, self._read = log, read
+        self.fixed = limits
+        self.redraws = 0  # how often the sheet was drawn
+        self._runs: list[Run] = []
+        self._ticks: tuple[Tick, ...] = ()
+        self._x_range: Limits = (0.0, 1.0)
+        self._told: tuple[float, ...] = ()  # the ends of the x axis: both, or one if it is a single place
+        self._lines = self._make_grid(*(limits or (0.0, 1.0)))
+        self._shown = self._goal
+        self._cursor: float | None = None
+        self._pointed = False
+        self._marker: tuple[float, str] | None = None
+        self._painted: Painted | None = None  # until the numbers, or the window, are others
+        self._stale = True
+        self._rested = 0
+
+    @property
+    def plot(self) -> pygame.FRect:
+        """The box of the curves, in points."""
+        box = self.box
+        return pygame.FRect(box.x, box.y + _HEADER, box.width - _GUTTER, box.height - _HEADER - _FOOT)
+
+    @property
+    def limits(self) -> Limits:
+        """The lowest and the highest value of the vertical axis, where it is going."""
+        return self._goal
+
+    def read(self, height: float) -> str:
+        """Write the value at a height of the vertical axis."""
+        return self._read(self._value(height))
+
+    @property
+    def _goal(self) -> Limits:
+        return self.fixed or (float(self._lines[0]), float(self._lines[-1]))
+
+    # What is shown
+
+    def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = ()) -> None:
+        """Show these runs, the current one first; the same numbers again cost nothing. Call it when new ones came."""
+        runs = [Run(each, log=self._log) for each in series]
+        start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
+        span = (start, end) if end > start else (start, start + 1.0)
+        if (
+            span == self._x_range
+            and tuple(ticks) == self._ticks
+            and len(runs) == len(self._runs)
+            and all(run.same(old) for run, old in zip(runs, self._runs, strict=True))
+        ):
+            return
+        first = not any(run.last() is not None for run in self._runs)
+        self._runs, self._x_range, self._ticks = runs, span, tuple(ticks)
+        self._told = tuple(dict.fromkeys((start, max(start, end))))
+        self._set_limits()
+        if first:
+            self._shown = self._goal
+        self._stale = True
+
+    def _set_limits(self) -> None:
+        if self.fixed:
+            return
+        start, end = self._x_range
+        shown = [run.y[(run.x >= start) & (run.x <= end)] for run in self._runs]
+        span = plotting.robust_range(np.concatenate(shown)) if shown else None
+        if span is not None:
+            self._lines = plotting.steady_grid(span, self._lines, self._make_grid)
+
+    def mark(self, x: float | None, caption: str = "") -> None:
+        """Let an upright line stand at x, with a dot on the current run's curve and a caption; None for none."""
+        self._marker = None if x is None else (x, caption)
+
+    def hover(self, point: Point | None) -> None:
+        """Let the cursor follow the mouse, a point of the canvas; None for none."""
+        self.point_to(None if point is None else self.x_at(point), pointed=True)
+
+    def point_to(self, x: float | None, *, pointed: bool = False) -> None:
+        """Put the cursor at x. Only where it is `pointed` at by the mouse, a read-out says what is there."""
+        self._cursor, self._pointed = x, pointed and x is not None
+
+    def x_at(self, point: Point) -> float | None:
+        """Return the x under a point of the canvas, or None outside the chart."""
+        plot = self.plot
+        if not plot.inflate(2 * _MARGIN, 0).collidepoint(point) and not self._on_foot(point):
+            return None
+        share = min(max((point[0] - plot.x) / plot.width, 0.0), 1.0)
+        return self._x_range[0] + share * (self._x_range[1] - self._x_range[0])
+
+    def _on_foot(self, point: Point) -> bool:
+        plot = self.plot
+        return plot.x <= point[0] <= plot.right and plot.bottom <= point[1] <= self.box.bottom
+
+    def place(self, x: float, y: float) -> Point:
+        """Return the point of the canvas for x and a value, no further out than the chart's edges."""
+        plot, (start, end), (low, high) = self.plot, self._x_range, self._shown
+        across = min(max((x - start) / (end - start), 0.0), 1.0)
+        up = min(max((y - low) / (high - low), 0.0), 1.0)
+        return plot.x + across * plot.width, plot.bottom - up * plot.height
+
+    # Time
+
+    @property
+    def waiting(self) -> int:
+        """For how many steps there has been something new to draw; 0 if there is nothing, or it is too soon."""
+        moving = self._shown != self._goal
+        return self._rested if moving or (self._stale and self._rested >= _REST) else 0
+
+    def update(self, at_once: bool = False, *, turn: bool = True) -> None:
+        """Let 1/60 s pass: limits ease, or jump `at_once`. On its `turn`, new numbers are drawn next."""
+        self._rested += 1
+        if self._shown != self._goal:
+            self._shown = self._goal if at_once else _eased(self._shown, self._goal)
+            self._stale = True
+        if turn and self.waiting:
+            self.renew()
+
+    def renew(self) -> None:
+        """Have the sheet drawn anew in the next frame."""
+        self._painted, self._stale, self._rested = None, False, 0
+
+    # The picture
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the chart, and the marker and the cursor over it."""
+        if self._painted is None or self._painted[0].scale != canvas.scale:
+            self._painted = self._paint(canvas)
+        canvas.lay(self._painted[0], self.box.x - _MARGIN, self.box.y - _MARGIN)
+        if self._marker:
+            self._draw_marker(canvas, *self._marker)
+        if self._cursor is not None:
+            self._draw_cursor(canvas, self._cursor)
+
+    def _paint(self, canvas: Canvas) -> Painted:
+        self.redraws += 1
+        sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
+        box = pygame.FRect(_MARGIN, _MARGIN, *self.box.size)
+        plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)
+        self._paint_header(sheet, box)
+        area = sheet.rect(*plot)
+        axes = Axes(self._x_range, self._shown, self._goal)
+        traces = [trace_run(run, axes, area.width) for run in self._runs]
+        if any(np.isfinite(values).any() for values in traces):
+            self._paint_grid(sheet, plot)
+        else:
+            self._paint_empty(sheet, plot)
+        for run, values in reversed(list(zip(self._runs, traces, strict=True))):
+            paint_run(sheet, area, run, values, axes)
+        self._paint_ticks(sheet, plot)
+        return sheet, traces
+
+    def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
+        value = self._runs[0].last() if self._runs else None
+        figure, colour = ("–", FAINT) if value is None else (self.read(value), self._runs[0].series.colour)
+        right = (box.right - _GUTTER, box.y + 13)
+        taken = sheet.text(figure, right, size=TEXT, colour=colour, align="right", tabular=True)
+        room = taken.left - _APART - box.x
+        sheet.text(self.label, (box.x, box.y + 12), size=LABEL, colour=MUTE, weight="medium", room=room)
+
+    def _paint_empty(self, sheet: Canvas, plot: pygame.FRect) -> None:
+        for y in (plot.top, plot.bottom):
+            sheet.line((plot.x, y), (plot.right, y), LINE)
+        sheet.text(self._empty, (plot.x, plot.bottom - 9), size=SMALL, colour=_AXES, room=plot.width)
+
+    def _paint_grid(self, sheet: Canvas, plot: pygame.FRect) -> None:
+        low, high = self._shown
+        lines = self._make_grid(*self.fixed) if self.fixed else self._lines
+        for number, value in enumerate(lines):
+            up = (float(value) - low) / (high - low)
+            if -0.01 <= up <= 1.01:
+                y = plot.bottom - up * plot.height
+                sheet.line((plot.x, y), (plot.right, y), LINE)
+                if number in (0, len(lines) - 1):
+                    text = plotting.round_number(self._value(float(value)))
+                    sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES)
+        if self._log:
+            for word, y in zip(texts.CHART_LOG, (plot.centery - 2, plot.centery + 9), strict=True):
+                sheet.text(word, (plot.right + 6, y), size=_AXES_SIZE, colour=_AXES)
+        ends: tuple[tuple[float, Align], ...] = ((plot.x, "left"), (plot.right, "right"))
+        for (x, align), told in zip(ends, self._told, strict=False):
+            place = (x, plot.bottom + 15)
+            sheet.text(self.read_x(told), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align)
+
+    def _paint_ticks(self, sheet: Canvas, plot: pygame.FRect) -> None:
+        start, end = self._x_range
+        last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
+        for tick in self._ticks:
+            x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
+            if tick.kind == "knob":
+                sheet.marker("diamond", (x, plot.bottom), 8, HUMAN)
+            elif x - last >= _TICK_SPACING:
+                sheet.surface.fill(FAINT, (sheet.px(x), top, max(1, sheet.px(1)), height))
+                last = x
+
+    def _value_at(self, x: float) -> float | None:
+        """Return the height of the current run's curve at x."""
+        traces = self._painted[1] if self._painted else []
+        if not traces:
+            return None
+        values = traces[0]
+        start, end = self._x_range
+        column = round((x - start) / (end - start) * (len(values) - 1))
+        if not 0 <= column < len(values) or np.isnan(values[column]):
+            return None
+        return float(values[column])
+
+    def _draw_marker(self, canvas: Canvas, x: float, caption: str) -> None:
+        plot = self.plot
+        value = self._value_at(x)
+        across, y = self.place(x, self._shown[0] if value is None else value)
+        canvas.line((across, plot.top), (across, plot.bottom), INK, 1, 0.6)
+        canvas.dot((across, y), 4, INK)
+        if caption:
+            width = canvas.text_width(caption, size=SMALL) + 12
+            left = across + 6 if across + 6 + width <= self.box.right else across - 6 - width
+            left = max(left, self.box.x)
+            top = plot.bottom - 22 if y < plot.bottom - 28 else plot.top + 3
+            canvas.rounded((left, top, width, 18), 4, NIGHT0, 0.8)
+            canvas.text(caption, (left + 6, top + 13), size=SMALL)
+
+    def _draw_cursor(self, canvas: Canvas, x: float) -> None:
+        plot = self.plot
+        across, _ = self.place(x, 0.0)
+        canvas.line((across, plot.top), (across, plot.bottom), MUTE, 1, 0.7)
+        slack = _SLACK * (self._x_range[1] - self._x_range[0])
+        rows = []
+        for run in self._runs:
+            point = run.nearest(x, slack)
+            if point:
+                canvas.dot(self.place(*point), 3, run.series.colour)
+                rows.append(Row(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
+        if self._pointed:
+            tick = self._tick_at(across)
+            draw_tooltip(canvas, (across, plot.top), self.box, [self.read_x(x), *([tick.text] if tick else [])], rows)
+
+    def _tick_at(self, across: float) -> Tick | None:
+        """Return the tick nearest to a place on the canvas, if one is near; a turned knob before a checkpoint."""
+        away = {tick: abs(self.place(tick.x, 0.0)[0] - across) for tick in self._ticks}
+        near = [tick for tick in self._ticks if away[tick] <= _REACH]
+        return min(near, key=lambda tick: (tick.kind != "knob", away[tick]), default=None)
+
+
+def _eased(shown: Limits, goal: Limits) -> Limits:
+    """Return limits a step nearer to the goal; at once if they are near, or worlds away."""
+    wide, far = goal[1] - goal[0], max(abs(goal[0] - shown[0]), abs(goal[1] - shown[1]))
+    if far < 0.004 * wide or far > 20 * wide:
+        return goal
+    low, high = (old + (new - old) * _EASE for old, new in zip(shown, goal, strict=True))
+    return low, high

@@ -1,0 +1,59 @@
+"""Charts over one x axis, which take turns at being drawn anew, so that no frame draws more than one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pygame
+
+from game.charts.chart import Chart
+from game.drawing.canvas import Canvas, Point
+
+
+class Charts:
+    """Charts over one x axis, which share the cursor and the marker and take turns at being drawn anew."""
+
+    def __init__(self, charts: Sequence[Chart]) -> None:
+        self.charts = tuple(charts)
+
+    def hover(self, point: Point | None) -> float | None:
+        """Let the cursors follow the mouse; the chart under it tells its values. Returns the x there."""
+        x = self.x_at(point) if point else None
+        for chart in self.charts:
+            chart.point_to(x, pointed=point is not None and chart.x_at(point) is not None)
+        return x
+
+    def follow(self, event: pygame.event.Event) -> None:
+        """Follow the mouse, or what stands in for it: an event, its position in points."""
+        if event.type == pygame.MOUSEMOTION:
+            self.hover(event.pos)
+
+    @property
+    def box(self) -> pygame.Rect:
+        """Where they are, all together."""
+        first, *others = (pygame.Rect(chart.box) for chart in self.charts)
+        return first.unionall(others)
+
+    def x_at(self, point: Point) -> float | None:
+        """Return the x under a point of the canvas, or None outside all charts."""
+        return next((x for chart in self.charts if (x := chart.x_at(point)) is not None), None)
+
+    def mark(self, x: float | None, caption: str = "") -> None:
+        """Put the marker at x in every chart, its caption in the first."""
+        for number, chart in enumerate(self.charts):
+            chart.mark(x, caption if number == 0 else "")
+
+    def update(self, at_once: bool = False, *, turn: bool = True) -> None:
+        """Let 1/60 s pass; on its `turn`, the chart that has waited longest is drawn anew in the next frame."""
+        for chart in self.charts:
+            chart.update(at_once, turn=False)
+        if not turn:
+            return
+        patient = max(self.charts, key=lambda chart: chart.waiting, default=None)
+        if patient is not None and patient.waiting:
+            patient.renew()
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw all charts; the one with the read-out last, so that nothing lies over it."""
+        for chart in sorted(self.charts, key=lambda chart: chart._pointed):
+            chart.draw(canvas)

@@ -1,0 +1,101 @@
+"""The curve of a run, painted onto a chart's sheet: a smoothed line over raw points, with marks where it leaves."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+import pygame
+
+from game.charts import plotting
+from game.charts.plotting import Bools, Limits, Numbers
+from game.charts.series import Run
+from game.drawing.canvas import Canvas
+from game.drawing.shapes import Shape
+from game.drawing.tokens import Colour
+
+_LINE_WIDTH: Final = 1.6
+_SPECK: Final = 0.55  # radius of a raw point
+_SPECK_ALPHA: Final = 0.5
+_SMOOTHING: Final = 0.022  # of the width, to either side
+_ROOM: Final = 0.15  # of the vertical axis: values further out count as so far out, lest they drag the line along
+_BEYOND: Final = 0.01  # of the vertical axis: what lies further out is marked
+_ARROWS_APART: Final = 14.0
+_BLEED: Final = 3.0  # so far a line may reach out of the plot
+
+
+class Axes(NamedTuple):
+    """What a plot spans: along x, upright as shown now, and upright where that is easing to."""
+
+    x_range: Limits
+    shown: Limits
+    goal: Limits
+
+    def across(self, x: Numbers, columns: int) -> Numbers:
+        """Return the places of x among the columns of pixels."""
+        start, end = self.x_range
+        places: Numbers = (x - start) / (end - start) * (columns - 1)
+        return places
+
+
+def trace_run(run: Run, axes: Axes, columns: int) -> Numbers:
+    """Return the value of a run's line in each column of pixels, NaN where there is none."""
+    low, high = axes.goal
+    room = _ROOM * (high - low)
+    kept = np.where(np.isfinite(run.y), np.clip(run.y, low - room, high + room), np.nan)
+    radius = round(_SMOOTHING * columns) if run.series.smooth else 0
+    return plotting.trace(run.x, kept, axes.x_range, columns, radius)
+
+
+def paint_run(sheet: Canvas, area: pygame.Rect, run: Run, values: Numbers, axes: Axes) -> None:
+    """Paint a run into an area of pixels of the sheet; `values` is its `trace_run`."""
+    colour, scale, bleed = run.series.colour, sheet.scale, sheet.px(_BLEED)
+    low, high = axes.shown
+    size = (area.width, area.height + 2 * bleed)
+    corner = (area.x, area.y - bleed)
+
+    def rows(of: Numbers) -> Numbers:
+        row = (high - of) / (high - low) * (area.height - 1) + bleed
+        clipped: Numbers = np.clip(row, -4.0 * bleed, size[1] + 4.0 * bleed)
+        return clipped
+
+    if not run.series.dash and run.series.smooth:
+        kept = plotting.thinned(run.x, run.y, axes.x_range, area.width)
+        columns = axes.across(run.x[kept], area.width)
+        dots = plotting.specks(columns, rows(run.y[kept]), size, _SPECK * scale)
+        _cover(sheet.surface, corner, colour, dots, _SPECK_ALPHA)
+    heights = rows(values)
+    dash = tuple(length * scale for length in run.series.dash)
+    first, line = plotting.stroke(heights, size[1], _LINE_WIDTH * scale, dash)
+    _cover(sheet.surface, (corner[0], corner[1] + first), colour, line)
+    for column in plotting.alone(values):
+        sheet.dot(((area.x + column) / scale, (corner[1] + heights[column]) / scale), _LINE_WIDTH, colour)
+    _paint_arrows(sheet, area, run, axes)
+
+
+def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: Run, axes: Axes) -> None:
+    """Mark where values lie beyond the chart, also a single one that is lost in the smoothed line."""
+    (low, high), (start, end) = axes.goal, axes.x_range
+    slack = _BEYOND * (high - low)
+    shown = (run.x >= start) & (run.x <= end)
+    at, y, scale = run.x[shown], run.y[shown], sheet.scale
+    above: tuple[Shape, Bools, int] = ("triangle", y > high + slack, area.top)
+    below: tuple[Shape, Bools, int] = ("triangle_down", y < low - slack, area.bottom)
+    for shape, beyond, row in (above, below):
+        if beyond.any():
+            places = (area.x + axes.across(at, area.width)) / scale
+            for x in plotting.starts(beyond, places, _ARROWS_APART):
+                sheet.marker(shape, (x, row / scale), 8, run.series.colour)
+
+
+def _cover(
+    surface: pygame.Surface, corner: tuple[int, int], colour: Colour, cover: Numbers, alpha: float = 1.0
+) -> None:
+    """Lay a colour over a surface, as far as `cover` (rows, columns) says."""
+    rows, columns = cover.shape
+    layer = pygame.Surface((columns, rows), pygame.SRCALPHA)
+    layer.fill((*colour, 0))
+    pixels = pygame.surfarray.pixels_alpha(layer)
+    pixels.T[...] = np.multiply(cover, 255 * alpha, dtype=np.float32)
+    del pixels
+    surface.blit(layer, corner)

@@ -1,0 +1,106 @@
+"""What a chart shows: the curves of runs, and moments worth a mark."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from game.charts.plotting import Numbers
+from game.charts.tooltip import draw_swatch
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import MUTE, NET, SMALL, Colour
+
+# Blue is the run of now; the others differ from it, and from each other, in dashes, and in colour for eyes of
+# every kind.
+RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = (
+    (NET, ()),
+    ((236, 140, 190), (7.0, 5.0)),
+    ((222, 214, 160), (2.0, 4.0)),
+    ((144, 98, 244), (10.0, 4.0, 2.0, 4.0)),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """One run's curve.
+
+    Attributes:
+        x: (n,) rising; where one is not finite, the point is left out.
+        y: (n,) values; one that is not finite makes a gap.
+        dash: on, off, ... in points; empty for a solid line, which also shows its raw points.
+        smooth: whether the line is smoothed; not for what has no noise.
+
+    """
+
+    x: npt.ArrayLike
+    y: npt.ArrayLike
+    name: str
+    colour: Colour = NET
+    dash: tuple[float, ...] = ()
+    smooth: bool = True
+
+
+@dataclass(frozen=True)
+class Tick:
+    """A moment worth a mark below the chart: a checkpoint, or a knob that was turned."""
+
+    x: float
+    text: str
+    kind: Literal["checkpoint", "knob"] = "checkpoint"
+
+
+class Run:
+    """A series with its numbers copied: whatever becomes of the arrays, the chart shows these.
+
+    For a `log` axis, `y` is the logarithm to base 10, NaN where there is none.
+    """
+
+    def __init__(self, series: Series, *, log: bool = False) -> None:
+        self.series = series
+        self.look = (series.name, series.colour, series.dash, series.smooth)
+        x, y = np.array(series.x, float).ravel(), np.array(series.y, float).ravel()
+        length = min(len(x), len(y))
+        placed = np.isfinite(x[:length])
+        self.x: Numbers = x[:length][placed]
+        y = y[:length][placed]
+        self.y: Numbers = np.log10(np.where(y > 0, y, np.nan)) if log else y
+
+    def same(self, other: Run) -> bool:
+        """Say whether the other would be drawn alike."""
+        same_x = self.look == other.look and np.array_equal(self.x, other.x)
+        return same_x and np.array_equal(self.y, other.y, equal_nan=True)
+
+    @cached_property
+    def _finite(self) -> npt.NDArray[np.intp]:
+        return np.flatnonzero(np.isfinite(self.y))
+
+    def nearest(self, x: float, slack: float) -> tuple[float, float] | None:
+        """Return the finite point nearest to x, unless the run ends more than `slack` before it or begins after."""
+        finite = self._finite
+        if not len(finite):
+            return None
+        at = self.x[finite]
+        if not at[0] - slack <= x <= at[-1] + slack:
+            return None
+        after = min(int(np.searchsorted(at, x)), len(at) - 1)
+        before = max(after - 1, 0)
+        index = before if x - at[before] <= at[after] - x else after
+        return float(at[index]), float(self.y[finite[index]])
+
+    def last(self) -> float | None:
+        """Return the latest finite value."""
+        return float(self.y[self._finite[-1]]) if len(self._finite) else None
+
+
+def draw_legend(canvas: Canvas, series: Sequence[Series], position: Point) -> float:
+    """Name runs side by side on one baseline, each with a piece of its line; return where they end."""
+    x, y = position
+    for each in series:
+        draw_swatch(canvas, (x, y - 4), each.colour, each.dash)
+        x = canvas.text(each.name, (x + 27, y), size=SMALL, colour=MUTE).right + 20
+    return x - 20

@@ -1,0 +1,88 @@
+"""The dial: a line from you to the network, turned by keys, wheel, drag or a pad's stick, and who flies above it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pygame
+
+from game.core import texts
+from game.core.settings import Settings
+from game.drawing.canvas import Canvas
+from game.drawing.shapes import Shape
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
+from game.flight.credit import Stick
+from game.input.controls import Command, translate
+
+_MIDDLE: Final = VIEW_SIZE[0] / 2
+_TRACK: Final = (_MIDDLE - 90, _MIDDLE + 90)
+_LINE: Final = 59.0
+_HOLD: Final = pygame.Rect(_TRACK[0] - 14, _LINE - 12, 208, 24)  # where the mouse takes hold of the handle
+_KEY_STEP: Final = 0.1
+_WHEEL_STEP: Final = 0.05
+_EASE: Final = 0.2
+
+
+class Dial:
+    """Shows and turns `settings.assist`; the handle goes to the network's end while that has the stick."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._shown = settings.assist
+        self._dragged = False
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Turn with an event, the mouse's in points; whether it was meant for the dial."""
+        match event.type:
+            case pygame.MOUSEWHEEL:
+                self._turn(self._settings.assist + _WHEEL_STEP * event.y)
+            case pygame.MOUSEBUTTONDOWN if event.button == 1 and _HOLD.collidepoint(event.pos):
+                self._dragged = True
+                self._drag(event.pos[0])
+            case pygame.MOUSEMOTION if self._dragged:
+                self._drag(event.pos[0])
+            case pygame.MOUSEBUTTONUP if self._dragged and event.button == 1:
+                self._dragged = False
+            case _:
+                command = translate(event)
+                if command not in (Command.SLOWER, Command.FASTER):
+                    return False
+                self._turn(self._settings.assist + (_KEY_STEP if command is Command.FASTER else -_KEY_STEP))
+        return True
+
+    def follow(self, stick: Stick) -> None:
+        """Let 1/60 s pass for the handle, which stands at what acts: nothing, where nobody can share the stick."""
+        assist = self._settings.assist if stick is Stick.BOTH else 0.0
+        wanted = 1.0 if stick is Stick.NETWORK else assist
+        at_once = self._settings.reduced_motion or self._dragged
+        self._shown += (1.0 if at_once else _EASE) * (wanted - self._shown)
+
+    def draw(self, canvas: Canvas, text: str, stick: Stick, lamp: tuple[Shape, Colour, float]) -> None:
+        """Write who flies, behind a lamp of that shape, colour and glow, and draw the line."""
+        draw_title(canvas, text, lamp)
+        left, right = _TRACK
+        for word, x, align in zip(texts.DIAL_ENDS, (left - 10, right + 10), ("right", "left"), strict=True):
+            canvas.text(word, (x, _LINE + 4), size=SMALL, colour=MUTE, align=align)  # type: ignore[arg-type]
+        canvas.pill((left, _LINE - 1, right - left, 2), FAINT, 0.8)
+        reach = self._shown * (right - left)
+        if reach >= 1:
+            canvas.pill((left, _LINE - 1, reach, 2), NET)
+        handle = (left + reach, _LINE)
+        canvas.dot(handle, 5 + self._dragged, HUMAN if stick is Stick.PERSON else INK)
+
+    def _drag(self, x: float) -> None:
+        share = (x - _TRACK[0]) / (_TRACK[1] - _TRACK[0])
+        self._turn(round(share / _WHEEL_STEP) * _WHEEL_STEP)
+
+    def _turn(self, assist: float) -> None:
+        self._settings.assist = round(min(max(assist, 0.0), 1.0), 2)
+
+
+def draw_title(canvas: Canvas, text: str, lamp: tuple[Shape, Colour, float]) -> None:
+    """Write who flies, with a lamp before it."""
+    shape, colour, glow = lamp
+    width = canvas.text_width(text, size=TEXT)
+    canvas.text(text, (_MIDDLE + 9, 41), size=TEXT, align="centre")
+    spot = (_MIDDLE - width / 2 - 8, 36)
+    canvas.glow(spot, 16, colour, glow)
+    canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)

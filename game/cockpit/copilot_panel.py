@@ -1,0 +1,185 @@
+"""The panel that explains a shared step: what each action is worth, which were good enough, and whose it became."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pygame
+
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS
+from ai.lander.ground import Ground
+from ai.lander.pilots import COAST
+from game.cockpit import hud
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIEW_SIZE
+from game.flight.flight import Flight, Hand
+from game.flight.networks import Thinker
+from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
+
+if TYPE_CHECKING:
+    from ai.copilot.copilot import SharedDecision
+
+PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 36 - 280, 84, 280, 388)
+PADS_HIGH: Final = 102  # what the rows of three pads add
+_LEFT: Final = 20  # of what stands on the panel, from its corner
+_WIDTH: Final = PANEL.width - 40
+_VALUES: Final = 62  # the first line of the values, from its top
+_WHY: Final = _VALUES + int(HEIGHT) + 20
+_PADS: Final = _WHY + 114  # the first pad's row
+_PAD_BAR: Final = (_LEFT + 96, _WIDTH - 96)
+_STAYS: Final = 50  # steps that the word on an override is kept, to be read
+
+Why = tuple[str, str, str]  # a title, and two lines
+
+
+class Insight:
+    """Follows a flight that is shared, or that a network flies; `shown` while there is something to explain.
+
+    Attributes:
+        values: what is drawn of the decision that is flown; None before the first.
+        why: whose action it became, and why: a title and two lines.
+
+    """
+
+    def __init__(self, ground: Ground) -> None:
+        self.shown = False
+        self.values: QValues | None = None
+        self.why: Why = ("", "", "")
+        self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
+        self._likely: list[float] = []
+        self._override: Why | None = None  # why the latest one was, as long as that is still to be read
+        self._stays = 0
+        self._seen: object = None
+
+    def follow(self, flight: Flight) -> None:
+        """Note the step just flown."""
+        if flight.over:
+            return
+        self._stays = max(0, self._stays - 1)
+        if not self._stays:
+            self._override = None
+        alone = flight.hand is Hand.NETWORK and isinstance(flight.network, Thinker)
+        decision = flight.alone if alone else flight.decision if flight.shared else None
+        self.shown = decision is not None
+        if decision is None or decision is self._seen:
+            return
+        self._seen = decision
+        if decision is flight.alone:
+            self.values, self._likely = QValues.of(flight.alone), []
+            first, second = decision_words(flight.alone)
+            self.why, self._override = (texts.INSIGHT_ALONE, first, second), None
+        elif flight.decision is not None:
+            self._explain(flight.decision, int(flight.env.target[0]))
+
+    def _explain(self, decision: SharedDecision, pad: int) -> None:
+        """Show a shared decision, by what actions are worth on the way to one of the pads."""
+        from ai.copilot.copilot import Rule
+
+        self._likely = decision.likely[0].tolist()
+        self.values = shared_values(decision, pad)
+        self.why = why(decision, self.values)
+        if self.values.asked is None:
+            self._override = None
+        elif int(decision.rule[0]) != Rule.PILOT:
+            self._override, self._stays = self.why, _STAYS
+
+    def draw(self, canvas: Canvas, share: float) -> None:
+        """Draw the panel; `share` is the person's share of the flight so far."""
+        pads = self._likely if len(self._likely) > 1 else []
+        lower, left, top = PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
+        canvas.panel((PANEL.left, top, PANEL.width, PANEL.height + lower))
+        canvas.text(texts.MIND_TITLE, (left, top + 34))
+        if self.values is not None:
+            draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
+        canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
+        self._draw_why(canvas, left, top + _WHY + 26)
+        if pads:
+            self._draw_pads(canvas, pads)
+        hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share)
+
+    def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
+        """Say whose action it became; the latest override stays to be read for a moment, and is said to be past."""
+        title, *lines = self._override or self.why
+        if self._override not in (None, self.why):
+            title = texts.INSIGHT_BEFORE.format(title=title)
+        canvas.text(title, (left, top), colour=NET if self._override else INK, room=_WIDTH)
+        for number, line in enumerate(lines):
+            canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
+
+    def _draw_pads(self, canvas: Canvas, pads: Sequence[float]) -> None:
+        left, top, surest = PANEL.left + _LEFT, PANEL.top + _PADS, max(pads)
+        canvas.text(texts.INSIGHT_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium")
+        for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
+            y, likeliest = top + 22 * number, chance == surest
+            canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
+            bar = (PANEL.left + _PAD_BAR[0], y - 1.5, _PAD_BAR[1], 3)
+            canvas.bar(bar, chance, HUMAN if likeliest else mix(FAINT, HUMAN, 0.45))
+
+
+def shared_values(decision: SharedDecision, pad: int) -> QValues:
+    """Return what there is to show of a shared decision for one lander, on the way to one of the pads."""
+    from ai.copilot.copilot import Mode, guardian_margin
+
+    points, asked = decision.points[0, pad], int(decision.pilot[0])
+    feasible, allowed = decision.feasible[0], None
+    if asked != COAST and decision.mode is Mode.GUARDIAN:  # it compares what is asked for with its own, nothing else
+        feasible = (np.arange(NUM_ACTIONS) != asked) | feasible
+        allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
+    elif asked != COAST:
+        allowed = (1.0 - decision.assist) * float(np.ptp(points))
+    return QValues(tuple(points.tolist()), int(decision.action[0]), None if asked == COAST else asked,
+                   tuple(feasible.tolist()), allowed)  # fmt: skip
+
+
+def why(decision: SharedDecision, values: QValues) -> Why:
+    """Say whose action it became, and why, by the figures that decided it."""
+    from ai.copilot.copilot import Mode, Rule
+
+    rule, asked = Rule(int(decision.rule[0])), values.asked
+    if asked is None:
+        return texts.INSIGHT_WHY[Rule.HANDS_OFF.name]
+    title, *lines = texts.INSIGHT_WHY[rule.name]
+    if not values.readable:
+        return title, *texts.VALUES_DAMAGED
+    name = ACTION_NAMES[asked].capitalize()
+    if decision.mode is Mode.GUARDIAN:
+        return title, *_guarded(decision, name)
+    loss, allowed = values.loss(asked), values.allowed or 0.0
+    if rule is Rule.PILOT and loss == 0.0:
+        return title, texts.INSIGHT_SAME.format(asked=name), ""
+    if rule is Rule.PILOT and loss > allowed * (1 + 1e-5):  # by what it is worth on the way to another pad
+        return title, texts.INSIGHT_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.INSIGHT_ANOTHER
+    less, most = _told_apart(loss, allowed)
+    if rule is Rule.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
+        lines[1] = texts.INSIGHT_EVERY_PAD
+    flown = ACTION_NAMES[values.flown]
+    first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)
+    return title, first, second
+
+
+def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
+    """Say by how much a guardian's own action is better, whichever pad is meant, and whether that is much."""
+    from ai.copilot.copilot import guardian_margin
+
+    asked, best = int(decision.pilot[0]), int(decision.best[0])
+    if asked == best:
+        return texts.INSIGHT_SAME.format(asked=name), ""
+    gain, margin = float(decision.gain[0]), guardian_margin(decision.assist)
+    if gain <= 0.0:
+        return texts.INSIGHT_SAME_GOOD.format(asked=name), ""
+    less, most = _told_apart(gain, margin)
+    first = texts.INSIGHT_WORSE.format(asked=name, loss=less, best=ACTION_NAMES[best])
+    return first, texts.INSIGHT_MARGIN[gain > margin].format(allowed=most)
+
+
+def _told_apart(one: float, other: float) -> tuple[str, str]:
+    """Write two figures in so many digits that what is more also reads as more."""
+    for digits in range(1, 5):
+        words = f"{one:.{digits}f}", f"{other:.{digits}f}"
+        if words[0] != words[1] or one == other:
+            break
+    return words

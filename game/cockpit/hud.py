@@ -1,0 +1,312 @@
+"""Read-outs, bars and cards over the world: thin figures, hairlines, one panel at most."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.lander.environment import LanderEnv
+from ai.lander.rules import tenths
+from game.core import texts
+from game.drawing.canvas import Canvas, Point
+from game.drawing.paint_cache import Kept
+from game.drawing.tokens import (
+    FAINT,
+    FIGURE,
+    HUMAN,
+    INK,
+    LABEL,
+    LINE,
+    MARGIN,
+    MEDALS,
+    MUTE,
+    NET,
+    NIGHT0,
+    SMALL,
+    TEXT,
+    TITLE,
+    VIEW_SIZE,
+    Colour,
+)
+from game.ui.hints import draw_hints, hints_width
+
+# Four columns on the left, two on the right: the pad stands in the middle.
+COLUMNS: Final = (64.0, 186.0, 308.0, 430.0, 1002.0, 1124.0)
+_LABEL_LINE: Final = 663.0
+_FIGURE_LINE: Final = 697.0
+_BAR: Final = (92.0, 2.0)
+_BAR_TOP: Final = 708.0
+_SHADE, _SHADE_TOP = 0.6, 640.0  # how dark it is behind them, at most, and from where on
+_CAPITAL: Final = 0.72  # height of a figure, in sizes of its type
+# A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
+_ASIDE, _ABOVE = 4.0, 16.0
+_WORDS: Final = (180.0, 66.0)
+_FIGURES: Final = Kept(64)
+_LITTLE_TIME: Final = 5.0
+_PLENTY_OF_TIME: Final = 120.0
+
+
+@dataclass(frozen=True)
+class Readout:
+    """One figure on the ground line.
+
+    Attributes:
+        fill: how much of the bar is full, 0 to 1; None for no bar.
+        limit: where on the bar the limit's tick stands; None for no limit.
+        within: whether the limit is kept; None where nothing is to be kept.
+
+    """
+
+    label: str
+    figure: str
+    unit: str
+    fill: float | None = None
+    limit: float | None = None
+    within: bool | None = None
+
+
+def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
+    """What a pilot needs to know."""
+    limits = env.limits
+    across, up = env.velocity[slot].tolist()
+    if env.conditions.moves:  # what counts on a pad that moves is how one moves beside it
+        across -= float(env.pad_velocity[slot])
+    tilt = float(env.tilt[slot])
+
+    def against(label: str, figure: str, unit: str, value: float, limit: float) -> Readout:
+        return Readout(label, figure, unit, abs(value) / (1.8 * limit), 1 / 1.8, abs(value) <= limit)
+
+    descent = -up if abs(up) >= 0.05 else 0.0
+    return [
+        Readout(texts.ALTITUDE, f"{max(0.0, float(env.altitude[slot])):.1f}", "m"),
+        against(texts.DESCENT, _signed(descent), "m/s", max(0.0, descent), limits.touch_speed),
+        against(texts.DRIFT, f"{abs(across):.1f}", "m/s", across, limits.slide_speed),
+        against(texts.TILT, f"{math.degrees(tilt):.0f}", "°", tilt, limits.touch_tilt),
+        _fuel(env, slot),
+        _time(env, slot),
+    ]
+
+
+def _time(env: LanderEnv, slot: int) -> Readout:
+    """Say how much time is left, or, where there is plenty, how much has passed."""
+    flown, limit = float(env.time[slot]), env.limits.time
+    if limit > _PLENTY_OF_TIME:
+        return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s")
+    left = max(0.0, limit - flown)
+    return Readout(texts.TIME_LEFT, f"{left:.0f}", "s", left / limit, within=None if left > _LITTLE_TIME else False)
+
+
+def _fuel(env: LanderEnv, slot: int) -> Readout:
+    """Say what was burnt, or, where the tank is small, what is left."""
+    burnt, tank = tenths(float(env.fuel[slot])), env.conditions.tank  # as the card has it, and as medals go by
+    if tank == math.inf:
+        return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
+    left = max(0.0, tank - burnt)
+    return Readout(texts.FUEL_LEFT, f"{left:.1f}", "s", left / tank, within=None if left > 0.2 * tank else False)
+
+
+def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
+    """Draw figures side by side; a bar says how far from the limit, a mark beside the label on which side."""
+    top = canvas.px(_SHADE_TOP)
+    canvas.surface.blit(_shade((canvas.size[0], canvas.size[1] - top)), (0, top))
+    for x, readout in zip(columns, readouts, strict=True):
+        colour = INK if readout.within is None else canvas.palette.good if readout.within else canvas.palette.warn
+        shows = readout.label, readout.figure, readout.unit, readout.within
+        box = (x - _ASIDE, _LABEL_LINE - _ABOVE, *_WORDS)
+        _FIGURES.draw(canvas, box, shows, partial(_paint_readout, readout=readout, colour=colour))
+        if readout.fill is not None:
+            canvas.bar((x, _BAR_TOP, *_BAR), readout.fill, colour)
+        if readout.limit is not None:
+            canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
+
+
+@lru_cache(maxsize=2)
+def _shade(size: tuple[int, int]) -> pygame.Surface:
+    """Return what quietens craters and wrecks behind the figures, more and more towards the edge."""
+    shade = pygame.Surface(size, pygame.SRCALPHA)
+    shade.fill(NIGHT0)
+    rise = np.linspace(0.0, 1.0, size[1]) ** 0.7
+    pygame.surfarray.pixels_alpha(shade)[:] = np.round(255 * _SHADE * rise).astype(np.uint8)
+    return shade
+
+
+def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
+    """Draw label, mark, figure and unit on a sheet of their own: most stay the same for some frames."""
+    line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
+    label = canvas.text(readout.label, (_ASIDE, _ABOVE), size=LABEL, colour=MUTE, weight="medium")
+    if readout.within is not None:
+        _draw_mark(canvas, (label.right + 9, _ABOVE - 4), readout.within)
+    figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=FIGURE, colour=colour, weight="light", tabular=True)
+    gap, rise = (3, _CAPITAL * (FIGURE - SMALL)) if readout.unit == "°" else (6, 0.0)
+    canvas.text(readout.unit, (figure.right + gap, line - rise), size=SMALL, colour=MUTE)
+
+
+def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> None:
+    """Say at the top who flies; a line along the edge of the view sweeps out from the middle in their colour."""
+    middle = VIEW_SIZE[0] / 2
+    width = canvas.text_width(text, size=TEXT)
+    canvas.text(text, (middle + 9, 41), size=TEXT, align="centre")
+    canvas.glow((middle - width / 2 - 8, 36), 14, colour, 0.8)
+    canvas.dot((middle - width / 2 - 8, 36), 4, colour)
+    half = max(90.0, width / 2 + 14)
+    reach = half * sweep
+    canvas.pill((middle - half, 54, 2 * half, 2), FAINT, 0.5)
+    canvas.pill((middle - reach, 54, max(2.0, 2 * reach), 2), colour)
+
+
+def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:
+    """Name, top left, what is being flown, and what is asked of the flight."""
+    canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
+    canvas.text(large, (MARGIN, 58), size=TEXT)
+    canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
+
+
+def draw_centred_bars(
+    canvas: Canvas, values: Sequence[float], top: float, left: float, width: float, step: float
+) -> None:
+    """Draw values -1 to 1 as bars, beside their names, that grow from the middle."""
+    track = width - 96
+    middle = left + 96 + track / 2
+    for number, value in enumerate(values):
+        y = top + step * number
+        canvas.pill((left + 96, y - 1, track, 2), FAINT, 0.5)
+        reach = min(max(value, -1.0), 1.0) * track / 2
+        if abs(reach) >= 1:
+            canvas.pill((min(middle, middle + reach), y - 1.5, abs(reach), 3), NET)
+        canvas.line((middle, y - 4), (middle, y + 4), MUTE)
+
+
+def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
+    """Say how much of a flight the person flew and how much the network; of a share, neither has none."""
+    you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
+    if you:
+        canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
+    if you < 100:
+        network = texts.SHARE_NETWORK.format(percent=100 - you)
+        canvas.text(network, (left + width, top), size=SMALL, colour=NET, align="right")
+    edge = width * human
+    if human > 0:
+        canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)
+    if human < 1:
+        canvas.pill((left + edge + 1, top + 9, width - edge - 1, 3), NET)
+
+
+@dataclass(frozen=True)
+class Card:
+    """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better.
+
+    Of a shared flight, `stepped_in` is how often the co-pilot did. `medal` is 3 for gold, 2, 1, and 0 for none.
+    `left` is where the card stands.
+    """
+
+    good: bool
+    title: str
+    reason: str
+    figures: tuple[tuple[str, str, str], ...]
+    human: float
+    advice: str = ""
+    score: str = ""
+    medal: int = 0
+    stepped_in: int | None = None
+    left: float = 400.0
+
+
+@dataclass(frozen=True)
+class Rival:
+    """What became of another one from the same start; a figure it does not have is left out."""
+
+    name: str
+    result: str
+    figures: dict[str, tuple[str, str]]  # value and unit by label
+
+
+CARD: Final = pygame.Rect(400, 136, 480, 264)
+_ADVICE_ROW: Final = 24
+_RIVAL_ROWS: Final = 60
+
+
+def draw_card(
+    canvas: Canvas,
+    card: Card,
+    keys: list[tuple[str, str]],
+    shown: float,
+    advise: bool,
+    rival: Rival | None = None,
+) -> None:
+    """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted, and a rival's figures."""
+    drop = 10 * (1 - shown)
+    left, top, width = card.left + 32, CARD.top - drop, CARD.width - 64
+    lower = _ADVICE_ROW if advise and card.advice else 0
+    canvas.panel((card.left, top, CARD.width, CARD.height + lower + (_RIVAL_ROWS if rival else 0)))
+    colour = canvas.palette.good if card.good else canvas.palette.warn
+    canvas.glow((left + 10, top + 44), 30, colour, 0.5 * shown)
+    canvas.marker("check" if card.good else "cross", (left + 10, top + 44), 18, colour)
+    canvas.text(card.title, (left + 34, top + 52), size=TITLE, colour=colour)
+    score = canvas.text(card.score, (left + width, top + 52), size=TEXT, colour=HUMAN, align="right")
+    for lamp in range(card.medal):
+        canvas.dot((score.left - 14 - 13 * lamp, top + 47), 4, MEDALS[card.medal])
+    canvas.text(card.reason, (left, top + 86), size=TEXT, colour=INK, room=width)
+    if lower:
+        canvas.text(card.advice, (left, top + 110), size=SMALL, colour=MUTE, room=width)
+    top += lower
+    column = width / len(card.figures)
+    for number, (label, value, unit) in enumerate(card.figures):
+        x = left + number * column
+        canvas.text(label, (x, top + 122), size=LABEL, colour=MUTE, weight="medium", room=column - 12)
+        figure = canvas.text(value, (x, top + 149), size=TITLE, weight="light", tabular=True)
+        canvas.text(unit, (figure.right + 4, top + 149), size=LABEL, colour=MUTE)
+    if rival:
+        _draw_rival(canvas, rival, [label for label, _, _ in card.figures], (left, top + 183), width)
+        top += _RIVAL_ROWS
+    draw_share(canvas, left, top + 188, width, card.human)
+    if card.stepped_in:
+        words = canvas.text(texts.SHARE_MOMENTS.format(times=card.stepped_in), (left + width / 2 + 8, top + 188),
+                            size=SMALL, colour=MUTE, align="centre")  # fmt: skip
+        canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
+    canvas.line((left, top + 218), (left + width, top + 218), LINE)
+    draw_hints(canvas, keys, (left, top + 244), room=width)
+
+
+def _draw_rival(canvas: Canvas, rival: Rival, labels: Sequence[str], corner: Point, width: float) -> None:
+    """Draw a rival's name, result and figures, in the columns of your own."""
+    left, top = corner
+    canvas.dot((left + 4, top - 4), 4, NET)
+    canvas.text(rival.name, (left + 16, top), size=SMALL, colour=NET)
+    canvas.text(rival.result, (left + width, top), size=SMALL, colour=INK, align="right")
+    column = width / len(labels)
+    for number, label in enumerate(labels):
+        value, unit = rival.figures.get(label, ("–", ""))
+        figure = canvas.text(value, (left + number * column, top + 25), size=TEXT, weight="light", tabular=True)
+        canvas.text(unit, (figure.right + 4, top + 25), size=LABEL, colour=MUTE)
+
+
+def draw_opening(
+    canvas: Canvas, keys: Sequence[tuple[str, str]], line: str, paths: Sequence[tuple[str, Colour]]
+) -> None:
+    """Say in the middle, while the craft hangs still, how it is flown and what the dotted paths are."""
+    middle = VIEW_SIZE[0] / 2
+    canvas.text(line, (middle, 122), size=TEXT, colour=MUTE, align="centre")
+    draw_hints(canvas, keys, (middle - hints_width(canvas, keys, TEXT) / 2, 150), size=TEXT)
+    gap, dots = 32, 30
+    x = middle - (sum(canvas.text_width(text, size=SMALL) + dots for text, _ in paths) + gap * (len(paths) - 1)) / 2
+    for text, colour in paths:
+        for number in range(3):
+            canvas.dot((x + 4 + 8 * number, 174), 1.5, colour)
+        x = canvas.text(text, (x + dots, 178), size=SMALL, colour=MUTE).right + gap
+
+
+def _draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
+    if within:
+        canvas.dot(place, 2.0, canvas.palette.good, 0.9)
+    else:
+        canvas.marker("triangle", place, 9, canvas.palette.warn)
+
+
+def _signed(value: float) -> str:
+    return f"{value:.1f}".replace("-", "−")

@@ -1,0 +1,326 @@
+"""The drawing surface of every scene: a 16:9 view, laid out in points, drawn in the window's own pixels."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
+from copy import copy
+from typing import Final, Literal
+
+import pygame
+
+from game.drawing import shapes, typeface
+from game.drawing.tokens import FAINT, INK, NIGHT0, PALETTE, PANEL, PANEL_ALPHA, TEXT, VIEW_SIZE, Colour, Palette
+from game.drawing.typeface import Weight
+
+_MOST_WORDS: Final = 256  # that are remembered of a page
+_FAINT_WORDS: Final = 0.4  # the alpha from which on they are worth it
+_AROUND: Final = 4.0  # points around words that are to be as quiet
+
+_PARTS: Final = re.compile(r"\d|\D+")  # digits one by one, and what is between them
+
+Point = tuple[float, float]
+Align = Literal["left", "centre", "right"]
+
+
+class Canvas:
+    """A view of 1280 × 720 points, as large as fits into the window, in the middle of it.
+
+    Positions and lengths are points unless a name says pixels. Nothing is scaled after it was drawn:
+    drawing at another window size draws anew, and shapes and strings are cached per size.
+
+    Attributes:
+        surface: the view, in the window's pixels; what lies outside it is clipped.
+        scale: pixels per point.
+        size: the view's width and height in pixels.
+        palette: the colours for good and warn that the player chose.
+        links: where a click means a press of a key, in points, and of which: as it was drawn last.
+        pointer: where the mouse is, in points; None while it is not in use.
+        words: where words, widgets and panels were put on the last page, and a little around them, in pixels.
+
+    """
+
+    def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
+        self.palette = palette
+        self.scale = 0.0
+        self.links: list[tuple[pygame.FRect, pygame.event.Event]] = []
+        self.pointer: Point | None = None
+        self.words: list[pygame.Rect] = []
+        self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # on this page
+        self.attach(window)
+
+    def attach(self, window: pygame.Surface) -> None:
+        """Draw into this window from now on, letterboxed."""
+        width, height = window.get_size()
+        scale = max(min(width / VIEW_SIZE[0], height / VIEW_SIZE[1]), 0.01)
+        self.size = (max(1, round(VIEW_SIZE[0] * scale)), max(1, round(VIEW_SIZE[1] * scale)))
+        self.offset = ((width - self.size[0]) // 2, (height - self.size[1]) // 2)
+        if scale != self.scale:
+            typeface.forget()
+            shapes.forget()
+        self.scale = scale
+        window.fill(NIGHT0)
+        view = pygame.Rect(self.offset, self.size).clip(window.get_rect())
+        self.surface = window.subsurface(view)
+
+    def px(self, points: float) -> int:
+        """Return a length or position in whole pixels."""
+        return round(points * self.scale)
+
+    def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
+        """Return the pixels of a rectangle; neighbours in points stay neighbours in pixels."""
+        left, top = self.px(x), self.px(y)
+        return pygame.Rect(left, top, self.px(x + width) - left, self.px(y + height) - top)
+
+    def sheet(self, width: float, height: float) -> Canvas:
+        """Return a canvas of that size on a transparent surface of its own, to be drawn once and blitted often.
+
+        Glows and translucent lines need something below them, and do not come out on it.
+        """
+        sheet = copy(self)
+        sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
+        sheet.offset = (0, 0)
+        sheet.links = []  # nothing is clicked on a sheet
+        sheet._covered = deque(maxlen=0)
+        sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
+        return sheet
+
+    def lay(self, sheet: Canvas, x: float, y: float) -> None:
+        """Put a sheet down with its top left corner there."""
+        self.cover(self.surface.blit(sheet.surface, (self.px(x), self.px(y))))
+
+    def cover(self, area: pygame.Rect) -> None:
+        """Note that something to be read is there, in pixels."""
+        self._covered.append(area)
+
+    @contextmanager
+    def unnoted(self) -> Iterator[None]:
+        """Draw without noting what is there to be read."""
+        covered = self._covered
+        self._covered = deque(maxlen=0)
+        try:
+            yield
+        finally:
+            self._covered = covered
+
+    def turn_page(self) -> None:
+        """Begin a new frame: no link is left, and skies keep their stars from where the last one had words."""
+        around = 2 * self.px(_AROUND)
+        self.links.clear()
+        self.words = [box.inflate(around, around) for box in self._covered]
+        self._covered.clear()
+
+    def to_points(self, window_position: Point) -> Point:
+        """Turn a position in the window's pixels, such as the mouse's, into points."""
+        x, y = window_position
+        return (x - self.offset[0]) / self.scale, (y - self.offset[1]) / self.scale
+
+    def in_window(self, rect: pygame.typing.RectLike) -> pygame.Rect:
+        """Turn a rectangle in points into one in the window's pixels."""
+        box = pygame.FRect(rect)
+        return self.rect(box.x, box.y, box.width, box.height).move(self.offset)
+
+    # The mouse
+
+    def link(self, rect: pygame.typing.RectLike, press: pygame.event.Event) -> bool:
+        """Let a click on this place be a press of a key; return whether the mouse is there."""
+        box = pygame.FRect(rect)
+        self.links.append((box, press))
+        return self.pointer is not None and box.collidepoint(self.pointer)
+
+    def linked(self, point: Point) -> pygame.event.Event | None:
+        """Return the press that a click there means, if any: of what was drawn last."""
+        return next((press for box, press in reversed(self.links) if box.collidepoint(point)), None)
+
+    # Text
+
+    def text(
+        self,
+        string: str,
+        position: Point,
+        *,
+        size: float = TEXT,
+        colour: Colour = INK,
+        weight: Weight = "regular",
+        align: Align = "left",
+        tabular: bool = False,
+        alpha: float = 1.0,
+        room: float = math.inf,
+    ) -> pygame.FRect:
+        """Write a string on one line and return its box, ascent to descent.
+
+        `position` is on the *baseline*: its left end, middle or right end as `align` says, so that texts
+        of different sizes stand on one line when given the same y. `tabular` gives every digit the same
+        width and takes digits from a cache one by one: use it for every figure that changes. Text that is
+        made larger for those who want it grows no further than `room`, in points.
+        """
+        pixels = self._pixels(string, size, weight, tabular, room)
+        width = self._width(string, pixels, weight, tabular)
+        shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[align]
+        x, y = position[0] * self.scale - shift * width, self.px(position[1])
+        if tabular:
+            self._write_digits(string, (x, y), pixels, weight, colour, alpha)
+        elif string:
+            self._stamp(string, (round(x), y), pixels, weight, colour, alpha)
+        above, below = typeface.extent(pixels, weight)
+        if alpha > _FAINT_WORDS:
+            self.cover(pygame.Rect(x, y - above, width, above + below))
+        scale = self.scale
+        return pygame.FRect(x / scale, (y - above) / scale, width / scale, (above + below) / scale)
+
+    def text_width(
+        self, string: str, *, size: float = TEXT, weight: Weight = "regular", tabular: bool = False
+    ) -> float:
+        """Width in points that `text` with the same arguments would take."""
+        return self._width(string, self._pixels(string, size, weight, tabular), weight, tabular) / self.scale
+
+    def _pixels(self, string: str, size: float, weight: Weight, tabular: bool, room: float = math.inf) -> float:
+        """Return the size in pixels at which a text is written."""
+        pixels = round(typeface.grown(size) * self.scale, 2)
+        if room < math.inf and pixels > size * self.scale:
+            too_wide = self._width(string, pixels, weight, tabular) / max(room * self.scale, 1.0)
+            if too_wide > 1:
+                pixels = round(max(pixels / too_wide, size * self.scale), 2)
+        return pixels
+
+    def _width(self, string: str, pixels: float, weight: Weight, tabular: bool) -> float:
+        if not tabular:
+            return typeface.reach(string, pixels, weight)
+        digit = typeface.digit_width(pixels, weight)
+        parts = _PARTS.findall(string)
+        return sum(digit if part.isdecimal() else typeface.reach(part, pixels, weight) for part in parts)
+
+    def _write_digits(
+        self, string: str, start: Point, pixels: float, weight: Weight, colour: Colour, alpha: float
+    ) -> None:
+        x, y = start
+        digit = typeface.digit_width(pixels, weight)
+        for part in _PARTS.findall(string):
+            own = typeface.reach(part, pixels, weight)
+            cell = digit if part.isdecimal() else own
+            self._stamp(part, (round(x + (cell - own) / 2), round(y)), pixels, weight, colour, alpha)
+            x += cell
+
+    def _stamp(
+        self, string: str, start: tuple[int, int], pixels: float, weight: Weight, colour: Colour, alpha: float
+    ) -> None:
+        surface, baseline = typeface.render(string, pixels, weight, colour)
+        self._blit(surface, (start[0], start[1] - baseline), alpha)
+
+    def _blit(self, surface: pygame.Surface, position: tuple[int, int], alpha: float = 1.0) -> None:
+        surface.set_alpha(round(255 * min(max(alpha, 0.0), 1.0)))
+        self.surface.blit(surface, position)
+
+    # Shapes
+
+    def line(self, a: Point, b: Point, colour: Colour, width: float = 1.0, alpha: float = 1.0) -> None:
+        """Draw an anti-aliased line; upright and level ones are sharp."""
+        thickness = max(1, self.px(width))
+        start, end = (a[0] * self.scale, a[1] * self.scale), (b[0] * self.scale, b[1] * self.scale)
+        if a[0] == b[0] or a[1] == b[1]:
+            self._straight(start, end, colour, thickness, alpha)
+        elif alpha >= 1:
+            pygame.draw.aaline(self.surface, colour, start, end, thickness)
+        else:
+            self._translucent(start, end, colour, thickness, alpha)
+
+    def _straight(self, a: Point, b: Point, colour: Colour, thickness: int, alpha: float) -> None:
+        left, top = round(min(a[0], b[0])), round(min(a[1], b[1]))
+        length = round(max(abs(b[0] - a[0]), abs(b[1] - a[1])))
+        if a[1] == b[1]:
+            area = pygame.Rect(left, top - thickness // 2, length, thickness)
+        else:
+            area = pygame.Rect(left - thickness // 2, top, thickness, length)
+        self.fill(area, colour, alpha)
+
+    def fill(self, area: pygame.Rect, colour: Colour, alpha: float = 1.0) -> None:
+        """Fill an area given in pixels."""
+        if alpha >= 1:
+            self.surface.fill(colour, area)
+        elif area.width > 0 and area.height > 0:
+            self._blit(shapes.plain(area.size, colour), area.topleft, alpha)
+
+    def _translucent(self, a: Point, b: Point, colour: Colour, thickness: int, alpha: float) -> None:
+        margin = thickness + 1
+        left, top = math.floor(min(a[0], b[0])) - margin, math.floor(min(a[1], b[1])) - margin
+        size = (int(abs(b[0] - a[0])) + 2 * margin + 2, int(abs(b[1] - a[1])) + 2 * margin + 2)
+        sheet = pygame.Surface(size, pygame.SRCALPHA)
+        sheet.fill((*colour, 0))
+        pygame.draw.aaline(sheet, (*colour, 255), (a[0] - left, a[1] - top), (b[0] - left, b[1] - top), thickness)
+        self._blit(sheet, (left, top), alpha)
+
+    def dot(self, centre: Point, radius: float, colour: Colour, alpha: float = 1.0) -> None:
+        """Draw a filled anti-aliased circle, placed to a quarter of a pixel."""
+        self._shape("circle", centre, radius, colour, alpha)
+
+    def marker(self, shape: shapes.Shape, centre: Point, size: float, colour: Colour, alpha: float = 1.0) -> None:
+        """Draw a small sign, `size` points across, so that meaning never hangs on colour alone."""
+        self._shape(shape, centre, size / 2, colour, alpha)
+
+    def _shape(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour, alpha: float) -> None:
+        x, y = centre[0] * self.scale, centre[1] * self.scale
+        column, row = math.floor(x), math.floor(y)
+        quarters = (int(4 * (x - column)), int(4 * (y - row)))
+        surface = shapes.shape(shape, round(4 * radius * self.scale) / 4, colour, quarters)
+        middle = surface.get_width() // 2
+        self._blit(surface, (column - middle, row - middle), alpha)
+
+    def bar(
+        self,
+        rect: pygame.typing.RectLike,
+        fraction: float,
+        colour: Colour,
+        track: Colour = FAINT,
+        track_alpha: float = 0.6,
+    ) -> None:
+        """Draw a thin rounded track and the part of it, 0 to 1, that is filled."""
+        box = pygame.FRect(rect)
+        filled = box.width * min(max(fraction, 0.0), 1.0)
+        self.pill((box.x, box.y, box.width, box.height), track, track_alpha)
+        if filled > 0:
+            self.pill((box.x, box.y, max(filled, box.height), box.height), colour)
+
+    def pill(self, rect: pygame.typing.RectLike, colour: Colour, alpha: float = 1.0) -> None:
+        """Fill a rectangle whose shorter side is round."""
+        box = pygame.FRect(rect)
+        self.rounded(box, min(box.width, box.height) / 2, colour, alpha)
+
+    def rounded(self, rect: pygame.typing.RectLike, radius: float, colour: Colour, alpha: float = 1.0) -> None:
+        """Fill a rectangle with round corners."""
+        box = pygame.FRect(rect)
+        area = self.rect(box.x, box.y, box.width, box.height)
+        area.size = (max(1, area.width), max(1, area.height))
+        self._blit(shapes.rounded(area.size, radius * self.scale, colour), area.topleft, alpha)
+
+    def outline(
+        self,
+        rect: pygame.typing.RectLike,
+        radius: float,
+        colour: Colour,
+        width: float = 1.0,
+        alpha: float = 1.0,
+    ) -> None:
+        """Draw the edge of a rectangle with round corners, inside it."""
+        box = pygame.FRect(rect)
+        area = self.rect(box.x, box.y, box.width, box.height)
+        area.size = (max(1, area.width), max(1, area.height))
+        edge = shapes.rounded(area.size, radius * self.scale, colour, max(1, self.px(width)))
+        self._blit(edge, area.topleft, alpha)
+
+    def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
+        """Draw the one translucent box there is."""
+        self.rounded(rect, 8, PANEL, alpha)
+        if alpha > _FAINT_WORDS:
+            self.cover(self.rect(*pygame.FRect(rect)))
+
+    def glow(self, centre: Point, radius: float, colour: Colour, strength: float = 1.0) -> None:
+        """Add light around a point, fading out towards the radius."""
+        pixels = self.px(radius)
+        level = round(32 * min(max(strength, 0.0), 4.0))
+        if pixels > 0 and level > 0:
+            surface = shapes.glow(pixels if pixels < 24 else 4 * round(pixels / 4), colour, level)
+            corner = (self.px(centre[0]) - surface.width // 2, self.px(centre[1]) - surface.height // 2)
+            self.surface.blit(surface, corner, special_flags=pygame.BLEND_RGB_ADD)

@@ -1,0 +1,24 @@
+"""Sentences with figures in them that change: the words are set as words, the figures keep their width."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import MUTE, Colour
+
+_FIGURES: Final = re.compile(r"([0-9][0-9.]*)")
+
+
+def write_figures(
+    canvas: Canvas, text: str, position: Point, *, size: float, colour: Colour = MUTE, centred: bool = False
+) -> tuple[float, float]:
+    """Write a sentence on one baseline and return where it starts and ends, in points."""
+    runs = [(run, bool(_FIGURES.fullmatch(run))) for run in _FIGURES.split(text) if run]
+    widths = [canvas.text_width(run, size=size, tabular=tabular) for run, tabular in runs]
+    start = x = position[0] - (sum(widths) / 2 if centred else 0.0)
+    for (run, tabular), width in zip(runs, widths, strict=True):
+        canvas.text(run, (x, position[1]), size=size, colour=colour, tabular=tabular)
+        x += width
+    return start, x

@@ -1,0 +1,189 @@
+"""Signs for a pad's buttons, a mouse's, and missions: letters of a script of our own that every text can contain.
+
+Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence, and is
+measured, drawn and kept like any other letter.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Final, Literal
+
+import pygame
+
+from game.drawing.marks import ICONS, MARKS
+from game.drawing.tokens import Colour
+
+Family = Literal["xbox", "playstation", "nintendo"]
+FAMILIES: Final[tuple[Family, ...]] = ("xbox", "playstation", "nintendo")
+# Beside the buttons, which have SDL's numbers, and the triggers, 32 and 33 (see `game.input.bindings`).
+TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT = 40, 41, 42, 43, 44, 45
+
+_FIRST: Final = 0xE000
+_FAMILY: Final = 0x100
+_LAST: Final = _FIRST + len(FAMILIES) * _FAMILY + len(ICONS) - 1
+SIGN: Final = re.compile(f"([{chr(_FIRST)}-{chr(_LAST)}])")
+
+# What surrounds a sign, and what stands in it: letters, or the name of a drawing.
+_XBOX: Final[dict[int, tuple[str, str]]] = {
+    pygame.CONTROLLER_BUTTON_A: ("round", "A"),
+    pygame.CONTROLLER_BUTTON_B: ("round", "B"),
+    pygame.CONTROLLER_BUTTON_X: ("round", "X"),
+    pygame.CONTROLLER_BUTTON_Y: ("round", "Y"),
+    pygame.CONTROLLER_BUTTON_BACK: ("round", "windows"),
+    pygame.CONTROLLER_BUTTON_START: ("round", "lines"),
+    pygame.CONTROLLER_BUTTON_LEFTSTICK: ("stick", "L"),
+    pygame.CONTROLLER_BUTTON_RIGHTSTICK: ("stick", "R"),
+    pygame.CONTROLLER_BUTTON_LEFTSHOULDER: ("wide", "LB"),
+    pygame.CONTROLLER_BUTTON_RIGHTSHOULDER: ("wide", "RB"),
+    pygame.CONTROLLER_BUTTON_DPAD_UP: ("cross", "up"),
+    pygame.CONTROLLER_BUTTON_DPAD_DOWN: ("cross", "down"),
+    pygame.CONTROLLER_BUTTON_DPAD_LEFT: ("cross", "left"),
+    pygame.CONTROLLER_BUTTON_DPAD_RIGHT: ("cross", "right"),
+    32: ("wide", "LT"),
+    33: ("wide", "RT"),
+    TURN: ("stick", "turn"),
+    STICK_LEFT: ("stick", "left"),
+    STICK_RIGHT: ("stick", "right"),
+    CROSS: ("cross", "all"),
+    MOUSE_LEFT: ("mouse", "left"),
+    MOUSE_RIGHT: ("mouse", "right"),
+}
+_SIGNS: Final[dict[Family, dict[int, tuple[str, str]]]] = {
+    "xbox": _XBOX,
+    "playstation": {
+        **_XBOX,
+        pygame.CONTROLLER_BUTTON_A: ("round", "saltire"),
+        pygame.CONTROLLER_BUTTON_B: ("round", "ring"),
+        pygame.CONTROLLER_BUTTON_X: ("round", "square"),
+        pygame.CONTROLLER_BUTTON_Y: ("round", "triangle"),
+        pygame.CONTROLLER_BUTTON_LEFTSHOULDER: ("wide", "L1"),
+        pygame.CONTROLLER_BUTTON_RIGHTSHOULDER: ("wide", "R1"),
+        32: ("wide", "L2"),
+        33: ("wide", "R2"),
+    },
+    "nintendo": {
+        **_XBOX,
+        pygame.CONTROLLER_BUTTON_BACK: ("round", "minus"),
+        pygame.CONTROLLER_BUTTON_START: ("round", "plus"),
+        pygame.CONTROLLER_BUTTON_LEFTSHOULDER: ("wide", "L"),
+        pygame.CONTROLLER_BUTTON_RIGHTSHOULDER: ("wide", "R"),
+        32: ("wide", "ZL"),
+        33: ("wide", "ZR"),
+    },
+}
+_FAMILY_WORDS: Final[dict[Family, tuple[str, ...]]] = {
+    "playstation": ("playstation", "dualshock", "dualsense", "ps3", "ps4", "ps5", "sony", "wireless controller"),
+    "nintendo": ("nintendo", "switch", "joy-con", "joycon", "pro controller"),
+}
+# Lengths, in sizes of the type: half a sign's height, the middle of it above the baseline, the room beside it.
+_RADIUS: Final = 0.66
+_MIDDLE: Final = 0.36
+_BESIDE: Final = 0.07
+_STROKE: Final = 0.085
+_WIDE: Final = 1.9
+_ICON: Final = 0.5  # half an icon's height
+
+
+def family_of(name: str) -> Family:
+    """Return whose signs a pad has, by the name it gives itself; letters as on an Xbox's for all that are not known."""
+    name = name.lower()
+    if "xbox" in name:
+        return "xbox"
+    return next((family for family, words in _FAMILY_WORDS.items() if any(word in name for word in words)), "xbox")
+
+
+def sign(family: Family, button: int) -> str:
+    """Return the character that shows a pad's button, or one of the further signs above."""
+    return chr(_FIRST + FAMILIES.index(family) * _FAMILY + button)
+
+
+def icon(name: str) -> str:
+    """Return the character that shows one of `game.drawing.marks.ICONS`."""
+    return chr(_FIRST + len(FAMILIES) * _FAMILY + list(ICONS).index(name))
+
+
+def sign_width(character: str, size: float) -> float:
+    """How far a sign reaches, with the room beside it, at a size of type in pixels."""
+    return size * ((_WIDE if _sign(character)[0] == "wide" else 2 * _RADIUS) + 2 * _BESIDE)
+
+
+def draw_sign(
+    surface: pygame.Surface,
+    character: str,
+    start: tuple[float, float],
+    size: float,
+    colour: Colour,
+    write: Callable[[str, float], pygame.Surface],
+) -> None:
+    """Draw a sign from a point of the baseline on; `write` gives letters of a size, as a surface."""
+    frame, mark = _sign(character)
+    width = sign_width(character, size)
+    middle = pygame.Vector2(start[0] + width / 2, start[1] - _MIDDLE * size)
+    stroke = max(1, round(_STROKE * size))
+    radius = _RADIUS * size
+    if frame == "icon":
+        ICONS[mark](surface, middle, _ICON * size, colour, stroke)
+        return
+    if frame == "cross":
+        _draw_cross(surface, middle, radius, colour, stroke, mark)
+        return
+    if frame == "mouse":
+        _draw_mouse(surface, middle, radius, colour, stroke, mark)
+        return
+    if frame == "wide":
+        box = pygame.Rect(0, 0, round(_WIDE * size), round(1.75 * radius))
+        box.center = round(middle.x), round(middle.y)
+        pygame.draw.rect(surface, colour, box, stroke, border_radius=round(0.6 * radius))
+    else:
+        pygame.draw.circle(surface, colour, middle, radius, stroke)
+    if frame == "stick":
+        pygame.draw.circle(surface, colour, middle, 0.74 * radius, max(1, stroke // 2))
+    if mark in MARKS:
+        half = (0.62 if frame == "stick" else 0.5) * radius
+        MARKS[mark](surface, middle, half, colour, round(1.3 * stroke))
+    else:
+        letters = write(mark, (0.62 if frame == "stick" else 0.74) * size)
+        ink = letters.get_bounding_rect()
+        surface.blit(letters, (middle.x - ink.centerx, middle.y - ink.centery))
+
+
+def _sign(character: str) -> tuple[str, str]:
+    family, button = divmod(ord(character) - _FIRST, _FAMILY)
+    if family == len(FAMILIES):
+        return "icon", list(ICONS)[button]
+    return _SIGNS[FAMILIES[family]].get(button, ("round", str(button)))
+
+
+def _draw_mouse(
+    surface: pygame.Surface, middle: pygame.Vector2, radius: float, colour: Colour, stroke: int, button: str
+) -> None:
+    """Draw a mouse, with the button that is meant filled."""
+    box = pygame.Rect(0, 0, round(1.4 * radius), round(2 * radius))
+    box.center = round(middle.x), round(middle.y)
+    round_ = round(0.6 * radius)
+    half = pygame.Rect(box.left, box.top, box.width // 2, box.height // 2)
+    corner = "border_top_left_radius"
+    if button == "right":
+        half.right, corner = box.right, "border_top_right_radius"
+    pygame.draw.rect(surface, colour, half, **{corner: round_})
+    pygame.draw.rect(surface, colour, box, stroke, border_radius=round_)
+
+
+_ARMS: Final = {"up": -90, "down": 90, "left": 180, "right": 0}
+
+
+def _draw_cross(
+    surface: pygame.Surface, middle: pygame.Vector2, radius: float, colour: Colour, stroke: int, arm: str
+) -> None:
+    """Draw a D-pad, with the arm that is meant filled."""
+    half, reach = 0.34 * radius, 0.98 * radius
+    corner = [(half, half), (reach, half), (reach, -half), (half, -half)]
+    outline = [pygame.Vector2(x, y).rotate(-90 * turn) for turn in range(4) for x, y in corner[:3]]
+    pygame.draw.polygon(surface, colour, [middle + point for point in outline], stroke)
+    if arm in _ARMS:
+        filled = [pygame.Vector2(x, y).rotate(_ARMS[arm]) for x, y in corner]
+        pygame.draw.polygon(surface, colour, [middle + point for point in filled])
+    else:
+        pygame.draw.circle(surface, colour, middle, 0.8 * half)

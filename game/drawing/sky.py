@@ -1,0 +1,74 @@
+"""The ground of screens that show no world: night above, a last ember below, stars where no words are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+import pygame
+
+from ai.common.environment import Bools, Doubles
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1, VIEW_SIZE
+
+
+class NightSky:
+    """A still sky, painted anew only when the window's size changes, or words come or go where a star is."""
+
+    def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
+        self._places = rng.random((stars, 2)) * VIEW_SIZE
+        self._brightness = rng.random(stars) ** 4
+        self._ember = ember
+        self._painted: pygame.Surface | None = None
+        self._shown: list[int] = []
+        self._words: list[pygame.Rect] = []  # that these stars keep away from
+
+    def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
+        """Draw the sky over the whole view. It does not change with time."""
+        size, shown = canvas.surface.get_size(), self._shown
+        fits = self._painted is not None and self._painted.get_size() == size
+        if not fits or canvas.words != self._words:
+            self._words = canvas.words
+            shown = np.flatnonzero(beside(self._places * canvas.scale, canvas.words)).tolist()
+        if self._painted is None or not fits or shown != self._shown:
+            self._painted, self._shown = _paint_night(size, self._ember).copy(), shown
+            canvas.surface.blit(self._painted, (0, 0))
+            self._add_stars(canvas)
+            self._painted.blit(canvas.surface, (0, 0))
+        canvas.surface.blit(self._painted, (0, 0))
+
+    def _add_stars(self, canvas: Canvas) -> None:
+        for (x, y), brightness in zip(self._places[self._shown], self._brightness[self._shown], strict=True):
+            fade = float(1 - y / VIEW_SIZE[1])
+            level = (0.25 + 0.75 * float(brightness)) * fade
+            shade = 120 + round(120 * float(brightness))
+            canvas.dot((x, y), 0.5 + 0.7 * float(brightness), (shade, shade, min(255, shade + 12)), level)
+            if brightness > 0.75:
+                canvas.glow((x, y), 9, (150, 170, 220), 0.35 * level)
+
+
+@lru_cache(maxsize=4)
+def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
+    """Return a sky without stars, to be shared by the screens that have the same one."""
+    width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
+    across = np.linspace(0, 1, width, dtype=np.float32)[:, None, None]
+    down = np.linspace(0, 1, height, dtype=np.float32)[None, :, None]
+    night0, night1, dusk, glow = (np.array(colour, np.float32) for colour in (NIGHT0, NIGHT1, DUSK, EMBER))
+    sky = night0 + (night1 - night0) * down
+    sky = sky + (dusk - sky) * (ember * 0.6 * np.clip((down - 0.55) / 0.45, 0, 1) ** 2)
+    away = np.hypot((across - 0.78) * 1.5, (down - 1.06) * 1.9)
+    sky = sky + (glow - sky) * (ember * 0.55 * np.clip(1 - away, 0, 1) ** 2.2)
+    sky = sky.repeat(2, 0).repeat(2, 1)[: size[0], : size[1]]
+    # A little noise keeps the long gradient from showing bands.
+    sky += np.random.default_rng(0).random((*size, 1), dtype=np.float32) - 0.5
+    return pygame.surfarray.make_surface(np.clip(sky, 0, 255, out=sky).astype(np.uint8)).convert()
+
+
+def beside(places: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:
+    """Return which of the places (n, 2) are in none of the boxes."""
+    edges = np.array([(box.left, box.top, box.right, box.bottom) for box in boxes]).reshape(-1, 4)
+    past, beyond = places[:, None] >= edges[:, :2], places[:, None] >= edges[:, 2:]
+    outside: Bools = ~np.logical_and.reduce(past & ~beyond, axis=2)
+    free: Bools = np.logical_and.reduce(outside, axis=1)
+    return free

@@ -1,0 +1,55 @@
+"""The look, in one place: colour, type and space for the world, the widgets and the charts alike.
+
+Amber is the person, blue is the network, everywhere. Lengths are points: 1280 x 720 of them fill the view
+at any window size; `game.drawing.canvas.Canvas` turns them into pixels.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+Colour = tuple[int, int, int]
+
+VIEW_SIZE: Final = (1280, 720)
+
+NIGHT0: Final[Colour] = (9, 12, 24)
+NIGHT1: Final[Colour] = (19, 26, 48)
+DUSK: Final[Colour] = (58, 52, 78)
+EMBER: Final[Colour] = (214, 132, 92)
+PANEL: Final[Colour] = (14, 19, 36)
+PANEL_ALPHA: Final = 0.74
+LINE: Final[Colour] = (40, 47, 70)
+FAINT: Final[Colour] = (58, 68, 92)
+INK: Final[Colour] = (232, 236, 244)
+MUTE: Final[Colour] = (138, 149, 173)
+HUMAN: Final[Colour] = (255, 196, 112)
+NET: Final[Colour] = (112, 200, 255)
+# None, bronze, silver, gold; told by their words and by how many lamps are lit as well.
+MEDALS: Final[tuple[Colour, ...]] = (MUTE, (205, 140, 96), (196, 206, 224), (255, 208, 110))
+
+FIGURE: Final = 34.0
+TITLE: Final = 22.0
+TEXT: Final = 15.0
+SMALL: Final = 12.5
+LABEL: Final = 11.5
+
+# How much larger small text is made for those who want it, by the setting's words. Between these two sizes less and
+# less is added: what is large can be read as it is, and has no room to grow.
+TEXT_SIZES: Final = {"normal": 1.0, "large": 1.12, "largest": 1.25}
+GROWS: Final = (15.0, 34.0)
+
+STEP: Final = 8
+MARGIN: Final = 64
+
+
+@dataclass(frozen=True)
+class Palette:
+    """Colours for within and beyond limits; always with a shape or a mark as well."""
+
+    good: Colour
+    warn: Colour
+
+
+PALETTE: Final = Palette(good=(124, 220, 178), warn=(255, 124, 86))
+# Bluish green and vermillion, as Okabe and Ito chose them, lifted to the lightness of the colours above:
+# the two stay half as far apart again for eyes without the red or the green cones.
+COLOUR_SAFE: Final = Palette(good=(86, 220, 196), warn=(255, 134, 70))

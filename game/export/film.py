@@ -1,0 +1,105 @@
+"""A flight as a moving picture: its replay without words, drawn off the screen and written frame by frame.
+
+It runs in a process of its own, which `game.export.export` looks after.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Protocol
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from game.core.clock import STEP
+from game.core.settings import Settings
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import COLOUR_SAFE, PALETTE
+from game.export.export import KINDS, Kind, unfinished
+from game.flight.flight_file import Record
+from game.scenes.replay import Replay
+from game.ui.context import Context
+
+Frame = NDArray[np.uint8]  # (height, width, 3)
+
+_AFTER: Final = 120  # updates that are shown after the end: slow motion, fire dies, dust settles
+_LINGER: Final = 60  # steps that the last frame then stays
+_SAMPLE: Final = 40  # steps between the frames whose colours a palette is chosen from
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """How much of it is drawn, 0 to 1."""
+
+    newest_only = True
+
+    share: float
+
+
+class _Writer(Protocol):
+    def add(self, frame: Frame) -> None:
+        """Add a frame."""
+
+
+def film(record: Record, path: Path, colour_safe: bool = False) -> Generator[list[Drawn], None, None]:
+    """Write the flight, whole or not at all, as what the path's suffix says; a turn for every frame.
+
+    Raises:
+        OSError: the file can't be written, or the disk is full.
+
+    """
+    kind = KINDS[path.suffix]
+    last = len(record.recording.actions) + _AFTER
+    steps = [*range(0, last, kind.every), last]
+    temporary = unfinished(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with _writer(temporary, kind, frames(record, kind, range(0, last, _SAMPLE), colour_safe)) as writer:
+            yield [Drawn(0.0)]
+            shown = frames(record, kind, steps, colour_safe)
+            for number, frame in enumerate(shown, 1):
+                writer.add(frame)
+                yield [Drawn(number / (len(steps) + 1))]
+            for _ in range(0, _LINGER, kind.every):
+                writer.add(frame)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def frames(record: Record, kind: Kind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
+    """Yield what is seen of a flight at these updates of its replay, which rise; up to its end, one is one step."""
+    _need_no_screen()
+    settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)
+    scene = Replay(record)
+    scene.enter(Context(Path(), settings))
+    canvas = Canvas(pygame.Surface(kind.size), COLOUR_SAFE if colour_safe else PALETTE)
+    flown = 0
+    for step in steps:
+        while flown < step:
+            scene.update()
+            flown += 1
+        scene.draw_world(canvas, 1.0)
+        yield np.frombuffer(pygame.image.tobytes(canvas.surface, "RGB"), np.uint8).reshape(*kind.size[::-1], 3)
+
+
+def _writer(path: Path, kind: Kind, sample: Iterable[Frame]) -> AbstractContextManager[_Writer]:
+    seconds = kind.every * STEP
+    if kind is KINDS[".mp4"]:
+        from game.export.mp4 import Mp4Writer
+
+        return Mp4Writer(path, kind.size, round(1 / seconds))
+    from game.export.gif import GifWriter
+
+    return GifWriter(path, kind.size, sample, seconds)
+
+
+def _need_no_screen() -> None:
+    os.environ["SDL_VIDEODRIVER"] = "dummy"
+    pygame.display.init()
+    pygame.font.init()

@@ -1,0 +1,45 @@
+"""The player's own landings as examples for a network: each that is good enough, from where they took the stick."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from game.core.lock import held
+from game.flight.flight import Flight, Hand
+from game.flight.outcomes import landing_score
+
+FILE_NAME: Final = "demonstrations.json"
+_LEAST_STEPS: Final = 60  # flown by hand to the end, to be called a takeover
+_LEAST_SCORE: Final = 60  # before the pad's factor
+
+
+def keep_lesson(flight: Flight, folder: Path) -> bool:
+    """Add a flight that is over to the player's examples; false if it is none.
+
+    Raises OSError or ValueError if the file can't be read or written; what it holds is then left as it is.
+    """
+    from ai.training.demonstrations import Demonstration, read, takeover, write
+
+    env, recording = flight.env, flight.recording
+    pad = int(env.landed_on[0])
+    if pad < 0 or landing_score(env) < _LEAST_SCORE * env.ground.pads[pad].factor:
+        return False
+    begins = takeover([hand is Hand.HUMAN for hand in recording.hands])
+    if len(recording.hands) - begins < _LEAST_STEPS:
+        return False
+    ground = recording.seed if recording.pads > 1 else None
+    lesson = Demonstration(recording.seed, tuple(recording.actions), recording.spawn, begins, ground, pad)
+    with held(folder / f".{FILE_NAME}.lock"):  # another game may add to it as well
+        write(folder / FILE_NAME, [*read(folder / FILE_NAME), lesson])
+    return True
+
+
+def lessons(folder: Path) -> int:
+    """How many examples the player has given; 0 if the file can't be read."""
+    from ai.training.demonstrations import read
+
+    try:
+        return len(read(folder / FILE_NAME))
+    except (OSError, ValueError):
+        return 0

@@ -1,0 +1,343 @@
+"""Flights as the game runs them: the lander's rules, who flies, and poses to draw in between steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from ai.common.decision import Decision
+from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.ground import Ground, hilly
+from ai.lander.missions import STARTS
+from ai.lander.pilots import COAST
+from game.flight.handicap import OWN, Hands
+from game.flight.networks import Flyer, Thinker, decide
+
+if TYPE_CHECKING:
+    from ai.copilot.copilot import CoPilot, SharedDecision
+
+# A network decides every so many physics steps, in training and here.
+DECISION_STEPS: Final = 4
+# Steps that an ended flight of a swarm stays to be seen.
+REST_STEPS: Final = 75
+_PROFILE_REACH: Final = 30.0  # metres to both sides of which the ground's height is kept
+_PROFILE_STEP: Final = 0.02
+
+
+class Hand(Enum):
+    """Who has the stick."""
+
+    HUMAN = "human"
+    NETWORK = "network"
+
+
+class Poses:
+    """The last two poses x, y, angle of every lander, to draw in between."""
+
+    def __init__(self, env: LanderEnv) -> None:
+        self._env = env
+        self.now = self._read()
+        self.before = self.now
+
+    def take(self, jumped: Bools | None = None) -> None:
+        """Note the pose after a step; the slots of `jumped` began anew and did not move there."""
+        self.before, self.now = self.now, self._read()
+        if jumped is not None and jumped.any():
+            self.before = np.where(jumped[:, None], self.now, self.before)
+
+    def at(self, alpha: float) -> Doubles:
+        """Poses (n, 3), `alpha` of the way from the last step but one to the last."""
+        poses: Doubles = self.before + alpha * (self.now - self.before)
+        return poses
+
+    def _read(self) -> Doubles:
+        return np.concatenate([self._env.position, self._env.angle[:, None]], axis=1)
+
+
+@dataclass
+class Recording:
+    """All it takes to fly a flight again, bit for bit: where it began, and what was done in every step.
+
+    `hands` says who did it: of a shared stick, the person where they got what they asked for. `gravity` lists each
+    change of it: from which step on, and to what share of what it is there.
+    """
+
+    seed: int
+    spawn: str
+    pads: int = 1
+    actions: list[int] = field(default_factory=list)
+    hands: list[Hand] = field(default_factory=list)
+    mission: str = ""
+    gravity: list[tuple[int, float]] = field(default_factory=list)
+
+    def gravity_at(self, step: int) -> float:
+        """Return the share of gravity under which a step is flown."""
+        return next((share for begin, share in reversed(self.gravity) if begin <= step), 1.0)
+
+
+class Flight:
+    """One lander, flown by a person, by a network, by both in turns, or by both together.
+
+    Args:
+        seed: what the start, the ground and the mishaps of the hands follow from.
+        network: whom to hand over to.
+        spawn: where it begins.
+        pads: 1 on a plain, or 3 among hills.
+        hands: what the keys pass through, a name of `game.flight.handicap.HANDS`.
+        mission: name of one of `ai.lander.missions.STARTS`, which then says where and under what it is flown; empty for none.
+        shares: whether a network may share the stick, and not only take it.
+
+    Attributes:
+        copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
+        decision: the latest one of the co-pilot's; None while it does not share the stick.
+        alone: the latest one of the network that flies alone; None while none does.
+        asked: the action that the hands asked for in the last step.
+        overridden: whether something else was flown than hands on the stick asked for.
+
+    """
+
+    def __init__(
+        self,
+        seed: int,
+        network: Flyer | None = None,
+        spawn: str = "random",
+        *,
+        pads: int = 1,
+        hands: str = OWN,
+        mission: str = "",
+        shares: bool = True,
+    ) -> None:
+        if mission:
+            self.env = STARTS[mission].begin()
+        else:
+            self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
+            self.env.reset()
+        self.observation: Floats = self.env.observe()
+        self.hand, self.shares = Hand.HUMAN, shares
+        self.recording = Recording(seed, spawn, pads, mission=mission)
+        self.poses = Poses(self.env)
+        self.asked, self.overridden = COAST, False
+        self.decision: SharedDecision | None = None
+        self.alone: Decision | None = None
+        self._hands = Hands(hands, seed, DECISION_STEPS)
+        self._held_for = self._yours = 0
+        self.copilot: CoPilot | None = None
+        self.change_network(network)
+        self._aim()
+
+    @property
+    def outcome(self) -> Outcome:
+        """How the flight stands."""
+        return Outcome(int(self.env.outcome[0]))
+
+    @property
+    def over(self) -> bool:
+        """Whether it has ended."""
+        return self.outcome is not Outcome.FLYING
+
+    @property
+    def flown_by(self) -> Hand:
+        """Whose action the last step was."""
+        return self.recording.hands[-1] if self.recording.hands else self.hand
+
+    @property
+    def share(self) -> float:
+        """The person's share of the steps flown, 0 to 1."""
+        return self._yours / len(self.recording.hands) if self.recording.hands else 1.0
+
+    @property
+    def shared(self) -> bool:
+        """Whether the person has the stick, and the co-pilot a say in it."""
+        return self.hand is Hand.HUMAN and self.copilot is not None and self.copilot.assist > 0
+
+    def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
+        """Go on from a moment of a flight from the same start: as its environment was after so many steps."""
+        self.env.restore(moment)
+        self.observation = self.env.observe()
+        self.recording.actions[:] = source.actions[:step]
+        self.recording.hands[:] = source.hands[:step]
+        self._yours = self.recording.hands.count(Hand.HUMAN)
+        self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
+        self._pull(self.recording.gravity_at(step))
+        self.rest()
+
+    def set_gravity(self, share: float) -> None:
+        """Let things weigh another share of what they do there, from the next step on."""
+        step, gravity = len(self.recording.actions), self.recording.gravity
+        if share == self.recording.gravity_at(step):
+            return
+        if gravity and gravity[-1][0] == step:  # changed twice between two steps
+            gravity.pop()
+        if share != self.recording.gravity_at(step):
+            gravity.append((step, share))
+        self._pull(share)
+
+    def _pull(self, share: float) -> None:
+        self.env.gravity = share * self.env.params.gravity
+
+    def rest(self) -> None:
+        """Be drawn where it is, and not on the way there."""
+        self.poses.take()
+        self.poses.take()
+
+    def change_network(self, network: Flyer | None) -> None:
+        """Let another network take the stick from here on, or share it; without one, the person has it."""
+        self.network = network
+        self._held_for, self.decision, self.alone = 0, None, None
+        if network is None:
+            self.hand = Hand.HUMAN
+        before, self.copilot = self.copilot, None
+        if self.shares and isinstance(network, Thinker):
+            from ai.copilot.copilot import CoPilot, Mode
+
+            self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)
+
+    def help(self, assist: float, mode: str) -> None:
+        """Let the co-pilot help so much, 0 to 1, and in that way, from the next decision on."""
+        if self.copilot:
+            self.copilot.assist, self.copilot.mode = assist, type(self.copilot.mode)(mode)
+
+    def hand_over(self) -> bool:
+        """Give the stick to the other one. False if there is no other, or nothing left to fly."""
+        if self.over or (self.network is None and self.hand is Hand.HUMAN):
+            return False
+        self.hand = Hand.NETWORK if self.hand is Hand.HUMAN else Hand.HUMAN
+        self._held_for, self.decision, self.alone = 0, None, None  # who takes over decides at once
+        return True
+
+    def step(self, held: int) -> None:
+        """Fly 1/60 s; `held` is the action that the keys ask for right now."""
+        self.overridden = False
+        if self.over:
+            self.poses.take()
+            return
+        action, by = self._choose(held)
+        self.env.fly(np.array([action]))
+        self.observation = self.env.observe()
+        self.recording.actions.append(action)
+        self.recording.hands.append(by)
+        self._yours += by is Hand.HUMAN
+        self.poses.take()
+        if self.outcome is Outcome.LANDED:
+            self.env.target = self.env.landed_on
+
+    def _choose(self, held: int) -> tuple[int, Hand]:
+        """Return what the next step is flown with, and whose action that is."""
+        if self.hand is Hand.NETWORK:
+            self.asked = COAST
+            return self._ask_network(), Hand.NETWORK
+        self.asked = self._hands.ask(held, self.observation)
+        if not self.shared:
+            self.decision = None
+            if self._held_for == 0:
+                self._aim()
+            self._held_for = (self._held_for + 1) % DECISION_STEPS
+            return self.asked, Hand.HUMAN
+        action = self._ask_copilot()
+        self.overridden = self.asked not in (COAST, action)
+        return action, Hand.HUMAN if action == self.asked != COAST else Hand.NETWORK
+
+    def _ask_network(self) -> int:
+        if self.alone is None or self._held_for == 0:
+            assert self.network is not None
+            self.alone = decide(self.network, self.env.observe(), self.env.actions)
+        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        return int(self.alone.action[0])
+
+    def _ask_copilot(self) -> int:
+        """Share a decision every few steps, and at once when something else is asked for: no tap is too short."""
+        assert self.copilot is not None
+        decision = self.decision
+        if decision is None or self._held_for == 0 or self.asked != decision.pilot[0]:
+            self.decision = decision = self.copilot.decide(self.env.observe_pads(), np.array([self.asked]))
+            self._held_for = 0
+            self._aim(decision.likely[0])
+        self._held_for = (self._held_for + 1) % DECISION_STEPS
+        return int(decision.action[0])
+
+    def _aim(self, likely: Doubles | float = 0.0) -> None:
+        """Turn read-outs and network to the pad that is most `likely` (pads,) meant; among equals, to the nearest."""
+        away = np.abs(self.env.ground.middles[:, 0] - self.env.position[0, 0])
+        self.env.target[:] = int((likely - 1e-6 * away).argmax())
+
+
+@lru_cache(maxsize=8)
+def ground_of(seed: int, pads: int) -> Ground:
+    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size there is."""
+    return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
+
+
+class Swarm:
+    """Any number of landers, flown by one network again and again.
+
+    Attributes:
+        since_end: steps each flight has been over, 0 while it flies.
+        landed, lost: flights ended so since the start.
+        fresh: slots whose flight began with the last step.
+        decision: the latest one of each slot, which is the one that is flown.
+        decided: how many each slot has taken.
+
+    """
+
+    def __init__(self, count: int, seed: int, flyer: Flyer, spawn: str = "random") -> None:
+        self.env = LanderEnv(count, seed, spawn, frame_skip=1)
+        self.observation: Floats = self.env.reset()
+        self.flyer = flyer
+        self.poses = Poses(self.env)
+        self.since_end: Ints = np.zeros(count, dtype=np.intp)
+        self.landed = self.lost = 0
+        self.fresh: Bools = np.ones(count, dtype=bool)
+        self.decision = decide(flyer, self.observation, np.zeros(count, dtype=np.intp))
+        self.decided: Ints = np.ones(count, dtype=np.intp)
+        self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; in turns at first
+        self._step = 0
+
+    def step(self) -> Bools:
+        """Fly 1/60 s, and begin anew where a flight has been over for a while. Returns who just ended."""
+        self.fresh = self.since_end >= REST_STEPS
+        if self.fresh.any():
+            self.observation = self.env.reset(self.fresh)
+            self.since_end[self.fresh] = 0
+        self._decide(np.flatnonzero(self.fresh | ((self._age == DECISION_STEPS) & (self.since_end == 0))))
+        self._age += self.since_end == 0
+        self._step += 1
+        self.env.fly(self.decision.action)
+        self.observation = self.env.observe()
+        outcome = self.env.outcome
+        over = outcome != Outcome.FLYING
+        ended: Bools = over & (self.since_end == 0)
+        self.since_end += over
+        landed = int((outcome[ended] == Outcome.LANDED).sum())
+        self.landed += landed
+        self.lost += int(ended.sum()) - landed
+        self.poses.take(self.fresh)
+        return ended
+
+    def _decide(self, due: Ints) -> None:
+        """Let the flyer decide for the slots that are due, in turns, for frames of equal cost."""
+        if not len(due):
+            return
+        held = np.where(self.fresh, COAST, self.decision.action)[due]
+        self.decision = self.decision.updated(due, decide(self.flyer, self.observation[due], held))
+        self.decided[due] += 1
+        self._age[due] = 0
+
+
+def surface_height(env: LanderEnv, x: float) -> float:
+    """Height of what lies under x: a pad's top, a hill, or the plain; to draw by."""
+    heights = _profile(env.ground)
+    if env.conditions.moves:  # and nothing else is there: one pad on a plain
+        x -= float(env.pad_shift[0])
+    return heights[min(max(round((x + _PROFILE_REACH) / _PROFILE_STEP), 0), len(heights) - 1)]
+
+
+@lru_cache(maxsize=8)
+def _profile(ground: Ground) -> list[float]:
+    """Return the ground's height at even steps, for many look-ups in a frame."""
+    heights: list[float] = ground.height(np.arange(-_PROFILE_REACH, _PROFILE_REACH, _PROFILE_STEP)).tolist()
+    return heights

@@ -1,0 +1,137 @@
+"""Where a flight goes from here, by itself and with a network, worked out a little in every frame.
+
+Both ways are flown by the physics of the flight itself. What touching the ground does is left out, for they end
+there: to look for contacts takes most of a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Doubles, Floats
+from ai.lander.environment import PARAMS, LanderEnv
+from ai.lander.ground import Ground
+from engine import DT
+from engine.integrate import integrate_velocity
+from game.flight.flight import DECISION_STEPS, surface_height
+from game.flight.networks import Flyer
+
+# Metres above the ground at which to stop: the touchdown itself is another matter.
+_CLEAR: Final = 0.3
+_DECISIONS: Final = 2  # of the way with a network, in a frame
+_STRIDE: Final = 10  # physics steps between places of the way by itself, taken at once
+_STRIDES: Final = 12  # in a frame: a path is whole after a few
+_SECONDS: Final = 9.0
+
+
+class Drift:
+    """Where a flight goes if nobody touches anything.
+
+    Attributes:
+        path: positions (k, 2), as far as the ground.
+
+    """
+
+    def __init__(self, env: LanderEnv) -> None:
+        self.path = coast_path(env)
+        self._env = env
+        self._ahead, self._places = drift(env), list[Doubles]()
+
+    def follow(self) -> None:
+        """Look a bit further ahead, beginning anew from where the flight is once the ground is reached."""
+        places = list(islice(self._ahead, _STRIDES))
+        self._places += places
+        if len(places) < _STRIDES:
+            self.path = _down_to_ground(self._env.ground, self._places)
+            self._ahead, self._places = drift(self._env), []
+
+
+class Forecast:
+    """Flies ahead of a flight in an environment of its own, and so never disturbs it.
+
+    Attributes:
+        path: positions (k, 2) of the latest flight ahead, as far as the ground; empty until there is one.
+
+    """
+
+    def __init__(self, flyer: Flyer, ground: Ground | None = None) -> None:
+        self.path: Doubles = np.empty((0, 2))
+        self._flyer = flyer
+        self._ahead = LanderEnv(1, 0, frame_skip=DECISION_STEPS, ground=ground)
+        self._observation: Floats = self._ahead.reset()
+        self._places: list[Doubles] = []
+
+    def follow(self, env: LanderEnv, decisions: int = _DECISIONS) -> None:
+        """Fly some decisions further ahead of `env`, beginning anew from where it is once the ground is reached."""
+        ahead = self._ahead
+        for _ in range(decisions):
+            if not self._places:
+                ahead.restore(env.snapshot())
+                ahead.gravity = env.gravity
+                self._observation = ahead.observe()
+            self._places.append(ahead.position[0].copy())
+            if self._arrived():
+                self.path, self._places = np.array(self._places), []
+                continue
+            self._observation = ahead.glide(self._flyer.act(self._observation, held=ahead.actions))
+        self._leave_behind(env.position[0])
+
+    def _arrived(self) -> bool:
+        """Whether the flight ahead is almost down, or has left the world or its time behind."""
+        ahead, limits = self._ahead, self._ahead.limits
+        x, y = ahead.position[0].tolist()
+        if abs(x) > limits.half_width or y > limits.ceiling or ahead.time[0] > limits.time:
+            return True
+        return bool(y < surface_height(ahead, x) + ahead.params.stand + _CLEAR)
+
+    def _leave_behind(self, position: Doubles) -> None:
+        """Drop the part of the path that the flight has passed meanwhile."""
+        if len(self.path):
+            nearest = int(np.hypot(*(self.path - position).T).argmin())
+            self.path = self.path[nearest:]
+
+
+def coast_path(env: LanderEnv) -> Doubles:
+    """Where a lander goes if nobody touches anything: positions (k, 2), every 1/6 s, down to the ground."""
+    return _down_to_ground(env.ground, list(drift(env)))
+
+
+def drift(env: LanderEnv) -> Iterator[Doubles]:
+    """Yield where a lander will be from now on if nobody touches anything, (2,) every 1/6 s, as far as the plain."""
+    world, body, span = env.world, env.lander.index, _STRIDE * DT
+    state = replace(
+        world.state, velocity=world.state.velocity[:1].copy(), force=np.zeros_like(world.state.force[:1]),
+        active=world.state.active[:1].copy(),
+    )  # fmt: skip
+    velocity, place = state.velocity[0, body, :2], env.position[0].copy()
+    time, lowest = float(env.time[0]), env.ground.base + PARAMS.stand
+    yield place.copy()
+    for stride in range(round(_SECONDS / span)):
+        before = velocity.copy()
+        if env.conditions.pushes:
+            state.force[0, body, 0] = env.conditions.push(np.array(time + (stride + 0.5) * span))
+        integrate_velocity(state, world.movers, world.gravity, span)
+        # As far as short steps would go, each at the speed it ends with, while that grows evenly.
+        place += span / 2 * (before + velocity) + DT / 2 * (velocity - before)
+        yield place.copy()
+        x, y = place.tolist()
+        if y < lowest or abs(x) > env.limits.half_width:
+            return
+
+
+def _down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
+    """Return a path (k, 2) as far as where feet would come to the ground."""
+    way = np.array(places)
+    clear = way[:, 1] - ground.height(way[:, 0]) - PARAMS.stand
+    low = np.flatnonzero(clear[1:] < 0)
+    if not len(low):
+        return way
+    last = int(low[0]) + 1
+    above, below = max(float(clear[last - 1]), 0.0), float(clear[last])
+    touch = way[last - 1] + above / (above - below) * (way[last] - way[last - 1])
+    return np.concatenate([way[:last], touch[None]])

@@ -1,0 +1,139 @@
+"""The networks there are to fly with: the shipped ones, the player's own, and a scripted pilot beside them."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Protocol, runtime_checkable
+
+from ai.common.decision import Decision
+from ai.common.environment import Floats, Ints
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from ai.nn.files import brief
+from game.core import texts
+from game.core.collection import claims
+
+DEFAULT: Final = "modern"
+SCRIPTED: Final = "scripted"
+PLAYERS: Final = "models"  # in the player's folder: the networks of their own
+PARTS: Final = ("config.json", "online", "target")  # a folder without any of them never was a network
+_log = logging.getLogger("tranquility")
+
+
+class Flyer(Protocol):
+    """Whatever can choose actions for a batch of landers."""
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now."""
+
+
+@runtime_checkable
+class Thinker(Flyer, Protocol):
+    """A flyer that can say what it thinks of every action, and what it decides by that."""
+
+    def q_values(self, observation: Floats) -> Floats:
+        """Values (n, 6) for observations (n, 9)."""
+
+    def decide(self, observation: Floats, *, held: Ints | None = None) -> Decision:
+        """Do what `act` does, and say by what."""
+
+
+def decide(flyer: Flyer, observation: Floats, held: Ints) -> Decision:
+    """Let a flyer decide for observations (n, 9), `held` (n,) the actions until now; once, to be flown and shown."""
+    if isinstance(flyer, Thinker):
+        return flyer.decide(observation, held=held)
+    action = flyer.act(observation, held=held)
+    return Decision(observation, action, action)
+
+
+@dataclass(frozen=True)
+class Network:
+    """A network by name. `flyer` is None where it could not be read, and `problem` then says why."""
+
+    name: str
+    flyer: Flyer | None = None
+    problem: str = ""
+
+
+def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
+    """Return every folder that claims to hold a lander's network, by name; the player's own come last.
+
+    A player's network of the same name as another one is told apart, not left out.
+    """
+    found: dict[str, Path] = {}
+    for parent in (models_dir / "lander", user_dir / PLAYERS):
+        try:
+            inside = sorted(path for path in parent.iterdir() if claims(path, PARTS))
+        except OSError:
+            continue
+        # The default one comes first, whatever its letter.
+        for path in sorted(inside, key=lambda path: path.name != DEFAULT):
+            taken = path.name in found or path.name == SCRIPTED
+            found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = path
+    return found
+
+
+def load(name: str, folder: Path) -> Network:
+    """Read one network. Never raises: what is wrong is in the answer."""
+    from ai.agent.agent import DeepQAgent
+    from ai.nn import ModelFormatError
+
+    try:
+        agent = DeepQAgent.load(folder)
+    except ModelFormatError as error:
+        return Network(name, problem=brief(error.problems[0] if error.problems else error))
+    except OSError as error:
+        return Network(name, problem=brief(error.strerror or error))
+    except Exception as error:  # anything may lie in a player's folder, and none of it may end the game
+        _log.exception("reading %s", folder)
+        return Network(name, problem=brief(f"{type(error).__name__}: {error}"))
+    if (agent.num_features, agent.num_actions) != (NUM_FEATURES, NUM_ACTIONS):
+        return Network(name, problem=texts.NETWORK_ELSEWHERE.format(
+            features=agent.num_features, actions=agent.num_actions,
+            lander_features=NUM_FEATURES, lander_actions=NUM_ACTIONS,
+        ))  # fmt: skip
+    return Network(name, agent)
+
+
+def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
+    """Read the network of that name, or the game's own for no name or one that is gone."""
+    known = folders(models_dir, user_dir)
+    for wanted in (name, DEFAULT):
+        if wanted in known:
+            return load(wanted, known[wanted])
+    return _missing(models_dir)
+
+
+class Roster:
+    """All there is to fly with, by name, the scripted pilot last. A network is read when it is first asked for."""
+
+    def __init__(self, models_dir: Path, user_dir: Path) -> None:
+        self._models_dir = models_dir
+        self._folders = folders(models_dir, user_dir)
+        missing = [] if DEFAULT in self._folders else [DEFAULT]
+        self.names = [*missing, *self._folders, SCRIPTED]
+        self._read: dict[str, Network] = {}
+
+    def __getitem__(self, name: str) -> Network:
+        """Return the network of that name, a damaged one too; KeyError if there is none."""
+        if name not in self._read:
+            self._read[name] = self._load(name)
+        return self._read[name]
+
+    def first_fit(self) -> Network:
+        """Return the first that can fly; the scripted pilot always can."""
+        return next(network for name in self.names if (network := self[name]).flyer)
+
+    def _load(self, name: str) -> Network:
+        from ai.lander.pilots import ScriptedPilot
+
+        if name == SCRIPTED:
+            return Network(SCRIPTED, ScriptedPilot())
+        if name == DEFAULT and name not in self._folders:
+            return _missing(self._models_dir)
+        return load(name, self._folders[name])
+
+
+def _missing(models_dir: Path) -> Network:
+    return Network(DEFAULT, problem=texts.NETWORK_MISSING.format(path=models_dir / "lander" / DEFAULT))

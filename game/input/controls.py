@@ -1,0 +1,320 @@
+"""Keys and gamepads, turned into what a pilot holds and what a player commands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import pygame
+
+from game.core import texts
+from game.core.settings import Settings
+from game.drawing import glyphs
+from game.input.bindings import KEYBOARD, PAD, TRIGGERS, Bindings, Command, Held, Meaning
+
+__all__ = ["Command", "Controls", "Held", "KeyName", "presses_main", "translate"]
+
+# Axis, direction, how far out of 32767 it must be pushed.
+AXES: Final[dict[Held, tuple[int, int, int]]] = {
+    Held.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1, 11000),
+    Held.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1, 11000),
+}
+STICK_COMMANDS: Final[dict[Command, tuple[int, int]]] = {
+    Command.LEFT: (pygame.CONTROLLER_AXIS_LEFTX, -1),
+    Command.RIGHT: (pygame.CONTROLLER_AXIS_LEFTX, 1),
+    Command.UP: (pygame.CONTROLLER_AXIS_LEFTY, -1),
+    Command.DOWN: (pygame.CONTROLLER_AXIS_LEFTY, 1),
+    Command.SLOWER: (pygame.CONTROLLER_AXIS_RIGHTX, -1),
+    Command.FASTER: (pygame.CONTROLLER_AXIS_RIGHTX, 1),
+}
+STICK_PUSHED: Final = 20000
+STICK_RELEASED: Final = 12000
+TRIGGER_PRESSED: Final = 8000
+TRIGGER_RELEASED: Final = 5000
+# Signs of what a stick does, beside the buttons.
+_STICK_SIGNS: Final[dict[Meaning, int]] = {
+    Held.LEFT: glyphs.TURN,
+    Held.RIGHT: glyphs.TURN,
+    Command.SLOWER: glyphs.STICK_LEFT,
+    Command.FASTER: glyphs.STICK_RIGHT,
+}
+# Keys of the keypad that write something.
+_KEYPAD: Final = frozenset({code for name, code in KEYBOARD.names.items() if name[:2] == "kp"} - {pygame.K_KP_ENTER})
+_KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
+_STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
+
+
+class KeyName(str):
+    """The name of a key, or the sign of a button, that a click of the mouse takes for a press of the key.
+
+    Attributes:
+        press: the event that the click becomes.
+
+    """
+
+    press: pygame.event.Event
+
+    def __new__(cls, text: str, key: int, command: Command | None = None) -> KeyName:
+        """Name a key by a text."""
+        name = super().__new__(cls, text)
+        name.press = pygame.Event(pygame.KEYDOWN, key=key, mod=0, unicode="", command=command)
+        return name
+
+
+def translate(event: pygame.event.Event) -> Command | None:
+    """Return the command an event means, if any, as `Controls.process` has marked it.
+
+    An event that no `Controls` has seen means what it does in the game as it comes.
+    """
+    if hasattr(event, "command"):
+        command: Command | None = event.command
+        return command
+    return _command(event, _STANDARD[pygame.KEYDOWN], _STANDARD[pygame.CONTROLLERBUTTONDOWN])
+
+
+def presses_main(event: pygame.event.Event) -> bool:
+    """Tell whether a key presses the main engine, which in a menu confirms as well; Space always does."""
+    return event.type == pygame.KEYDOWN and (
+        event.key == pygame.K_SPACE or event.key in getattr(event, "main_keys", KEYBOARD.standard[Held.MAIN])
+    )
+
+
+def _command(event: pygame.event.Event, keys: Bindings, buttons: Bindings) -> Command | None:
+    if event.type == pygame.KEYDOWN:
+        if event.key == pygame.K_RETURN and getattr(event, "mod", 0) & pygame.KMOD_ALT:
+            return Command.FULLSCREEN
+        return keys.command(event.key)
+    return buttons.command(event.button) if event.type == pygame.CONTROLLERBUTTONDOWN else None
+
+
+def _types(event: pygame.event.Event) -> bool:
+    """Tell whether a press writes a letter: SDL numbers such keys by what they write, and others beyond all letters."""
+    if event.type != pygame.KEYDOWN:
+        return False
+    held = getattr(event, "mod", 0) & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META)
+    return not held and (event.key in _KEYPAD or (event.key < 0x110000 and chr(event.key).isprintable()))
+
+
+@dataclass
+class _Pad:
+    buttons: set[int] = field(default_factory=set)
+    axes: dict[int, int] = field(default_factory=dict)
+    pushed: set[Command] = field(default_factory=set)
+    device: Any = None  # SDL closes a pad that nobody holds on to
+    family: glyphs.Family = "xbox"
+
+
+class Controls:
+    """What is held down at the moment, on the keyboard and on every pad together.
+
+    Attributes:
+        keys, buttons: what the keyboard's keys and the pads' buttons mean.
+        mouse_in_use: whether the mouse was touched last; no ring is drawn around what is in focus then.
+        listening: whether the next press is to be bound, and commands nothing.
+        spelling: whether letters are typed into a line: a key that types one commands nothing.
+        pad_name: what the pad plugged in last calls itself; empty if it was pulled out again at once.
+
+    """
+
+    def __init__(self) -> None:
+        self.keys, self.buttons = Bindings(KEYBOARD), Bindings(PAD)
+        self._keys: set[int] = set()
+        self._pads: dict[int, _Pad] = {}
+        self._used: int | None = None  # the pad touched last, while a pad is in use
+        self.mouse_in_use = self.listening = self.spelling = False
+        self.pad_name = ""
+
+    @property
+    def pad_in_use(self) -> bool:
+        """Whether a pad was touched last, rather than the keyboard; hints show its buttons then."""
+        return self._used is not None
+
+    @property
+    def pads(self) -> int:
+        """How many pads there are."""
+        return len(self._pads)
+
+    @property
+    def main(self) -> bool:
+        """Whether the main engine is asked for."""
+        return self._held(Held.MAIN)
+
+    @property
+    def steer(self) -> int:
+        """0 for none (or both at once), 1 for left, 2 for right."""
+        left, right = self._held(Held.LEFT), self._held(Held.RIGHT)
+        return 0 if left == right else (1 if left else 2)
+
+    @property
+    def action(self) -> int:
+        """The lander's action: 3 · main + steer."""
+        return 3 * self.main + self.steer
+
+    # Names
+
+    def word(self, meaning: Meaning) -> str:
+        """Name the key for a meaning, or show the button while a pad is in use; the key, if no button has it.
+
+        A command's name is a KeyName. While the mouse is in use, what flies is shown as its buttons.
+        """
+        if isinstance(meaning, Held) and self.mouse_in_use:
+            return self.pad_sign(glyphs.MOUSE_LEFT if meaning is Held.MAIN else glyphs.MOUSE_RIGHT)
+        signs = self.pad_signs(meaning) if self.pad_in_use else []
+        text = next(iter(signs or self.key_names(meaning)), texts.BINDINGS_NONE)
+        if isinstance(meaning, Held):
+            return text
+        return KeyName(text, next(iter(self.keys.codes(meaning)), 0), meaning)
+
+    @staticmethod
+    def key(code: int) -> str:
+        """Name a key that means the same always, as a KeyName."""
+        return KeyName(key_name(code), code)
+
+    @property
+    def arrows(self) -> str:
+        """What moves the focus."""
+        return self.pad_sign(glyphs.CROSS) if self.pad_in_use else texts.ARROWS
+
+    @property
+    def arrows_aside(self) -> str:
+        """What moves a slider."""
+        return self.pad_sign(glyphs.CROSS) if self.pad_in_use else texts.ARROWS_ASIDE
+
+    def key_names(self, meaning: Meaning) -> list[str]:
+        """Name every key of a meaning, as written on the keyboard."""
+        if meaning is Command.BACK:  # in a form, what pauses goes back; its own keys are less known
+            meaning = Command.PAUSE
+        return [key_name(code) for code in self.keys.codes(meaning)]
+
+    def pad_signs(self, meaning: Meaning) -> list[str]:
+        """Show every button and stick of a meaning, as the pad in use, or the one plugged in last, has them."""
+        stick = [_STICK_SIGNS[meaning]] if meaning in _STICK_SIGNS else []
+        signs = dict.fromkeys([*stick, *self.buttons.codes(meaning)])
+        return [self.pad_sign(number) for number in signs]
+
+    def pad_sign(self, number: int) -> str:
+        """Show a button by its number, or one of the further signs of `game.drawing.glyphs`."""
+        pads = [*self._pads.values()]
+        pad = self._pads.get(-1 if self._used is None else self._used) or (pads[-1] if pads else _Pad())
+        return glyphs.sign(pad.family, number)
+
+    # Events
+
+    def follow(self, settings: Settings) -> None:
+        """Take what the player has changed."""
+        self.keys.follow(settings.keys)
+        self.buttons.follow(settings.buttons)
+
+    def release_all(self) -> None:
+        """Let go of everything: the window no longer hears what is released."""
+        self._keys.clear()
+        for pad in self._pads.values():
+            pad.buttons.clear()
+            pad.axes.clear()
+            pad.pushed.clear()
+
+    def process(self, event: pygame.event.Event) -> None:
+        """Follow one event, and mark it with the `command` it means."""
+        match event.type:
+            case pygame.KEYDOWN:
+                self._keys.add(event.key)
+                event.command = self._command(event)
+                event.main_keys = self.keys.codes(Held.MAIN)
+                self._used, self.mouse_in_use = None, False
+            case pygame.MOUSEMOTION | pygame.MOUSEBUTTONDOWN:
+                self.mouse_in_use = True
+            case pygame.KEYUP:
+                self._keys.discard(event.key)
+            case pygame.WINDOWFOCUSLOST:
+                self.release_all()
+            case pygame.CONTROLLERDEVICEADDED:
+                self._open(event.device_index)
+            case pygame.CONTROLLERDEVICEREMOVED:
+                self._close(event)
+            case pygame.CONTROLLERBUTTONDOWN:
+                self._pad(event).buttons.add(event.button)
+                event.command = self._command(event)
+                self._use(event)
+            case pygame.CONTROLLERBUTTONUP:
+                self._pad(event).buttons.discard(event.button)
+            case pygame.CONTROLLERAXISMOTION:
+                self._move(event)
+
+    def _command(self, event: pygame.event.Event) -> Command | None:
+        if self.listening or (self.spelling and _types(event)):
+            return None
+        return _command(event, self.keys, self.buttons)
+
+    def _held(self, held: Held) -> bool:
+        if not self._keys.isdisjoint(self.keys.codes(held)):
+            return True
+        buttons = self.buttons.codes(held)
+        axis, direction, threshold = AXES.get(held, (-1, 0, 0))
+        return any(
+            not pad.buttons.isdisjoint(buttons) or direction * pad.axes.get(axis, 0) > threshold
+            for pad in self._pads.values()
+        )
+
+    def _use(self, event: pygame.event.Event) -> None:
+        self._used, self.mouse_in_use = event.instance_id, False
+
+    def _pad(self, event: pygame.event.Event) -> _Pad:
+        return self._pads.setdefault(event.instance_id, _Pad())
+
+    def _open(self, device_index: int) -> None:
+        from pygame._sdl2 import controller
+
+        self.pad_name = ""
+        try:
+            device = controller.Controller(device_index)
+            instance = device.as_joystick().get_instance_id()
+        except pygame.error:
+            return  # pulled out again before its turn came
+        self.pad_name = device.name or ""
+        pad = self._pads.setdefault(instance, _Pad())
+        pad.device, pad.family = device, glyphs.family_of(self.pad_name)
+
+    def _close(self, event: pygame.event.Event) -> None:
+        self._pads.pop(event.instance_id, None)
+        if event.instance_id == self._used:
+            self._used = None
+            event.command = Command.UNPLUGGED
+
+    def _move(self, event: pygame.event.Event) -> None:
+        pad = self._pad(event)
+        pad.axes[event.axis] = event.value
+        if event.axis in TRIGGERS:
+            self._pull(event, pad, TRIGGERS[event.axis])
+        for command, (axis, direction) in STICK_COMMANDS.items():
+            if axis != event.axis:
+                continue
+            push = direction * event.value
+            if push > STICK_PUSHED and command not in pad.pushed:
+                pad.pushed.add(command)
+                event.command = command
+                self._use(event)
+            elif push < STICK_RELEASED:
+                pad.pushed.discard(command)
+
+    def _pull(self, event: pygame.event.Event, pad: _Pad, trigger: int) -> None:
+        """Take a trigger for a button."""
+        if event.value > TRIGGER_PRESSED and trigger not in pad.buttons:
+            pad.buttons.add(trigger)
+            event.command, event.trigger = None if self.listening else self.buttons.command(trigger), trigger
+            self._use(event)
+        elif event.value < TRIGGER_RELEASED:
+            pad.buttons.discard(trigger)
+
+
+def key_name(code: int) -> str:
+    """Name a key as it is written on it."""
+    name = _KEY_NAMES.get(code)
+    if name is None:
+        return chr(code).upper() if 32 < code < 0x10000 and chr(code).isprintable() else f"#{code}"
+    return texts.KEY_NAMES.get(name) or name.replace("kp_", "Num ").replace("kp", "Num ").title()
+
+
+def names(words: Iterable[str]) -> str:
+    """Write several keys, or signs, in a row."""
+    return "   ".join(words)

@@ -1,0 +1,139 @@
+"""The one hint on the training screen: what is off, a remedy at a press, and the way back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import pygame
+
+from ai.agent.config import Config
+from ai.training.hints import Adviser, Hint
+from ai.training.history import History
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.tokens import HUMAN, LABEL, SMALL
+from game.training.dials import told
+from game.ui.form import Form
+from game.ui.widgets import Word
+
+_WORD: Final = 62.0  # from one word to the next
+_LINE: Final = 16.0
+_LINES: Final = 2  # that a hint has room for, also in the largest text
+
+
+class Advice:
+    """Asks the adviser and shows what it says in a box of a form; `turn` sets a knob by its name.
+
+    `go_back` is called with the moment, in decisions, that a run should return to.
+
+    Attributes:
+        done: what the last remedy did, in words.
+
+    """
+
+    def __init__(
+        self, form: Form, box: pygame.Rect, turn: Callable[[str, Any], None], go_back: Callable[[int], None]
+    ) -> None:
+        self._form, self._box, self._turn, self._go_back = form, box, turn, go_back
+        self.adviser = Adviser(Config())
+        self._moment = 0  # of the run as it was last seen, in decisions
+        self._came_from: int | None = None  # the moment at which a remedy went back
+        self._hint: Hint | None = None
+        self.done = ""  # what the last remedy did
+        self._quiet = False
+        self._words: list[Word] = []
+
+    @property
+    def shown(self) -> bool:
+        """Whether there is anything to see."""
+        return bool(self._words)
+
+    def follow(
+        self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
+    ) -> None:
+        """Look at the run again; call it when there is news."""
+        if len(history):
+            self._moment = int(history["decisions"][-1])
+        self._lay(self.adviser.advise(history, config, dead_share, clipped_share))
+
+    def hush(self, quiet: bool) -> None:
+        """Say nothing while something else waits to be applied or undone: one question at a time."""
+        if quiet != self._quiet:
+            self._quiet = quiet
+            self.adviser.undo()  # what was applied is in that question's hands
+            self._lay(self._hint)
+
+    def clear(self) -> None:
+        """Begin anew with another run."""
+        self.adviser.reset()
+        self._lay(None)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the box and the sentence; the form draws the words."""
+        if not self.shown:
+            return
+        box = self._box
+        canvas.outline(box, 8, HUMAN, 1, 0.35)
+        title, said = (
+            (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self.done)
+        )
+        canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
+        for number, line in enumerate(wrapped(canvas, said, SMALL, self._room)[:_LINES]):
+            canvas.text(line, (box.left + 14, box.top + 34 + _LINE * number), size=SMALL)
+
+    @property
+    def _room(self) -> float:
+        return self._box.width - 28
+
+    def _lay(self, hint: Hint | None) -> None:
+        """Put the words there that fit what is shown."""
+        self._hint = hint
+        wanted: list[tuple[str, Callable[[], None]]] = []
+        if self._quiet:
+            pass
+        elif hint is not None:
+            if hint.remedy or hint.back_to is not None:
+                wanted.append((texts.HINT_APPLY, self._apply))
+            wanted.append((texts.HINT_DISMISS, self._dismiss))
+        elif self.adviser.can_undo:
+            wanted = [(texts.HINT_UNDO, self._undo), (texts.HINT_DISMISS, self._keep)]
+        if [label for label, _ in wanted] == [word.label for word in self._words]:
+            return
+        box = self._box
+        words = [
+            Word(self._form.manager, (box.right - _WORD * (len(wanted) - number), box.top + 2, _WORD - 14, 22), label,
+                 press, size=SMALL)
+            for number, (label, press) in enumerate(wanted)
+        ]  # fmt: skip
+        self._form.replace(self._words, words)
+        self._words = words
+
+    def _apply(self) -> None:
+        back_to = self._hint.back_to if self._hint else None
+        remedy = self.adviser.apply(went_back=back_to is not None)
+        went = [] if back_to is None else [texts.HINT_WENT_BACK.format(decisions=back_to)]
+        self.done = ", ".join([*([told(remedy)] if remedy else []), *went])
+        for name, value in remedy.items():
+            self._turn(name, value)
+        self._came_from = None if back_to is None else self._moment
+        if back_to is not None:
+            self._go_back(back_to)
+        self._lay(None)
+
+    def _undo(self) -> None:
+        for name, value in self.adviser.undo().items():
+            self._turn(name, value)
+        if self._came_from is not None:
+            self._go_back(self._came_from)
+        self._lay(None)
+
+    def _dismiss(self) -> None:
+        self.adviser.dismiss()
+        self._lay(None)
+
+    def _keep(self) -> None:
+        """Leave the remedy as it is."""
+        self.adviser.undo()
+        self._lay(None)

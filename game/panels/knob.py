@@ -1,0 +1,342 @@
+"""One row of the panel of knobs: a label, a track or a switch or words, a figure.
+
+Blue changes a run as it goes on. Grey and hollow takes a new run. An amber dot marks what the player has changed;
+R, the pad's X, or a click on the name brings back what the preset says, where a tick stands on the track.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, Final
+
+import numpy as np
+import pygame
+
+from game.core import texts
+from game.core.scene import Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
+from game.input.controls import Command, translate
+from game.training.dials import Dial, figure
+from game.ui.entry import Entry, digits, draw_line
+from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widgets import draw_switch
+from game.ui.words import WordRow
+
+MARGIN: Final = 16  # left of the label, for the dot
+_TRACK: Final = (142.0, 62.0)  # from the label to the track, from the track to the right end
+_GAP: Final = 14.0  # between words
+_LONGEST_SEED: Final = 9  # digits
+_DIM: Final = mix(FAINT, MUTE, 0.45)  # of what changes nothing
+_NOTE: Final = LABEL - 1.5  # the size of what is written over a track
+_CLEAR: Final = 9.0  # from the middle of the handle to such words
+
+
+class Knob(Widget):
+    """What all kinds share. The panel owns the value: `turn` asks for another, `display` brings it back here.
+
+    `enter` is called by Enter, or a pad's A, on a slider: there is nothing to press on it.
+
+    Attributes:
+        value: what is shown.
+        home: what the preset says.
+        waits: whether the value is yet to be applied.
+        now: what acts in its place at this moment of a run, if that is something else.
+        idle: why it changes nothing; empty if it does.
+
+    """
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        dial: Dial,
+        turn: Callable[[Dial, Any], None],
+        enter: Callable[[], None] = lambda: None,
+    ) -> None:
+        super().__init__(manager, box, dial.label)
+        self.dial, self.help = dial, dial.help
+        self.value: Any = None
+        self.home: Any = None
+        self.waits = False
+        self.now: float | None = None
+        self.idle = ""
+        self._turn, self._enter = turn, enter
+        self._named = False  # the mouse was pressed on the name
+
+    def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
+        """Show what the panel says."""
+        self.value, self.home, self.waits, self.idle = value, home, waits, idle
+        rounded = None if now is None else float(f"{now:.3g}")
+        self.now = None if rounded is None or figure(rounded) == figure(value) else rounded
+        self.help = idle or self.dial.help
+
+    @property
+    def live(self) -> bool:
+        """Whether a run may go on while this is turned."""
+        return self.dial.live
+
+    @property
+    def changed(self) -> bool:
+        """Whether the value is not the preset's."""
+        return bool(self.value != self.home)
+
+    @property
+    def track(self) -> tuple[float, float]:
+        """From where to where it can be turned, in points."""
+        return self.box.left + MARGIN + _TRACK[0], self.box.right - _TRACK[1]
+
+    @property
+    def colour(self) -> Colour:
+        """Blue, grey for what takes a new run, amber for what waits, dim for what changes nothing."""
+        return HUMAN if self.waits else _DIM if self.idle else NET if self.live else MUTE
+
+    def turn(self, value: Any) -> None:
+        """Ask for another value."""
+        if value != self.value:
+            self._turn(self.dial, value)
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Go back to the preset's value."""
+        if self.changed and translate(event) is Command.RETRY:
+            self.turn(self.home)
+            return True
+        return False
+
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Keep a press on the name apart from one on the track."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            self._named = self.hover_point(*event.pos) and event.pos[0] < self.track[0] - 10
+            if self._named:
+                return True
+        if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self._named:
+            self._named = False
+            if self.hover_point(*event.pos) and self.changed:
+                self.turn(self.home)
+            return True
+        return super().process_event(event)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the ring of the focus, the dot of a change and the label."""
+        draw_row(canvas, self, changed=self.changed, dim=bool(self.idle))
+
+    def write(self, canvas: Canvas, written: str) -> None:
+        """Write a figure at the right end."""
+        canvas.text(
+            written, (self.box.right, self.box.centery + 4.5),
+            size=SMALL, colour=self.colour, align="right", tabular=True, room=_TRACK[1] - 8,
+        )  # fmt: skip
+
+
+class SliderKnob(Knob):
+    """A number, on one of the stops of its track."""
+
+    def _at(self, value: Any) -> float:
+        """How far along the track a value stands, 0 to 1."""
+        return _along(self.dial.stops, value)
+
+    def _places(self) -> dict[float, Any]:
+        """Where along the track it can stand: at a stop, or at the preset's value."""
+        return {self._at(value): value for value in (*self.dial.stops, self.home)}
+
+    def shift(self, direction: int) -> bool:
+        """Go to the next stop."""
+        places, here = self._places(), self._at(self.value)
+        ahead = [place for place in places if (place - here) * direction > 1e-6]
+        if ahead:
+            self.turn(places[min(ahead, key=lambda place: abs(place - here))])
+        return True
+
+    def press(self) -> None:
+        """Leave it to the panel, unless the mouse has let go of it."""
+        if self.ringed:
+            self._enter()
+
+    def drag(self, x: float) -> None:
+        """Go to the stop nearest to the mouse."""
+        left, right = self.track
+        places, fraction = self._places(), (x - left) / (right - left)
+        self.turn(places[min(places, key=lambda place: abs(place - fraction))])
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw track, tick, handle and figure."""
+        super().paint(canvas)
+        left, right = self.track
+        middle, width = self.box.centery, right - left
+        fraction, home = self._at(self.value), left + self._at(self.home) * width
+        canvas.line((home, middle - 5), (home, middle + 5), MUTE, 1, 0.8)
+        canvas.bar((left, middle - 1, width, 2), fraction, self.colour)
+        handle, radius = (left + fraction * width, middle), 5 + self.warmth
+        whole = self.live and not self.idle
+        canvas.dot(handle, radius, INK if whole else mix(_DIM if self.idle else MUTE, INK, self.warmth))
+        if not whole:
+            canvas.dot(handle, radius - 1.6, PANEL)
+        if self.now is not None:
+            self._paint_now(canvas, self.now, handle[0])
+        elif self.idle:
+            self._paint_beside(canvas, texts.KNOB_IDLE, middle - 4, handle[0], handle[0])
+        self.write(canvas, figure(self.value))
+
+    def _paint_now(self, canvas: Canvas, now: float, handle: float) -> None:
+        """Mark on the track what acts now, and write it above."""
+        left, right = self.track
+        x, middle = left + self._at(now) * (right - left), self.box.centery
+        canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
+        self._paint_beside(canvas, texts.KNOB_NOW.format(value=figure(now)), middle - 4, x, handle)
+
+    def _paint_beside(self, canvas: Canvas, words: str, baseline: float, x: float, handle: float) -> None:
+        """Write over the track, around x as far as there is room, and beside the handle."""
+        left, right = self.track
+        width = canvas.text_width(words, size=_NOTE)
+        start = min(max(x - width / 2, left), right - width)
+        if start - _CLEAR < handle < start + width + _CLEAR:
+            before, after = handle - _CLEAR - width, handle + _CLEAR
+            start = before if before >= left and (x <= handle or after + width > right) else after
+        canvas.text(words, (start, baseline), size=_NOTE, colour=mix(MUTE, INK, self.warmth))
+
+
+class SwitchKnob(Knob):
+    """On or off."""
+
+    _slid: float | None = None
+
+    def press(self) -> None:
+        """Change to the other state."""
+        self.turn(not self.value)
+
+    def shift(self, direction: int) -> bool:
+        """Left is off, right is on."""
+        self.turn(direction > 0)
+        return True
+
+    def ease(self, at_once: bool) -> None:
+        """Let the switch slide."""
+        super().ease(at_once)
+        target = float(self.value)
+        at_once = at_once or self._slid is None
+        self._slid = target if at_once else (self._slid or 0.0) + 0.3 * (target - (self._slid or 0.0))
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the switch and its state."""
+        super().paint(canvas)
+        left, middle = self.track[0], self.box.centery
+        slid = float(self.value) if self._slid is None else self._slid
+        draw_switch(canvas, (left, middle - 7, 26, 14), slid, self.colour)
+        if not self.live:
+            canvas.dot((left + 7 + 12 * slid, middle), 2.6, mix(FAINT, self.colour, slid))
+        state = texts.KNOB_SWITCH[bool(self.value)]
+        canvas.text(state, (self.box.right, middle + 4.5), size=SMALL, align="right",
+                    colour=self.colour if self.value else MUTE)  # fmt: skip
+
+
+class WordsKnob(Knob):
+    """One of a few words."""
+
+    values: tuple[Any, ...] = ()
+    row: WordRow
+
+    def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
+        """Show what the panel says; a value that is on no word has one made for it."""
+        super().display(value, home, waits=waits, now=now, idle=idle)
+        own = [extra for extra in (home, value) if extra not in self.dial.stops]
+        values = (*self.dial.stops, *dict.fromkeys(own))
+        if values != self.values:
+            self.values = values
+            self.row = WordRow([figure(each) for each in values], self.track[0], self.box.right, SMALL, _GAP)
+
+    def press(self) -> None:
+        """Take the word under the mouse; without one, the next."""
+        x, chosen = self.ui_manager.get_mouse_position()[0], self.values.index(self.value)
+        by_key = self.ringed or not self.box.collidepoint(x, self.box.centery)
+        self.turn(self.values[(chosen + 1) % len(self.values) if by_key else self.row.at(x, chosen)])
+
+    def shift(self, direction: int) -> bool:
+        """Take the word to the left or right."""
+        place = self.values.index(self.value) + direction
+        if 0 <= place < len(self.values):
+            self.turn(self.values[place])
+        return True
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the words."""
+        super().paint(canvas)
+        ink = self.colour if self.live or self.waits or self.idle else INK
+        self.row.paint(
+            canvas, self.box.centery + 4.5, self.values.index(self.value),
+            ink=ink, line=self.colour, drop=5.5, thickness=2.0 if self.live else 1.0,
+        )  # fmt: skip
+
+
+class SeedKnob(Entry):
+    """The seed: typed, or one up and down with the arrows. A run begins with it, so it always takes a new one."""
+
+    live = False
+    changed = False
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, turn: Callable[[int], None]
+    ) -> None:
+        super().__init__(manager, box, label, "0", self._accept, limit=_LONGEST_SEED, fits=digits, size=SMALL)
+        self.help = texts.KNOB_SEED
+        self._turn, self.value, self.waits = turn, 0, False
+
+    def display(self, value: int, *, waits: bool) -> None:
+        """Show what the panel says."""
+        self.value, self.waits = value, waits
+        if not self.typing:
+            self.line.set(str(value))
+
+    def shift(self, direction: int) -> bool:
+        """One up, one down."""
+        self._turn(min(max(self.value + direction, 0), 10**_LONGEST_SEED - 1))
+        return True
+
+    def _accept(self, text: str) -> Transition | None:
+        self._turn(int(text))
+        return None
+
+    def ease(self, at_once: bool) -> None:
+        """Take what was typed once the focus is elsewhere."""
+        super().ease(at_once)
+        self.commit()
+
+    def commit(self) -> None:
+        """Take what was typed, unless it is still being typed."""
+        if not self.typing and self.line.text != str(self.value):
+            self._turn(int(self.line.text or self.value))
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Where the number begins: it ends at the right end of the row."""
+        return self.box.right - typeface.width(self.line.text, SMALL, "regular"), self.box.centery + 4.5
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the label and the number."""
+        draw_row(canvas, self, changed=False)
+        x, baseline = self.start
+        if self.typing:
+            draw_line(canvas, self.line, (x, baseline), self.box.width, SMALL, typing=True)
+            canvas.line((min(x, self.box.right - 20), baseline + 5.5), (self.box.right, baseline + 5.5), HUMAN, 1)
+        else:
+            canvas.text(self.line.text, (x, baseline), size=SMALL, colour=HUMAN if self.waits else MUTE)
+
+
+@lru_cache(maxsize=1024)
+def _along(stops: tuple[Any, ...], value: Any) -> float:
+    """Return how far a value is from the first stop to the last: they are equally far from each other."""
+    sizes = np.abs(np.array(stops, dtype=float))  # they rise, or fall below 0
+    return float(np.interp(abs(value), sizes, np.linspace(0.0, 1.0, len(sizes))))
+
+
+def draw_row(canvas: Canvas, widget: Widget, *, changed: bool, dim: bool = False) -> None:
+    """Draw what every row has: the ring of the focus, the dot of a change, the label."""
+    box = widget.box
+    if widget.ringed and widget.warmth > 0.02:
+        canvas.outline(box.inflate(12, 0), 6, INK, 1, 0.35 * widget.warmth)
+    if changed:
+        canvas.dot((box.left + 5, box.centery), 2.5, HUMAN)
+    colour = mix(_DIM if dim else mix(MUTE, INK, 0.7), INK, widget.warmth)
+    canvas.text(widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour,
+                room=_TRACK[0] - MARGIN - 6)  # fmt: skip

@@ -1,0 +1,91 @@
+"""The foot of the panel of knobs: what was refused, what waits for an answer, or what the knob in focus is for."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pygame
+
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL, Colour
+from game.input.controls import Command, Controls
+from game.panels.knob import Knob, SeedKnob
+from game.training.dials import figure, label
+from game.training.run_settings import Tuning
+from game.ui.hints import draw_hints
+from game.ui.widget import Widget
+
+HEIGHT: Final = 60  # points, at the bottom of the panel
+ANSWERS: Final = 42  # from the bottom to the top of the words that answer a notice
+_LINE: Final = 16.0  # from a baseline to the next
+_ABOVE: Final = 40.0  # what a longer text needs more
+_NOTICE: Final = 50.0  # from the bottom to the top of a notice
+_EXPLAINED: Final = 78.0  # what stands above it, from the first baseline
+
+
+def draw_foot(
+    canvas: Canvas, box: pygame.Rect, tuning: Tuning, focused: Widget | None, controls: Controls, *, picking: bool
+) -> None:
+    """Draw into the panel's box what matters most; `focused` is the widget of the panel that is in focus."""
+    first = box.bottom - HEIGHT + 22.0
+    if tuning.problem:
+        canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
+        _write(canvas, tuning.problem, (box.left + 18, first), box.width - 18, canvas.palette.warn)
+    elif tuning.waiting:
+        if picking:
+            told = (focused and focused.help) or "\n".join(tuning.family.sabotages.get(tuning.named[1], ("",))[1:])
+            _write_parts(canvas, told, (box.left, box.bottom - _NOTICE - _EXPLAINED), box.width)
+        heading = texts.KNOBS_STARTS_ANEW
+        if tuning.named != tuning.holds:
+            heading = texts.KNOBS_STARTS_ANEW_AS.format(name=tuning.family.word(tuning.named))
+        _draw_notice(canvas, box, heading, _listed(tuning.waiting))
+    elif tuning.put_aside:
+        line = texts.KNOBS_PUT_ASIDE_LINE.format(name=tuning.family.word(tuning.named))
+        _draw_notice(canvas, box, texts.KNOBS_PUT_ASIDE, line)
+    else:
+        told = (focused and focused.help) or tuning.family.sentence(tuning.named)
+        _write_parts(canvas, told, (box.left, first - (_ABOVE if picking else 0.0)), box.width)
+        if isinstance(focused, Knob | SeedKnob):
+            _draw_marks(canvas, box, focused, controls)
+
+
+def _draw_notice(canvas: Canvas, box: pygame.Rect, heading: str, line: str) -> None:
+    canvas.outline((box.left, box.bottom - 50, box.width, 46), 8, HUMAN, 1, 0.35)
+    canvas.text(heading, (box.left + 14, box.bottom - 31), size=SMALL, colour=HUMAN)
+    canvas.text(line, (box.left + 14, box.bottom - 14), size=SMALL, colour=INK)
+
+
+def _write_parts(canvas: Canvas, told: str, start: tuple[float, float], width: float) -> None:
+    """Write paragraphs: the first muted, what was measured below it."""
+    x, y = start
+    for number, part in enumerate(told.split("\n")):
+        y = _write(canvas, part, (x, y), width, INK if number else MUTE) + 6
+
+
+def _draw_marks(canvas: Canvas, box: pygame.Rect, widget: Knob | SeedKnob, controls: Controls) -> None:
+    """Say whether it takes a new run, and how the preset's value comes back."""
+    baseline = box.bottom - 4
+    if not widget.live:
+        canvas.marker("ring", (box.left + 4, baseline - 4), 8, MUTE)
+        canvas.text(texts.KNOBS_NEW_RUN, (box.left + 14, baseline), size=LABEL, colour=MUTE)
+    if isinstance(widget, Knob) and widget.changed:
+        key = texts.KNOBS_CLICK if controls.mouse_in_use else controls.word(Command.RETRY)
+        back = texts.KNOBS_BACK_TO.format(value=figure(widget.home))
+        draw_hints(canvas, [(key, back)], (box.right, baseline), from_right=True, size=LABEL)
+
+
+def _listed(names: list[str]) -> str:
+    """Name the knobs that wait: as many as there is room for."""
+    labels = list(dict.fromkeys(label(name.split(".")[0]) for name in names))
+    return ", ".join(labels) if len(labels) < 3 else texts.KNOBS_MORE.format(first=labels[0], count=len(labels) - 1)
+
+
+def _write(canvas: Canvas, text: str, start: tuple[float, float], width: float, colour: Colour) -> float:
+    """Write a text on as many lines as it takes; return the baseline after the last."""
+    x, y = start
+    for line in wrapped(canvas, text, SMALL, width):
+        canvas.text(line, (x, y), size=SMALL, colour=colour)
+        y += _LINE
+    return y

@@ -1,0 +1,328 @@
+"""The panel of knobs of a training run: presets, pages of knobs, and what the one in focus is for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, Final
+
+import pygame
+
+from ai.agent.schedule import InForce
+from ai.training.sabotage import MEASURED
+from game.core import texts
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
+from game.panels import knob_foot
+from game.panels.knob import MARGIN, Knob, SeedKnob, SliderKnob, SwitchKnob, WordsKnob
+from game.training.dials import Configuration, Dial, label, pages
+from game.training.run_settings import LANDER, SEED, Family, Named, Tuning
+from game.ui.form import Form
+from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widgets import Choice, Word
+
+_KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
+_HEAD: Final = 34  # from the top to the line under the presets
+_BASELINE: Final = 21.5  # of the presets
+_TABS: Final = 36  # from there to the first row: the tabs are in between
+_PITCH: Final = 26  # of the rows, where there is room
+_TAB_GAP: Final = 13.0
+
+
+class Knobs:
+    """Made of widgets of a form, in a box of about 384 by 360 points; the scene draws the panel behind it.
+
+    What may change while a run goes on changes at once. What takes a new run waits, says so, and is applied or
+    undone by the player.
+
+    Args:
+        form: where the widgets are added; the scene passes events and updates to it, and draws it.
+        box: where, in points; the dots of what was changed are up to 16 points to the left of it.
+        config: what to begin with.
+        seed: the seed of that.
+        on_change: hears of every knob that has changed, by its name in the configuration ("weights.time" for a part of
+            the reward, "seed" for the seed), and of its value: while a run goes on, of those alone that may.
+        on_restart: asked for a new run with another configuration and seed, once the player has applied them.
+        family: the kind of run, with all there is to choose from.
+
+    """
+
+    def __init__(
+        self,
+        form: Form,
+        box: pygame.typing.RectLike,
+        config: Configuration,
+        seed: int,
+        on_change: Callable[[str, Any], None],
+        on_restart: Callable[[Configuration, int], None],
+        family: Family = LANDER,
+    ) -> None:
+        self._form, self._box, self._family = form, pygame.Rect(box), family
+        self._tuning = Tuning(config, seed, on_change, on_restart, family)
+        self._pages = pages(self._tuning.dials.values())
+        self._page = 0
+        self._picking = False
+        self._sections: dict[str, tuple[Hashable, list[Widget]]] = {}
+        self._widgets: list[Widget] = []
+        self._lay()
+
+    @property
+    def config(self) -> Configuration:
+        """What holds now; what waits to be applied is not in it."""
+        return self._tuning.config
+
+    @property
+    def seed(self) -> int:
+        """The seed that belongs to it."""
+        return self._tuning.seed
+
+    @property
+    def name(self) -> str:
+        """The preset or the sabotage that this is or began as, in the player's words."""
+        return self._family.word(self._tuning.holds)
+
+    @property
+    def changed(self) -> bool:
+        """Whether knobs were turned away from what has that name, in what holds now."""
+        return self._tuning.changed
+
+    @property
+    def waiting(self) -> list[str]:
+        """Which knobs wait for a new run, by name."""
+        return self._tuning.waiting
+
+    def set_running(self, running: bool) -> None:
+        """Say whether a run goes on; without one, every knob changes at once."""
+        if running != self._tuning.running:
+            self._tuning.set_running(running)
+            self._lay()
+
+    def show_in_force(self, in_force: InForce | None) -> None:
+        """Show beside the settings what acts at this moment of a run; None for nothing."""
+        if in_force is not self._tuning.in_force:
+            self._tuning.in_force = in_force
+            self._lay()
+
+    def set_config(self, config: Configuration, seed: int) -> None:
+        """Show a configuration that came from elsewhere, such as a run that was loaded; nobody is called."""
+        self._tuning.set_config(config, seed)
+        self._picking = False
+        self._lay()
+
+    def turn(self, name: str, value: Any) -> None:
+        """Turn a knob by its name, as if by hand; for an impossible value, the panel says why not."""
+        self._tuning.turn(name, value)
+        self._lay()
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw what is not a widget; the form draws the widgets."""
+        box, y = self._box, self._box.top + _HEAD
+        canvas.line((box.left, y), (box.right, y), LINE, 1)
+        if self.changed:
+            self._draw_changed(canvas)
+        if self._picking:
+            heading = texts.SABOTAGE_HEADING.format(name=self._family.word((self._tuning.named[0], ""))).upper()
+            canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
+        focused = self._form.focused if self._form.focused in self._widgets else None
+        knob_foot.draw_foot(canvas, self._box, self._tuning, focused, self._form.controls, picking=self._picking)
+
+    def _draw_changed(self, canvas: Canvas) -> None:
+        """Say that knobs were turned: in a word, or by a dot where there is no room for it."""
+        left, baseline = self._box.left + canvas.text_width(self.name, size=TITLE) + 9, self._box.top + _BASELINE
+        room = self._sections["head"][1][1].box.left - left - 9
+        if canvas.text_width(texts.KNOBS_CHANGED, size=LABEL) <= room:
+            canvas.text(texts.KNOBS_CHANGED, (left, baseline), size=LABEL, colour=HUMAN)
+        else:
+            canvas.dot((left, baseline - 5), 2.5, HUMAN)
+
+    # Widgets
+
+    def _lay(self) -> None:
+        """Put the widgets in place that belong here now, and show in them what holds."""
+        tuning, picking = self._tuning, self._picking
+        answer = "apply" if tuning.waiting else "undo" if tuning.put_aside else ""
+        sections: dict[str, tuple[Hashable, Callable[[], list[Widget]]]] = {
+            "head": ((tuning.holds, picking), self._make_head),
+            "tabs": (picking, lambda: [] if picking else [self._make_tabs()]),
+            "body": ((picking, self._page), self._make_picks if picking else self._make_rows),
+            "answers": (answer, lambda: self._make_answers(answer)),
+        }
+        for name, (key, make) in sections.items():
+            if name not in self._sections or self._sections[name][0] != key:
+                self._sections[name] = (key, make())
+        widgets = [widget for name in sections for widget in self._sections[name][1]]
+        if widgets != self._widgets:
+            self._form.replace(self._widgets, widgets)
+            self._widgets = widgets
+        waiting = tuning.waiting
+        for widget in widgets:
+            if isinstance(widget, Knob):
+                dial = widget.dial
+                widget.display(
+                    dial.read(tuning.draft), dial.read(tuning.home), waits=dial.name in waiting,
+                    now=tuning.now(dial.name), idle=tuning.idle(dial.name),
+                )  # fmt: skip
+            elif isinstance(widget, SeedKnob):
+                widget.display(tuning.draft_seed, waits=SEED in waiting)
+
+    def _make_head(self) -> list[Widget]:
+        """The chosen one large on the left, which brings all of it back; the others on the right."""
+        box, named, manager = self._box, self._tuning.holds, self._form.manager
+        top = box.top + 5
+        chosen = _Title(manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named))
+        others: list[tuple[str, Callable[[], None]]] = [
+            (self._family.word((base, "")), self._loads((base, "")))
+            for base in self._family.presets
+            if (base, "") != named
+        ]
+        if self._family.sabotages:
+            others.append((texts.SABOTAGE_LEAVE, self._leave) if self._picking else (texts.SABOTAGE, self._pick))
+        right, made = float(box.right), []
+        for name, press in reversed(others):
+            width = _width(name, SMALL)
+            made.append(Word(manager, (right - width, top, width, 24), name, press, size=SMALL))
+            right -= width + 14
+        return [chosen, *reversed(made)]
+
+    def _make_tabs(self) -> Choice:
+        words = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self._pages]
+        box = (self._box.left, self._box.top + _HEAD + 8, self._box.width, 22)
+        return Choice(self._form.manager, box, "", words, self._page, self._turn_page, size=LABEL, gap=_TAB_GAP)
+
+    def _make_rows(self) -> list[Widget]:
+        page, manager = self._pages[self._page], self._form.manager
+        rows: list[Widget] = []
+        for dial in self._tuning.dials.values():
+            if dial.page == page:
+                rows.append(_KINDS[dial.kind](manager, self._row(len(rows)), dial, self._turned, self._seek))
+        if page == self._family.seed_page:
+            rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), self._seeded))
+        return rows
+
+    def _row(self, number: int) -> pygame.Rect:
+        """The box of a row: as far from the next as the longest page allows."""
+        box, dials = self._box, self._tuning.dials.values()
+        longest = max(sum(dial.page == page for dial in dials) for page in self._pages)
+        pitch = min(_PITCH, (box.height - _HEAD - _TABS - knob_foot.HEIGHT) // longest)
+        return pygame.Rect(box.left - MARGIN, box.top + _HEAD + _TABS + number * pitch, box.width + MARGIN, pitch)
+
+    def _make_picks(self) -> list[Widget]:
+        """What can be taken away, in two columns."""
+        base, (left, top) = self._tuning.named[0], self._box.topleft
+        sabotages = self._family.sabotages
+        half = (len(sabotages) + 1) // 2
+        picks: list[Widget] = []
+        for number, name in enumerate(sabotages):
+            column, row = divmod(number, half)
+            box = (left + column * self._box.width // 2, top + _HEAD + 38 + row * _PITCH, 160, _PITCH)
+            pick = Word(
+                self._form.manager, box, self._family.word((base, name)), self._loads((base, name)), size=SMALL + 1
+            )
+            told = sabotages[name][1:] if base == MEASURED else sabotages[name][1:2]
+            pick.help = "\n".join(told)
+            picks.append(pick)
+        return picks
+
+    def _make_answers(self, answer: str) -> list[Widget]:
+        """The words that apply or undo."""
+        words = {"apply": [(texts.KNOBS_UNDO, self._undo), (texts.KNOBS_APPLY, self._apply)],
+                 "undo": [(texts.KNOBS_UNDO, self._undo)]}  # fmt: skip
+        right, made = self._box.right - 14.0, []
+        for name, press in words.get(answer, []):
+            width = _width(name, TEXT)
+            made.append(
+                _Answer(
+                    self._form.manager, (right - width, self._box.bottom - knob_foot.ANSWERS, width, 28), name, press
+                )
+            )
+            right -= width + 18
+        return [*reversed(made)]
+
+    # What the widgets ask for
+
+    def _turned(self, dial: Dial, value: Any) -> None:
+        self.turn(dial.name, value)
+
+    def _seeded(self, seed: int) -> None:
+        self.turn(SEED, seed)
+
+    def _turn_page(self, page: int) -> None:
+        for widget in self._widgets:
+            if isinstance(widget, SeedKnob):
+                widget.typing = False
+                widget.commit()
+        self._page = page
+        self._lay()
+
+    def _seek(self) -> None:
+        """Bring the focus to the words that apply and undo, if there are any."""
+        self._focus("answers")
+
+    def _focus(self, section: str) -> None:
+        """Bring the focus to the first widget of a section."""
+        if widgets := self._sections[section][1]:
+            self._form.focus(widgets[0])
+
+    def _loads(self, named: Named) -> Callable[[], None]:
+        def load() -> None:
+            self._tuning.load(named)
+            self._picking = bool(named[1] and self._tuning.waiting)  # what it is for is told as long as it waits
+            self._lay()
+            self._focus("answers" if self._picking else "head")
+
+        return load
+
+    def _pick(self) -> None:
+        self._picking = True
+        self._lay()
+        self._focus("body")
+
+    def _leave(self) -> None:
+        self._picking = False
+        self._lay()
+        self._focus("head")
+
+    def _apply(self) -> None:
+        self._picking = False
+        self._tuning.apply()
+        self._lay()
+        self._focus("tabs")
+
+    def _undo(self) -> None:
+        self._picking = False
+        self._tuning.undo()
+        self._lay()
+        self._focus("tabs")
+
+
+class _Title(Word):
+    """The chosen preset: large, with a line under it."""
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
+    ) -> None:
+        super().__init__(manager, box, label, on_press, size=TITLE)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the word and its line."""
+        Widget.paint(self, canvas)
+        box = self.box
+        canvas.text(self.label, (box.left, box.top - 4 + _BASELINE), size=TITLE, colour=INK)
+        canvas.line((box.left, box.top + 30), (box.left + box.width, box.top + 30), NET, 2)
+
+
+class _Answer(Word):
+    """Apply or undo: the player's, and so amber."""
+
+    def __init__(
+        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
+    ) -> None:
+        super().__init__(manager, box, label, on_press, size=TEXT)
+
+    def tint(self) -> Colour:
+        """Amber, and ink as it comes into focus."""
+        return mix(HUMAN, INK, self.warmth)
+
+
+def _width(text: str, size: float) -> float:
+    return typeface.width(text, size, "regular")

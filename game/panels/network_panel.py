@@ -1,0 +1,138 @@
+"""Inside a learner: its network, drawn live, small or large; and what it is paid for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final, get_args
+
+import numpy as np
+import pygame
+
+from ai.agent.agent import build_network
+from ai.agent.config import Config
+from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
+from ai.nn import NeuralNetwork
+from ai.nn.inspection import NetworkHealth
+from ai.training.history import PARTS, History
+from ai.training.messages import Insight
+from game.core import texts
+from game.drawing import typeface
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import MUTE, SMALL, TITLE
+from game.panels.network_plan import Show
+from game.panels.network_view import NetView
+from game.panels.reward_bar import Strip
+from game.ui.form import Form
+from game.ui.virtual_pointer import Pointer
+from game.ui.widget import Widget
+from game.ui.widgets import Choice, Word
+
+SHOWN: Final[tuple[Show, ...]] = get_args(Show)
+_NETWORK, _PAID = 0, 1
+_ROW: Final = pygame.Rect(868, 430, 384, 22)
+_SMALL: Final = pygame.Rect(868, 458, 384, 150)
+_STRIP: Final = pygame.Rect(868, 478, 384, 80)
+_LARGE: Final = pygame.Rect(48, 144, 740, 548)
+_LEFT: Final = 40.0
+
+
+class Inside:
+    """Two pictures in the panel, one shown at a time; the network also large, where the scene makes room for it.
+
+    Attributes:
+        large: whether the network is shown large.
+        health: what is wrong inside the network.
+
+    """
+
+    def __init__(self, form: Form, on_closer: Callable[[], None]) -> None:
+        self.large = False
+        self._form = form
+        self._view = NetView(_SMALL, texts.INPUTS, ACTION_NAMES)
+        self._strip = Strip(_STRIP)
+        self._picture = _NETWORK
+        width = typeface.width(texts.TRAIN_CLOSER, SMALL, "regular")
+        self._on_closer = on_closer
+        self._heading = form.add(Choice(form.manager, (_ROW.left, _ROW.top, _ROW.width - width - 20, _ROW.height), "",
+                        texts.TRAIN_INSIDE, 0, self._turn, size=SMALL))  # fmt: skip
+        self._closer = form.add(Word(form.manager, (_ROW.right - width, _ROW.top, width, _ROW.height),
+                                     texts.TRAIN_CLOSER, on_closer, size=SMALL))  # fmt: skip
+        form.add(Pointer(form.manager, _SMALL, self.follow))
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin anew with another run."""
+        self._network: NeuralNetwork | None = None
+        self.health = NetworkHealth()
+
+    @property
+    def busy(self) -> bool:
+        """Whether the next frame draws a part of a new picture of the network."""
+        return self._shows_network and self._view.busy
+
+    @property
+    def _shows_network(self) -> bool:
+        return self.large or self._picture == _NETWORK
+
+    def place(self, large: bool) -> list[Widget]:
+        """Show the network large, or small; returns the widgets that go with the large one, for the form."""
+        self.large = large
+        self._closer.label = texts.TRAIN_CLOSER_BACK if large else texts.TRAIN_CLOSER
+        self._view.place(_LARGE if large else _SMALL)
+        self._heading.index = _PAID if large else self._picture  # beside the large network, the panel has the other
+        box = (_LEFT, 88, 400, 28)
+        index = SHOWN.index(self._view.show)
+        if not large:
+            return []
+        return [Choice(self._form.manager, box, "", texts.NET_SHOWS, index, self._show),
+                Pointer(self._form.manager, _LARGE, self.follow)]  # fmt: skip
+
+    def take(self, insight: Insight, config: Config) -> None:
+        """Look at the network as a run tells of it."""
+        if self._network is None or self._network.values.shape != insight.values.shape:
+            self._network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
+        network = self._network
+        if network.values.shape != insight.values.shape:
+            return  # of a run that has just been replaced
+        network.values = insight.values
+        network.gradients[:] = insight.gradients
+        self._view.output_scale = config.reward_scale
+        self._view.set(network, insight.observation)
+        self.health.look(network, insight.observation, config.gradient_clip)
+
+    def pay(self, history: History) -> None:
+        """Show what the latest flights were paid for."""
+        self._strip.set(PARTS, history.parts[-1])
+
+    def follow(self, event: pygame.event.Event) -> None:
+        """Follow the mouse, or what stands in for it: an event, its position in points."""
+        if event.type == pygame.MOUSEMOTION:
+            self._view.hover(event.pos if self._shows_network else None)
+            self._strip.hover(None if self._shows_network and not self.large else event.pos)
+
+    def covers(self, point: Point) -> bool:
+        """Whether a point is on the small picture of the network."""
+        return not self.large and self._picture == _NETWORK and _SMALL.collidepoint(point)
+
+    def update(self, at_once: bool) -> None:
+        """Let 1/60 s pass."""
+        self._view.update(at_once=at_once)
+        self._strip.update(at_once=at_once)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw what is shown in the panel, and the large network with its title beside it."""
+        if self.large:
+            canvas.text(texts.NET_TITLE, (_LEFT, 46), size=TITLE)
+            canvas.text(texts.NET_LINES[self._view.show], (_LEFT, 70), size=SMALL, colour=MUTE)
+        if self._shows_network:
+            self._view.draw(canvas)
+        if self.large or self._picture == _PAID:
+            self._strip.draw(canvas)
+
+    def _turn(self, index: int) -> None:
+        self._picture = index
+        if self.large:  # it is asked for the network where that is small
+            self._on_closer()
+
+    def _show(self, index: int) -> None:
+        self._view.show = SHOWN[index]

@@ -1,0 +1,175 @@
+"""Which units and links of a network are drawn, and how strongly. Arrays alone; no surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.nn import NeuralNetwork
+from ai.nn.inspection import Link, links, traces
+
+Show = Literal["weights", "activations", "gradients"]
+Indices = npt.NDArray[np.intp]
+Numbers = npt.NDArray[np.floating[Any]]
+
+_LOYALTY: Final = 2.0  # how much stronger a unit must be than one that is shown to take its place
+_MEMORY: Final = 0.95  # of how strongly a unit has answered, from one plan to the next
+_SILENT: Final = 0.1  # what a unit that never answers counts for, of one that answers like the average
+_FAINTEST: Final = 0.02  # of the largest link: what is smaller is not drawn
+
+
+@dataclass(frozen=True)
+class Column:
+    """One stage of units, as far as it is shown.
+
+    Attributes:
+        units: (k,) numbers of those that are shown, rising.
+        total: how many there are.
+        values: (k,) activations; NaN where unknown or damaged.
+        bias: (k,) or None for the inputs.
+        damaged: (k,) whether any of a unit's numbers is not finite.
+
+    """
+
+    units: Indices
+    total: int
+    values: Numbers
+    bias: Numbers | None
+    damaged: npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A link that is drawn, from a unit of `column` to one of the next, both by their place among the shown."""
+
+    column: int
+    start: int
+    end: int
+    size: float  # 0 to 1, of the largest between these columns
+    positive: bool
+
+
+def steady_choice(strength: Numbers, most: int, before: Indices | None = None) -> Indices:
+    """Return the `most` strongest units, rising; those of `before` stay until another is much stronger."""
+    if len(strength) <= most:
+        return np.arange(len(strength))
+    strength = np.nan_to_num(np.asarray(strength, float), nan=np.inf, posinf=np.inf)  # damage is to be seen
+    if before is not None and len(before) == most and before[-1] < len(strength):
+        strength[before] *= _LOYALTY
+    return np.sort(np.argsort(-strength, kind="stable")[:most])
+
+
+def strongest_edges(matrix: Numbers, column: int, most: int) -> list[Edge]:
+    """Return the `most` largest numbers of a matrix (starts, ends) as edges, the faintest first."""
+    size = np.nan_to_num(np.abs(matrix).astype(float), nan=0.0, posinf=0.0).ravel()
+    chosen = np.argsort(size, kind="stable")[-most:]
+    largest = float(size[chosen[-1]]) if len(chosen) else 0.0
+    if not largest > 0:
+        return []
+    ends = matrix.shape[1]
+    signs = matrix.ravel() > 0
+    return [
+        Edge(column, int(index) // ends, int(index) % ends, float(size[index] / largest), bool(signs[index]))
+        for index in chosen
+        if size[index] > 0.02 * largest
+    ]
+
+
+class Plan:
+    """A network at one moment, as far as it is shown: columns of units, and the numbers of the links between them.
+
+    At most `most` units of a stage are shown: those that most hangs on, by their weights and by how strongly they
+    have answered of late; the same ones as in the plan `before`, as far as that is fair.
+    Everything is copied: the network may change afterwards.
+    """
+
+    def __init__(
+        self, network: NeuralNetwork, observation: npt.ArrayLike | None, most: int, before: Plan | None = None
+    ) -> None:
+        found = links(network)
+        sizes = [len(found[0].weights), *(len(link.bias) for link in found)] if found else []
+        values, known = _values(network, observation, sizes)
+        old = before if before and [column.total for column in before.columns] == sizes else None
+        self.columns: list[Column] = []
+        self._activity = [np.abs(np.nan_to_num(each.astype(float), posinf=0.0, neginf=0.0)) for each in values]
+        for stage, size in enumerate(sizes):
+            if old:
+                self._activity[stage] = _MEMORY * old._activity[stage] + (1 - _MEMORY) * self._activity[stage]
+            strength = _strength(found, stage)
+            if 0 < stage < len(sizes) - 1:
+                strength = strength * _liveliness(self._activity[stage])
+            units = steady_choice(strength, most, old.columns[stage].units if old else None)
+            shown = values[stage][units].astype(float)
+            damaged = ~np.isfinite(strength[units]) | (~np.isfinite(shown) if known else False)
+            bias = found[stage - 1].bias[units].astype(float) if stage else None
+            self.columns.append(Column(units, size, shown, bias, damaged))
+        self._links = []
+        for link, left, right in zip(found, self.columns[:-1], self.columns[1:], strict=True):
+            part = np.ix_(left.units, right.units)
+            self._links.append((link.weights[part], link.gradient[part]))
+
+    def edges(self, show: Show, most: int) -> list[Edge]:
+        """Return the `most` strongest links between each two columns, the faintest first."""
+        found: list[Edge] = []
+        for number, (weights, gradient) in enumerate(self._links):
+            with np.errstate(all="ignore"):
+                if show == "gradients":
+                    matrix = -gradient  # the way in which learning moves the weight
+                elif show == "activations":
+                    matrix = weights * self.columns[number].values[:, None]
+                else:
+                    matrix = weights
+            found += strongest_edges(matrix, number, most)
+        return sorted(found, key=lambda edge: edge.size)
+
+    def best(self) -> int | None:
+        """Return the place of the output that is largest, if that is known."""
+        values = self.columns[-1].values if self.columns else np.zeros(0)
+        return int(np.nanargmax(values)) if len(values) > 1 and np.isfinite(values).any() else None
+
+    def brightness(self, column: int) -> Numbers:
+        """Return how the units of a column are lit, (k,) in -1 to 1: outputs from the least to the greatest."""
+        values = self.columns[column].values
+        finite = values[np.isfinite(values)]
+        if not len(finite):
+            return np.zeros(len(values))
+        values = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
+        if column == len(self.columns) - 1:
+            span = float(np.ptp(finite))
+            return np.clip((values - finite.min()) / span, 0.0, 1.0) if span > 0 else np.full(len(values), 0.5)
+        least = 1.0 if column == 0 else 1e-9  # observations are of order one; of a faint one not much is made
+        lit: Numbers = values / max(float(np.abs(finite).max()), least)
+        return lit
+
+
+def _values(
+    network: NeuralNetwork, observation: npt.ArrayLike | None, sizes: Sequence[int]
+) -> tuple[list[Numbers], bool]:
+    """Return the values of each stage, and true; or NaN for all, and false, without a fitting observation."""
+    try:
+        values = [] if observation is None else traces(network, observation)
+    except ValueError:  # it is of another shape
+        values = []
+    if sizes and [np.shape(each) for each in values] == [(size,) for size in sizes]:
+        return values, True
+    return [np.full(size, np.nan) for size in sizes], False
+
+
+def _strength(found: Sequence[Link], stage: int) -> Numbers:
+    """Return how much hangs on each unit of a stage: the norms of what leads to it and away from it, multiplied."""
+    with np.errstate(all="ignore"):
+        away = np.linalg.norm(found[stage].weights, axis=1) if stage < len(found) else 1.0
+        to = np.linalg.norm(found[stage - 1].weights, axis=0) + 0 * found[stage - 1].bias if stage else 1.0
+        strength: Numbers = np.asarray(away * to, float)
+    return strength
+
+
+def _liveliness(activity: Numbers) -> Numbers:
+    """Return how much units have had to say, about 1 on average: of those that are silent little is to be seen."""
+    average = float(activity.mean())
+    lively: Numbers = activity / average + _SILENT if average > 0 else np.ones(len(activity))
+    return lively

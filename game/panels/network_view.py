@@ -1,0 +1,373 @@
+"""A network, drawn: its units in columns, the strongest links between them, and what runs along these now.
+
+Blue adds and orange takes away, told apart by eyes of every kind. What is drawn is kept on two sheets, one of
+light and one of signs, until the numbers change; then new ones are drawn a few edges a step, and take their
+place when they are done. Only the pulses of learning are drawn every frame.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Sequence
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+import pygame
+
+from ai.nn import NeuralNetwork
+from game.charts import plotting
+from game.charts.tooltip import Row, draw_tooltip
+from game.core import texts
+from game.drawing import typeface
+from game.drawing.canvas import Align, Canvas, Point
+from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
+from game.panels.network_plan import Column, Edge, Plan, Show
+
+Sheets = tuple[Canvas, Canvas]  # of light, to be added, and of signs above it
+
+ADDS: Final = NET
+TAKES: Final = EMBER
+
+_LARGE: Final = 300.0  # points of height, from which on there is room for values beside the names
+_PITCH: Final = 13.0  # points between units, at least
+_MOST_UNITS: Final = 24  # in a column
+_MARGIN: Final = 8.0  # of the sheets around the box
+_REST: Final = 6  # sixtieths of a second between two drawings of new numbers
+_FLOW: Final = 1 / 90  # of an edge that a pulse travels in a sixtieth of a second
+_MOST_PULSES: Final = 26
+_GOLDEN: Final = 0.618034  # pulses begin as far from each other as can be
+_CHUNK: Final = 9_000.0  # pixels of edges drawn in one step: about a millisecond
+_GLOWING: Final = 0.55  # units lit more than this shine on what is around them
+
+
+class NetView:
+    """The drawing in a box of points, of any size. `inputs` and `outputs` name what goes in and comes out."""
+
+    def __init__(self, box: pygame.typing.RectLike, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> None:
+        self.box = pygame.FRect(box)
+        self.inputs, self.outputs = tuple(inputs), tuple(outputs)
+        self.output_scale = 1.0  # what a point of reward is in the unit of the network's outputs
+        self.plan: Plan | None = None
+        self.edges: list[Edge] = []
+        self.redraws = 0  # how often the sheets were drawn
+        self._show: Show = "weights"
+        self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
+        self._hovered: tuple[int, int] | None = None
+        self._centres: list[list[Point]] = []  # of all units that are shown, in points
+        self._canvas: Canvas | None = None  # that the sheets are for
+        self._sheets: Sheets | None = None
+        self._spare: Sheets | None = None
+        self._painting: Generator[None, None, Sheets] | None = None
+        self._stale = self._due = self._still = False
+        self._rested = 0
+        self._phase = 0.0
+
+    # What is shown
+
+    @property
+    def columns(self) -> list[Column]:
+        """The stages of the network, as far as they are shown."""
+        return self.plan.columns if self.plan else []
+
+    @property
+    def show(self) -> Show:
+        """What the edges stand for: "weights", "activations" or "gradients"."""
+        return self._show
+
+    @show.setter
+    def show(self, show: Show) -> None:
+        if show != self._show:
+            self._show = show
+            self._pick_edges()
+            self._due = True
+
+    def set(self, network: NeuralNetwork, observation: npt.ArrayLike | None = None) -> None:
+        """Show a network as it is now, and what it makes of an observation (inputs,), as the network takes it."""
+        self._given = network, observation
+        self.plan = Plan(network, observation, self._most_units, self.plan)
+        self._centres = self._lay_out()
+        if self._hovered and self._hovered not in self._places():
+            self._hovered = None
+        self._pick_edges()
+        self._stale = True
+
+    def place(self, box: pygame.typing.RectLike) -> None:
+        """Move to another box; a larger one shows more of the network."""
+        if pygame.FRect(box) != self.box:
+            self.box = pygame.FRect(box)
+            self._sheets = self._spare = self._painting = self._hovered = self._canvas = None
+            if self._given:
+                self.set(*self._given)
+
+    @property
+    def _most_units(self) -> int:
+        return int(min(max((self.box.height - self._foot) // _PITCH, 2), _MOST_UNITS))
+
+    def _pick_edges(self) -> None:
+        most = int(min(max(0.3 * self.box.height, 16), 110))
+        self.edges = self.plan.edges(self._show, most) if self.plan else []
+
+    def hover(self, point: Point | None) -> None:
+        """Let the unit under a point of the canvas stand out; None for none."""
+        hovered = self.unit_at(point) if point else None
+        if hovered != self._hovered:
+            self._hovered = hovered
+            self._due = True
+
+    def unit_at(self, point: Point) -> tuple[int, int] | None:
+        """Return the column and the place in it of the unit at a point of the canvas."""
+        if not self._centres or not self.box.inflate(8, 8).collidepoint(point):
+            return None
+        away = {(i, j): math.dist(point, self._centres[i][j]) for i, j in self._places()}
+        nearest = min(away, key=away.__getitem__)
+        return nearest if away[nearest] <= max(10.0, 2.2 * self._radius) else None
+
+    def _places(self) -> list[tuple[int, int]]:
+        return [(number, place) for number, column in enumerate(self._centres) for place in range(len(column))]
+
+    def name(self, number: int, place: int) -> str:
+        """Return what a unit is called, given its column and its place in it."""
+        unit = int(self.columns[number].units[place])
+        names = self._names(number)
+        return names[unit] if unit < len(names) else texts.NET_UNIT.format(layer=number, unit=unit + 1)
+
+    def _unit(self, number: int) -> float:
+        """What the numbers of a column's units are divided by to be shown: outputs are shown in points of reward."""
+        return self.output_scale if number == len(self.columns) - 1 else 1.0
+
+    def _names(self, number: int) -> tuple[str, ...]:
+        return self.inputs if number == 0 else self.outputs if number == len(self.columns) - 1 else ()
+
+    def update(self, at_once: bool = False) -> None:
+        """Let 1/60 s pass: pulses travel, or with motion reduced, `at_once`, are left to the edges' brightness.
+
+        If new sheets are due, a part of them is drawn.
+        """
+        self._rested += 1
+        self._still = at_once
+        self._phase = (self._phase + _FLOW) % 2.0
+        self._due |= self._stale and self._rested >= _REST
+        if self._canvas and self._due and self._painting is None:
+            self._painting = self._paint(self._canvas)
+            self._due = self._stale = False
+            self._rested = 0
+        if self._painting:
+            try:
+                next(self._painting)
+            except StopIteration as done:
+                self._sheets, self._spare, self._painting = done.value, self._sheets, None
+
+    @property
+    def busy(self) -> bool:
+        """Whether the next step draws a part of new sheets, or is to begin that."""
+        return self._due or self._painting is not None
+
+    # Where things are, in points
+
+    @property
+    def _large(self) -> bool:
+        return self.box.height >= _LARGE
+
+    @property
+    def _foot(self) -> float:
+        """Room for the legend and the numbers of units."""
+        return 36.0 if self._large else 18.0
+
+    @property
+    def _name_size(self) -> float:
+        return SMALL if self._large else LABEL
+
+    @property
+    def _sides(self) -> tuple[float, float]:
+        """Room for the names on the left and on the right."""
+        size = self._name_size
+        left, right = (
+            max((typeface.width(name, size, "regular") + 10 for name in names), default=4.0)
+            for names in (self.inputs, self.outputs)
+        )
+        return left, right
+
+    @property
+    def _radius(self) -> float:
+        crowd = max((len(column.units) for column in self.columns), default=1)
+        return min(max(0.24 * (self.box.height - self._foot) / crowd, 2.0), 7.0)
+
+    def _lay_out(self) -> list[list[Point]]:
+        """Return where the units of each column stand."""
+        (left, right), box, radius = self._sides, self.box, self._radius
+        across = (box.width - left - right - 2 * radius) / max(len(self.columns) - 1, 1)
+        high = box.height - self._foot - 2 * radius - 4
+        centres = []
+        for number, column in enumerate(self.columns):
+            x, count = box.x + left + radius + number * across, len(column.units)
+            steps = [place / (count - 1) for place in range(count)] if count > 1 else [0.5]
+            centres.append([(x, box.y + radius + 2 + step * high) for step in steps])
+        return centres
+
+    # The picture
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the network, and the pulses and the read-out over it."""
+        if self._sheets is None or self._sheets[0].scale != canvas.scale:
+            self._spare = self._painting = None
+            self._canvas, self._sheets = canvas, _all_of(self._paint(canvas))
+        corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
+        light, signs = self._sheets
+        canvas.surface.blit(light.surface, corner, special_flags=pygame.BLEND_RGB_ADD)
+        canvas.surface.blit(signs.surface, corner)
+        if self._show == "gradients" and not self._still:
+            self._draw_pulses(canvas)
+        if self._hovered:
+            self._draw_tooltip(canvas, *self._hovered)
+
+    def _blank(self, canvas: Canvas) -> Sheets:
+        """Return empty sheets: the spare ones, or new ones."""
+        if self._spare is None or self._spare[0].scale != canvas.scale:
+            light, signs = (canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN) for _ in range(2))
+            light.surface = pygame.Surface(light.size)
+            return light, signs
+        light, signs = self._spare
+        light.surface.fill((0, 0, 0))
+        signs.surface.fill((0, 0, 0, 0))
+        signs.palette = canvas.palette
+        return light, signs
+
+    def _paint(self, canvas: Canvas) -> Generator[None, None, Sheets]:
+        """Draw the network as it is now onto new sheets, in parts, and return them."""
+        self.redraws += 1
+        light, signs = self._blank(canvas)
+        plan, edges, hovered = self.plan, self.edges, self._hovered
+        centres = [[self._on_sheet(centre) for centre in column] for column in self._centres]
+        if not plan or not centres:
+            middle = (_MARGIN + self.box.width / 2, _MARGIN + self.box.height / 2)
+            signs.text(texts.NET_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
+            return light, signs
+        yield
+        drawn = 0.0
+        for edge in edges:
+            ends = centres[edge.column][edge.start], centres[edge.column + 1][edge.end]
+            self._paint_edge(light, edge, ends, hovered)
+            drawn += math.dist(*ends) * canvas.scale
+            if drawn > _CHUNK:
+                drawn = 0.0
+                yield
+        yield
+        best, last = plan.best(), len(centres) - 1
+        for number, column in enumerate(plan.columns):
+            lights = plan.brightness(number).tolist()
+            for place, (centre, lit) in enumerate(zip(centres[number], lights, strict=True)):
+                chosen = number == last and place == best
+                self._paint_unit(light, signs, centre, lit, damaged=bool(column.damaged[place]), chosen=chosen)
+            self._paint_names(signs, number, column, centres[number], best if number == last else None)
+        if hovered:
+            signs.marker("ring", centres[hovered[0]][hovered[1]], 2 * self._radius + 6, INK)
+        self._paint_legend(signs)
+        return light, signs
+
+    def _on_sheet(self, point: Point) -> Point:
+        return point[0] - self.box.x + _MARGIN, point[1] - self.box.y + _MARGIN
+
+    def _paint_edge(
+        self, light: Canvas, edge: Edge, ends: tuple[Point, Point], hovered: tuple[int, int] | None
+    ) -> None:
+        strength = 0.10 + 0.62 * edge.size**1.5
+        if hovered:
+            touched = hovered in ((edge.column, edge.start), (edge.column + 1, edge.end))
+            strength = 0.35 + 0.65 * edge.size if touched else 0.25 * strength
+        wide = 0.7 + 1.3 * edge.size * min(1.0, self.box.height / _LARGE)
+        half = 0.5 / light.scale  # a line runs through the middles of pixels, a dot lies between them
+        colour = _dimmed(ADDS if edge.positive else TAKES, strength)
+        start, end = ends
+        light.line((start[0] - half, start[1] - half), (end[0] - half, end[1] - half), colour, wide)
+
+    def _paint_unit(
+        self, light: Canvas, signs: Canvas, centre: Point, lit: float, *, damaged: bool, chosen: bool
+    ) -> None:
+        radius, tone = self._radius, NET if chosen else INK if lit >= 0 else TAKES
+        signs.dot(centre, radius + 0.9, NIGHT0)
+        signs.dot(centre, radius, NIGHT1)
+        if damaged:
+            signs.marker("cross", centre, 2.4 * radius, signs.palette.warn)
+            return
+        if abs(lit) > _GLOWING:
+            light.glow(centre, 4.2 * radius, tone, _GLOWING * abs(lit))
+        signs.dot(centre, radius, FAINT, 0.75)
+        if abs(lit) > 0.02:
+            signs.dot(centre, radius, tone, abs(lit) ** 0.8)
+
+    def _paint_names(
+        self, signs: Canvas, number: int, column: Column, centres: Sequence[Point], best: int | None
+    ) -> None:
+        """Write names beside the units, in a large drawing with their values, and below how many there are."""
+        names, size = self._names(number), self._name_size
+        values = self._large and bool(np.isfinite(column.values).any())
+        side = self._radius + 6
+        align: Align
+        shift, align = (-side, "right") if number == 0 else (side, "left")
+        for place, unit in enumerate(column.units.tolist()):
+            if unit >= len(names):
+                break
+            x, y = centres[place][0] + shift, centres[place][1] + 0.36 * size - (7 if values else 0)
+            signs.text(names[unit], (x, y), size=size, colour=NET if place == best else MUTE, align=align)
+            if values:
+                figure = _figure(float(column.values[place]) / self._unit(number))
+                signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
+        shown = len(column.units)
+        if shown < column.total or not names:
+            words = (texts.NET_ALL if shown == column.total else texts.NET_SOME).format(shown=shown, total=column.total)
+            middle = (centres[0][0], self._last_line)
+            signs.text(words, middle, size=LABEL - 1, colour=MUTE, align="centre")
+
+    @property
+    def _last_line(self) -> float:
+        return _MARGIN + self.box.height - 3
+
+    def _paint_legend(self, signs: Canvas) -> None:
+        y, (adds, takes) = self._last_line, texts.NET_LEGEND[self._show]
+        signs.pill((_MARGIN, y - 5, 9, 2), ADDS)
+        signs.text(adds, (_MARGIN + 13, y), size=LABEL - 1, colour=MUTE)
+        word = signs.text(takes, (_MARGIN + self.box.width, y), size=LABEL - 1, colour=MUTE, align="right")
+        signs.pill((word.left - 13, y - 5, 9, 2), TAKES)
+
+    def _draw_pulses(self, canvas: Canvas) -> None:
+        """Let light run backwards along the edges that learning moves most."""
+        radius = max(1.4, 0.4 * self._radius)
+        for number, edge in enumerate(self.edges[-_MOST_PULSES:]):
+            along = (self._phase * (1.0, 1.5, 1.0)[number % 3] + _GOLDEN * number) % 1.0
+            (x0, y0), (x1, y1) = self._centres[edge.column][edge.start], self._centres[edge.column + 1][edge.end]
+            place = (x1 + (x0 - x1) * along, y1 + (y0 - y1) * along)
+            alpha = (0.35 + 0.65 * edge.size) * min(1.0, 6 * along, 6 * (1 - along))
+            colour = ADDS if edge.positive else TAKES
+            canvas.glow(place, 4 * radius, colour, 0.5 * alpha)
+            canvas.dot(place, radius, colour, alpha)
+
+    def _draw_tooltip(self, canvas: Canvas, number: int, place: int) -> None:
+        column = self.columns[number]
+        unit, last = self._unit(number), number == len(self.columns) - 1
+        words = texts.NET_POINTS if last and self.outputs else texts.NET_VALUE
+        rows = [Row(words, plotting.compact(float(column.values[place]) / unit))]
+        if column.bias is not None:
+            rows.append(Row(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
+        head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
+        draw_tooltip(canvas, self._centres[number][place], self.box, [head], rows)
+
+
+def _all_of(painting: Generator[None, None, Sheets]) -> Sheets:
+    """Draw all parts at once."""
+    while True:
+        try:
+            next(painting)
+        except StopIteration as done:
+            sheets: Sheets = done.value
+            return sheets
+
+
+def _figure(value: float) -> str:
+    return f"{value:.2f}".replace("-", "−") if abs(value) < 1000 else plotting.compact(value)
+
+
+def _dimmed(colour: Colour, strength: float) -> Colour:
+    """Return a colour as light to be added."""
+    red, green, blue = (round(min(max(strength, 0.0), 1.0) * part) for part in colour)
+    return red, green, blue

@@ -1,0 +1,155 @@
+"""The value of each action in points of reward: the same picture wherever a network's decision is shown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ai.common.decision import Decision
+from ai.lander.environment import ACTION_NAMES
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+
+# Points of reward from one end of the scale to the other, for every network and every moment. Over whole flights of
+# both shipped networks 82% (modern) and 93% (classic) of the actions that are not the best lie within it.
+SPAN: Final = 5.0
+HEIGHT: Final = 174.0  # from the first baseline to the last
+_NAME: Final = 96.0
+_FIGURE: Final = 52.0
+_FIRST: Final = 28.0  # the first bar, below the first baseline
+_ROW: Final = 23.0
+_AXIS: Final = _FIRST + 6 * _ROW + 6.0
+_BAR: Final = 3.0
+
+
+@dataclass(frozen=True)
+class QValues:
+    """What the picture shows of one decision of one lander.
+
+    Attributes:
+        points: what each action is worth, in points of reward.
+        flown: the action that is flown.
+        asked: what the pilot asked for; None where nobody did.
+        feasible: which actions the pilot could have had.
+        allowed: how many points below the best an action may be to be feasible; None where that is not the rule.
+
+    """
+
+    points: tuple[float, ...]
+    flown: int
+    asked: int | None = None
+    feasible: tuple[bool, ...] = (True,) * len(ACTION_NAMES)
+    allowed: float | None = None
+
+    @classmethod
+    def of(cls, decision: Decision) -> QValues | None:
+        """Return what there is to show of one lander's decision; None if it weighed nothing up."""
+        if decision.points is None:
+            return None
+        return cls(tuple(decision.points[0].tolist()), int(decision.action[0]))
+
+    @property
+    def expected(self) -> float:
+        """The expected score from here on, in points of reward: that of the best action."""
+        return max(self.points) if self.readable else math.nan
+
+    @property
+    def readable(self) -> bool:
+        """Whether all values are numbers."""
+        return all(map(math.isfinite, self.points))
+
+    def loss(self, action: int) -> float:
+        """How many points less than the best an action is worth."""
+        return self.expected - self.points[action]
+
+    def fraction(self, loss: float) -> float:
+        """How long a bar is, 0 to 1, for so many points less than the best."""
+        return min(max(1.0 - loss / SPAN, 0.0), 1.0) if math.isfinite(loss) else 0.0
+
+
+def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, width: float) -> None:
+    """Draw the expected score, a bar for each action on the fixed scale, and the scale; `top` is the first baseline."""
+    track = (left + _NAME, width - _NAME - _FIGURE)
+    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE)
+    canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)
+    canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right")
+    for action in range(len(ACTION_NAMES)):
+        _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
+    _draw_axis(canvas, left, top + _AXIS, width)
+    if values.allowed is not None and values.allowed < SPAN:
+        x, y = track[0] + values.fraction(values.allowed) * track[1], top + _FIRST
+        canvas.line((x, y - 9), (x, y + 5 * _ROW + 9), MUTE)
+        canvas.marker("triangle_down", (x, y - 11), 6, INK, 0.8)
+
+
+def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
+    """Draw which action is flown, where nothing is known of what they are worth; `top` is the first baseline."""
+    for action, name in enumerate(ACTION_NAMES):
+        y, here = top + _ROW * action, action == flown
+        canvas.text(name, (left, y), size=SMALL, colour=INK if here else MUTE, room=_NAME - 20)
+        if here:
+            canvas.marker("triangle", (left + _NAME - 8, y - 4), 6, NET)
+            canvas.text(texts.MIND_SCRIPTED_FLOWN, (left + _NAME, y), size=SMALL, colour=MUTE)
+
+
+def _draw_row(canvas: Canvas, values: QValues, action: int, left: float, y: float, width: float) -> None:
+    x, track = left + _NAME, width - _NAME - _FIGURE
+    flown, feasible = action == values.flown, values.feasible[action]
+    alpha = 1.0 if feasible or flown else 0.5
+    colour = INK if flown else MUTE
+    canvas.text(ACTION_NAMES[action], (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20)
+    loss = values.loss(action)
+    fraction = values.fraction(loss)
+    tone = NET if flown else mix(FAINT, NET, 0.45 if feasible else 0.12)
+    canvas.bar((x, y - 1, track, _BAR), fraction, tone)
+    if flown:
+        canvas.marker("triangle", (x - 8, y), 6, NET)
+    if loss > SPAN:  # beyond the scale
+        canvas.line((x + 5, y - 4), (x, y), MUTE, 1.5)
+        canvas.line((x, y), (x + 5, y + 4), MUTE, 1.5)
+    if action == values.asked:
+        canvas.dot((x + fraction * track, y), 4, HUMAN)
+    words = texts.Q_BEST if loss == 0 else behind(loss)
+    canvas.text(words, (left + width, y + 4), size=SMALL, colour=colour, align="right", tabular=True, alpha=alpha)
+
+
+def _draw_axis(canvas: Canvas, left: float, y: float, width: float) -> None:
+    x, end = left + _NAME, left + width - _FIGURE
+    canvas.line((x, y - 13), (end, y - 13), LINE)
+    for place in (x, (x + end) / 2, end):
+        canvas.line((place, y - 16), (place, y - 12), MUTE)
+    canvas.text(texts.Q_ADVANTAGE, (left, y), size=LABEL, colour=MUTE, room=_NAME - 6)
+    canvas.text(f"−{SPAN:g}", (x, y), size=LABEL, colour=MUTE, align="centre")
+    canvas.text("0", (end, y), size=LABEL, colour=MUTE, align="centre")
+    canvas.text(texts.Q_UNIT, (left + width, y), size=LABEL, colour=MUTE, align="right")
+
+
+def decision_words(decision: Decision) -> Sequence[str]:
+    """Say in two lines why one lander's action is flown, by a network that decides alone."""
+    if decision.points is None:
+        return texts.Q_WEIGHS_NOTHING
+    if not np.isfinite(decision.points).all():
+        return texts.VALUES_DAMAGED
+    if not decision.kept[0]:
+        return texts.Q_BEST_FLOWN
+    names = {"kept": ACTION_NAMES[int(decision.action[0])].capitalize(), "best": ACTION_NAMES[int(decision.best[0])]}
+    return [line.format(margin=f"{decision.margin:.3g}", **names) for line in texts.Q_KEPT]
+
+
+def signed(points: float) -> str:
+    """Write points of reward with their sign; a dash for what is not a number."""
+    return f"{points:+.1f}".replace("-", "−") if math.isfinite(points) else "–"
+
+
+def behind(loss: float) -> str:
+    """Write how many points less than the best an action is worth, in as many digits as tell it from nothing."""
+    if not math.isfinite(loss):
+        return "–"
+    figure = f"{loss:.{1 if loss >= 0.95 else 2}f}"
+    return figure if float(figure) == 0 else f"−{figure}"

@@ -1,0 +1,209 @@
+"""What the agent is paid for: one strip, in which every part of the reward has its place and its colour."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+import pygame
+
+from game.charts import plotting
+from game.core import texts
+from game.drawing.canvas import Canvas, Point
+from game.drawing.paint import mix
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT, Colour
+
+# Neighbours in the strip differ in lightness as well as in hue, also for eyes without red, green or blue cones:
+# by 28 or more in CIELAB. Amber and the network's blue stay free.
+PART_COLOURS: Final[dict[str, Colour]] = {
+    "distance": (82, 120, 190),
+    "speed": (164, 226, 232),
+    "alignment": (160, 140, 236),
+    "tilt": (240, 178, 206),
+    "feet": (104, 146, 84),
+    "engine": (244, 204, 170),
+    "switch": (170, 102, 78),
+    "time": (116, 126, 154),
+    "terminal": (240, 234, 206),
+}
+_OTHERS: Final[tuple[Colour, ...]] = ((176, 196, 140), (196, 150, 214), (128, 190, 196), (214, 190, 150))
+_BAR_TOP: Final = 25.0
+_BAR_HEIGHT: Final = 13.0
+_NAMES: Final = 55.0  # baseline, from the top of the box
+_EASE: Final = 0.15
+_NEAR: Final = 1e-3  # of the width: so close, a part is there
+_LEAST: Final = 0.5  # points: what is narrower is not drawn
+_FADED: Final = 0.35  # how much is left of the others while one part is looked at
+_MARGIN: Final = 6.0  # of the sheet around the box
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part's place in the strip, in points."""
+
+    name: str
+    value: float
+    left: float
+    right: float
+    colour: Colour
+
+
+class Strip:
+    """Parts of the reward side by side: what was paid to the right of zero, what was charged to the left.
+
+    A mark stands at the sum. The mouse tells what a part is.
+    """
+
+    def __init__(self, box: pygame.typing.RectLike, label: str = texts.STRIP_LABEL) -> None:
+        self.box = pygame.FRect(box)
+        self.label = label
+        self.names: tuple[str, ...] = ()
+        self._values = self._shown = np.zeros(0)
+        self._lines = plotting.grid(-1.0, 1.0)
+        self._limits = np.array([-1.0, 1.0])
+        self._pointer: Point | None = None
+        self._sheet: Canvas | None = None
+        self._drawn: object = None  # what is on the sheet
+        self.redraws = 0
+
+    def set(self, names: Sequence[str], values: npt.ArrayLike) -> None:
+        """Show what each part has paid, per flight; a part whose value is not finite counts as 0."""
+        numbers = np.nan_to_num(np.array(values, float).ravel(), nan=0.0, posinf=0.0, neginf=0.0)
+        names = tuple(names)[: len(numbers)]
+        numbers = numbers[: len(names)]
+        low, high = float(numbers[numbers < 0].sum()), float(numbers[numbers > 0].sum())
+        first = names != self.names or not self._values.any()
+        self.names, self._values = names, numbers
+        if low or high:
+            self._lines = plotting.steady_grid((low, high), None if first else self._lines)
+        if first:
+            self._arrive()
+
+    def hover(self, point: Point | None) -> None:
+        """Follow the mouse, a point of the canvas; None for none."""
+        self._pointer = point
+
+    def update(self, at_once: bool = False) -> None:
+        """Let 1/60 s pass: the parts ease towards their values, or are there `at_once`."""
+        if at_once:
+            self._arrive()
+        self._shown = self._shown + (self._values - self._shown) * _EASE
+        self._limits = self._limits + (self._goal - self._limits) * _EASE
+        wide = self._limits[1] - self._limits[0]
+        away = np.concatenate([self._shown - self._values, self._limits - self._goal])
+        if not np.abs(away).max() > _NEAR * wide:
+            self._arrive()
+
+    @property
+    def _goal(self) -> npt.NDArray[np.float64]:
+        return np.array([min(self._lines[0], 0.0), max(self._lines[-1], 0.0)])
+
+    def _arrive(self) -> None:
+        self._shown, self._limits = self._values, self._goal
+
+    def _across(self, value: float) -> float:
+        low, high = self._limits.tolist()
+        return float(self.box.x + self.box.width * (value - low) / (high - low))
+
+    def pieces(self) -> list[Piece]:
+        """Return the parts where they lie now: outwards from zero, always in the same order."""
+        sums = {False: 0.0, True: 0.0}
+        pieces = []
+        for number, (name, value) in enumerate(zip(self.names, self._shown.tolist(), strict=True)):
+            start = sums[value > 0]
+            sums[value > 0] = end = start + value
+            left, right = sorted((self._across(start), self._across(end)))
+            colour = PART_COLOURS.get(name) or _OTHERS[number % len(_OTHERS)]
+            pieces.append(Piece(name, float(self._values[number]), left, right, colour))
+        return pieces
+
+    def piece_at(self, point: Point) -> Piece | None:
+        """Return the part under a point of the canvas."""
+        if not self.box.collidepoint(point):
+            return None
+        near = [piece for piece in self.pieces() if piece.right - piece.left >= _LEAST]
+        return next((piece for piece in near if piece.left <= point[0] < piece.right), None)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the strip."""
+        pieces = self.pieces()
+        hovered = self.piece_at(self._pointer) if self._pointer else None
+        wanted = (pieces, hovered and hovered.name, canvas.scale)
+        if self._sheet is None or wanted != self._drawn:
+            self._sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
+            self._paint(self._sheet, pieces, hovered)
+            self._drawn = wanted
+            self.redraws += 1
+        corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
+        canvas.surface.blit(self._sheet.surface, corner)
+
+    def _paint(self, sheet: Canvas, pieces: Sequence[Piece], hovered: Piece | None) -> None:
+        left, right, top = _MARGIN, _MARGIN + self.box.width, _MARGIN + _BAR_TOP
+        self._paint_header(sheet, hovered)
+        if not self._values.any():
+            middle = (left + self.box.width / 2, top + 14)
+            sheet.text(texts.STRIP_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
+            return
+        sheet.line((left, top + _BAR_HEIGHT / 2), (right, top + _BAR_HEIGHT / 2), LINE)
+        for piece in pieces:
+            _paint_piece(sheet, piece, self.box.x - left, top, faded=hovered is not None and hovered.name != piece.name)
+        zero, total = (self._across(value) - self.box.x + left for value in (0.0, float(self._shown.sum())))
+        sheet.line((zero, top - 3), (zero, top + _BAR_HEIGHT + 3), INK)
+        sheet.marker("triangle_down", (total, top - 5), 8, INK)
+        if hovered:
+            words = texts.REWARD_PARTS.get(hovered.name, ("", ""))[1]
+            sheet.text(words, (left, _MARGIN + _NAMES), size=LABEL, colour=MUTE)
+        else:
+            self._paint_names(sheet, pieces)
+
+    def _paint_header(self, sheet: Canvas, hovered: Piece | None) -> None:
+        y = _MARGIN + 12
+        title, colour = (_word(hovered.name), hovered.colour) if hovered else (self.label, MUTE)
+        sheet.text(title, (_MARGIN, y), size=LABEL, colour=colour, weight="medium")
+        if self._values.any():
+            figure, colour = (hovered.value, colour) if hovered else (float(self._values.sum()), INK)
+            right = (_MARGIN + self.box.width, y + 1)
+            sheet.text(signed(figure), right, size=TEXT, colour=colour, align="right", tabular=True)
+
+    def _paint_names(self, sheet: Canvas, pieces: Sequence[Piece]) -> None:
+        """Name the parts below them, the widest first, as far as there is room."""
+        taken: list[tuple[float, float]] = []
+        for piece in sorted(pieces, key=lambda piece: piece.left - piece.right):
+            word = _word(piece.name)
+            width = sheet.text_width(word, size=LABEL - 1)
+            if piece.right - piece.left < max(0.35 * width, 10.0):
+                continue
+            left = min(max((piece.left + piece.right - width) / 2, self.box.x), self.box.right - width)
+            if all(left >= end + 8 or left + width <= start - 8 for start, end in taken):
+                taken.append((left, left + width))
+                where = (left - self.box.x + _MARGIN, _MARGIN + _NAMES)
+                sheet.text(word, where, size=LABEL - 1, colour=piece.colour)
+
+
+def signed(value: float) -> str:
+    """Write a sum of rewards with its sign and without fractions that nobody asks for."""
+    if not math.isfinite(value):
+        return "–"
+    if abs(value) >= 1e4:
+        return ("+" if value > 0 else "") + plotting.compact(value)
+    digits = 0 if abs(value) >= 10 else 1
+    text = f"{value:+.{digits}f}"
+    return "0" if float(text) == 0 else text.replace("-", "−")
+
+
+def _paint_piece(sheet: Canvas, piece: Piece, shift: float, top: float, *, faded: bool) -> None:
+    if piece.right - piece.left < _LEAST:
+        return
+    area = sheet.rect(piece.left - shift, top, piece.right - piece.left, _BAR_HEIGHT)
+    sheet.fill(area, NIGHT0)
+    if area.width > 2:  # a dark hairline between neighbours
+        area.width -= 1
+    sheet.fill(area, mix(NIGHT0, piece.colour, _FADED) if faded else piece.colour)
+
+
+def _word(name: str) -> str:
+    return texts.REWARD_PARTS.get(name, (name, ""))[0]

@@ -1,0 +1,47 @@
+"""How a training run stands, in words and one large figure: the same for landers and digits."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from game.core import texts
+from game.core.worker import State
+from game.drawing.canvas import Canvas, Point
+from game.drawing.prose import wrapped
+from game.drawing.tokens import FIGURE, INK, MUTE, SMALL, TITLE, Colour, Palette
+
+_LEADING: Final = 17.0
+
+
+def start_word(state: State | None) -> str:
+    """What the word is that starts a run, lets it rest, and lets it go on."""
+    if state in (State.RUNNING, State.STARTING):
+        return texts.TRAIN_PAUSE
+    return texts.TRAIN_RESUME if state is State.PAUSED else texts.TRAIN_START
+
+
+def rate_colour(palette: Palette, percent: float) -> Colour:
+    """Return the colour of a rate of success: that of success only where most attempts do succeed."""
+    return palette.good if percent > 50 else INK
+
+
+def draw_standing(
+    canvas: Canvas, corner: Point, title: str, line: str, figure: str, words: str, *, drop: float, room: float
+) -> None:
+    """Draw a title with its baseline at `corner`, a line below it and, `drop` further down, a figure with words."""
+    left, top = corner
+    canvas.text(title, corner, size=TITLE)
+    canvas.text(line, (left, top + 22), size=SMALL, colour=MUTE, tabular=True, room=room)
+    if figure:
+        colour = rate_colour(canvas.palette, float(figure))
+        end = canvas.text(figure, (left - 1, top + drop), size=FIGURE, weight="light", tabular=True,
+                          colour=colour).right  # fmt: skip
+        canvas.text(words, (end + 8, top + drop), size=SMALL, colour=MUTE)
+
+
+def draw_problem(canvas: Canvas, problem: str, corner: Point, width: float, most: int) -> None:
+    """Draw why a run has failed, in at most so many lines."""
+    left, top = corner
+    canvas.marker("cross", (left + 5, top - 4), 10, canvas.palette.warn)
+    for number, line in enumerate(wrapped(canvas, problem, SMALL, width - 20)[:most]):
+        canvas.text(line, (left + 18, top + _LEADING * number), size=SMALL, colour=canvas.palette.warn)

@@ -1,0 +1,111 @@
+"""The time of a flight as a strip: who flew when, which engines burnt, and the moment that is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import groupby
+from typing import Final, TypeVar
+
+from game.core.scene import Transition
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import Kept
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
+from game.flight.flight import Hand
+from game.ui.widget import PointsManager, Widget, mix
+
+V = TypeVar("V")
+_LABELS: Final = 84.0  # room for the lanes' names
+_LANE: Final = 15.0  # points from one lane to the next
+_BAR: Final = 3.0
+_TOP: Final = 6.0  # of the strip, from the upper edge
+_STEP: Final = 6  # physics steps that an arrow moves by
+_LIT: Final = mix(MUTE, INK, 0.5)
+_COLOURS: Final = {Hand.HUMAN: HUMAN, Hand.NETWORK: NET}
+
+
+class Timeline(Widget):
+    """Lanes of a flight's actions (steps,) and whose they were. `on_seek` hears of the step that is wanted."""
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: tuple[float, float, float, float],
+        words: Sequence[str],
+        actions: Sequence[int],
+        hands: Sequence[Hand],
+        on_seek: Callable[[int], None],
+        on_press: Callable[[], None],
+    ) -> None:
+        super().__init__(manager, box, "")
+        self._still = Kept()
+        self._words, self._on_seek, self._on_press = words, on_seek, on_press
+        self.length = max(1, len(actions))
+        self.at = self.reached = 0
+        self._hands = runs([_COLOURS[hand] for hand in hands])
+        lit = ([action >= 3 for action in actions], [action % 3 == 1 for action in actions],
+               [action % 3 == 2 for action in actions])  # fmt: skip
+        self._lanes = [[(start, stop, _LIT) for start, stop, on in runs(lane) if on] for lane in lit]
+
+    def press(self) -> Transition | None:
+        """Stop, or go on; the mouse only winds."""
+        if self.ringed:
+            self._on_press()
+        return None
+
+    def shift(self, direction: int) -> bool:
+        """Wind a tenth of a second."""
+        self._on_seek(self.at + _STEP * direction)
+        return True
+
+    def drag(self, x: float) -> None:
+        """Follow the mouse."""
+        left, width = self._track
+        self._on_seek(round(self.length * (x - left) / width))
+
+    @property
+    def _track(self) -> tuple[float, float]:
+        """Left end and width."""
+        return self.box.left + _LABELS, self.box.width - _LABELS
+
+    def _place(self, step: float) -> float:
+        left, width = self._track
+        return left + width * min(max(step / self.length, 0.0), 1.0)
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the strip, the lanes below it and the mark of the moment."""
+        super().paint(canvas)
+        (left, width), top = self._track, self.box.top + _TOP
+        self._still.draw(canvas, self.box, tuple(self.box), self._paint_runs)
+        far = self._place(self.reached)
+        if far < left + width - 1:  # what has not been looked at yet
+            canvas.fill(canvas.rect(far, top - 1, left + width - far, _BAR + 2), LINE, 0.7)
+        x = self._place(self.at)
+        canvas.line((x, top - 5), (x, top + 12 + 2 * _LANE + 5), INK, 1)
+        canvas.dot((x, top + 1.5), 4.5 + self.warmth, INK)
+
+    def _paint_runs(self, canvas: Canvas) -> None:
+        """Draw what was flown: the same until the end, and many stretches of it."""
+        left, width = _LABELS, self._track[1]
+
+        def lay(stretches: Sequence[tuple[int, int, Colour]], top: float) -> None:
+            for start, stop, colour in stretches:
+                x, end = (left + width * min(step / self.length, 1.0) for step in (start, stop))
+                canvas.surface.fill(colour, canvas.rect(x, top, max(1.0, end - x), _BAR))
+
+        canvas.pill((left, _TOP, width, _BAR), FAINT, 0.5)
+        lay(self._hands, _TOP)
+        for number, (word, lane) in enumerate(zip(self._words, self._lanes, strict=True)):
+            y = _TOP + 12 + number * _LANE
+            canvas.text(word, (0, y + 4), size=LABEL - 1, colour=MUTE)
+            canvas.line((left, y + 1), (left + width, y + 1), LINE)
+            lay(lane, y - 0.5)
+
+
+def runs(values: Iterable[V]) -> list[tuple[int, int, V]]:
+    """Return where each stretch of equal values begins and ends, and the value."""
+    found, start = [], 0
+    for value, same in groupby(values):
+        stop = start + len(list(same))
+        found.append((start, stop, value))
+        start = stop
+    return found

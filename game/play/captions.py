@@ -1,0 +1,72 @@
+"""The words of a flight that is played: what is flown, how, and which keys lead on."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from game.cockpit import hud
+from game.cockpit.surroundings import draw_surroundings
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
+from game.flight.flight import Flight, Hand
+from game.flight.handicap import OWN
+from game.flight.networks import Network
+from game.input.controls import Command, Controls
+from game.play.challenge import Course
+from game.ui.hints import draw_hints, flight_hints
+from game.world.camera import Clear
+
+BELOW_OPENING: Final = Clear(head=196.0)  # where a craft hangs clear of the words that are said before it flies
+
+
+def draw_title(
+    canvas: Canvas, flight: Flight, course: Course | None, network: Network, hands: str, notice: str
+) -> None:
+    """Say what is flown: a course by its own words, a free flight by who may take it; and why it will not count."""
+    if course:
+        hud.draw_corner(canvas, course.title, course.line, notice or course.goal)
+    else:
+        _draw_free_title(canvas, flight, network, hands, notice)
+    draw_surroundings(canvas, flight.env)
+
+
+def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: str, notice: str) -> None:
+    flown = texts.WITH_NETWORK.format(name=network.name) if flight.network else texts.ALONE
+    if hands != OWN:
+        flown = texts.OTHER_HANDS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
+    hud.draw_corner(canvas, texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown, notice)
+
+
+def draw_opening(canvas: Canvas, controls: Controls, course: Course | None, forecast: bool) -> None:
+    """Say, while the craft hangs and waits, how it is flown, and what the dotted paths are."""
+    paths = [(texts.PATH_YOURS, HUMAN)]
+    if forecast:
+        paths.append((texts.PATH_NETWORK, NET))
+    hud.draw_opening(canvas, flight_hints(controls), course.opening if course else texts.BEGIN, paths)
+
+
+def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, course: Course | None, leaves: bool) -> None:
+    """Name the keys that do something now; `leaves` is whether Escape goes straight back."""
+    word = controls.word
+    hints = [(word(Command.PAUSE), texts.HINT_LEAVE if leaves else texts.HINT_PAUSE)]
+    if not course:
+        hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
+    elif course.next_hint:
+        hints.insert(0, (word(Command.NEXT), course.next_hint))
+    if flight.network and not flight.over:
+        taken = flight.hand is Hand.NETWORK
+        hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
+    draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+
+
+def card_keys(controls: Controls, good: bool, course: Course | None) -> list[tuple[str, str]]:
+    """Return the keys that lead on from a card, of a landing or not."""
+    word = controls.word
+    if course and course.fixed:
+        first = texts.CARD_FIRST_FIXED[good]
+        other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.PAUSE, texts.HINT_LEAVE)
+    else:
+        first = texts.CARD_FIRST[good]
+        other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
+    return [(word(Command.CONFIRM), first), (word(other[0]), other[1])]

@@ -1,0 +1,128 @@
+"""A ghost: another pilot who flies the same start beside a flight, and touches nothing."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.common.environment import Doubles
+from ai.lander.environment import LanderEnv, Outcome
+from ai.lander.rules import tenths
+from game.cockpit.hud import Rival
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import NET, VIEW_SIZE
+from game.flight.flight import Flight
+from game.flight.outcomes import flight_figures
+from game.world import lander as art
+from game.world.camera import Clear, View
+from game.world.flame import NET_PLUME, plume
+from game.world.landscape.sheet import fitted
+from game.world.paths import Trails
+
+_FIRE: Final = 0.5  # of full thrust: a ghost's flame must not be taken for one's own
+_BODY: Final = 0.30  # how much of a ghost covers what lies behind it, and of its rim
+_RIM: Final = 0.9
+_FADED: Final = 0.55  # of both, once it has crashed
+_EDGE: Final = 18.0  # points from the edge of the view to the mark of a ghost that is beyond it
+_HIDDEN: Final = 24.0  # points beyond the edge from which on it is
+_NO_SLOT: Final = np.zeros(1, bool)
+
+
+class Ghost:
+    """A flight that flies by itself, or by its network from the start; `step` once for every step of yours."""
+
+    def __init__(self, flight: Flight, name: str) -> None:
+        self.flight, self.name = flight, name
+        flight.hand_over()
+        self._trail = Trails(1, keep=1)
+
+    def step(self) -> None:
+        """Let the rival fly 1/60 s."""
+        flight = self.flight
+        was_over = flight.over
+        flight.step(0)
+        ended = np.array([flight.over and not was_over])
+        self._trail.follow(flight.env.position, flight.env.outcome, _NO_SLOT, ended)
+
+    def row(self, yours: LanderEnv) -> Rival:
+        """Return what the outcome card says of the rival beside a flight of yours that has ended."""
+        env = self.flight.env
+        figures = {label: (value, unit) for label, value, unit in flight_figures(env)} if self.flight.over else {}
+        return Rival(self.name, _result(yours, env), figures)
+
+    def draw_way(self, canvas: Canvas, view: View) -> None:
+        """Draw the way it came, below the words at the head."""
+        self._trail.draw(canvas, view, 0, Clear.head)
+
+    def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
+        """Draw its shape, with a blue rim."""
+        flight = self.flight
+        pose = flight.poses.at(alpha)[0]
+        if not flight.over and flight.env.fired[0] >= 3:
+            _draw_fire(canvas, view, pose, int(flight.env.steps[0]))
+        x, y = view.pixels(pose[:2]).tolist()
+        fine, degrees = view.painted_per_metre, round(math.degrees(pose[2])) % 360
+        crashed = flight.outcome is Outcome.CRASHED
+        ratio = view.pixels_per_metre / fine
+        canvas.surface.blit(*fitted(lambda halves: _phantom(fine, degrees, halves, crashed), ratio, (x, y)))
+        _point_to(canvas, *view.points(pose[:2]).tolist())
+
+
+def _point_to(canvas: Canvas, x: float, y: float) -> None:
+    """Mark, at the edge of the view, the way to a ghost that the camera leaves out."""
+    edge = pygame.FRect(0, 0, *VIEW_SIZE).inflate(-2 * _EDGE, -2 * _EDGE)
+    if not -_HIDDEN <= x <= VIEW_SIZE[0] + _HIDDEN or not -_HIDDEN <= y <= VIEW_SIZE[1] + _HIDDEN:
+        spot = (min(max(x, edge.left), edge.right), min(max(y, edge.top), edge.bottom))
+        canvas.glow(spot, 14, NET, 0.5)
+        canvas.marker("diamond", spot, 9, NET, 0.9)
+
+
+def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
+    """Say how the rival did, and where both have landed, who was first."""
+    outcome = Outcome(int(theirs.outcome[0]))
+    if not (outcome is Outcome.LANDED and yours.outcome[0] == outcome):
+        return texts.RIVAL_RESULTS[outcome.name]
+    behind = tenths(tenths(float(theirs.time[0])) - tenths(float(yours.time[0])))  # of the figures as they are printed
+    if behind == 0:
+        return texts.RIVAL_TOGETHER
+    return (texts.RIVAL_AFTER if behind > 0 else texts.RIVAL_BEFORE).format(seconds=f"{abs(behind):.1f}")
+
+
+def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
+    x, y, angle = pose.tolist()
+    fire = plume(NET_PLUME, view.pixels_per_metre, angle, _FIRE, step // 2)
+    if fire:
+        sheet, (left, top) = fire
+        reach = art.NOZZLE[1]
+        nozzle = view.pixels((x - reach * math.sin(angle), y + reach * math.cos(angle))).tolist()
+        corner = (round(nozzle[0] - left), round(nozzle[1] - top))
+        canvas.surface.blit(sheet, corner, special_flags=pygame.BLEND_RGB_ADD)
+
+
+@lru_cache(maxsize=192)
+def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
+    """Return the lander as glass: its shades in blue, seen through, and a line of light around it."""
+    phantom = art.painted(pixels_per_metre, degrees, halves).copy()
+    cover = pygame.surfarray.array_alpha(phantom)
+    grown = cover.copy()
+    for _ in range(max(1, round(pixels_per_metre / 24))):
+        inner = grown.copy()
+        for to, of in ((np.s_[1:], np.s_[:-1]), (np.s_[:-1], np.s_[1:]), (np.s_[:, 1:], np.s_[:, :-1]),
+                       (np.s_[:, :-1], np.s_[:, 1:])):  # fmt: skip
+            np.maximum(grown[to], inner[of], out=grown[to])
+    rim = (grown - cover).astype(np.float32) / 255  # it has grown everywhere, if at all
+    colour = pygame.surfarray.pixels3d(phantom)
+    net = np.array(NET, np.float32)
+    shade = np.float32(0.4) * colour + np.float32(0.6) * net
+    colour[:] = shade + rim[..., None] * (net - shade)
+    del colour
+    alpha = pygame.surfarray.pixels_alpha(phantom)
+    strength = 255 * (_FADED if wrecked else 1.0)
+    alpha[:] = strength * np.maximum(_BODY / 255 * cover, _RIM * rim)
+    del alpha
+    return phantom

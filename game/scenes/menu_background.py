@@ -1,0 +1,121 @@
+"""What is seen behind the menu: the game's own moon, and a lander that the network flies, again and again."""
+
+from __future__ import annotations
+
+from threading import Thread
+from typing import Final
+
+import numpy as np
+
+from ai.lander.environment import LanderEnv, Outcome
+from game.core.clock import STEP
+from game.drawing.canvas import Canvas
+from game.flight.flight import DECISION_STEPS, Poses
+from game.flight.networks import Flyer
+from game.ui.context import Context
+from game.world.camera import Camera, Shot
+from game.world.craft import STAND
+from game.world.landscape.backdrop import landscape
+from game.world.landscape.ground import draw_ground
+from game.world.stage import Stage
+
+_ASIDE: Final = Shot(-8.0)  # the words are on the left, so the pad is on the right
+_EARTH: Final = (824.0, 168.0)
+_REST_STEPS: Final = 110  # between a landing and the next ascent
+_CLIMB: Final = 3.2  # m/s
+_HIGH: Final = 7.5  # metres up to which it burns in an ascent, to coast from there until it falls
+_LEANS: Final = (0.30, -0.16, 0.08, -0.24, 0.18)  # radians, one for each ascent
+_SLACK: Final = 0.04  # radians off which an ascent does not mind
+_LEFT, _RIGHT, _MAIN = 1, 2, 3
+
+
+class Vista:
+    """The view behind the menu; while it is `still`, the lander stands on its pad and nothing moves."""
+
+    def __init__(self) -> None:
+        self.still = False
+        self._camera = Camera()
+        self._camera.cut(_ASIDE)
+        self._env = LanderEnv(1, 0, frame_skip=1)
+        self._env.reset()
+        self._pilot: Flyer | None = None
+        self._step = self._flights = 0
+        self._action = np.zeros(1, np.intp)
+        self._rested: int  # steps since a landing
+        self._poses: Poses
+        self._stage: Stage
+        self._begin()
+
+    def enter(self, context: Context) -> None:
+        """Have the network read beside the first ascent, which needs none."""
+        self.still = context.settings.reduced_motion
+        if self.still:
+            self._begin()
+
+        def read() -> None:
+            from ai.lander.pilots import ScriptedPilot
+            from game.flight import networks
+
+            network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+            self._pilot = network.flyer or ScriptedPilot()
+
+        if self._pilot is None:
+            Thread(target=read, daemon=True).start()
+
+    def update(self) -> None:
+        """Let 1/60 s pass."""
+        if self.still:
+            return
+        self._step += 1
+        env = self._env
+        was_over = self._over
+        if not was_over:
+            self._decide()
+            env.fly(self._action)
+        elif self._rested < _REST_STEPS:
+            self._rested += 1
+        else:
+            self._stand(env.position[0, 0] if env.outcome[0] == Outcome.LANDED else env.pad[0, 0])
+            self._climbs, self._rested, self._flights = True, 0, self._flights + 1
+        self._poses.take()
+        self._stage.follow(np.ones(1, bool), np.array([self._over and not was_over]))
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Fill the view."""
+        time = 0.0 if self.still else (self._step + alpha) * STEP
+        view = self._camera.view(canvas.scale)
+        landscape(canvas.surface.get_size(), self.still).draw(canvas, self._camera, time, earth=_EARTH)
+        draw_ground(canvas, view, self._env.ground, time)
+        self._stage.draw_lander(canvas, view, self._poses.at(alpha)[0])
+        self._stage.draw_dust(canvas, view, alpha)
+
+    @property
+    def _over(self) -> bool:
+        return bool(self._env.outcome[0] != Outcome.FLYING)
+
+    def _begin(self) -> None:
+        """Stand on the pad, about to ascend."""
+        self._stand(self._env.pad[0, 0])
+        self._climbs, self._rested = True, 0
+        self._poses, self._stage = Poses(self._env), Stage(self._env, np.random.default_rng(0))
+        self._stage.blue[:] = 1.0
+
+    def _stand(self, x: float) -> None:
+        self._env.place(np.ones(1, bool), np.array([[x, self._env.pad[0, 1] + STAND, 0.0, 0.0, 0.0, 0.0]]))
+
+    def _decide(self) -> None:
+        """Climb until it falls again and there is a pilot; then let that fly."""
+        env = self._env
+        falls = env.position[0, 1] > _HIGH and env.velocity[0, 1] < 0
+        if self._climbs and not (falls and self._pilot):
+            self._action[:] = self._ascend()
+        elif self._pilot is not None and (self._climbs or self._step % DECISION_STEPS == 0):
+            self._climbs = False
+            self._action = self._pilot.act(env.observe(), held=env.actions)
+
+    def _ascend(self) -> int:
+        """Lean to a side, and burn only as long as it is not fast yet: it shall not leave the picture."""
+        env = self._env
+        off = _LEANS[self._flights % len(_LEANS)] - float(env.angle[0]) - 0.9 * float(env.angular_velocity[0])
+        steer = _LEFT if off > _SLACK else _RIGHT if off < -_SLACK else 0
+        return steer + _MAIN * bool(env.velocity[0, 1] < _CLIMB and env.position[0, 1] < _HIGH)

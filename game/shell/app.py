@@ -1,0 +1,276 @@
+"""The window and the loop: events in, steps of 1/60 s, a picture out."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from datetime import datetime
+from io import BytesIO
+from logging.handlers import RotatingFileHandler
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import pygame
+
+from ai.nn.files import write_bytes
+from game.core import texts
+from game.core.clock import FixedStep
+from game.core.scene import Push
+from game.core.settings_writer import SettingsWriter
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
+from game.input.controls import Command, translate
+from game.shell.scene_manager import SceneManager
+from game.shell.window import GameWindow
+from game.ui.notes import Notes
+
+if TYPE_CHECKING:
+    from game.core.scene import Scene
+    from game.ui.context import Context
+
+LOG_NAME: Final = "tranquility.log"
+_SETTLE: Final = 0.1  # seconds: a landscape takes longer to paint than a window edge stays in one place
+_MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
+_log = logging.getLogger("tranquility")
+
+
+class App:
+    """The game in its window. `run` plays it to the end; `tick` is one frame.
+
+    Args:
+        context: the shared things; its `note` and `apply_settings` are bound to this window.
+        first: the scene to begin with, the menu if none is given.
+        now: the clock, in seconds.
+        capped: whether a frame waits for its turn, as on a screen, or runs as fast as it can.
+
+    Raises:
+        NoDisplayError: no window can be opened.
+
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        first: Scene | None = None,
+        *,
+        now: Callable[[], float] = time.perf_counter,
+        capped: bool = True,
+    ) -> None:
+        self.context = context
+        self._now, self._capped = now, capped
+        self._clock = pygame.time.Clock()
+        self._steps = FixedStep()
+        self._notes = Notes()
+        self._mouse: tuple[tuple[int, int], ...] = ()  # where it was last, in the window and on the desktop
+        self._settled = 0.0  # when the window will have kept its size long enough to be worth a picture
+        self.settings_writer = SettingsWriter(context.settings_file, context.settings)
+        self.window = GameWindow(context.settings.full_screen)
+        self.canvas = Canvas(self.window.surface)
+        self._follow_window()
+        context.note = self._notes.show
+        context.apply_settings = self.apply_settings
+        context.in_window = self.canvas.in_window
+        self._look()
+        context.sound.follow(context.settings)
+        context.controls.follow(context.settings)
+        self._start_pads()
+        self.scenes = SceneManager(context, lambda: self.canvas.surface)
+        self.show(first or _menu())
+        self._last = now()
+
+    def show(self, scene: Scene) -> None:
+        """Put a scene over what is shown; one that fails at once is told of like any other."""
+        self._guarded(lambda: self.scenes.apply(Push(scene)))
+
+    def run(self, max_frames: int | None = None) -> int:
+        """Play until the game is closed, or for so many frames. Returns the process's exit code."""
+        try:
+            frame = 0
+            while (max_frames is None or frame < max_frames) and self.tick():
+                frame += 1
+        finally:
+            self.close()
+        return 0
+
+    def tick(self) -> bool:
+        """Run one frame: events, the steps that are due, the picture. False once the game is over."""
+        for event in pygame.event.get():
+            self._handle(event)
+        time_now = self._now()
+        steps = self._steps.advance(time_now - self._last)
+        self._last = time_now
+        for _ in range(steps):
+            self._notes.update(self.canvas)
+            if problem := self.settings_writer.problem():
+                self._notes.show(problem)
+            self._guarded(self.scenes.update)
+            self.context.sound.update()
+        if self.scenes.running and not self.window.minimised and time_now >= self._settled:
+            self._draw()
+        if self._capped:
+            self._clock.tick(self._frame_rate)
+        return self.scenes.running
+
+    def close(self) -> None:
+        """Save the settings and close the window; the scene on top is left first."""
+        try:
+            self.scenes.close()
+        except Exception:
+            _log.exception("leaving the last scene")
+        self.settings_writer.close(self.context.settings)
+        self.context.sound.close()
+        self.window.close()
+
+    # The window
+
+    def _start_pads(self) -> None:
+        from pygame._sdl2 import controller
+
+        try:
+            controller.init()  # pads already plugged in announce themselves as events
+        except pygame.error:
+            _log.exception("no gamepads")
+
+    def _follow_window(self) -> None:
+        """Draw into the window as it is now."""
+        self.canvas.attach(self.window.surface)
+        self._attached_size = self.window.size
+        self._frame_rate = self.window.frame_rate
+
+    def _look(self) -> None:
+        """Draw in the colours and with the size of text that the player chose."""
+        self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
+        typeface.grow(TEXT_SIZES.get(self.context.settings.text_size, 1.0))
+
+    def apply_settings(self) -> None:
+        """Make the window and the sound follow the settings, and save them."""
+        if self.window.full_screen != self.context.settings.full_screen:
+            self.window.full_screen = self.context.settings.full_screen
+            self._follow_window()
+        self._look()
+        self.context.sound.follow(self.context.settings)
+        self.settings_writer.save(self.context.settings)
+
+    # Events
+
+    def _handle(self, event: pygame.event.Event) -> None:
+        if event.type == pygame.MOUSEMOTION and not self._moved(event):
+            return
+        self._follow(event)
+        self.context.sound.handle_event(event)
+        match event.type:
+            case pygame.QUIT:
+                self.scenes.running = False
+            case pygame.WINDOWMINIMIZED:
+                self.window.minimised = True
+                self._frame_rate = self.window.frame_rate
+            case pygame.WINDOWRESTORED | pygame.WINDOWSHOWN | pygame.WINDOWMAXIMIZED:
+                self.window.minimised = False
+                self._follow_window()
+            case pygame.WINDOWSIZECHANGED | pygame.WINDOWDISPLAYCHANGED:
+                if self.window.size != self._attached_size:
+                    self._follow_window()
+                    self._settled = self._last + _SETTLE
+        if not self.scenes.running:
+            return
+        event = self._clicked(self._in_points(event))
+        match translate(event):
+            case Command.FULLSCREEN:
+                self.context.settings.full_screen = not self.context.settings.full_screen
+                self.apply_settings()
+            case Command.SCREENSHOT:
+                self._save_screenshot()
+            case _:
+                self._guarded(lambda: self.scenes.handle_event(event))
+
+    def _moved(self, event: pygame.event.Event) -> bool:
+        """Tell whether it was the mouse that moved, and not the window below it."""
+        (x, y), (left, top) = event.pos, self.window.position
+        before, self._mouse = self._mouse, ((x, y), (x + left, y + top))
+        return all(now != then for now, then in zip(self._mouse, before, strict=False))
+
+    def _follow(self, event: pygame.event.Event) -> None:
+        controls = self.context.controls
+        used_mouse = controls.mouse_in_use
+        controls.process(event)
+        if event.type == pygame.CONTROLLERDEVICEADDED and controls.pad_name:
+            self._notes.show(texts.PAD_FOUND.format(name=controls.pad_name))
+        elif translate(event) is Command.UNPLUGGED:
+            self._notes.show(texts.PAD_LOST)
+        if controls.mouse_in_use != used_mouse:
+            pygame.mouse.set_visible(controls.mouse_in_use)
+
+    def _clicked(self, event: pygame.event.Event) -> pygame.event.Event:
+        """Return the press that a click on a hint means, and any other event as it is."""
+        if event.type in _MOUSE:
+            self.canvas.pointer = event.pos
+        elif not self.context.controls.mouse_in_use:
+            self.canvas.pointer = None
+        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
+            return event
+        return self.canvas.linked(event.pos) or event
+
+    def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
+        if event.type not in _MOUSE:
+            return event
+        values = {**event.dict, "pos": self.canvas.to_points(event.pos)}
+        if event.type == pygame.MOUSEMOTION:
+            values["rel"] = (event.rel[0] / self.canvas.scale, event.rel[1] / self.canvas.scale)
+        return pygame.event.Event(event.type, values)
+
+    # The picture
+
+    def _draw(self) -> None:
+        self.canvas.turn_page()
+        self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
+        self._notes.draw(self.canvas)
+        self.window.flip()
+
+    def _save_screenshot(self) -> None:
+        """Save what is seen as a picture, whole or not at all."""
+        from game.core.collection import free_path
+
+        path = free_path(self.context.user_dir / "screenshots", f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}", ".png")
+        try:
+            picture = BytesIO()  # pygame itself would not say that the disk is full
+            pygame.image.save(self.canvas.surface, picture, path.name)
+            write_bytes(path, picture.getvalue(), flush=False)
+        except OSError as error:
+            self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error.strerror or error))
+        except pygame.error as error:
+            self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error))
+        else:
+            self._notes.show(texts.SCREENSHOT_SAVED.format(path=path))
+
+    # Faults
+
+    def _guarded(self, call: Callable[[], None]) -> None:
+        """Run a scene's code; if it fails, the game goes on with a message and the way to the menu."""
+        try:
+            call()
+        except Exception as error:
+            _log.exception("in %s", self.scenes.told)
+            from game.scenes.error_screen import Fault
+
+            self.canvas.surface.set_clip(None)
+            self.scenes.reset(_menu(), Fault(error, self.context.user_dir / LOG_NAME))
+
+
+def _menu() -> Scene:
+    from game.scenes.menu import Menu
+
+    return Menu()
+
+
+def log_to(folder: Path) -> None:
+    """Keep what goes wrong in a file of the player's; if that cannot be written, go without."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handler = RotatingFileHandler(folder / LOG_NAME, maxBytes=500_000, backupCount=1, delay=True)
+    except OSError:
+        return
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    _log.addHandler(handler)
+    _log.propagate = False

@@ -1,0 +1,108 @@
+"""The window itself: opening it, full screen and back, its pixels."""
+
+from __future__ import annotations
+
+import os
+from typing import Final
+
+import pygame
+
+from game.core import texts
+from game.drawing.icon import draw_icon
+from game.drawing.tokens import VIEW_SIZE
+
+MINIMUM_SIZE: Final = (640, 360)
+_INVISIBLE: Final = ("offscreen", "dummy", "evdev")  # what SDL falls back to without a screen
+
+
+class NoDisplayError(Exception):
+    """There is no screen to open a window on."""
+
+
+class GameWindow:
+    """One resizable window, which stays the same one through full screen and back.
+
+    Attributes:
+        minimised: nothing drawn would be seen.
+
+    Raises:
+        NoDisplayError: no window can be opened.
+
+    """
+
+    def __init__(self, full_screen: bool) -> None:
+        try:
+            pygame.display.init()
+            if "SDL_VIDEODRIVER" not in os.environ and pygame.display.get_driver() in _INVISIBLE:
+                raise pygame.error(texts.NO_VIDEO_DEVICE)
+            pygame.font.init()
+            size = pygame.display.get_desktop_sizes()[0] if full_screen else VIEW_SIZE  # see `_place`
+            self._window = pygame.Window(texts.GAME, size, resizable=True, fullscreen_desktop=full_screen)
+            self._window.get_surface()
+        except pygame.error as error:
+            raise NoDisplayError(str(error)) from error
+        self._window.minimum_size = MINIMUM_SIZE
+        self._window.set_icon(draw_icon())
+        self._full_screen = full_screen
+        self._windowed: tuple[tuple[int, int], tuple[int, int] | int] = (VIEW_SIZE, pygame.WINDOWPOS_CENTERED)
+        self.minimised = False
+
+    @property
+    def surface(self) -> pygame.Surface:
+        """The window's pixels; another surface after every change of size."""
+        return self._window.get_surface()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """The window's size in pixels."""
+        return self._window.size
+
+    @size.setter
+    def size(self, size: tuple[int, int]) -> None:
+        self._window.size = size
+
+    @property
+    def position(self) -> tuple[int, int]:
+        """Where on the desktop the window's top left corner is, in pixels."""
+        return self._window.position
+
+    @property
+    def full_screen(self) -> bool:
+        """Whether the window covers the whole desktop; can be set."""
+        return self._full_screen
+
+    @full_screen.setter
+    def full_screen(self, wanted: bool) -> None:
+        if wanted == self._full_screen:
+            return
+        self._full_screen = wanted
+        if wanted:
+            self._windowed = (self._window.size, self._window.position)
+            self._place(pygame.display.get_desktop_sizes()[0], (0, 0))
+            self._window.set_fullscreen(True)
+        else:
+            self._window.set_windowed()
+            self._place(*self._windowed)
+
+    def _place(self, size: tuple[int, int], position: tuple[int, int] | int) -> None:
+        # A window manager does this by itself. A bare X server has none; it has one screen as well.
+        if len(pygame.display.get_desktop_sizes()) == 1 and self._window.size != size:
+            self._window.size = size
+            self._window.position = position
+
+    @property
+    def frame_rate(self) -> int:
+        """Frames a second worth drawing on this screen; few while nobody can see them."""
+        if self.minimised:
+            return 20
+        rates = pygame.display.get_desktop_refresh_rates()
+        return min(max(rates[0] if rates else 60, 60), 144)
+
+    def flip(self) -> None:
+        """Show what was drawn."""
+        self._window.flip()
+
+    def close(self) -> None:
+        """Close the window and leave the screen."""
+        self._window.destroy()
+        pygame.display.quit()

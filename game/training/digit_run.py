@@ -1,0 +1,248 @@
+"""A network that learns to read digits, as the window knows it: what its process has told, and what may be asked."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from ai.digits.checkpoints import LAST_FILE, TRAINING_FILE
+from ai.digits.config import DigitConfig
+from ai.digits.session import Confusion, DigitPoint, DigitsBegun, Finish, GoBack, Kept, Score, Turned, live_digits
+from ai.nn.files import brief, read_json
+from ai.nn.folder import CONFIG
+from ai.training.history import REVERTED, TURNING_SECONDS
+from ai.training.messages import Refused, Save
+from game.core import texts
+from game.core.collection import LONGEST_NAME, Collection, LibraryError
+from game.core.worker import Worker
+from game.digits import PATIENCE
+from game.training.digit_models import PARTS
+from game.training.training_run import EARLIER, Beside, Learner, put_beside
+
+FALLEN: Final = 0.15  # of the images held out, so many fewer than at its best: the way back is offered
+_MOST_POINTS: Final = 4000
+
+
+@dataclass
+class Curves:
+    """What a run has told of how it stands."""
+
+    points: list[DigitPoint] = field(default_factory=list)
+    scores: list[Score] = field(default_factory=list)
+    turns: list[Turned] = field(default_factory=list)
+
+    @property
+    def fallen(self) -> tuple[float, float] | None:
+        """What it read at its best and what it reads now, if that is far less; since it last went back."""
+        back = max((turn.seconds for turn in self.turns if turn.name == REVERTED), default=-1.0)
+        read = [score.accuracy for score in self.scores if score.seconds > back]
+        best = max((score.accuracy for score in self.scores), default=0.0)
+        return (best, read[-1]) if read and best - read[-1] > FALLEN else None
+
+    def append(self, told: DigitPoint | Score | Turned) -> None:
+        """Take one more; of very many points every other one is forgotten.
+
+        A knob that is turned again a moment later is still being turned: where it ends is what counts.
+        """
+        if isinstance(told, Score):
+            self.scores.append(told)
+            return
+        if isinstance(told, Turned):
+            last = self.turns[-1] if self.turns else None
+            if last and last.name == told.name != REVERTED and told.seconds - last.seconds < TURNING_SECONDS:
+                self.turns.pop()
+            self.turns.append(told)
+            return
+        self.points.append(told)
+        if len(self.points) > _MOST_POINTS:
+            self.points = self.points[1::2]
+
+    @property
+    def seconds(self) -> float:
+        """How long the run has learnt."""
+        return self.points[-1].seconds if self.points else 0.0
+
+
+class Pupil(Learner):
+    """One run after another, each in a child process of its own; `poll` once a frame.
+
+    A run keeps itself in the player's folder under no name, until `save` gives it one.
+
+    Attributes:
+        config, seed, steps: of the run that goes on, or of the last one; `begun` says that it has told of them.
+        curves, confusion: what has been told of it.
+        test: its accuracy on the test images, once it is finished or was stopped.
+        stopping: whether it was asked to end, and is being measured.
+        kept: where it is, once it has been written.
+        kept_epoch: after which epoch the network that was measured was best, if that is not the last one.
+        earlier: the runs that stand beside it, the latest first.
+
+    """
+
+    grace = 1.0
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self.collection = Collection(folder, PARTS)
+        self.config, self.seed, self.steps = DigitConfig(), 0, 0
+        self.begun = False
+        self.curves = Curves()
+        self.confusion: Confusion | None = None
+        self.test: float | None = None
+        self.kept_epoch: int | None = None
+        self.earlier: list[Beside[Curves]] = []
+        self.stopping = False
+        self._saving: list[Path] = []  # where it was asked to save itself, and has not answered
+
+    @property
+    def unsaved(self) -> Path:
+        """Where a run keeps itself until it has a name."""
+        return self.collection.unsaved
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether a run lies there that can go on; no, while another goes on, or has not quite ended."""
+        if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
+            return False
+        return self.collection.left_behind and (self.unsaved / LAST_FILE).exists()
+
+    @property
+    def kept(self) -> bool:
+        """Whether a network lies there that can be used."""
+        return (self.unsaved / CONFIG).exists()
+
+    @property
+    def nameless(self) -> bool:
+        """Whether there is a run that a new one would take the place of."""
+        return self.kept or (self.alive and self.steps > 0)
+
+    def described(self) -> tuple[str, float, float | None]:
+        """Return the nameless run's preset, the seconds it has learnt, and the part it reads, as far as is known."""
+        scores = self.curves.scores
+        preset, seconds, part = "", self.curves.seconds, scores[-1].accuracy if scores else None
+        if self.alive:
+            return preset, seconds, part
+        with suppress(OSError, ValueError, KeyError, TypeError):
+            said = read_json(self.unsaved / TRAINING_FILE)
+            preset, seconds = brief(said["preset"], LONGEST_NAME), float(said["seconds"])
+            known = said.get("test", said["held_out"])
+            part = part if known is None else float(known)
+        return preset, seconds, part
+
+    def begin(self, config: DigitConfig, seed: int, *, resume: bool = False, name: str = "") -> str:
+        """Start a run, or go on with the unfinished one, as soon as the one before has ended.
+
+        `name` is what its settings are called. Returns what the player should know; of a run that must wait, that
+        comes from `poll`.
+        """
+        note = ""
+        if self.curves.points:
+            gone = put_beside(self.earlier, self.name, self.curves)
+            note = texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
+        self.curves, self.confusion, self.test, self.kept_epoch = Curves(), None, None, None
+        self.config, self.seed, self.steps = config, seed, 0
+        self.stopping = False
+        self.runs += 1
+        self.call(name)
+        started = self._start(lambda: self._begin(config, seed, resume))
+        return " ".join(filter(None, [note, started]))
+
+    def _begin(self, config: DigitConfig, seed: int, resume: bool) -> str:
+        notes = self._name_ended()
+        if not resume:
+            notes += filter(None, [self._put_aside()])
+        self._worker = Worker(live_digits, config, seed, keep=self.unsaved, resume=self.unsaved if resume else None)
+        self._worker.patience = PATIENCE
+        return " ".join(notes)
+
+    def go_back(self) -> None:
+        """Let the network be what it was at its best."""
+        if not self.stopping:
+            self._send(GoBack())
+
+    def stop(self) -> None:
+        """End the run; what it has learnt is kept, and measured. Asked again, it ends without being measured."""
+        if self.waiting:
+            self._launch = None
+        elif self.alive and self.steps and not self.stopping:
+            self.stopping = True
+            self._send(Finish())
+            self.resume()
+        elif self._worker:
+            self._worker.stop()
+
+    def save(self, name: str) -> str:
+        """Give the run a name; returns why that can't be, and later news come from `poll`."""
+        if self.waiting:  # there is nothing of it yet
+            return texts.PUPIL_NOTHING
+        try:
+            if self.alive:
+                folder = self.collection.new_folder(name)
+                self._saving.append(folder)
+                self._send(Save(folder))
+            else:
+                self.collection.name(self.unsaved, name)
+        except LibraryError as error:
+            return str(error)
+        return ""
+
+    def poll(self) -> list[str]:
+        """Take in what the worker has told; returns what the player should know."""
+        notes: list[str] = []
+        for told in self._worker.poll() if self._worker else ():
+            if self.waiting and not isinstance(told, Kept):  # of the run before, only where it is
+                continue
+            match told:
+                case DigitPoint() | Score() | Turned():
+                    self.curves.append(told)
+                    self.config = _turned(self.config, told)
+                case Confusion():
+                    self.confusion = told
+                case DigitsBegun(config, seed, _, steps):
+                    self.config, self.seed, self.steps, self.begun = config, seed, steps, True
+                case Kept():
+                    notes += filter(None, [self._hear_of(told)])
+                case Refused(_, problem):
+                    notes.append(problem)
+        if not self.alive:
+            self.stopping = False
+            notes += self._name_ended()
+        if note := self._start_waiting():
+            notes.append(note)
+        return notes
+
+    def _hear_of(self, kept: Kept) -> str:
+        """Take in where the run has been written, or why not; returns what the player should know."""
+        if kept.folder == self.unsaved and kept.test is not None and not self.waiting:
+            self.test, self.kept_epoch = kept.test, kept.epoch
+        if kept.folder in self._saving:
+            self._saving.remove(kept.folder)
+        if kept.problem:
+            return texts.TRAIN_NOT_SAVED.format(problem=kept.problem)
+        return "" if kept.folder == self.unsaved else texts.PUPIL_SAVED.format(name=kept.folder.name)
+
+    def _name_ended(self) -> list[str]:
+        """Give a run its name that ended before it heard of that; returns what the player should know."""
+        notes = []
+        while self._saving:
+            name = self._saving.pop().name
+            notes.append(self.save(name) or texts.PUPIL_SAVED.format(name=name))
+        return notes
+
+    def _put_aside(self) -> str:
+        """Move a nameless run out of the way of a new one, to where the last few can be had back from by hand."""
+        if self.kept:
+            try:
+                self.collection.throw_away(self.unsaved, texts.RUN_UNNAMED)
+            except LibraryError as error:
+                return str(error)
+        return ""
+
+
+def _turned(config: DigitConfig, told: DigitPoint | Score | Turned) -> DigitConfig:
+    """Return the configuration that a run has after what it told."""
+    if not isinstance(told, Turned) or told.name == REVERTED:
+        return config
+    return config.changed(**{told.name: told.after})

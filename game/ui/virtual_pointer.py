@@ -1,0 +1,148 @@
+"""A mouse for those without one: taken in hand over a part of the screen, it is moved by arrows or a stick."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import pygame
+
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, NIGHT0
+from game.input.controls import Command, Controls, presses_main, translate
+from game.ui.widget import PointsManager, Widget
+
+_DEAD: Final = 0.2  # of a stick's way, where it rests
+_WAYS: Final = {Command.LEFT: (-1, 0), Command.RIGHT: (1, 0), Command.UP: (0, -1), Command.DOWN: (0, 1)}
+_STICK: Final = (pygame.CONTROLLER_AXIS_LEFTX, pygame.CONTROLLER_AXIS_LEFTY)
+_EDGE: Final = 2.0
+_NOWHERE: Final = (-1.0, -1.0)
+
+
+class Pointer(Widget):
+    """Enter or a pad's A takes it in hand, and held down is the mouse's button; Escape or B lays it aside.
+
+    What it does, `tell` hears as a mouse's events in points, so that nothing else need know of it. Laid aside, it
+    points outside the screen.
+
+    Args:
+        manager: the form's.
+        box: where it can go, in points.
+        tell: takes the events.
+        hold: what holding it down does, in words; empty if nothing.
+        leave: what to lay it aside is called.
+        pace: points that it moves in a step of 1/60 s.
+
+    """
+
+    def __init__(
+        self,
+        manager: PointsManager,
+        box: pygame.typing.RectLike,
+        tell: Callable[[pygame.event.Event], object],
+        *,
+        hold: str = "",
+        leave: str = texts.POINTER_LEAVE,
+        pace: float = 6.0,
+    ) -> None:
+        super().__init__(manager, box, texts.POINTER)
+        self._hear, self._hold, self._leave, self._pace = tell, hold, leave, pace
+        self.place = pygame.Vector2(self.box.center)
+        self._arrows: dict[int, Command] = {}
+        self._stick = [0.0, 0.0]
+        self._pressed_by: int | None = None  # the key or button that holds it down
+
+    def press(self) -> None:
+        """Take it in hand; the mouse needs none."""
+        self.typing = self.ringed
+        if self.typing:
+            self._tell(pygame.MOUSEMOTION)
+
+    def process_event(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
+        """Leave it to what lies below: who has a mouse points with that."""
+        return False
+
+    def hints(self, controls: Controls) -> list[tuple[str, str]]:
+        """Return what can be done with it, in hand."""
+        hold = [(str(controls.word(Command.CONFIRM)), self._hold)] if self._hold else []
+        return [(controls.arrows, texts.HINT_MOVE), *hold, (controls.word(Command.BACK), self._leave)]
+
+    def take(self, event: pygame.event.Event) -> bool:
+        """Move, press, or lay it aside."""
+        if not self.typing:
+            return False
+        code = getattr(event, "key", getattr(event, "button", None))
+        if event.type in (pygame.KEYUP, pygame.CONTROLLERBUTTONUP):
+            self._arrows.pop(code or 0, None)
+            if code == self._pressed_by:
+                self._lift()
+            return True
+        if event.type == pygame.CONTROLLERAXISMOTION and event.axis in _STICK:
+            share = event.value / 32767
+            self._stick[_STICK.index(event.axis)] = share if abs(share) > _DEAD else 0.0
+            return True
+        if event.type == pygame.WINDOWFOCUSLOST:  # what is let go of now will not be heard
+            self._lay_aside()
+            return False
+        return self._obey(event, code)
+
+    def _obey(self, event: pygame.event.Event, code: int | None) -> bool:
+        command = translate(event)
+        if command is None and presses_main(event):
+            command = Command.CONFIRM
+        if code is not None and command is Command.CONFIRM:
+            self._tell(pygame.MOUSEBUTTONDOWN)
+            self._pressed_by = code
+        elif code is not None and command in _WAYS:
+            self._arrows[code] = command
+        elif command in (Command.BACK, Command.PAUSE, Command.UNPLUGGED):
+            self._lay_aside()
+        else:
+            return False
+        return True
+
+    def ease(self, at_once: bool) -> None:
+        """Go on in the direction that is held."""
+        super().ease(at_once)
+        if self.typing and not self.focused:
+            self._lay_aside()
+        if not self.typing:
+            return
+        way = pygame.Vector2(self._stick)
+        if self._arrows:
+            way = pygame.Vector2(sum((pygame.Vector2(_WAYS[command]) for command in self._arrows.values()), way * 0))
+            if way:
+                way.normalize_ip()
+        if not way:
+            return
+        box = self.box.inflate(-2 * _EDGE, -2 * _EDGE)
+        self.place += self._pace * way
+        self.place.x = min(max(self.place.x, box.left), box.right)
+        self.place.y = min(max(self.place.y, box.top), box.bottom)
+        self._tell(pygame.MOUSEMOTION)
+
+    def _lay_aside(self) -> None:
+        self.typing = False
+        self._arrows.clear()
+        self._stick = [0.0, 0.0]
+        self._lift()
+        self._hear(pygame.Event(pygame.MOUSEMOTION, pos=_NOWHERE, rel=(0, 0), buttons=(0, 0, 0)))
+
+    def _lift(self) -> None:
+        if self._pressed_by is not None:
+            self._pressed_by = None
+            self._tell(pygame.MOUSEBUTTONUP)
+
+    def _tell(self, kind: int) -> None:
+        self._hear(pygame.Event(kind, pos=(self.place.x, self.place.y), button=1, rel=(0, 0), buttons=(0, 0, 0)))
+
+    def paint(self, canvas: Canvas) -> None:
+        """Draw the ring of the focus, and its point while it is in hand."""
+        super().paint(canvas)
+        if self.typing:
+            x, y = self.place
+            canvas.dot((x, y), 9, NIGHT0, 0.6)  # it has to be seen on ink, too
+            canvas.marker("ring", (x, y), 14, HUMAN)
+            for across, down in _WAYS.values():
+                canvas.line((x + 9 * across, y + 9 * down), (x + 15 * across, y + 15 * down), HUMAN, 1.5)

@@ -1,0 +1,100 @@
+"""What is said and lit on the spot: contact light when both feet are down, and what broke a craft."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import pygame
+
+from ai.common.environment import Doubles
+from ai.lander.environment import LanderEnv, Outcome
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, SMALL, VIEW_SIZE
+from game.flight.outcomes import crash_reason
+from game.world.camera import View
+from game.world.craft import foot_place
+from game.world.stage import light_pool
+
+_CONTACT: Final = (14, 80, 46)  # steps in which the word comes, stays and goes
+_REASON: Final = (6, 200, 20)
+_GLOW: Final = 110  # steps that the light on the deck takes to spread and fade
+_ABOVE: Final = 2.0  # metres from the middle of a craft to the words
+_EDGE: Final = 24.0  # points that words keep from the edges of the view, and from the read-outs
+_ROWS: Final = (96.0, 600.0)  # the rows between which words may stand
+
+
+class Moments:
+    """Those of one flight; `follow` once after every step. While `calm`, words are there at once, and alone."""
+
+    def __init__(self, env: LanderEnv, reduced_motion: bool = False) -> None:
+        self._env, self.calm = env, reduced_motion
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin with the moment that is shown: what was before it is not told."""
+        self._was_down = bool(self._env.contacts[0].all())
+        self._was_over = bool(self._env.outcome[0] != Outcome.FLYING)
+        self._contact = self._crash = -1  # steps since; -1 for none
+
+    def follow(self) -> None:
+        """Note what the last step brought."""
+        env = self._env
+        crashed = bool(env.outcome[0] == Outcome.CRASHED)
+        self._contact += self._contact >= 0
+        self._crash += self._crash >= 0
+        down = bool(env.contacts[0].all()) and not crashed
+        if down and not self._was_down and self._contact < 0:
+            self._contact = 0
+        if crashed and not self._was_over:
+            self._crash, self._contact = 0, -1
+        self._was_down, self._was_over = down, bool(env.outcome[0] != Outcome.FLYING)
+
+    def draw_light(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        """Let light run along the deck from under both feet; with reduced motion there is the word alone."""
+        if not 0 <= self._contact < _GLOW or self.calm:
+            return
+        gone = self._contact / _GLOW
+        x, y, angle = pose.tolist()
+        reach = (0.9 + 2.4 * (1 - (1 - gone) ** 3)) * view.pixels_per_metre
+        level = math.ceil(30 * (1 - gone) ** 1.3)
+        light = pygame.transform.smoothscale(light_pool(level, INK), (2 * round(reach), round(0.22 * reach) + 6))
+        for side in (-1, 1):
+            foot = foot_place(x, y, angle, side)
+            at_x, at_y = view.pixels(foot).tolist()
+            corner = (round(at_x - light.get_width() / 2), round(at_y - light.get_height() / 2))
+            canvas.surface.blit(light, corner, special_flags=pygame.BLEND_RGB_ADD)
+            place = view.points(foot).tolist()
+            canvas.glow((place[0], place[1]), 0.5 * view.pixels_per_metre / view.scale, INK, 1.3 * (1 - gone) ** 2)
+
+    def draw_words(self, canvas: Canvas, view: View, pose: Doubles) -> None:
+        """Write what has happened above the craft."""
+        shown = self._shown(self._contact, _CONTACT)
+        if shown > 0:
+            self._write(canvas, view, pose, texts.CONTACT_LIGHT, shown, crash=False)
+        shown = self._shown(self._crash, _REASON)
+        if shown > 0:
+            self._write(canvas, view, pose, crash_reason(self._env), shown, crash=True)
+
+    def _shown(self, since: int, times: tuple[int, int, int]) -> float:
+        """How much of a word is there, 0 to 1, so many steps after it was due."""
+        come, stay, go = times
+        if not 0 <= since < come + stay + go:
+            return 0.0
+        if self.calm:
+            return 1.0
+        return min(1.0, (since + 1) / come, (come + stay + go - since) / go)
+
+    def _write(self, canvas: Canvas, view: View, pose: Doubles, text: str, shown: float, *, crash: bool) -> None:
+        x, y = view.points((pose[0], pose[1] + _ABOVE)).tolist()
+        width = canvas.text_width(text, size=SMALL, weight="medium") + 22
+        x = min(max(x, _EDGE + width / 2), VIEW_SIZE[0] - _EDGE - width / 2)
+        y = min(max(y, _ROWS[0]), _ROWS[1]) - 6 * (1 - shown)
+        if crash:
+            canvas.panel((x - width / 2 - 12, y - 20, width + 24, 30), 0.8 * shown)
+            canvas.marker("cross", (x - width / 2 + 4, y - 5), 10, canvas.palette.warn, shown)
+        else:
+            canvas.glow((x - width / 2 + 4, y - 4), 13, INK, 0.9 * shown)
+            canvas.dot((x - width / 2 + 4, y - 4), 3.5, INK, shown)
+        canvas.text(text, (x - width / 2 + 22, y), size=SMALL, weight="medium", colour=INK, alpha=shown)

@@ -1,0 +1,189 @@
+"""The one place where metres become pixels."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from game.core.clock import STEP
+from game.drawing.tokens import VIEW_SIZE
+
+Metres = npt.NDArray[np.float64]
+Pixels = npt.NDArray[np.float64]
+
+WORLD_WIDTH: Final = 40.0
+POINTS_PER_METRE: Final = VIEW_SIZE[0] / WORLD_WIDTH
+# The bottom edge of the view at rest, in metres: it leaves room below the ground line for the read-outs.
+VIEW_BOTTOM: Final = -1.1
+HOME: Final = (0.0, VIEW_BOTTOM + VIEW_SIZE[1] / POINTS_PER_METRE / 2)
+# The ground stays on one row of the screen, whatever the zoom: a camera that comes nearer also comes lower.
+GROUND_LINE: Final = 1.0  # metres
+GROUND_ROW: Final = VIEW_SIZE[1] / 2 + (HOME[1] - GROUND_LINE) * POINTS_PER_METRE  # points
+WIDEST: Final = 0.74  # zoom at which all of the world in which a flight may be is seen
+CLOSEST: Final = 2.0
+LAND_REACH: Final = 28.0  # metres to both sides of the middle of the world that there is land to be seen
+
+_PACE: Final = 2.6  # rad/s, of the spring that moves the camera
+_EDGE: Final = 1.5  # metres around a position to be kept in view
+_TREMOR: Final = (71.0, 97.0)  # rad/s, across and up
+_CALM: Final = 0.16  # seconds in which a shaking dies down to a third
+
+
+@dataclass(frozen=True)
+class View:
+    """What part of the world a picture shows: `centre` in metres is its middle.
+
+    `scale` is the canvas's pixels per point; at a zoom of 1 the whole width of the world is seen. `closest` is the
+    greatest zoom that there will be, 0 for this one: what is painted once and then scaled is painted for that.
+    """
+
+    scale: float
+    centre: tuple[float, float] = HOME
+    zoom: float = 1.0
+    closest: float = 0.0
+
+    @property
+    def pixels_per_metre(self) -> float:
+        """How large the world is drawn."""
+        return POINTS_PER_METRE * self.scale * self.zoom
+
+    @property
+    def painted_per_metre(self) -> float:
+        """How large, in pixels per metre, to paint what is then scaled to this view and those that follow."""
+        return POINTS_PER_METRE * self.scale * (self.closest or self.zoom)
+
+    def pixels(self, position: npt.ArrayLike) -> Pixels:
+        """Turn world positions (..., 2) into pixels of the view."""
+        return self._project(position, self.pixels_per_metre, self.scale)
+
+    def points(self, position: npt.ArrayLike) -> Pixels:
+        """Turn world positions (..., 2) into points of the canvas."""
+        return self._project(position, POINTS_PER_METRE * self.zoom, 1.0)
+
+    def metres(self, point: npt.ArrayLike) -> Metres:
+        """Turn points of the canvas (..., 2), such as the mouse's, into world positions."""
+        from_middle = np.asarray(point, dtype=float) - np.array(VIEW_SIZE) / 2
+        return self.centre + from_middle * (1, -1) / (POINTS_PER_METRE * self.zoom)
+
+    def _project(self, position: npt.ArrayLike, per_metre: float, scale: float) -> Pixels:
+        from_centre = np.asarray(position, dtype=float) - self.centre
+        return from_centre * (per_metre, -per_metre) + np.array(VIEW_SIZE) * (scale / 2)
+
+
+@dataclass(frozen=True)
+class Clear:
+    """The part of the screen in which a flight is to be seen, in points: what is beside it belongs to words."""
+
+    left: float = 0.0
+    right: float = float(VIEW_SIZE[0])
+    head: float = 104.0
+
+
+@dataclass(frozen=True)
+class Shot:
+    """What a camera is to show: `across` in metres is the middle of the view."""
+
+    across: float = 0.0
+    zoom: float = 1.0
+
+    @classmethod
+    def around(cls, left: float, right: float, top: float, clear: Clear) -> Shot:
+        """Return the closest one that shows from `left` to `right`, and up to `top`, in metres, where it is clear."""
+        wide = (clear.right - clear.left) / (POINTS_PER_METRE * max(right - left, 1.0))
+        high = (GROUND_ROW - clear.head) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
+        zoom = max(min(wide, high, CLOSEST), WIDEST)
+        aside = ((clear.left + clear.right) - VIEW_SIZE[0]) / (2 * POINTS_PER_METRE * zoom)
+        return cls((left + right) / 2 - aside, zoom).on_land()
+
+    def on_land(self) -> Shot:
+        """The same, but for what would show where the land ends."""
+        reach = LAND_REACH - VIEW_SIZE[0] / (2 * POINTS_PER_METRE * self.zoom)
+        return Shot(min(max(self.across, -reach), reach), self.zoom)
+
+    def view(self, scale: float) -> View:
+        """Return the view that shows it."""
+        return View(scale, (self.across, centre_height(self.zoom)), self.zoom, CLOSEST)
+
+
+class Camera:
+    """Moves across and near, as if on a critically damped spring; moved in steps, drawn in between.
+
+    One that never is told what to show stays at rest, with the whole width of the world in view. What it follows
+    never leaves the view, however fast it is.
+    """
+
+    def __init__(self) -> None:
+        self._moves = False
+        self._state = np.array([0.0, 0.0])  # metres across, logarithm of the zoom: near and far at an even pace
+        self._speed = np.zeros(2)
+        self._before = self._state
+        self._tremor, self._time = 0.0, 0.0
+
+    @property
+    def shot(self) -> Shot:
+        """What is shown now."""
+        return Shot(float(self._state[0]), math.exp(self._state[1]))
+
+    def cut(self, shot: Shot) -> None:
+        """Show something at once."""
+        self._moves = True
+        self._state = self._before = np.array([shot.across, math.log(shot.zoom)])
+        self._speed = np.zeros(2)
+        self._tremor = 0.0
+
+    def follow(self, shot: Shot, subject: tuple[float, float] | None = None) -> None:
+        """Ease towards a shot, with a position that must not leave the view; call once a step of 1/60 s.
+
+        A critically damped spring reaches a shot that stays without ever going past it; this is its exact solution
+        over a step, and so the same in many small ones.
+        """
+        self._moves = True
+        self._before = self._state
+        wanted = np.array([shot.across, math.log(shot.zoom)])
+        away = self._state - wanted
+        pull = (self._speed + _PACE * away) * STEP
+        decay = math.exp(-_PACE * STEP)
+        self._state = wanted + (away + pull) * decay
+        self._speed = (self._speed - _PACE * pull) * decay
+        if subject is not None:
+            self._keep(*subject)
+        self._time += STEP
+        self._tremor *= math.exp(-STEP / _CALM)
+
+    def shake(self, strength: float) -> None:
+        """Be struck, so that the near world shakes by at most so many points."""
+        self._tremor = max(self._tremor, strength)
+
+    def view(self, scale: float, alpha: float = 1.0) -> View:
+        """Return the view on a canvas of that scale, `alpha` of the way from the last step to this one."""
+        if not self._moves:
+            return View(scale)
+        across, near = (self._before + alpha * (self._state - self._before)).tolist()
+        zoom = math.exp(near)
+        x, y = self._shaken(alpha) / (POINTS_PER_METRE * zoom)
+        return View(scale, (across + x, centre_height(zoom) + y), zoom, CLOSEST)
+
+    def _keep(self, x: float, y: float) -> None:
+        """Let a position not leave the view, even where the spring is too slow for it."""
+        most = VIEW_SIZE[0] / (2 * POINTS_PER_METRE)
+        high = math.log(GROUND_ROW / (POINTS_PER_METRE * max(y + _EDGE - GROUND_LINE, 1.0)))
+        bounded = max(min(self._state[1], high), math.log(WIDEST))
+        room = most / math.exp(bounded) - _EDGE
+        held = np.array([min(max(self._state[0], x - room), x + room), bounded])
+        self._speed = np.where(held == self._state, self._speed, (held - self._before) / STEP)
+        self._state = held
+
+    def _shaken(self, alpha: float) -> Pixels:
+        """Return how far, in points, a blow has moved the view."""
+        time = self._time + (alpha - 1) * STEP
+        strength = self._tremor if self._tremor > 0.1 else 0.0
+        return strength * np.array([math.sin(_TREMOR[0] * time), math.sin(_TREMOR[1] * time + 1)])
+
+
+def centre_height(zoom: float) -> float:
+    """Return the height in metres of the middle of a view at that zoom, with the ground on its row."""
+    return GROUND_LINE + (HOME[1] - GROUND_LINE) / zoom

@@ -1,0 +1,58 @@
+"""What a camera shows of a flight: the craft, and the pads that it may still reach."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Doubles
+from ai.lander.environment import LanderEnv
+from game.drawing.tokens import VIEW_SIZE
+from game.world.camera import GROUND_LINE, POINTS_PER_METRE, Camera, Clear, Shot
+
+ALL: Final = Clear()
+_AROUND: Final = 2.2  # metres beside a craft, and above it
+_BESIDE: Final = 1.6  # metres beside a pad
+_LEAD: Final = 0.6  # seconds: how far ahead of a craft the camera looks
+# Of several pads, those count to which a craft at that height may still turn.
+_REACH: Final = (6.0, 2.2)  # metres to the side at the height of the ground, and more for every metre above it
+_FADE: Final = 3.0  # metres over which a pad out of reach stops to count
+
+
+def framed(env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> Shot:
+    """Return the closest shot with the craft, what lies ahead of it, and its pads, where the screen is clear."""
+    x, y = env.position[slot].tolist()
+    ahead_x, ahead_y = (env.position[slot] + _LEAD * env.velocity[slot]).tolist()
+    left, right = min(x, ahead_x) - _AROUND, max(x, ahead_x) + _AROUND
+    for edges, weight in _pads(env, slot, x, y):
+        left += weight * (min(left, edges[0] - _BESIDE) - left)
+        right += weight * (max(right, edges[1] + _BESIDE) - right)
+    return Shot.around(left, right, max(y, ahead_y) + _AROUND, clear)
+
+
+def whole(path: Doubles) -> Shot:
+    """Return a shot of all of a flight that is over, (k, 2): the view at rest, but for what that takes."""
+    (left, _), (right, top) = (path.min(axis=0) - _AROUND).tolist(), (path.max(axis=0) + _AROUND).tolist()
+    zoom = min(1.0, Shot.around(left, right, top, ALL).zoom)
+    half = VIEW_SIZE[0] / (2 * POINTS_PER_METRE * zoom)
+    return Shot(min(max(0.0, right - half), left + half), zoom).on_land()
+
+
+def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> None:
+    """Let a camera follow a flight for a step."""
+    x, y = env.position[slot].tolist()
+    camera.follow(framed(env, slot, clear), (x, y))
+
+
+def _pads(env: LanderEnv, slot: int, x: float, y: float) -> list[tuple[tuple[float, float], float]]:
+    """Return both edges of every pad, and how much it counts, 0 to 1; a single one always does."""
+    shift = float(env.pad_shift[slot])
+    pads = env.ground.pads
+    near, more = _REACH
+    rows = []
+    for pad in pads:
+        beyond = abs(pad.x + shift - x) - (near + more * max(0.0, y - GROUND_LINE))
+        weight = 1.0 if len(pads) == 1 else float(np.clip(1 - beyond / _FADE, 0.0, 1.0))
+        rows.append(((pad.left + shift, pad.right + shift), weight))
+    return rows

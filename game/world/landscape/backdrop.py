@@ -1,0 +1,137 @@
+"""The whole landscape in one object: build it once per size, draw it each frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy, deepcopy
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+import pygame
+
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import NIGHT0, VIEW_SIZE
+from game.world.camera import POINTS_PER_METRE, Camera, View
+from game.world.landscape.earth import paint_earth
+from game.world.landscape.sheet import Sheet
+from game.world.landscape.sky import NearStars, paint_sky
+from game.world.landscape.terrain import (
+    HORIZON_HEIGHT,
+    MARGIN,
+    PLAIN_HORIZON,
+    RIDGES,
+    WIDE_MARGIN,
+    paint_plain,
+    paint_ridge,
+)
+from game.world.landscape.themes import LOOKS, MOON, Look
+
+EARTH: Final = (312.0, 152.0)  # points
+EARTH_RADIUS: Final = 43.0
+_EARTH_DEPTH: Final = 0.008
+_MOON: Final = 5
+_PLAIN_DETAIL: Final = 1.5  # as finely as the plain is painted for a camera that comes near
+
+
+class Backdrop:
+    """Sky, Earth, stars, ridges and plain for a view of `size` pixels.
+
+    The same generator state gives the same landscape. Drawing at another size than it was built for is an
+    error: build another.
+    """
+
+    def __init__(self, size: tuple[int, int], rng: np.random.Generator, reduced_motion: bool = False) -> None:
+        self.size = size
+        sky, stars, earth, self._plain_chance, *ranges = rng.spawn(4 + len(RIDGES))
+        self._sky = paint_sky(size, sky)
+        self._stars = NearStars(size, stars, still=reduced_motion)
+        self._disc, self._air = paint_earth(EARTH_RADIUS * size[1] / 720, earth)
+        self._ridges = [
+            (*paint_ridge(size, ridge, own), ridge.depth) for ridge, own in zip(RIDGES, ranges, strict=True)
+        ]
+        self._plains: dict[float, tuple[Sheet, tuple[float, float]]] = {}
+        self._look = MOON
+
+    def under(self, look: Look) -> Backdrop:
+        """Return the same land on another world, or in other light."""
+        other = copy(self)
+        other._look, other._plains = look, {}
+        other._sky = look.on_sky(self._sky)
+        other._ridges = [(look.on_land(sheet), top, depth) for sheet, top, depth in self._ridges]
+        return other
+
+    def draw(
+        self, canvas: Canvas, camera: Camera, time: float, alpha: float = 1.0, earth: tuple[float, float] = EARTH
+    ) -> None:
+        """Fill the view. `time` in seconds moves the stars' twinkling and nothing else.
+
+        `earth` is where the Earth's middle stands, in points.
+        """
+        self.paint(canvas.surface, camera.view(canvas.scale, alpha), time, earth, canvas.words)
+
+    def paint(
+        self,
+        surface: pygame.Surface,
+        view: View | None = None,
+        time: float = 0.0,
+        earth: tuple[float, float] = EARTH,
+        words: Sequence[pygame.Rect] = (),
+    ) -> None:
+        """Fill a surface of this backdrop's size, as seen in a view; without one, as at rest.
+
+        No star is where `words` are, in pixels: it would be read as a dot, or as a speck on a panel.
+
+        What is far away keeps its size however close the camera comes. It goes up and down with the horizon, and
+        aside by a small share of what the camera does.
+        """
+        view = view or View(self.size[1] / 720)
+        across = -view.centre[0] * POINTS_PER_METRE * view.scale
+        down = round(float(view.pixels((0.0, HORIZON_HEIGHT))[1]) - PLAIN_HORIZON * self.size[1])
+        surface.blit(self._sky, (0, down))
+        if down > 0:  # no sky was painted there, but it is as dark as its top rows
+            surface.blit(self._sky, (0, 0), (0, 0, self.size[0], down))
+        elif down < 0:  # behind the plain, which may be the least bit translucent
+            surface.fill(NIGHT0, (0, self.size[1] + down, self.size[0], -down))
+        if self._look.stars:
+            self._stars.draw(surface, (across, down), time, words)
+        if self._look.earth:
+            self._draw_earth(surface, earth, across, down)
+        margin = MARGIN * self.size[0]
+        for sheet, top, depth in self._ridges:
+            surface.blit(sheet, (round(across * depth - margin), top + down))
+        plain, corner = self._plain(view)
+        plain.draw(surface, view, corner)
+
+    def _plain(self, view: View) -> tuple[Sheet, tuple[float, float]]:
+        """Return the plain, and where in the world its top left corner is; painted when it is first seen so large."""
+        detail = min(view.closest, _PLAIN_DETAIL) or 1.0
+        if detail not in self._plains:
+            width, height = (round(length * detail) for length in self.size)
+            rest = View(height / 720)
+            margin = WIDE_MARGIN if view.closest else MARGIN
+            picture, top = paint_plain((width, height), deepcopy(self._plain_chance), margin)
+            if self._look is not MOON:
+                picture = self._look.on_land(picture)
+            x, y = rest.metres((-margin * VIEW_SIZE[0], top / rest.scale)).tolist()
+            self._plains[detail] = Sheet(picture, rest.pixels_per_metre), (x, y)
+        return self._plains[detail]
+
+    def _draw_earth(self, surface: pygame.Surface, earth: tuple[float, float], across: float, down: int) -> None:
+        unit = self.size[1] / 720
+        x = round(earth[0] * unit + across * _EARTH_DEPTH)
+        y = round(earth[1] * unit) + down
+        for sprite, flags in ((self._air, pygame.BLEND_RGB_ADD), (self._disc, 0)):
+            surface.blit(sprite, (x - sprite.get_width() // 2, y - sprite.get_height() // 2), special_flags=flags)
+
+
+def landscape(size: tuple[int, int], reduced_motion: bool, look: str = "moon") -> Backdrop:
+    """Return the game's own moon at that size, or its look elsewhere, shared by every scene that shows it."""
+    return _paint_landscape(size, reduced_motion, look)  # always called in the same way, to be found again
+
+
+@lru_cache(maxsize=3)
+def _paint_landscape(size: tuple[int, int], reduced_motion: bool, look: str) -> Backdrop:
+    if look != "moon":
+        return landscape(size, reduced_motion).under(LOOKS[look])
+    return Backdrop(size, np.random.default_rng(_MOON), reduced_motion)

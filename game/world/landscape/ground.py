@@ -1,0 +1,101 @@
+"""The ground that is landed on: hills and knolls in front of the plain, and the pads."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Doubles
+from ai.lander.ground import Ground
+from game.drawing.canvas import Canvas
+from game.drawing.paint import Picture, bell, clouds, layer
+from game.drawing.tokens import INK, SMALL
+from game.world.camera import LAND_REACH, WORLD_WIDTH, View
+from game.world.landscape.pad import draw_pad
+from game.world.landscape.sheet import Sheet
+from game.world.landscape.sky import SUN
+
+_REACH: Final = LAND_REACH  # metres to both sides that are painted
+_DETAIL: Final = 0.75  # of what the closest view would need: slopes are soft
+_FOOT: Final = 0.55  # metres below the plain's line over which a hill fades into it
+_CREST_COLOUR: Final = np.array((44, 42, 64), np.float32)
+_FOOT_COLOUR: Final = np.array((20, 22, 38), np.float32)
+_WARM: Final = np.array((255, 150, 96), np.float32)
+_SOFT: Final = 1.1  # metres over which a hill's slope changes, below its edge
+_LIP: Final = 0.3  # metres that a knoll is lower than its pad
+
+
+def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
+    """Draw hills, if there are any, and pads, `shift` metres to the right; of several, each with its factor."""
+    if ground.hills:
+        sheet, corner = paint_hills(ground, round((_DETAIL if view.closest else 1.0) * view.painted_per_metre, 3))
+        sheet.draw(canvas.surface, view, corner)
+    several = len(ground.pads) > 1
+    for pad in ground.pads:
+        floor = pad.top - _LIP if several else ground.base
+        draw_pad(canvas, view, (pad.x + shift, pad.top), pad.width, time, floor)
+        if several:
+            spot = view.points((pad.right + shift + 0.3, floor - 0.05)).tolist()
+            canvas.text(f"×{pad.factor}", spot, size=SMALL, colour=INK, weight="medium", alpha=0.8)
+
+
+@lru_cache(maxsize=2)
+def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[Sheet, tuple[float, float]]:
+    """Return the hills, and the place in metres of their top left corner."""
+    crest_x = np.arange(-_REACH, _REACH, 1 / pixels_per_metre)
+    crest = hills_height(ground, crest_x).astype(np.float32)
+    top = float(crest.max()) + 0.1
+    rows = top - np.arange(0.0, top - ground.base + _FOOT, 1 / pixels_per_metre, dtype=np.float32)[:, None]
+    below = crest - rows  # metres under the surface
+    rng = np.random.default_rng(round(1000 * top))
+    rise = np.clip((rows - ground.base) / (top - ground.base), 0, 1)[..., None]
+    colour = _FOOT_COLOUR + (0.35 + 0.65 * rise) * (_CREST_COLOUR - _FOOT_COLOUR)
+    sunward, near = _sunlight(crest_x.astype(np.float32))
+    slope = np.gradient(crest, crest_x).astype(np.float32) * sunward
+    across, down = _folds(below.shape, pixels_per_metre, rng)
+    # Where the sun is straight ahead, folds are lit from above instead of from a side.
+    lean = across * sunward + down * np.sqrt(1 - sunward**2)
+    shade = 1 + 0.30 * np.clip(lean + 0.9 * _softened(slope, _SOFT * pixels_per_metre), -1.2, 1.2)
+    inward = np.exp(np.minimum(below / -0.30, 0))
+    narrow = inward * inward * inward
+    rim = 0.6 * narrow * narrow + 0.22 * inward
+    facing = np.clip(0.45 + 1.1 * slope, 0.10, 1.4) * (0.18 + 0.72 * near)
+    picture = colour.astype(np.float32) * shade[..., None] + (rim * facing)[..., None] * (0.62 * _WARM)
+    foot = _FOOT * np.clip((crest - ground.base) / 0.8, 0, 1) ** 0.6  # none where there is no hill
+    cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (crest > ground.base + 0.01)
+    cover = cover * np.clip(1 + (rows - ground.base) / np.maximum(foot, 0.02), 0, 1) ** 1.5
+    return Sheet(layer(picture, cover.astype(np.float32), rng), pixels_per_metre), (-_REACH, top)
+
+
+def hills_height(ground: Ground, x: Doubles) -> Doubles:
+    """Height of the hills alone, without the pads on them, in metres at x (k,)."""
+    height = np.full(x.shape, ground.base)
+    for hill in ground.hills:
+        across, up = np.array(hill).T
+        height = np.maximum(height, np.interp(x, across, up))
+    return height
+
+
+def _sunlight(x: Picture) -> tuple[Picture, Picture]:
+    """Return for each column the sun's side, -1 left to 1 right, and how near its glow is, 0 to 1."""
+    middle = (SUN[0] - 0.5) * WORLD_WIDTH
+    width = len(x)
+    return -np.tanh((x - middle) / 3.0), bell(width, float(np.interp(middle, x, np.arange(width))), 0.30 * width)
+
+
+def _folds(shape: tuple[int, int], pixels_per_metre: float, rng: np.random.Generator) -> tuple[Picture, Picture]:
+    """Return how far small folds lean to the right, and how far they face up, each about -1 to 1."""
+    rows, columns = shape
+    cells = (max(2.0, rows / pixels_per_metre / 1.1), columns / pixels_per_metre / 1.6)
+    bumps = clouds(shape, rng, cells, octaves=4, gain=0.5)
+    across, down = (np.clip(0.6 * pixels_per_metre * np.gradient(bumps, axis=axis), -1, 1) for axis in (1, 0))
+    return across, down
+
+
+def _softened(row: Picture, width: float) -> Picture:
+    """Return a row (k,) blurred over so many pixels: a hill's corners are to be seen at its edge alone."""
+    blur = np.hanning(2 * round(width) + 1)
+    soft: Picture = np.convolve(np.pad(row, len(blur) // 2, "edge"), blur / blur.sum(), "valid").astype(np.float32)
+    return soft

@@ -1,0 +1,81 @@
+"""A picture that stands in the world, painted once and drawn at any zoom."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Final
+
+import pygame
+
+from game.world.camera import View
+
+_STRIDE, _ROWS = 64, 16  # pixels of the picture: what is scaled begins and ends at a multiple of them
+_SPARE: Final = 3  # pixels that it reaches beyond the view at least
+_RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side: its middle moves the other way
+
+
+class Sheet:
+    """A picture painted at `per_metre` pixels per metre.
+
+    `soft` is the share of its width by which it may be wrong, half of that at either end.
+
+    To scale what is in view takes less than a millisecond, to paint it anew a hundred times that. What was scaled
+    last is kept until the view has moved on by a stride, or it would be more wrong than that.
+    """
+
+    def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 300) -> None:
+        self.picture, self.per_metre, self._soft = picture, per_metre, soft
+        self._crop = (0, 0, 0, 0)
+        self._scaled = picture
+
+    def draw(self, surface: pygame.Surface, view: View, corner: tuple[float, float], flags: int = 0) -> None:
+        """Draw it with its top left corner at that place in the world."""
+        ratio = view.pixels_per_metre / self.per_metre
+        x, y = view.pixels(corner).tolist()
+        width, height = self.picture.get_size()
+        start = max(0, math.floor((-x / ratio - _SPARE) / _STRIDE) * _STRIDE)
+        stop = min(width, math.ceil(((surface.get_width() - x) / ratio + _SPARE) / _STRIDE) * _STRIDE)
+        low = min(height, math.ceil(((surface.get_height() - y) / ratio + _SPARE) / _ROWS) * _ROWS)
+        if start >= stop or low <= 0:
+            return
+        if abs(ratio - 1) < 1e-6:
+            surface.blit(self.picture, (round(x), round(y)), special_flags=flags)
+            return
+        crop = (start, 0, stop - start, low)
+        size = (max(1, round((stop - start) * ratio)), max(1, round(low * ratio)))
+        if crop != self._crop or abs(size[0] - self._scaled.get_width()) > self._soft * size[0]:
+            self._crop = crop
+            if self.picture.get_flags() & pygame.RLEACCEL:  # which would be undone and redone every time
+                self.picture.set_alpha(255)
+            self._scaled = pygame.transform.smoothscale(self.picture.subsurface(crop), size)
+        middle = x + (start + stop) / 2 * ratio
+        surface.blit(self._scaled, (round(middle - self._scaled.get_width() / 2), round(y)), special_flags=flags)
+
+
+def fitted(
+    paint: Callable[[tuple[int, int]], pygame.Surface], ratio: float, middle: tuple[float, float]
+) -> tuple[pygame.Surface, tuple[int, int]]:
+    """Return a small square picture scaled by `ratio`, and the corner that brings its middle to a place in pixels.
+
+    `paint` gives it with its middle moved right and down by 0 or 1 half pixels, and clear for two pixels around.
+    Between those, or, where it is scaled, between what to leave of its rim, is chosen what comes nearest to the
+    place, so that slow motion is smooth.
+    """
+    scaled = abs(ratio - 1) > 1e-6
+    side = paint((0, 0)).get_width() - 2 * scaled
+    length = max(1, round(side * ratio)) if scaled else side
+    choices = ((0, 0.0), (1, ratio), (2, -ratio)) if scaled else ((0, 0.0), (1, 0.5))  # and how far that moves it
+    picked, corner = [], []
+    for place in middle:
+        start = place - length / 2
+        _, choice, whole = min(
+            (abs(round(start - moved) + moved - start), choice, round(start - moved)) for choice, moved in choices
+        )
+        picked.append(choice)
+        corner.append(whole)
+    if not scaled:
+        return paint((picked[0], picked[1])), (corner[0], corner[1])
+    left, top = (_RIM_LEFT[choice] for choice in picked)
+    part = paint((0, 0)).subsurface((left, top, side, side))
+    return pygame.transform.smoothscale(part, (length, length)), (corner[0], corner[1])

@@ -1,0 +1,132 @@
+"""The sky before dawn: night, the glow of a sun still below the horizon, stars near and far, the Earth."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.common.environment import Doubles, Ints
+from game.drawing.paint import Picture, bell, clouds, light, mix, opaque, ramp, shine
+from game.drawing.sky import beside
+from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1
+
+# Where things stand, as shares of the view.
+HORIZON: Final = 0.80
+SUN: Final = (0.77, 0.835)
+_BAND: Final = (0.30, -0.42, 0.085)  # the Milky Way: height at the left edge, slope, half width
+_GLOW: Final = (232, 142, 90)
+_CORE: Final = (255, 204, 138)
+
+
+def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface:
+    """Return everything that is too far away ever to move: night, glow, star dust."""
+    width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
+    warm = mix(DUSK, EMBER, 0.14)
+    night = [
+        (0.0, NIGHT0),
+        (0.30, NIGHT0),
+        (0.58, NIGHT1),
+        (0.73, mix(NIGHT1, DUSK, 0.8)),
+    ]
+    column = ramp(height, [*night, (HORIZON, warm), (1.0, warm)])
+    picture = np.repeat(column[:, None, :], width, axis=1)
+    shine(picture, _milky_way((width, height), rng), (150, 165, 215))
+    x, y = SUN[0] * width, SUN[1] * height
+    for colour, strength, across, up in (
+        (mix(DUSK, EMBER, 0.45), 0.34, 0.50, 0.28),
+        (_GLOW, 0.50, 0.25, 0.155),
+        (_CORE, 0.32, 0.12, 0.075),
+    ):
+        glow = np.outer(bell(height, y, up * height), bell(width, x, across * width))
+        shine(picture, strength * glow, colour)
+    places, light = _far_stars(size, rng)
+    sky = opaque(picture.repeat(2, 1).repeat(2, 0)[: size[1], : size[0]], rng)
+    pixels = pygame.surfarray.pixels3d(sky)
+    pixels[places] = np.clip(pixels[places] + light, 0, 255)
+    return sky
+
+
+def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
+    """Return a faint slanting band of unresolved light, (rows, columns) in 0 to about 0.1."""
+    width, height = size
+    rows = np.linspace(0, 1, height, dtype=np.float32)[:, None]
+    columns = np.linspace(0, 1, width, dtype=np.float32)[None, :]
+    start, slope, half = _BAND
+    across = (rows - start - slope * (columns - 0.5)) / half
+    dust = clouds((height, width), rng, (5, 9), octaves=4)
+    band = np.exp(-((across + 0.7 * dust) ** 2)) * np.clip(0.55 + 0.8 * dust, 0, 1.2)
+    lane = 1 - 0.6 * np.exp(-(((across + 0.1 + 1.1 * dust) / 0.28) ** 2))
+    glow: Picture = 0.062 * band * lane * np.clip((HORIZON - rows) / 0.35, 0, 1)
+    return glow
+
+
+def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[Ints, Ints], Doubles]:
+    """Return single pixels (columns, rows), more of them along the band, and the light (n, 3) that sets them alight.
+
+    The glow drowns the low ones. None is as bright as to be read as a dot: they stay where words are.
+    """
+    width, height = size
+    count = round(width * height / 640)
+    across = rng.uniform(0, 1, count)
+    spread = rng.uniform(-1, 1, count) * HORIZON
+    start, slope, half = _BAND
+    in_band = rng.random(count) < 0.4
+    down = np.where(in_band, start + slope * (across - 0.5) + half * 0.8 * rng.standard_normal(count), np.abs(spread))
+    seen = (down > 0) & (down < HORIZON)
+    rows, columns = (down[seen] * (height - 1)).astype(int), (across[seen] * (width - 1)).astype(int)
+    brightness = 52 * rng.random(seen.sum()) ** 2.7 * np.clip((HORIZON - 0.06 - down[seen]) / 0.3, 0, 1) + 3
+    tint = 1 + 0.16 * rng.uniform(-1, 1, (seen.sum(), 1)) * np.array((1.0, 0.1, -1.0))
+    return (columns, rows), brightness[:, None] * tint
+
+
+class NearStars:
+    """The brighter stars, which drift a little with the view and twinkle."""
+
+    LEVELS: Final = 6
+
+    def __init__(self, size: tuple[int, int], rng: np.random.Generator, still: bool) -> None:
+        width, height = size
+        count = 130
+        self._still = still
+        self._place = rng.uniform((-0.03, -0.03), (1.03, HORIZON - 0.06), (count, 2)) * (width, height)
+        size_of = rng.random(count) ** 2.6
+        size_of *= np.clip((HORIZON - 0.05 - self._place[:, 1] / height) / 0.25, 0.15, 1)
+        self._depth = 0.01 + 0.025 * size_of
+        self._phase = rng.uniform(0, 2 * np.pi, count)
+        self._rate = rng.uniform(0.5, 1.6, count)
+        unit = height / 720
+        kinds = np.round(size_of * 5).astype(int)
+        sprites = [[_star(kind, level / self.LEVELS, unit) for level in range(1, self.LEVELS + 1)] for kind in range(6)]
+        self._rows = [sprites[kind] for kind in kinds.tolist()]
+        self._half = np.array([row[0].get_width() // 2 for row in self._rows])
+
+    def draw(
+        self, surface: pygame.Surface, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect] = ()
+    ) -> None:
+        """Add the stars to the sky, but where words are.
+
+        `shift` is how far, in pixels, the foreground has gone aside and the horizon up.
+        """
+        place = self._place + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
+        corners = np.rint(place - self._half[:, None]).astype(np.intp).tolist()
+        level = np.full(len(place), self.LEVELS - 2)
+        if not self._still:
+            level = np.round(self.LEVELS - 1.9 + 1.3 * np.sin(self._phase + self._rate * time)).astype(int)
+        sprites = [row[bright] for row, bright in zip(self._rows, level.tolist(), strict=True)]
+        seen = np.flatnonzero(beside(place, words)).tolist()
+        surface.fblits([(sprites[star], corners[star]) for star in seen], pygame.BLEND_RGB_ADD)
+
+
+def _star(kind: int, brightness: float, unit: float) -> pygame.Surface:
+    """Return a star of one of six sizes: a hot point, and round the larger ones a soft glow."""
+    half = max(2, round((2 + 2.4 * kind) * unit))
+    axis = np.arange(-half, half + 1, dtype=np.float32)
+    distance = np.hypot(axis[:, None], axis[None, :])
+    core = np.exp(-((distance / ((0.6 + 0.1 * kind) * max(unit, 1.0))) ** 2)) * (75 + 40 * kind)
+    halo = np.clip(1 - distance / half, 0, 1) ** 2.4 * 10 * kind
+    picture = core[..., None] * np.array((1.0, 0.98, 0.95), np.float32)
+    picture = picture + halo[..., None] * np.array((0.66, 0.8, 1.1), np.float32)
+    return light(picture * brightness)

@@ -1,0 +1,88 @@
+"""How other worlds than the moon look, and the moon by night: the same land in other light and other air."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pygame
+
+from ai.lander.missions import MISSIONS
+from game.drawing.paint import Picture
+from game.drawing.tokens import NIGHT0, Colour
+from game.world.landscape.sky import HORIZON
+
+Light = tuple[float, float, float]  # red, green, blue
+
+
+@dataclass(frozen=True)
+class Look:
+    """What becomes of every colour of the moon at dawn.
+
+    Attributes:
+        sky, land: what each is multiplied by.
+        air: what the sky has more of, 0 to 255, all of it at the horizon; `thick`, a share, of that at the top.
+        dust: what the land has more of.
+        light: what falls on a craft, 0 to 1.
+        stars, earth: whether they are seen.
+
+    """
+
+    sky: Light = (1.0, 1.0, 1.0)
+    land: Light = (1.0, 1.0, 1.0)
+    air: Light = (0.0, 0.0, 0.0)
+    thick: float = 0.0
+    dust: Light = (0.0, 0.0, 0.0)
+    light: float = 1.0
+    stars: bool = True
+    earth: bool = True
+
+    def on_dust(self, colour: Colour) -> Colour:
+        """Return the colour of dust that flies up: the land's own, but never too dark to be seen."""
+        red, green, blue = (
+            round(min(255.0, value * max(share, _LEAST_DUST) + more))
+            for value, share, more in zip(colour, self.land, self.dust, strict=True)
+        )
+        return red, green, blue
+
+    def on_sky(self, picture: pygame.Surface) -> pygame.Surface:
+        """Return a sky in this light."""
+        rows = np.clip(np.arange(picture.get_height()) / (HORIZON * picture.get_height()), 0.0, 1.0)
+        depth = (self.thick + (1 - self.thick) * rows**1.5)[None, :, None]
+        return _in_light(picture, self.sky, depth.astype(np.float32) * np.array(self.air, np.float32))
+
+    def on_land(self, picture: pygame.Surface) -> pygame.Surface:
+        """Return a layer of land in this light, as clear as it was where it was clear."""
+        lit = _in_light(picture, self.land, np.array(self.dust, np.float32))
+        lit.set_alpha(255, pygame.RLEACCEL)
+        return lit
+
+
+_DARK: Final = 0.1
+_LEAST_DUST: Final = 0.45  # the engine's own light falls on it
+_NIGHT: Final[Light] = (0.9 * NIGHT0[0], 0.9 * NIGHT0[1], 0.9 * NIGHT0[2])
+MOON: Final = Look()
+LOOKS: Final[dict[str, Look]] = {
+    "moon": MOON,
+    "mars": Look(
+        (1.0, 0.62, 0.45), (1.55, 0.92, 0.62), (104.0, 58.0, 36.0), 0.18, (12.0, 2.0, 0.0), stars=False, earth=False
+    ),
+    "earth": Look(
+        (0.85, 0.95, 1.0), (0.75, 1.05, 0.95), (40.0, 74.0, 112.0), 0.18, (0.0, 4.0, 4.0), stars=False, earth=False
+    ),
+    "night": Look((_DARK,) * 3, (_DARK,) * 3, _NIGHT, 1.0, _NIGHT, light=0.4, earth=False),
+}
+
+
+def look_of(mission: str) -> str:
+    """Name the look of a mission; of what is none, the moon's."""
+    found = MISSIONS.get(mission)
+    return "moon" if found is None else "night" if found.night else found.world
+
+
+def _in_light(picture: pygame.Surface, gain: Light, more: Picture) -> pygame.Surface:
+    lit = picture.copy()
+    pixels = pygame.surfarray.pixels3d(lit)
+    pixels[:] = np.clip(pixels * np.array(gain, np.float32) + more, 0, 255).astype(np.uint8)
+    return lit

@@ -1,0 +1,52 @@
+"""The dotted paths ahead of a flight: where it goes by itself, and where a network would take it."""
+
+from __future__ import annotations
+
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import HUMAN, NET
+from game.flight.flight import Flight
+from game.flight.forecast import Drift, Forecast
+from game.flight.networks import Flyer
+from game.world.camera import View
+from game.world.paths import draw_dotted
+
+
+class Outlook:
+    """Of one flight; `follow` once after every step, and while it waits."""
+
+    def __init__(self, flight: Flight, network: Flyer | None) -> None:
+        self._flight = flight
+        self._drift = Drift(flight.env)
+        self._drifts = False
+        self.ask(network)
+
+    @property
+    def asks(self) -> bool:
+        """Whether there is a network to ask for its way."""
+        return self._forecast is not None
+
+    def ask(self, network: Flyer | None) -> None:
+        """Show where this network would go from here on, or, without one, only where the flight goes by itself."""
+        self._forecast = Forecast(network, self._flight.env.ground) if network else None
+
+    def follow(self, waiting: bool) -> None:
+        """Look a little further ahead; the way by itself stays the same while the craft hangs and waits."""
+        if self._arrived:
+            return
+        self._drifts = not self._drifts and not waiting  # every other step, so that no frame has all of both
+        if self._drifts:
+            self._drift.follow()
+        if self._forecast:
+            self._forecast.follow(self._flight.env, 1 if self._drifts else 2)
+
+    def draw(self, canvas: Canvas, view: View, head: float) -> None:
+        """Draw both ways, until there is none left to go, below the words in the uppermost `head` points."""
+        if self._arrived:
+            return
+        draw_dotted(canvas, view, self._drift.path, HUMAN, head=head)
+        if self._forecast:
+            draw_dotted(canvas, view, self._forecast.path, NET, head=head)
+
+    @property
+    def _arrived(self) -> bool:
+        return self._flight.over or bool(self._flight.env.contacts[0].any())
