@@ -3,10 +3,11 @@
     python -m benchmarks.broken_runs [--only WORD] [--output tests/ai/broken_runs.npz]
 
 Every case is a real run of the live training, single-threaded: each knob that matters at its lowest and highest
-value for either preset, healthy runs, and runs in which a knob is turned on the way. What the rules of `ai.training.hints`
-look at is written down: the points of the curves, silent units, gradients that were cut short. Seconds are those
-of a clock that ticks with the decisions, as on a machine with much else to do, so that the same seed makes the same
-file. A file that is there is added to; --only records the cases with that word in their names, also anew.
+value for either preset, healthy runs, and runs in which a knob is turned on the way. What the rules of
+`ai.training.hints` look at is written down: the points of the curves, silent units, gradients that were cut short.
+Seconds are those of a clock that ticks with the decisions, as on a machine with much else to do, so that the same
+seed makes the same file. A file that is there is added to; --only records the cases with that word in their names,
+also anew.
 """
 
 from __future__ import annotations

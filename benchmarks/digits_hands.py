@@ -27,6 +27,7 @@ import numpy as np
 import pygame
 
 from game.core.settings import Settings
+from game.scenes import scene_of
 from game.scenes.digits import Digits
 from game.shell.app import App
 from game.ui.context import Context
@@ -169,7 +170,13 @@ def main() -> None:
     tiles = []
     with TemporaryDirectory() as folder:
         scene = Digits()
-        app = App(Context(Path(folder), Settings(), rng=rng), scene, now=lambda: next(frames) / 60, capped=False)
+        app = App(
+            Context(Path(folder), Settings(), rng=rng),
+            scene,
+            now=lambda: next(frames) / 60,
+            scene_of=scene_of,
+            capped=False,
+        )
         app.tick()
         for (digit, style), strokes in HANDS.items():
             for _ in range(chosen.each):

@@ -29,6 +29,7 @@ import pygame
 
 from benchmarks.digits_robustness import template_strokes
 from game.core.settings import Settings
+from game.scenes import scene_of
 from game.scenes.digits import Digits
 from game.shell.app import App
 from game.ui.context import Context
@@ -44,7 +45,7 @@ class Hand:
         frames = count()
         context = Context(folder, Settings(), rng=np.random.default_rng(1))
         self.scene = Digits()
-        self.app = App(context, self.scene, now=lambda: next(frames) / 60, capped=False)
+        self.app = App(context, self.scene, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
         self.app.tick()
         self.guesses: list[float] = []
         self.frames: list[float] = []

@@ -43,6 +43,7 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.exhibits import EXHIBITS
 from game.play.challenge import Flown
+from game.scenes import scene_of
 from game.scenes.dialog import Asking, Naming, Picking
 from game.scenes.error_screen import Fault
 from game.scenes.menu import Menu
@@ -119,7 +120,7 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
         stock(context)
         scene = row.make(context)
         assert scene is not None
-        app = App(context, scene, now=lambda: next(frames) / 60, capped=False)
+        app = App(context, scene, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
         app.window.size = size
         landscape(size, False)  # painted once, and timed above
         for frame in range(FRAMES):

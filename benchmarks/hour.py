@@ -36,6 +36,7 @@ from benchmarks.monkey import playground, resident
 from benchmarks.tour import makers, stock
 from game.core.scene import Pop, Push
 from game.core.settings import Settings
+from game.scenes import scene_of
 from game.scenes.digits import Digits
 from game.scenes.error_screen import Fault
 from game.scenes.quiz import Quiz
@@ -78,7 +79,7 @@ class Player:
         frames = count()
         context = Context(folder / "user", Settings(assist=0.4), rng=np.random.default_rng(1))
         stock(context)
-        self.app = App(context, now=lambda: next(frames) / 60, capped=False)
+        self.app = App(context, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
         context.sound.open()
         self._makers = makers(context)
         self._rng = np.random.default_rng(2)

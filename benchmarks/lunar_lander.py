@@ -2,7 +2,7 @@
 
     python -m benchmarks.lunar_lander [--seeds 3] [--decisions 800000] [--rival-seeds 3] [--rival-seconds 300]
 
-Ours has the settings `ai.training.gym_task.GYM`; the rival those its authors tuned for this environment. Every ten seconds of
+Ours has the settings `ai.training.gym_task.GYM`; the rival those its authors tuned for this. Every ten seconds of
 training the network flies 50 validation episodes without random actions, and the best so far is kept; in the end
 that one flies 100 others, which had no say in the choice. Seconds are processor time on one thread, of training
 alone.

@@ -51,6 +51,7 @@ from game.audio.mixer import Sound
 from game.core.assets import MODELS_DIR
 from game.core.scene import Pop, Push, Scene
 from game.core.settings import SettingsFile
+from game.scenes import scene_of
 from game.scenes.menu import Menu
 from game.shell.app import App
 from game.ui.context import Context
@@ -219,7 +220,7 @@ class Monkey:
         context = Context(user, SettingsFile(user).load(), models, rng=np.random.default_rng(self.rng.integers(2**31)))
         context.sound = Sound({key: Recorded(**vars(each)) for key, each in INSTRUMENTS.items()})
         stock(context)
-        self.app = App(context, now=lambda: next(self._frames) / 60, capped=False)
+        self.app = App(context, now=lambda: next(self._frames) / 60, scene_of=scene_of, capped=False)
         self.hands = Hands(self.app, self.rng, self._count)
         if self._open_sound:
             context.sound.open()

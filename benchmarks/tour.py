@@ -20,12 +20,12 @@ from game.exhibits import EXHIBITS
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.play.challenge import Daily, Flown
+from game.play.race import race
 from game.scenes.dialog import Asking, Naming, Picking
 from game.scenes.dream import Dream
 from game.scenes.physics import Physics
 from game.scenes.play import Play
 from game.scenes.quiz import Quiz
-from game.scenes.race import race
 from game.scenes.replay import Replay
 from game.scenes.watch import COUNTS, Watch
 from game.ui.context import Context
@@ -85,7 +85,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "Physics": lambda: Physics(str(rng.choice(list(EXHIBITS)))),
         "mission": lambda: Play(0, course=Flown(missions[rng.integers(len(missions))])),
         "daily": lambda: Play(1, course=Daily(date(2026, 1, 1))),
-        "race": lambda: replayed(race),
+        "race": lambda: replayed(lambda record: Play(record.recording.seed, course=race(record))),
         "Replay": lambda: replayed(Replay),
         "Dream": lambda: of_digits(Dream),
         "Quiz": lambda: of_digits(Quiz),

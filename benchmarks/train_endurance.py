@@ -36,6 +36,7 @@ from ai.training.history import History
 from game.core.scene import Push
 from game.core.settings import Settings
 from game.core.worker import State
+from game.scenes import scene_of
 from game.scenes.train import Train
 from game.shell.app import App
 from game.ui.context import Context
@@ -47,7 +48,7 @@ class Game:
     """The game without a window, with the training screen above the menu."""
 
     def __init__(self, folder: Path) -> None:
-        self.app = App(Context(folder, Settings(), rng=np.random.default_rng(1)), capped=False)
+        self.app = App(Context(folder, Settings(), rng=np.random.default_rng(1)), scene_of=scene_of, capped=False)
         self.scene = Train()
 
     def enter(self) -> None:

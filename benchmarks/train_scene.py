@@ -40,6 +40,7 @@ def run(seed: int, limit: float) -> tuple[float, list[float], list[float]]:
 
     from ai.agent.config import PRESETS
     from game.core.settings import Settings
+    from game.scenes import scene_of
     from game.scenes.train import Train
     from game.shell.app import App
     from game.ui.context import Context
@@ -47,7 +48,9 @@ def run(seed: int, limit: float) -> tuple[float, list[float], list[float]]:
     frames, spent = [], []
     with TemporaryDirectory() as folder:
         scene = Train()
-        app = App(Context(Path(folder), Settings(), rng=np.random.default_rng(1)), scene, capped=False)
+        app = App(
+            Context(Path(folder), Settings(), rng=np.random.default_rng(1)), scene, scene_of=scene_of, capped=False
+        )
         for _ in range(60):
             app.tick()
         scene.knobs.set_config(PRESETS["modern"], seed)

@@ -27,6 +27,7 @@ from ai.lander.missions import MISSIONS
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.play.challenge import Flown
+from game.scenes import scene_of
 from game.scenes.digits import Digits
 from game.scenes.menu import Menu
 from game.scenes.physics import Physics
@@ -96,7 +97,7 @@ def play(
     with TemporaryDirectory() as folder:
         ticks = count()
         context = Context(Path(folder), settings, rng=np.random.default_rng(1))
-        app = App(context, scene, now=lambda: next(ticks) / 60, capped=False)
+        app = App(context, scene, now=lambda: next(ticks) / 60, scene_of=scene_of, capped=False)
         for frame in range(frames):
             for key, start, stop in held:
                 for kind, at in ((pygame.KEYDOWN, start), (pygame.KEYUP, stop)):

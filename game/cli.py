@@ -18,12 +18,7 @@ def add_commands(commands: Any) -> None:
 
 def open_physics(arguments: argparse.Namespace) -> int:
     """Open the window on the gallery; the menu lies behind it."""
+    from game.core.scene import Route
     from game.start import play
 
-    return play(arguments.user_dir, arguments.full_screen, begin=lambda: _physics(arguments.exhibit))
-
-
-def _physics(exhibit: str) -> Any:
-    from game.scenes.physics import Physics
-
-    return Physics(exhibit)
+    return play(arguments.user_dir, arguments.full_screen, begin=Route("physics", (arguments.exhibit,)))

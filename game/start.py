@@ -5,12 +5,11 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from game.core.scene import Scene
+    from game.core.scene import Route
 
 _HINTS: Final[dict[str, str]] = {
     "PYGAME_HIDE_SUPPORT_PROMPT": "1",
@@ -26,19 +25,20 @@ if sys.platform == "linux":
     _HINTS["SDL_FRAMEBUFFER_ACCELERATION"] = "0"
 
 
-def play(folder: Path | None = None, full_screen: bool | None = None, begin: Callable[[], Scene] | None = None) -> int:
+def play(folder: Path | None = None, full_screen: bool | None = None, begin: Route | None = None) -> int:
     """Open the window on the menu and play until it is closed. Returns the exit code.
 
     Args:
         folder: the player's folder, in place of the system's own choice.
         full_screen: overrides the setting.
-        begin: makes the scene that opens over the menu at once.
+        begin: the scene that opens over the menu at once.
 
     """
     tell_sdl()
     from game.core import texts
     from game.core.assets import user_dir
     from game.core.settings import SettingsFile
+    from game.scenes import scene_of
     from game.shell.app import App, log_to
     from game.shell.window import NoDisplayError
     from game.ui.context import Context
@@ -50,7 +50,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Cal
     if full_screen is not None:
         context.settings.full_screen = full_screen
     try:
-        app = App(context)
+        app = App(context, scene_of=scene_of)
     except NoDisplayError as error:
         print(texts.NO_DISPLAY.format(reason=error), file=sys.stderr)
         return 2
@@ -58,7 +58,7 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Cal
     if file.problem:
         context.note(file.problem)
     if begin is not None:
-        app.show(begin())
+        app.show(begin)
     # What lives as long as the game need not be looked through again and again: that took 20 ms at a time.
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)

@@ -13,18 +13,30 @@ STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
 LATE = {
-    "ai.cli.lander": {"tqdm"}, "ai.cli.digits": {"tqdm"}, "ai.cli.copilot": {"tqdm"}, "ai.training.gym_task": {"gymnasium"},
+    "ai.cli.lander": {"tqdm"}, "ai.cli.digits": {"tqdm"}, "ai.cli.copilot": {"tqdm"},
+    "ai.training.gym_task": {"gymnasium"},
 }  # fmt: skip
 # What is there for the users of an extra alone.
 EXTRA = {"ai.gym.lander": {"gymnasium"}}
+# The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
+AI_FLOORS = (
+    "ai.nn", "ai.common", "ai.lander", "ai.agent", "ai.training", "ai.copilot", "ai.digits", "ai.gym", "ai.cli",
+)  # fmt: skip
+GAME_FLOORS = (
+    "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.charts", "game.flight", "game.training",
+    "game.world", "game.panels", "game.cockpit", "game.exhibits", "game.digits", "game.play", "game.export",
+    "game.shell", "game.scenes", "game.start", "game.cli",
+)  # fmt: skip
+# These only describe what is handed to them from above, for the type checker.
+DESCRIBED_FROM_ABOVE = {"game.core.scene"}
 
 
 def modules(folder):
     return sorted(path for path in (ROOT / folder).rglob("*.py"))
 
 
-def imports(path, everywhere=True):
-    """Full names that a file imports: anywhere in it, or only when it is itself imported."""
+def imports(path, everywhere=True, types=False):
+    """Full names that a file imports: anywhere in it, or only when it is itself imported; those of types as well."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     found = set()
     nodes = [tree]
@@ -35,9 +47,13 @@ def imports(path, everywhere=True):
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: a relative import hides which floor it comes from"
             found.update(f"{node.module}.{alias.name}" for alias in node.names)
-        elif everywhere or not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            nodes.extend(child for child in ast.iter_child_nodes(node) if not is_type_checking(node))
+        elif (everywhere or not is_function(node)) and (types or not is_type_checking(node)):
+            nodes.extend(ast.iter_child_nodes(node))
     return found
+
+
+def is_function(node):
+    return isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
 
 
 def is_type_checking(node):
@@ -72,6 +88,39 @@ def test_ai_stands_on_the_engine_and_the_network_library(path):
     late = LATE.get(name_of(path), set())
     assert_imports_only(path, {"ai", "engine", "numpy"} | late | EXTRA.get(name_of(path), set()))
     assert not [name for name in imports(path, everywhere=False) if is_within(name, late)]
+
+
+def floor_of(name):
+    return next((floor for floor in (*AI_FLOORS, *GAME_FLOORS) if is_within(name, {floor})), None)
+
+
+@pytest.mark.parametrize("path", [*modules("ai"), *modules("game")], ids=name_of)
+def test_inside_ai_and_game_imports_run_down_only(path):
+    name, floors = name_of(path), [*AI_FLOORS, *GAME_FLOORS]
+    if name in ("ai", "game"):
+        assert not {each for each in imports(path) if is_within(each, {"ai", "game"})}
+        return
+    floor = floor_of(name)
+    assert floor, f"{name} lies in no package of the floors: put it into one, or give it a floor"
+    above = set(floors[floors.index(floor) + 1 :])
+    everything = imports(path, types=name not in DESCRIBED_FROM_ABOVE)
+    assert not {each for each in everything if is_within(each, above)}, f"{name} imports from above {floor}"
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    names = {name_of(path): path for path in (*modules("engine"), *modules("ai"), *modules("game"))}
+
+    def module_of(name):
+        while name and name not in names:
+            name = name.rpartition(".")[0]
+        return name
+
+    below = {
+        name: {module_of(each) for each in imports(path, types=False)} - {name, ""} for name, path in names.items()
+    }
+    while leaves := {name for name, those in below.items() if not those & below.keys()}:
+        below = {name: those for name, those in below.items() if name not in leaves}
+    assert not below, "these import each other, or what does"
 
 
 def test_only_the_game_imports_pygame():

@@ -13,7 +13,7 @@ from ai.cli.command_line import EPISODES, REFUSED, SEEDS, fail, folder, out_of_r
 if TYPE_CHECKING:
     from ai.copilot.measurement import Row
 
-MODEL: Final = Path(__file__).parent.parent / "models" / "lander" / "modern"
+MODEL: Final = Path(__file__).parents[2] / "models" / "lander" / "modern"
 
 
 def add_commands(commands: Any) -> None:

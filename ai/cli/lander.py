@@ -177,7 +177,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from ai.agent.config import LANDER
     from ai.lander.spawns import SPAWNS
     from ai.training.loop import evaluate
-    from ai.training.task import task_of
+    from ai.training.tasks import task_of
 
     spawn, episodes = "random" if arguments.spawn is None else arguments.spawn, arguments.episodes
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):

@@ -98,9 +98,9 @@ class CoPilot:
     best is. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more
     on the way to every pad by a margin, which falls from without limit at assist 0 to nothing at 1.
 
-    Of several pads, only those count that may still be meant, by what the pilot has done so far (`ai.copilot.intent`); with
-    `reads_wishes` off, all do. Hands off, the co-pilot flies to the likeliest. So it remembers from one decision to
-    the next, which should be some 1/15 s; `forget` makes it ready for another flight.
+    Of several pads, only those count that may still be meant, by what the pilot has done so far
+    (`ai.copilot.intent`); with `reads_wishes` off, all do. Hands off, the co-pilot flies to the likeliest. So it
+    remembers from one decision to the next, which should be some 1/15 s; `forget` makes it ready for another flight.
 
     `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with.
     """

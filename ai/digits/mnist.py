@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ai.nn.files import described, read_arrays
 
-FOLDER: Final = Path(__file__).parents[1] / "assets" / "mnist"
+FOLDER: Final = Path(__file__).parents[2] / "assets" / "mnist"
 SIDE: Final = 28  # pixels along an image
 TRAIN, TEST = "train", "test"
 _LARGEST: Final = 100_000_000  # bytes of a file

@@ -1,4 +1,4 @@
-"""A run that teaches a network to read digits, to be watched and steered while it goes on; like `ai.training.session`."""
+"""A digit training that can be watched and steered while it goes on; like `ai.training.session`."""
 
 from __future__ import annotations
 

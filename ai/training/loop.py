@@ -18,7 +18,8 @@ from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
 from ai.training.statistics import Flights
-from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task, task_of
+from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task
+from ai.training.tasks import task_of
 
 __all__ = [
     "LANDER_SYMMETRY", "TEST_SEED", "VALIDATION_SEED", "Evaluation", "Progress", "Training", "evaluate", "run",

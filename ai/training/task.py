@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ai.agent.agent import Symmetry
-from ai.agent.config import LANDER, Config
+from ai.agent.config import Config
 from ai.common.environment import Env, Floats
 from ai.lander.pilots import Pilot
 from ai.nn.files import brief, number_of
@@ -78,18 +78,3 @@ def checked_score(values: Any, may_be_none: tuple[str, ...]) -> dict[str, Any]:
     return {
         name: value if value is None and name in may_be_none else number_of(value) for name, value in values.items()
     }
-
-
-def task_of(config: Config) -> Task:
-    """Make the task that a configuration names.
-
-    Raises ValueError for an environment that does not exist or cannot be learnt by Q-learning, and ImportError
-    where Gymnasium is needed and not installed.
-    """
-    if config.env == LANDER:
-        from ai.training.lander_task import LanderTask
-
-        return LanderTask(config)
-    from ai.training.gym_task import GymTask
-
-    return GymTask(config)

@@ -1,4 +1,4 @@
-"""The game's one mixer: it plays what `game.sounds` makes, and stays silent where nothing can be heard."""
+"""The game's one mixer: it plays what `game.audio` makes, and stays silent where nothing can be heard."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The cockpit: what a player chooses before a flight, and all that shows how the stick is shared."""
+"""What is shown over a flight: read-outs, cards, and how the stick is shared."""

@@ -12,7 +12,7 @@ from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
 from game.cockpit.assist_dial import Dial, draw_title
 from game.cockpit.copilot_panel import PADS_HIGH, PANEL, Insight
-from game.cockpit.hud import CARD, Card
+from game.cockpit.hud import CARD
 from game.cockpit.overrides import Overrides
 from game.cockpit.track import Track
 from game.core import texts
@@ -23,7 +23,7 @@ from game.flight.credit import Credit
 from game.flight.demonstrations import keep_lesson
 from game.flight.flight import Flight
 from game.flight.handicap import OWN
-from game.flight.outcomes import outcome_card
+from game.flight.outcomes import Card, outcome_card
 from game.input.controls import Command, translate
 from game.world.camera import Clear, View
 

@@ -34,6 +34,7 @@ from game.drawing.tokens import (
     VIEW_SIZE,
     Colour,
 )
+from game.flight.outcomes import Card, Rival
 from game.ui.hints import draw_hints, hints_width
 
 # Four columns on the left, two on the right: the pad stands in the middle.
@@ -195,35 +196,6 @@ def draw_share(canvas: Canvas, left: float, top: float, width: float, human: flo
         canvas.pill((left, top + 9, max(0.0, edge - 1), 3), HUMAN)
     if human < 1:
         canvas.pill((left + edge + 1, top + 9, width - edge - 1, 3), NET)
-
-
-@dataclass(frozen=True)
-class Card:
-    """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better.
-
-    Of a shared flight, `stepped_in` is how often the co-pilot did. `medal` is 3 for gold, 2, 1, and 0 for none.
-    `left` is where the card stands.
-    """
-
-    good: bool
-    title: str
-    reason: str
-    figures: tuple[tuple[str, str, str], ...]
-    human: float
-    advice: str = ""
-    score: str = ""
-    medal: int = 0
-    stepped_in: int | None = None
-    left: float = 400.0
-
-
-@dataclass(frozen=True)
-class Rival:
-    """What became of another one from the same start; a figure it does not have is left out."""
-
-    name: str
-    result: str
-    figures: dict[str, tuple[str, str]]  # value and unit by label
 
 
 CARD: Final = pygame.Rect(400, 136, 480, 264)

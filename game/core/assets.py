@@ -7,7 +7,7 @@ from typing import Final
 
 import platformdirs
 
-_ROOT: Final = Path(__file__).resolve().parent.parent
+_ROOT: Final = Path(__file__).resolve().parents[2]
 ASSETS_DIR: Final = _ROOT / "assets"
 MODELS_DIR: Final = _ROOT / "models"
 

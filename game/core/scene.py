@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
     import pygame
@@ -40,17 +41,29 @@ class Lasting(Protocol):
 
 
 @dataclass(frozen=True)
+class Route:
+    """A scene by its name in `game.scenes.ROUTES`, and what it is made with.
+
+    Scenes name each other so instead of importing each other: none is loaded before it is shown.
+    """
+
+    name: str
+    arguments: tuple[Any, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Push:
     """Put a scene over this one."""
 
-    scene: Scene
+    scene: Scene | Route
 
 
 @dataclass(frozen=True)
 class Replace:
     """Put a scene in this one's place."""
 
-    scene: Scene
+    scene: Scene | Route
 
 
 @dataclass(frozen=True)
@@ -66,3 +79,8 @@ class Quit:
 
 
 Transition = Push | Replace | Pop | Quit
+
+
+def push(name: str, *arguments: Any, **options: Any) -> Push:
+    """Put the scene of that name over this one, made with these arguments."""
+    return Push(Route(name, arguments, options))

@@ -13,14 +13,13 @@ from ai.digits.preprocessing import Image
 from ai.nn.files import read_json
 from game.core import texts
 from game.core.worker import State, Worker
-from game.digits import PATIENCE
-from game.training.digit_models import shelf
+from game.training.digit_models import PATIENCE, shelf
 
 _UNDONE: Final = ".undone"  # beside the fixes, until it is removed
 
 
 class Fixing:
-    """One fix at a time; `poll` once a frame. Networks are found by the names that `game.training.digit_models` gives them.
+    """One fix at a time; `poll` once a frame. Networks go by the names that `game.training.digit_models` gives.
 
     Every fix is a folder of its own and none is ever thrown away but by `undo`.
 

@@ -9,10 +9,9 @@ from pathlib import Path
 from ai.digits.ablation import StageAccuracy, stage_accuracy
 from game.core import texts
 from game.core.worker import State, Worker
-from game.digits import PATIENCE
 from game.digits.answer import percent
 from game.digits.reader import Switches
-from game.training.digit_models import called
+from game.training.digit_models import PATIENCE, called
 
 
 class Measuring:

@@ -46,7 +46,7 @@ class Switches:
     centre: bool = True
 
     def prepare(self, strokes: Image, canvas: npt.ArrayLike) -> Stages:
-        """Return strokes, as `ai.digits.preprocessing.redrawn` has drawn them anew, and the canvas with them, at every stage."""
+        """Return every stage of strokes, as `ai.digits.preprocessing.redrawn` has drawn them, and of the canvas."""
         if self.crop and self.fit and self.width:
             return stroke_stages(strokes, canvas, centre=self.centre)
         return stages(canvas, **vars(self))

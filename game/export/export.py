@@ -5,44 +5,24 @@ A GIF can always be made; an MP4 needs what the extra `export` brings.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
-from typing import Final
 
 from game.core.worker import State, Worker
+from game.export.film import Filmed, film
+from game.export.kinds import unfinished
 from game.flight.flight_file import Record
-
-
-@dataclass(frozen=True)
-class Kind:
-    """One kind of moving picture.
-
-    Attributes:
-        needs: the module without which it can't be made.
-        size: width and height in pixels.
-        every: physics steps from frame to frame.
-        still: whether the camera rests, which a picture needs that stores only what changes.
-
-    """
-
-    needs: str
-    size: tuple[int, int]
-    every: int
-    still: bool
-
-    @property
-    def missing(self) -> bool:
-        """Whether what it needs is not installed."""
-        return find_spec(self.needs) is None
-
-
-KINDS: Final = {".gif": Kind("PIL", (640, 360), 3, True), ".mp4": Kind("av", (1280, 720), 1, False)}
 
 
 class Export:
     """A flight on its way into a file; `poll` once a frame.
+
+    Args:
+        scene: makes the scene that is filmed; a class or function, since another process is to find it.
+        record: the flight.
+        path: of the file to write.
+        colour_safe: whether in the colours for the colour-blind.
 
     Attributes:
         path: of the file, which is there once this is `over` without a `problem`.
@@ -50,11 +30,11 @@ class Export:
 
     """
 
-    def __init__(self, record: Record, path: Path, *, colour_safe: bool = False) -> None:
-        from game.export.film import film
-
+    def __init__(
+        self, scene: Callable[[Record], Filmed], record: Record, path: Path, *, colour_safe: bool = False
+    ) -> None:
         self.path, self.share = path, 0.0
-        self._worker = Worker(film, record, path, colour_safe)
+        self._worker = Worker(film, scene, record, path, colour_safe)
 
     def poll(self) -> None:
         """Hear how far it has come."""
@@ -76,8 +56,3 @@ class Export:
         self._worker.close(0.0)  # the window may go on: it waits for no goodbye
         with suppress(OSError, ValueError):  # the process has most often done so itself
             unfinished(self.path).unlink()
-
-
-def unfinished(path: Path) -> Path:
-    """Return where a file is written until it is complete."""
-    return path.with_name(f".{path.name}.part")

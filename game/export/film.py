@@ -6,7 +6,7 @@ It runs in a process of its own, which `game.export.export` looks after.
 from __future__ import annotations
 
 import os
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,9 +20,8 @@ from game.core.clock import STEP
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import COLOUR_SAFE, PALETTE
-from game.export.export import KINDS, Kind, unfinished
+from game.export.kinds import KINDS, Kind, unfinished
 from game.flight.flight_file import Record
-from game.scenes.replay import Replay
 from game.ui.context import Context
 
 Frame = NDArray[np.uint8]  # (height, width, 3)
@@ -41,13 +40,30 @@ class Drawn:
     share: float
 
 
+class Filmed(Protocol):
+    """A scene that shows a flight, and can show its world without words."""
+
+    def enter(self, context: Context) -> None:
+        """Begin."""
+
+    def update(self) -> object:
+        """Fly one step on."""
+
+    def draw_world(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the world alone."""
+
+
 class _Writer(Protocol):
     def add(self, frame: Frame) -> None:
         """Add a frame."""
 
 
-def film(record: Record, path: Path, colour_safe: bool = False) -> Generator[list[Drawn], None, None]:
-    """Write the flight, whole or not at all, as what the path's suffix says; a turn for every frame.
+def film(
+    make: Callable[[Record], Filmed], record: Record, path: Path, colour_safe: bool = False
+) -> Generator[list[Drawn], None, None]:
+    """Write the flight as the scene that `make` makes shows it, whole or not at all; a turn for every frame.
+
+    The suffix of the path says as what.
 
     Raises:
         OSError: the file can't be written, or the disk is full.
@@ -59,9 +75,9 @@ def film(record: Record, path: Path, colour_safe: bool = False) -> Generator[lis
     temporary = unfinished(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with _writer(temporary, kind, frames(record, kind, range(0, last, _SAMPLE), colour_safe)) as writer:
+        with _writer(temporary, kind, frames(make(record), kind, range(0, last, _SAMPLE), colour_safe)) as writer:
             yield [Drawn(0.0)]
-            shown = frames(record, kind, steps, colour_safe)
+            shown = frames(make(record), kind, steps, colour_safe)
             for number, frame in enumerate(shown, 1):
                 writer.add(frame)
                 yield [Drawn(number / (len(steps) + 1))]
@@ -72,11 +88,10 @@ def film(record: Record, path: Path, colour_safe: bool = False) -> Generator[lis
         temporary.unlink(missing_ok=True)
 
 
-def frames(record: Record, kind: Kind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
+def frames(scene: Filmed, kind: Kind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
     """Yield what is seen of a flight at these updates of its replay, which rise; up to its end, one is one step."""
     _need_no_screen()
     settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)
-    scene = Replay(record)
     scene.enter(Context(Path(), settings))
     canvas = Canvas(pygame.Surface(kind.size), COLOUR_SAFE if colour_safe else PALETTE)
     flown = 0

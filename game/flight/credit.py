@@ -6,7 +6,7 @@ Header, corner, card, medal and logbook ask this one object, so that no two of t
 from __future__ import annotations
 
 from enum import Enum, auto
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ai.lander.environment import Outcome
 from game.core import texts
@@ -15,8 +15,24 @@ from game.flight.flight import Flight, Hand
 from game.flight.handicap import OWN
 from game.flight.outcomes import landing_score
 
-if TYPE_CHECKING:
-    from game.play.challenge import Course
+
+class Challenge(Protocol):
+    """What a flight is flown as, as far as it decides what counts: see `game.play.challenge`."""
+
+    @property
+    def kept(self) -> bool:
+        """Whether its flights are written down."""
+
+    @property
+    def bar(self) -> str:
+        """Why its flights do not count as the person's own, a name of `texts.NOT_COUNTED`; empty if they may."""
+
+    @property
+    def alone(self) -> bool:
+        """Whether nobody may help, or take the stick."""
+
+    def medal(self, flight: Flight) -> int:
+        """What a flight that is over has earned: 3 for gold, 2, 1, and 0 for nothing."""
 
 
 class Stick(Enum):
@@ -43,7 +59,7 @@ class Credit:
         self,
         flight: Flight,
         difficulty: Difficulty,
-        course: Course | None = None,
+        course: Challenge | None = None,
         hands: str = OWN,
         *,
         check: bool = False,

@@ -89,7 +89,7 @@ class Flight:
         spawn: where it begins.
         pads: 1 on a plain, or 3 among hills.
         hands: what the keys pass through, a name of `game.flight.handicap.HANDS`.
-        mission: name of one of `ai.lander.missions.STARTS`, which then says where and under what it is flown; empty for none.
+        mission: name of one of `ai.lander.missions.STARTS`, which says where and how it is flown; empty for none.
         shares: whether a network may share the stick, and not only take it.
 
     Attributes:

@@ -3,11 +3,40 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.rules import tenths
-from game.cockpit.hud import Card
 from game.core import texts
+
+
+@dataclass(frozen=True)
+class Card:
+    """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better.
+
+    Of a shared flight, `stepped_in` is how often the co-pilot did. `medal` is 3 for gold, 2, 1, and 0 for none.
+    `left` is where the card stands.
+    """
+
+    good: bool
+    title: str
+    reason: str
+    figures: tuple[tuple[str, str, str], ...]
+    human: float
+    advice: str = ""
+    score: str = ""
+    medal: int = 0
+    stepped_in: int | None = None
+    left: float = 400.0
+
+
+@dataclass(frozen=True)
+class Rival:
+    """What became of another one from the same start; a figure it does not have is left out."""
+
+    name: str
+    result: str
+    figures: dict[str, tuple[str, str]]  # value and unit by label
 
 
 def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:

@@ -10,7 +10,7 @@ import pygame
 
 from game.core import texts
 from game.core.settings import Settings
-from game.drawing import glyphs
+from game.input import signs
 from game.input.bindings import KEYBOARD, PAD, TRIGGERS, Bindings, Command, Held, Meaning
 
 __all__ = ["Command", "Controls", "Held", "KeyName", "presses_main", "translate"]
@@ -34,10 +34,10 @@ TRIGGER_PRESSED: Final = 8000
 TRIGGER_RELEASED: Final = 5000
 # Signs of what a stick does, beside the buttons.
 _STICK_SIGNS: Final[dict[Meaning, int]] = {
-    Held.LEFT: glyphs.TURN,
-    Held.RIGHT: glyphs.TURN,
-    Command.SLOWER: glyphs.STICK_LEFT,
-    Command.FASTER: glyphs.STICK_RIGHT,
+    Held.LEFT: signs.TURN,
+    Held.RIGHT: signs.TURN,
+    Command.SLOWER: signs.STICK_LEFT,
+    Command.FASTER: signs.STICK_RIGHT,
 }
 # Keys of the keypad that write something.
 _KEYPAD: Final = frozenset({code for name, code in KEYBOARD.names.items() if name[:2] == "kp"} - {pygame.K_KP_ENTER})
@@ -102,7 +102,7 @@ class _Pad:
     axes: dict[int, int] = field(default_factory=dict)
     pushed: set[Command] = field(default_factory=set)
     device: Any = None  # SDL closes a pad that nobody holds on to
-    family: glyphs.Family = "xbox"
+    family: signs.Family = "xbox"
 
 
 class Controls:
@@ -159,9 +159,9 @@ class Controls:
         A command's name is a KeyName. While the mouse is in use, what flies is shown as its buttons.
         """
         if isinstance(meaning, Held) and self.mouse_in_use:
-            return self.pad_sign(glyphs.MOUSE_LEFT if meaning is Held.MAIN else glyphs.MOUSE_RIGHT)
-        signs = self.pad_signs(meaning) if self.pad_in_use else []
-        text = next(iter(signs or self.key_names(meaning)), texts.BINDINGS_NONE)
+            return self.pad_sign(signs.MOUSE_LEFT if meaning is Held.MAIN else signs.MOUSE_RIGHT)
+        buttons = self.pad_signs(meaning) if self.pad_in_use else []
+        text = next(iter(buttons or self.key_names(meaning)), texts.BINDINGS_NONE)
         if isinstance(meaning, Held):
             return text
         return KeyName(text, next(iter(self.keys.codes(meaning)), 0), meaning)
@@ -174,12 +174,12 @@ class Controls:
     @property
     def arrows(self) -> str:
         """What moves the focus."""
-        return self.pad_sign(glyphs.CROSS) if self.pad_in_use else texts.ARROWS
+        return self.pad_sign(signs.CROSS) if self.pad_in_use else texts.ARROWS
 
     @property
     def arrows_aside(self) -> str:
         """What moves a slider."""
-        return self.pad_sign(glyphs.CROSS) if self.pad_in_use else texts.ARROWS_ASIDE
+        return self.pad_sign(signs.CROSS) if self.pad_in_use else texts.ARROWS_ASIDE
 
     def key_names(self, meaning: Meaning) -> list[str]:
         """Name every key of a meaning, as written on the keyboard."""
@@ -194,10 +194,10 @@ class Controls:
         return [self.pad_sign(number) for number in signs]
 
     def pad_sign(self, number: int) -> str:
-        """Show a button by its number, or one of the further signs of `game.drawing.glyphs`."""
+        """Show a button by its number, or one of the further signs of `game.input.signs`."""
         pads = [*self._pads.values()]
         pad = self._pads.get(-1 if self._used is None else self._used) or (pads[-1] if pads else _Pad())
-        return glyphs.sign(pad.family, number)
+        return signs.sign(pad.family, number)
 
     # Events
 
@@ -273,7 +273,7 @@ class Controls:
             return  # pulled out again before its turn came
         self.pad_name = device.name or ""
         pad = self._pads.setdefault(instance, _Pad())
-        pad.device, pad.family = device, glyphs.family_of(self.pad_name)
+        pad.device, pad.family = device, signs.family_of(self.pad_name)
 
     def _close(self, event: pygame.event.Event) -> None:
         self._pads.pop(event.instance_id, None)

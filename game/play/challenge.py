@@ -8,7 +8,6 @@ from typing import Final
 
 from ai.lander.environment import Cause, LanderEnv, Outcome
 from ai.lander.missions import Mission
-from game.cockpit.hud import Card
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
@@ -16,6 +15,7 @@ from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Record
 from game.flight.networks import Flyer
+from game.flight.outcomes import Card
 from game.flight.replay import Rerun, Tape
 from game.input.controls import Controls
 from game.play.ghost import Ghost

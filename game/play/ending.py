@@ -10,6 +10,7 @@ from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
 from game.core.pace import Pace
 from game.drawing.canvas import Canvas
+from game.flight import outcomes
 from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.flight.networks import Network
@@ -40,7 +41,7 @@ class Ending:
         self._flight, self._pace, self.calm = flight, pace, reduced_motion
         self._since = 0
         self._whole: Shot | None = None
-        self.card: hud.Card | None = None
+        self.card: outcomes.Card | None = None
 
     @property
     def due(self) -> bool:

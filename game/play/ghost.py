@@ -12,12 +12,11 @@ import pygame
 from ai.common.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.rules import tenths
-from game.cockpit.hud import Rival
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import NET, VIEW_SIZE
 from game.flight.flight import Flight
-from game.flight.outcomes import flight_figures
+from game.flight.outcomes import Rival, flight_figures
 from game.world import lander as art
 from game.world.camera import Clear, View
 from game.world.flame import NET_PLUME, plume

@@ -15,7 +15,6 @@ import numpy as np
 
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import FIRST
-from game.cockpit.hud import Card
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
@@ -23,7 +22,7 @@ from game.drawing.tokens import INK, MUTE, SMALL, TEXT
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Hand
 from game.flight.networks import Flyer
-from game.flight.outcomes import outcome_card
+from game.flight.outcomes import Card, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
 from game.play.challenge import Course, Moment

@@ -1,1 +1,26 @@
-"""One scene to a file."""
+"""The screens of the game, one scene to a file. A scene names the next one by a route, and imports none of them.
+
+Dialogs and what lies behind the menu are parts of scenes, imported by those that show them.
+"""
+
+from importlib import import_module
+from typing import Final
+
+from game.core.scene import Route, Scene
+
+# The name of each scene that another may lead to: the module in this package, and the class in that.
+ROUTES: Final = {
+    "menu": "menu.Menu", "play": "play.Play", "missions": "missions.Missions", "watch": "watch.Watch",
+    "train": "train.Train", "runs": "runs.Runs", "digits": "digits.Digits",
+    "digit_training": "digit_training.DigitTrainingScene", "dream": "dream.Dream", "quiz": "quiz.Quiz",
+    "physics": "physics.Physics", "logbook": "logbook.Logbook", "replay": "replay.Replay",
+    "settings": "settings.SettingsScene", "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene",
+    "pause": "pause.Pause", "error_screen": "error_screen.Fault",
+}  # fmt: skip
+
+
+def scene_of(route: Route) -> Scene:
+    """Make the scene that a route names; its module is loaded when it is first needed."""
+    module, _, name = ROUTES[route.name].partition(".")
+    scene: Scene = getattr(import_module(f"{__name__}.{module}"), name)(*route.arguments, **route.options)
+    return scene

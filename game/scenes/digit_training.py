@@ -14,7 +14,7 @@ from ai.training.history import REVERTED
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
 from game.core import texts
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import State
 from game.digits.matrix import Matrix
 from game.drawing import typeface
@@ -25,7 +25,7 @@ from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VI
 from game.input.controls import Command, translate
 from game.panels.knobs import Knobs
 from game.panels.run_status import draw_problem, draw_standing, start_word
-from game.scenes.dialog import Asking
+from game.scenes.dialog import Asking, Naming
 from game.training.dials import dials, figure, label
 from game.training.digit_models import runs_dir
 from game.training.digit_run import Curves, Pupil
@@ -252,8 +252,6 @@ class DigitTrainingScene:
         return Pop()
 
     def _save(self) -> Transition | None:
-        from game.scenes.dialog import Naming
-
         if not (self.pupil.kept or self.pupil.alive):
             self._say(texts.PUPIL_NOTHING)
             return None
@@ -267,16 +265,12 @@ class DigitTrainingScene:
         return problem
 
     def _dream(self) -> Transition | None:
-        from game.scenes.dream import Dream
-
         classifier = self._classifier()
-        return Push(Dream(classifier, self.matrix.cell[0])) if classifier else None
+        return push("dream", classifier, self.matrix.cell[0]) if classifier else None
 
     def _quiz(self) -> Transition | None:
-        from game.scenes.quiz import Quiz
-
         classifier = self._classifier()
-        return Push(Quiz(classifier)) if classifier else None
+        return push("quiz", classifier) if classifier else None
 
     def _classifier(self) -> DigitClassifier | None:
         """Return the network as it was last kept; if there is none, say so."""

@@ -13,7 +13,7 @@ import pygame
 
 from ai.digits.preprocessing import redrawn
 from game.core import texts
-from game.core.scene import Pop, Push, Scene, Transition
+from game.core.scene import Pop, Push, Transition, push
 from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.explanation import LEFT as SIGHT_LEFT
 from game.digits.explanation import STEPS, Sight, StageSwitch
@@ -331,27 +331,21 @@ class Digits:
         return Push(Picking(self, texts.DIGITS_PICK, rows, self._tabs.choose))
 
     def _quiz(self) -> Transition | None:
-        from game.scenes.quiz import Quiz
-
-        return self._with_chosen(Quiz)
+        return self._with_chosen(partial(push, "quiz"))
 
     def _train(self) -> Transition:
-        from game.scenes.digit_training import DigitTrainingScene
-
-        return Push(DigitTrainingScene())
+        return push("digit_training")
 
     def _dream(self) -> Transition | None:
         """Dream of what was drawn."""
-        from game.scenes.dream import Dream
-
         seen = self.probabilities
         digit = 0 if seen is None else int(seen.argmax())
-        return self._with_chosen(lambda classifier: Dream(classifier, digit, self.reading.stages.centred))
+        return self._with_chosen(lambda classifier: push("dream", classifier, digit, self.reading.stages.centred))
 
-    def _with_chosen(self, make: Callable[[DigitClassifier], Scene]) -> Transition | None:
+    def _with_chosen(self, lead: Callable[[DigitClassifier], Transition]) -> Transition | None:
         """Go to a screen that is about the chosen network, if it could be read."""
         classifier = self._reader.classifiers.get(self.chosen)
-        return Push(make(classifier)) if classifier else None
+        return lead(classifier) if classifier else None
 
     def _undo(self) -> None:
         self.pad.undo()

@@ -12,7 +12,7 @@ from ai.lander.rules import tenths
 from game.charts.chart import Chart, Series
 from game.charts.charts import Charts
 from game.core import texts
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
@@ -20,6 +20,7 @@ from game.drawing.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, 
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, Totals, best, skill, totals
 from game.input.controls import Command
+from game.play.race import race
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
@@ -166,16 +167,12 @@ class Logbook:
             return None
 
     def _watch(self) -> Transition | None:
-        from game.scenes.replay import Replay
-
         record = self._read()
-        return Push(Replay(record)) if record else None
+        return push("replay", record) if record else None
 
     def _race(self) -> Transition | None:
-        from game.scenes.race import race
-
         record = self._read()
-        return Push(race(record)) if record else None
+        return push("play", record.recording.seed, course=race(record)) if record else None
 
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from typing import Final
 
 import pygame
 
 from game.core import texts
-from game.core.scene import Push, Quit, Scene, Transition
+from game.core.scene import Quit, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
 from game.input.controls import Command
@@ -24,66 +24,8 @@ _FIRST_WORD: Final = 300
 _LINE: Final = 38
 
 
-def _play() -> Scene:
-    from game.scenes.play import Play
-
-    return Play()
-
-
-def _missions() -> Scene:
-    from game.scenes.missions import Missions
-
-    return Missions()
-
-
-def _watch() -> Scene:
-    from game.scenes.watch import Watch
-
-    return Watch()
-
-
-def _train() -> Scene:
-    from game.scenes.train import Train
-
-    return Train()
-
-
-def _digits() -> Scene:
-    from game.scenes.digits import Digits
-
-    return Digits()
-
-
-def _physics() -> Scene:
-    from game.scenes.physics import Physics
-
-    return Physics()
-
-
-def _logbook() -> Scene:
-    from game.scenes.logbook import Logbook
-
-    return Logbook()
-
-
-def _settings() -> Scene:
-    from game.scenes.settings import SettingsScene
-
-    return SettingsScene()
-
-
-# One row a screen: its name in `texts.MENU`, and what opens it. None closes the game.
-ROWS: Final[tuple[tuple[str, Callable[[], Scene] | None], ...]] = (
-    ("play", _play),
-    ("missions", _missions),
-    ("watch", _watch),
-    ("train", _train),
-    ("digits", _digits),
-    ("physics", _physics),
-    ("logbook", _logbook),
-    ("settings", _settings),
-    ("quit", None),
-)
+# A row a screen, by its route and its name in `texts.MENU`; the last one closes the game.
+ROWS: Final = ("play", "missions", "watch", "train", "digits", "physics", "logbook", "settings", "quit")
 
 
 class Menu:
@@ -101,10 +43,10 @@ class Menu:
         self._controls = context.controls
         self._form = Form(context, on_back=self._back)
         self._lines: list[tuple[Word, str]] = []
-        for number, (name, open_scene) in enumerate(ROWS):
+        for number, name in enumerate(ROWS):
             label, line = texts.MENU[name]
             box = (MARGIN, _FIRST_WORD + number * _LINE, 160, _LINE)
-            word = Word(self._form.manager, box, label, _press(open_scene), size=_WORD_SIZE, weight="light")
+            word = Word(self._form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
             self._lines.append((self._form.add(word), line))
 
     def exit(self) -> None:
@@ -154,5 +96,5 @@ class Menu:
         return None
 
 
-def _press(open_scene: Callable[[], Scene] | None) -> Callable[[], Transition | None]:
-    return lambda: Push(open_scene()) if open_scene else Quit()
+def _open(name: str) -> Transition:
+    return Quit() if name == "quit" else push(name)

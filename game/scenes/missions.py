@@ -11,7 +11,7 @@ import pygame
 from ai.lander.missions import FIRST, MISSIONS
 from ai.lander.rules import tenths
 from game.core import texts
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.glyphs import icon
 from game.drawing.prose import wrapped
@@ -98,10 +98,8 @@ class Missions:
         return Flown(mission, record, texts.MISSION_GHOSTS[self._chosen_rival]) if record else Flown(mission)
 
     def _fly(self) -> Transition:
-        from game.scenes.play import Play
-
         course = self._course()
-        return Push(Play(course.seed if isinstance(course, Daily) else 0, course=course))
+        return push("play", course.seed if isinstance(course, Daily) else 0, course=course)
 
     # What flies beside
 

@@ -8,7 +8,7 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.scene import Pop, Push, Scene, Transition
+from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, NIGHT0, VIEW_SIZE
 from game.input.controls import Command
@@ -105,6 +105,4 @@ class Blurred:
 
 
 def _open_settings() -> Transition:
-    from game.scenes.settings import SettingsScene
-
-    return Push(SettingsScene())
+    return push("settings")

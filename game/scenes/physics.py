@@ -15,7 +15,7 @@ from engine.vector import Array
 from game.cockpit import hud
 from game.core import texts
 from game.core.clock import Tempo
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.figures import write_figures
@@ -198,9 +198,7 @@ class Physics:
         return body is not None
 
     def _pause(self) -> Transition:
-        from game.scenes.pause import Pause
-
-        return Push(Pause(self, retry=self.restart))
+        return push("pause", self, retry=self.restart)
 
     # Choices
 

@@ -11,7 +11,7 @@ from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
 from game.core import texts
 from game.core.pace import Pace
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.credit import Credit
@@ -324,10 +324,8 @@ class Play:
         return self._course is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
-        from game.scenes.pause import Pause
-
         self._away = 0
-        return Push(Pause(self, retry=self.retry, more=self._pause_words))
+        return push("pause", self, retry=self.retry, more=self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
@@ -337,14 +335,10 @@ class Play:
 
     def _choose(self) -> Transition | None:
         """Let the player choose how the next flights are flown; a course is flown as it is, but for its pace."""
-        from game.scenes.choices import ChoicesScene
-
-        return Push(ChoicesScene(self, self._skill, begun=not self.waiting, course=self._course is not None))
+        return push("choices", self, self._skill, begun=not self.waiting, course=self._course is not None)
 
     def _open_networks(self) -> Transition:
-        from game.scenes.runs import Runs
-
-        return Push(Runs(choose=self._choose_network))
+        return push("runs", choose=self._choose_network)
 
     def _choose_network(self, name: str) -> None:
         """Let another network be the one to hand over to, in the midst of a flight too."""

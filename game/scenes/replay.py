@@ -17,16 +17,18 @@ from game.core import texts
 from game.core.clock import STEP
 from game.core.collection import LONGEST_NAME, exports_dir, fitting, free_path
 from game.core.pace import Pace
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Push, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
-from game.export.export import KINDS, Export
+from game.export.export import Export
+from game.export.kinds import KINDS
 from game.flight.flight import Hand
 from game.flight.flight_file import Record
 from game.flight.replay import Tape
 from game.input.controls import Command, translate
 from game.panels.timeline import Timeline, runs
+from game.play.race import fly_on, race
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
@@ -200,14 +202,10 @@ class Replay:
         if self.tape.flight.over:
             self._context.note(texts.REPLAY_OVER)
             return None
-        from game.scenes.race import fly_on
-
-        return Push(fly_on(self.record, self.tape))
+        return push("play", self.record.recording.seed, course=fly_on(self.record, self.tape))
 
     def _race(self) -> Transition:
-        from game.scenes.race import race
-
-        return Push(race(self.record))
+        return push("play", self.record.recording.seed, course=race(self.record))
 
     def _begin_or_stop_export(self) -> Transition | None:
         """Ask what kind of moving picture it shall be; or leave the one that is being made."""
@@ -232,7 +230,7 @@ class Replay:
         assert self._context is not None
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
         path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
-        self._export = Export(self.record, path, colour_safe=self._context.settings.colour_safe)
+        self._export = Export(Replay, self.record, path, colour_safe=self._context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
         """Say how far it has come, or what has become of it."""

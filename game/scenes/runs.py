@@ -10,7 +10,7 @@ import pygame
 
 from game.core import texts
 from game.core.collection import LONGEST_NAME, LibraryError, fitting
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
@@ -191,16 +191,12 @@ class Runs:
         self._context.apply_settings()
 
     def _watch(self) -> Transition:
-        from game.scenes.watch import Watch
-
         self._make_pilot()
-        return Push(Watch())
+        return push("watch")
 
     def _fly(self) -> Transition:
-        from game.scenes.play import Play
-
         self._make_pilot()
-        return Push(Play())
+        return push("play")
 
     def _begin_naming(self) -> None:
         run, context = self.shown, self._context
@@ -321,6 +317,4 @@ class Runs:
 
 
 def _train_on(folder: Path) -> Transition:
-    from game.scenes.train import Train
-
-    return Push(Train(resume=folder))
+    return push("train", resume=folder)

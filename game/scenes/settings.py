@@ -9,7 +9,7 @@ import pygame
 
 from game.audio.instruments import GROUPS, altitude_key
 from game.core import texts
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
@@ -149,12 +149,9 @@ def _loudness(volume: float) -> str:
 
 def _fly_first_flight() -> Transition:
     from game.play.tutorial import Tutorial
-    from game.scenes.play import Play
 
-    return Push(Play(0, course=Tutorial()))
+    return push("play", 0, course=Tutorial())
 
 
 def _open_bindings() -> Transition:
-    from game.scenes.bindings import BindingsScene
-
-    return Push(BindingsScene())
+    return push("bindings")

@@ -14,7 +14,7 @@ from ai.training.session import agent_of
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.collection import LibraryError
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import State
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
@@ -237,13 +237,11 @@ class Train:
         return ""
 
     def _open_runs(self) -> Transition:
-        from game.scenes.runs import Runs
-
         def go_on(folder: Path) -> Transition:
             self._go_on(folder)
             return Pop()
 
-        return Push(Runs(train=go_on))
+        return push("runs", train=go_on)
 
     def _ask_what_becomes_of(self, left: SavedRun) -> Transition:
         """Offer the run that was left without a name by the last visit, or by a game that ended too early."""
@@ -293,8 +291,6 @@ class Train:
 
     def _duel(self) -> Transition | None:
         """Fly against the chosen checkpoint, or the latest."""
-        from game.scenes.play import Play
-
         assert self._context is not None
         found = self.student.history.checkpoints
         checkpoint = self.board.chosen or (found[-1] if found else None)
@@ -306,7 +302,8 @@ class Train:
         except ValueError as error:
             self._context.note(str(error))
             return None
-        return Push(Play(rival=rival, rival_name=texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds)))
+        name = texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds)
+        return push("play", rival=rival, rival_name=name)
 
     # The picture
 

@@ -17,7 +17,7 @@ from game.cockpit import hud
 from game.cockpit.decision_panel import PANEL, draw_mind
 from game.core import texts
 from game.core.clock import STEP, Tempo
-from game.core.scene import Pop, Push, Transition
+from game.core.scene import Pop, Transition, push
 from game.core.settings import Settings
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -218,9 +218,7 @@ class Watch:
         return True
 
     def _pause(self) -> Transition:
-        from game.scenes.pause import Pause
-
-        return Push(Pause(self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words))
+        return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         return [(texts.PAUSE_NETWORK.format(name=_shortened(self._wanted or self._network.name)), self._open_networks)]
@@ -247,12 +245,10 @@ class Watch:
         )  # fmt: skip
 
     def _open_networks(self) -> Transition:
-        from game.scenes.runs import Runs
-
         def choose(name: str) -> None:
             self._wanted = name
 
-        return Push(Runs(choose=choose))
+        return push("runs", choose=choose)
 
     def _look_again(self) -> None:
         """Take what was chosen in the list, and note what came, went or has another name since."""

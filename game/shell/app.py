@@ -16,7 +16,7 @@ import pygame
 from ai.nn.files import write_bytes
 from game.core import texts
 from game.core.clock import FixedStep
-from game.core.scene import Push
+from game.core.scene import Push, Route
 from game.core.settings_writer import SettingsWriter
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -42,6 +42,7 @@ class App:
     Args:
         context: the shared things; its `note` and `apply_settings` are bound to this window.
         first: the scene to begin with, the menu if none is given.
+        scene_of: makes the scene that a route names: `game.scenes.scene_of`.
         now: the clock, in seconds.
         capped: whether a frame waits for its turn, as on a screen, or runs as fast as it can.
 
@@ -55,6 +56,7 @@ class App:
         context: Context,
         first: Scene | None = None,
         *,
+        scene_of: Callable[[Route], Scene],
         now: Callable[[], float] = time.perf_counter,
         capped: bool = True,
     ) -> None:
@@ -76,11 +78,11 @@ class App:
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)
         self._start_pads()
-        self.scenes = SceneManager(context, lambda: self.canvas.surface)
-        self.show(first or _menu())
+        self.scenes = SceneManager(context, lambda: self.canvas.surface, scene_of)
+        self.show(first or Route("menu"))
         self._last = now()
 
-    def show(self, scene: Scene) -> None:
+    def show(self, scene: Scene | Route) -> None:
         """Put a scene over what is shown; one that fails at once is told of like any other."""
         self._guarded(lambda: self.scenes.apply(Push(scene)))
 
@@ -252,16 +254,8 @@ class App:
             call()
         except Exception as error:
             _log.exception("in %s", self.scenes.told)
-            from game.scenes.error_screen import Fault
-
             self.canvas.surface.set_clip(None)
-            self.scenes.reset(_menu(), Fault(error, self.context.user_dir / LOG_NAME))
-
-
-def _menu() -> Scene:
-    from game.scenes.menu import Menu
-
-    return Menu()
+            self.scenes.reset(Route("menu"), Route("error_screen", (error, self.context.user_dir / LOG_NAME)))
 
 
 def log_to(folder: Path) -> None:

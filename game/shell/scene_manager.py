@@ -6,7 +6,7 @@ import gc
 import logging
 from typing import TYPE_CHECKING, Final
 
-from game.core.scene import Lasting, Pop, Push, Quit, Replace, Scene, Transition
+from game.core.scene import Lasting, Pop, Push, Quit, Replace, Route, Scene, Transition
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,11 +30,14 @@ class SceneManager:
     Args:
         context: what every scene is given.
         picture: the window's pixels as they were last drawn.
+        scene_of: makes the scene that a route names.
 
     """
 
-    def __init__(self, context: Context, picture: Callable[[], pygame.Surface]) -> None:
-        self._context, self._picture = context, picture
+    def __init__(
+        self, context: Context, picture: Callable[[], pygame.Surface], scene_of: Callable[[Route], Scene]
+    ) -> None:
+        self._context, self._picture, self._scene_of = context, picture, scene_of
         self._stack: list[Scene] = []
         self._lingering: pygame.Surface | None = None
         self._fade = 0
@@ -80,10 +83,12 @@ class SceneManager:
             self._linger()
         match transition:
             case Push(scene):
+                scene = self._made(scene)
                 if self._stack:
                     self.top.exit()
                 self._enter(scene)
             case Replace(scene):
+                scene = self._made(scene)
                 self._leave(1)
                 self._enter(scene)
             case Pop(levels):
@@ -91,13 +96,17 @@ class SceneManager:
             case Quit():
                 self.running = False
 
-    def reset(self, *scenes: Scene) -> None:
+    def reset(self, *routes: Route) -> None:
         """Leave every scene without a word to them, for their state is in doubt, and put these in place."""
+        scenes = [self._scene_of(route) for route in routes]
         self._linger()
         left = [scene for scene in self._stack if scene not in scenes]
         self._stack = list(scenes[:-1])
         _close(left)
         self._enter(scenes[-1])
+
+    def _made(self, scene: Scene | Route) -> Scene:
+        return self._scene_of(scene) if isinstance(scene, Route) else scene
 
     def close(self) -> None:
         """Leave every scene, for good."""

@@ -14,6 +14,7 @@ from game.core import texts
 from game.core.collection import claims
 
 NAMES: Final = ("modern", "classic")  # of the shipped ones
+PATIENCE: Final = 120.0  # seconds for a worker's turn: reading all test images in one takes a busy machine long
 FOLDER: Final = "digits"  # in the player's folder: the shipped networks' fixes, and `RUNS`
 RUNS: Final = "runs"
 FIXES: Final = "fixes"  # in the folder of a network of the player's own

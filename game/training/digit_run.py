@@ -17,8 +17,7 @@ from ai.training.messages import Refused, Save
 from game.core import texts
 from game.core.collection import LONGEST_NAME, Collection, LibraryError
 from game.core.worker import Worker
-from game.digits import PATIENCE
-from game.training.digit_models import PARTS
+from game.training.digit_models import PARTS, PATIENCE
 from game.training.training_run import EARLIER, Beside, Learner, put_beside
 
 FALLEN: Final = 0.15  # of the images held out, so many fewer than at its best: the way back is offered

@@ -1,1 +1,1 @@
-"""What every screen shares: tokens, type, the canvas, widgets and focus."""
+"""Widgets, their focus and their forms, for mouse, keyboard and gamepad alike."""

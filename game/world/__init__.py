@@ -1,1 +1,1 @@
-"""The moon and what flies above it: drawn in code, at the window's own resolution."""
+"""The moon and what flies above it, in metres: drawn in code, at the window's own resolution."""

@@ -19,9 +19,10 @@ from game.core.scene import Scene
 from game.core.settings import Settings, SettingsFile
 from game.drawing import typeface
 from game.flight import networks
+from game.scenes import scene_of
 from game.shell.app import App
 from game.ui.context import Context
-from tests.game.driver import Driver
+from tests.support.driver import Driver
 
 pygame.font.init()  # as long as the tests run, in whatever order
 
@@ -48,7 +49,7 @@ def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
         context.settings = SettingsFile(context.user_dir).load()
         context.settings.tutored |= tutored  # or a first flight would teach
         frames = count()
-        opened.append(Driver(App(context, first, now=lambda: next(frames) / 60, capped=False)))
+        opened.append(Driver(App(context, first, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)))
         return opened[-1]
 
     yield open_it

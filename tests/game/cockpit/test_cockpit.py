@@ -18,8 +18,8 @@ from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
 from game.scenes.play import Play
 from game.ui.context import Context
-from tests.game.driver import Driver
-from tests.game.flights import play
+from tests.support.driver import Driver
+from tests.support.flights import play
 
 Open = Callable[..., Driver]
 COAST, LEFT, RIGHT, MAIN = range(4)

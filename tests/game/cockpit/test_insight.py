@@ -8,7 +8,7 @@ from game.cockpit.copilot_panel import Insight
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight
-from tests.game.drawn import Drawn, read_panel
+from tests.support.drawn import Drawn, read_panel
 
 
 class Wavers:

@@ -6,8 +6,8 @@ import pytest
 from game.scenes.digits import Digits
 from game.scenes.quiz import Quiz
 from game.ui.virtual_pointer import Pointer
-from tests.game.player import DEVICES, Player
-from tests.game.test_walks import reader
+from tests.game.scenes.test_walks import reader
+from tests.support.player import DEVICES, Player
 
 
 @pytest.fixture(params=DEVICES)

@@ -1,0 +1,7 @@
+"""The deep Q-learning agent: its settings, its network, its memory and its schedules."""
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import PRESETS, Config
+from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+
+__all__ = ["PRESETS", "Config", "DeepQAgent", "MemoryCell", "PrioritisedReplayBuffer", "ReplayBuffer"]

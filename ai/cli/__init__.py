@@ -1,0 +1,1 @@
+"""The commands that need no window. Nothing heavy is imported until one runs."""

@@ -1,0 +1,1 @@
+"""A replay saved as a moving picture."""

@@ -1,0 +1,1 @@
+"""Keys, gamepads and the mouse, turned into what a pilot holds and what a player commands."""

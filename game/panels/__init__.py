@@ -1,0 +1,1 @@
+"""What explains a network or a run: its values, its charts, its settings, its rewards."""

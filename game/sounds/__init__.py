@@ -1,1 +1,0 @@
-"""Every sound of the game, synthesised: `synth` has the means, `instruments` the sounds, `flight` what plays them."""

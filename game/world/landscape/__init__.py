@@ -1,0 +1,1 @@
+"""What stands still in the world: sky, ridges, ground and pads, and how other worlds look."""

@@ -1,0 +1,270 @@
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import ai.training.checkpoints
+from ai.agent.agent import DeepQAgent
+from ai.training.checkpoints import save_run
+from ai.training.lander_task import Evaluation, LanderTask
+from ai.training.loop import Training
+from ai.training.task import VALIDATION_SEED
+from main import main
+
+ROOT = Path(__file__).parents[3]
+SMALL = [f"--set={change}" for change in ("num_envs=8", "hidden=[8]", "batch_size=16", "warm_up=32", "updates=1")]
+
+
+def test_train_evaluate_resume(tmp_path, capsys):
+    run = str(tmp_path / "run")
+    assert main(["train", "--decisions", "400", "--output", run, *SMALL]) == 0
+    assert run in capsys.readouterr().out
+    assert main(["evaluate", "--model", run, "--episodes", "20", "--seed", "3", "--json"]) == 0
+    measured = json.loads(capsys.readouterr().out)
+    shares = [measured[name] for name in ("success", "crash", "out_of_bounds", "time_out")]
+    assert sum(shares) == pytest.approx(1.0)
+    assert {"mean_return", "mean_time", "mean_fuel", "episodes"} <= set(measured)
+    assert main(["train", "--decisions", "800", "--resume", run]) == 0
+    assert json.loads((tmp_path / "run" / "training.json").read_text())["decisions"] == 800
+    assert main(["evaluate", "--model", run, "--episodes", "20"]) == 0
+    assert "success" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["train", "--seconds", "1"], "--output"),
+        (["train", "--output", "x"], "when to stop"),
+        (["train", "--output", "x", "--seconds", "1", "--preset", "magic"], "--preset is one of"),
+        (["train", "--output", "x", "--seconds", "1", "--set", "warp=9"], "warp=9"),
+        (["train", "--output", "x", "--seconds", "1", "--set", "n_step=0"], "n_step lies between"),
+        (["train", "--resume", "nowhere", "--seconds", "1"], "nowhere"),
+        (["evaluate", "--model", "nowhere"], "nowhere"),
+        (["evaluate", "--model", "nowhere", "--episodes", "0"], "--episodes"),
+        (["evaluate", "--model", "nowhere", "--spawn", "mars"], "--spawn is one of"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_a_line(arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 1
+    told = capsys.readouterr().err
+    assert message in told
+    assert "Traceback" not in told
+    assert not list(tmp_path.iterdir())
+
+
+ENDINGS = [("SIGINT", 0), ("SIGTERM", 128 + 15), ("SIGHUP", 128 + 1)]
+
+
+@pytest.mark.parametrize(("name", "code"), [ending for ending in ENDINGS if hasattr(signal, ending[0])])
+def test_whoever_ends_a_run_by_a_signal_keeps_the_work(tmp_path, name, code, capsys, monkeypatch):
+    advance, before = Training.advance, signal.getsignal(getattr(signal, name))
+
+    def signalled(training):
+        if training.agent.decisions == 160:
+            signal.raise_signal(getattr(signal, name))
+        return advance(training)
+
+    monkeypatch.setattr(Training, "advance", signalled)
+    run = str(tmp_path / "run")
+    assert main(["train", "--seconds", "600", "--output", run, "--validation", "4", *SMALL]) == code
+    assert "kept in" in capsys.readouterr().out
+    described = json.loads((tmp_path / "run" / "training.json").read_text())
+    assert described["decisions"] == 168
+    assert described["best"]["episodes"] == 4, "what is kept is measured"
+    assert (tmp_path / "run" / "last" / "config.json").exists()
+    assert signal.getsignal(getattr(signal, name)) == before
+
+
+TELLING = """
+import sys
+from ai.training.loop import Training
+from main import main
+
+def first(training, advance=Training.advance):
+    Training.advance = advance
+    print("under way", flush=True)
+    return advance(training)
+
+Training.advance = first
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
+    arguments = ["train", "--seconds", "600", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]
+    process = subprocess.Popen(
+        [sys.executable, "-c", TELLING, *arguments], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "under way\n"
+    process.send_signal(signal.SIGTERM)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 143, err
+    assert "kept in" in out
+    assert (tmp_path / "run" / "last" / "config.json").exists()
+
+
+@pytest.mark.parametrize("preset", ["modern", "classic"])
+def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkeypatch, preset):
+    """Same seed, same network: when the clock asks for a checkpoint, that saves, and chooses nothing."""
+    changes = ["num_envs=8", "hidden=[8]", "batch_size=16", "warm_up=32", "updates=1"]
+    monkeypatch.setattr(LanderTask, "evaluate_every", 320)
+    saves = []
+
+    def keep(training, folder, final=False):
+        saves.append((training.agent.decisions, final))
+        save_run(training, folder, final)
+
+    monkeypatch.setattr(ai.training.checkpoints, "save_run", keep)
+
+    def kept(name, decisions, pauses):
+        now, folder = [0.0], tmp_path / name
+        monkeypatch.setattr(ai.training.checkpoints, "time", SimpleNamespace(monotonic=lambda: now[0]))
+        advance = Training.advance
+
+        def slow(training):
+            now[0] += 25.0 if training.agent.decisions in pauses else 0.001
+            return advance(training)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(Training, "advance", slow)
+            arguments = ["train", "--preset", preset, "--decisions", str(decisions), "--validation", "6", "--seed", "4"]
+            assert main([*arguments, "--output", str(folder), *(f"--set={change}" for change in changes)]) == 0
+        files = {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*.npy")}
+        described = json.loads((folder / "training.json").read_text())
+        del described["seconds"]
+        return files, described
+
+    for decisions in (240, 800):  # before the first measurement, and after two
+        straight = kept(f"straight-{decisions}", decisions, ())
+        count = len(saves)
+        paused = kept(f"paused-{decisions}", decisions, (80, 160, 480))
+        assert len(saves) - count > count, "the pauses asked for checkpoints"
+        assert paused == straight
+        assert straight[1]["best"] is not None
+        saves.clear()
+
+
+def test_the_network_of_the_last_moment_stands_for_election_too(tmp_path, monkeypatch):
+    measured = []
+
+    def score(task, pilot, episodes, seed):
+        measured.append((pilot.decisions, seed))
+        return Evaluation(episodes, 0.0, 1.0, 0.0, 0.0, float(pilot.decisions), None, None, 0.0)
+
+    monkeypatch.setattr(LanderTask, "evaluate", score)
+    monkeypatch.setattr(LanderTask, "evaluate_every", 320)
+    assert main(["train", "--decisions", "800", "--output", str(tmp_path / "run"), *SMALL]) == 0
+    assert [decisions for decisions, seed in measured if seed == VALIDATION_SEED] == [320, 640, 800]
+    last, best = DeepQAgent.load(tmp_path / "run" / "last"), DeepQAgent.load(tmp_path / "run")
+    assert np.array_equal(best.network.values, last.network.values)
+    measured.clear()
+    assert main(["train", "--decisions", "1280", "--resume", str(tmp_path / "run")]) == 0
+    # At the same moments as if it had never stopped, and the last one only once.
+    assert [decisions for decisions, seed in measured if seed == VALIDATION_SEED] == [960, 1280]
+
+
+def test_what_can_change_in_a_run_is_changed_when_it_is_resumed_and_the_rest_is_refused_by_name(tmp_path, capsys):
+    run = tmp_path / "run"
+    assert main(["train", "--decisions", "80", "--seed", "3", "--output", str(run), "--validation", "4", *SMALL]) == 0
+    before = {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
+    resume = ["train", "--resume", str(run), "--decisions", "160"]
+    for changes, named in (
+        (["--set", "hidden=[9]"], "hidden"), (["--set", "n_step=3", "--set", "updates=2"], "n_step"),
+        (["--seed", "4"], "seed"), (["--preset", "classic"], "optimizer"), (["--env", "CartPole-v1"], "env"),
+        (["--decisions", "80"], "whole run"), (["--set", "updates=0"], "updates lies"),
+    ):  # fmt: skip
+        assert main([*resume, *changes]) == 1
+        told = capsys.readouterr().err
+        assert named in told
+        assert "epsilon_end" not in told, "that can change"
+        assert before == {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
+    assert main([*resume, "--set", "updates=2", "--set", "hidden=[8]", "--seed", "3", "--env", "lander"]) == 0
+    agent = DeepQAgent.load(run / "last")
+    assert (agent.config.updates, agent.config.hidden, agent.decisions) == (2, (8,), 160)
+    assert json.loads((run / "training.json").read_text())["seed"] == 3
+
+
+def test_seconds_are_of_the_whole_run_too(tmp_path, capsys):
+    run = str(tmp_path / "run")
+    assert main(["train", "--seconds", "0.05", "--output", run, "--validation", "4", *SMALL]) == 0
+    assert main(["train", "--seconds", "0.05", "--resume", run]) == 1
+    assert "whole run" in capsys.readouterr().err
+    seconds = json.loads((tmp_path / "run" / "training.json").read_text())["seconds"]
+    assert main(["train", "--seconds", str(seconds + 0.05), "--resume", run]) == 0
+    again = json.loads((tmp_path / "run" / "training.json").read_text())["seconds"]
+    assert seconds + 0.05 <= again < seconds + 60
+
+
+def full(*_, **__):
+    raise OSError(28, "No space left on device")
+
+
+def test_a_disk_that_is_full_for_a_while_ends_no_training(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(ai.training.checkpoints, "CHECKPOINT_SECONDS", -1.0)
+    advance = Training.advance
+
+    def filling(training):
+        progress = advance(training)
+        monkeypatch.setattr(ai.training.checkpoints.Snapshot, "save", full if progress.decisions < 160 else save)
+        return progress
+
+    save = ai.training.checkpoints.Snapshot.save
+    monkeypatch.setattr(Training, "advance", filling)
+    assert main(["train", "--decisions", "240", "--output", str(tmp_path / "run"), "--validation", "4", *SMALL]) == 0
+    assert capsys.readouterr().err.count("No space left on device; training goes on") == 1
+    assert DeepQAgent.load(tmp_path / "run" / "last").decisions == 240
+
+
+@pytest.mark.parametrize("trouble", ["full", "not finite", "best"])
+def test_numbers_that_run_away_on_a_bad_day_end_in_a_sentence(tmp_path, capsys, monkeypatch, trouble):
+    advance = Training.advance
+
+    def diverging(training):
+        if training.agent.decisions < 400:
+            return advance(training)
+        if trouble == "not finite":
+            training.agent.online.values[:] = np.inf
+        if trouble == "best":  # what has run away need not be infinite
+            training.agent.online.values[:] = 1e30
+        raise FloatingPointError("the error was not finite at learning step 7")
+
+    monkeypatch.setattr(Training, "advance", diverging)
+    if trouble == "full":
+        monkeypatch.setattr(ai.training.checkpoints.Snapshot, "save", full)
+    if trouble == "best":
+        monkeypatch.setattr(LanderTask, "evaluate_every", 320)
+    run = tmp_path / "run"
+    assert main(["train", "--decisions", "4000", "--output", str(run), "--validation", "4", *SMALL]) == 1
+    told = capsys.readouterr().err
+    assert "learning step 7" in told
+    assert {"full": "No space", "not finite": "Nothing new is kept", "best": "What was best"}[trouble] in told
+    assert run.exists() == (trouble == "best")
+    if trouble == "best":
+        last = DeepQAgent.load(run / "last").online.values
+        assert np.array_equal(last, DeepQAgent.load(run).online.values), "a wreck is nothing to go on from"
+        assert json.loads((run / "training.json").read_text())["best"] is not None
+
+
+def test_a_gradient_that_is_not_finite_ends_the_run_with_the_reason_and_keeps_the_work(tmp_path, capsys, monkeypatch):
+    learn = DeepQAgent.learn
+
+    def blow_up(agent):
+        if agent.train_count == 20:
+            agent.replay.cells.reward[:] = np.inf
+        return learn(agent)
+
+    monkeypatch.setattr(DeepQAgent, "learn", blow_up)
+    with np.errstate(all="ignore"):
+        assert main(["train", "--decisions", "4000", "--output", str(tmp_path / "run"), *SMALL]) == 1
+    told = capsys.readouterr().err
+    assert "learning step 21" in told
+    assert "learning rate" in told
+    assert DeepQAgent.load(tmp_path / "run").train_count == 20

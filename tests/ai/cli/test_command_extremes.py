@@ -1,0 +1,278 @@
+"""Commands at the ends of what can be said to them: each refusal is a sentence, before anything is begun.
+
+Nothing here learns or flies: a case that gets that far fails, so none takes long. `python -m pytest
+tests/ai/cli/test_command_extremes.py --collect-only -q` counts the cases.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.agent.config import PRESETS
+from ai.digits.checkpoints import save_digit_run
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.training import DigitTraining
+from ai.lander.environment import LanderEnv
+from ai.nn import ModelFormatError
+from ai.training.checkpoints import TRAINING_FILE, save_run
+from ai.training.history import HISTORY_FILE, Alteration, Checkpoint, History, Validation
+from ai.training.loop import Training
+from main import main
+
+ROOT = Path(__file__).parents[3]
+MODEL = str(ROOT / "models" / "lander" / "modern")
+SMALL = PRESETS["modern"].changed(num_envs=2, hidden=(4,), batch_size=8, warm_up=8, updates=1, replay_size=100)
+DIGITS = DIGIT_PRESETS["classic"].changed(hidden=(4,), held_out=100)
+
+TRAIN = ["train", "--output", "new", "--decisions", "100"]
+TRAIN_DIGITS = ["train-digits", "--output", "new"]
+EVALUATE = ["evaluate", "--model", MODEL]
+DEEP = "[" * 100_000
+LONG = "x" * 100_000
+NUMBERS = ["-1", "nan", "inf", "-inf", "1e999", "", " ", "1" * 400, "9" * 5_000, "one", "-0x1", "1\N{EN DASH}2"]
+COUNTS = ["0", "1.5", *NUMBERS]
+PATHS = ["", " ", "/", "file", "file/x", "loop", "loop/x", "full", "/dev/null", "/dev/null/x", "/proc/nowhere",
+         "x" * 300, "y/" * 3_000, "a\0b", "\ud800"]  # fmt: skip
+UNREADABLE = [*PATHS, "nowhere", "deep", "list", "\n\n", "\x1b[2J", "empty"]
+WORDS = ["", "x", LONG, "classic\0", "\N{EN DASH}", "\ud800", "null", "\x1b[2J"]
+ENVS = [
+    *(word for word in WORDS if word != "null"),
+    "a/b/c",
+    "../x",
+    "a:b:c",
+    ":",
+    ":x",
+    "CartPole-v99",
+    "CartPole-v" + "9" * 5_000,
+]
+SETTINGS = [
+    "", "=", "=1", "x=1", LONG, "hidden", "env=null", "env=1", "env=[]", "env={}", "env=true", "env=", "hidden=null",
+    "hidden=[]", "hidden=1", "hidden=[[1]]", f"hidden={DEEP}", "hidden=[1e999]", "hidden=[0]", "hidden=[-1]",
+    "hidden={}", f"hidden=[1{'0' * 400}]", "learning_rate=NaN", "learning_rate=Infinity", "learning_rate=-1",
+    "learning_rate=0", "learning_rate=[]", "learning_rate={}", "learning_rate=null", 'learning_rate="1"',
+    "learning_rate=", "n_step=1e999", "n_step=2.0", f"n_step=1{'0' * 400}", f"n_step={'9' * 5_000}", "weights=3",
+    "weights=null", "weights=[]", 'weights={"time": 1e999}', f'weights={{"time": 1{"0" * 400}}}',
+    'weights={"time": null}', 'weights={"x": 1}', 'weights={"time": "x"}', 'weights={"time": NaN}', "optimizer=[]",
+    "optimizer={}", "optimizer=null", "spawn=null", "spawn={}", "batch_size=true", "double=1", "double=null",
+    "replay_size=0", "num_envs=0", "num_envs=1e9", "frame_skip=-1", "discount=1.1", "epsilon_start=2",
+]  # fmt: skip
+DIGIT_SETTINGS = [
+    "", "=", "x=1", "filters=[]", "filters=[8,8,8,8,8,8]", "filters=[1e999]", "kernel=0", "kernel=9e9", "hidden=[]",
+    "hidden=null", f"hidden={DEEP}", "epochs=0", "epochs=1e9", "epochs=1.5", "held_out=-1", "held_out=60000",
+    "batch_size=0", "dropout=1", "dropout=NaN", "cost=null", "cost=[]", "convolutions=2", "augmentation=-1",
+    "augmentation=1e999", "averaging=1", "warm_up=-1", "smoothing=2", "activation={}", "final_learning_rate=0",
+]  # fmt: skip
+
+CASES: list[list[str]] = [
+    *([*TRAIN, option, value] for option in ("--decisions", "--validation") for value in COUNTS),
+    *([*command, "--seconds", value] for command in (TRAIN, TRAIN_DIGITS) for value in ("0", *NUMBERS)),
+    *([*command, "--seed", value]
+      for command in (TRAIN, TRAIN_DIGITS, EVALUATE, ["copilot-table"]) for value in ("1.5", *NUMBERS)),
+    *([*TRAIN_DIGITS, "--epochs", value] for value in COUNTS),
+    *([*command, "--episodes", value] for command in (EVALUATE, ["copilot-table"])
+      for value in (*COUNTS, "1000000000")),
+    *([*command, "--preset", word] for command in (TRAIN, TRAIN_DIGITS) for word in WORDS),
+    *([*EVALUATE, "--spawn", word] for word in WORDS),
+    *(["copilot-table", "--good", word] for word in WORDS),
+    *(["physics", "--exhibit", word] for word in (*WORDS, *COUNTS)),
+    *([*TRAIN, "--env", env] for env in ENVS),
+    *([*TRAIN, "--set", setting] for setting in SETTINGS),
+    *([*TRAIN_DIGITS, "--set", setting] for setting in DIGIT_SETTINGS),
+    *([*command, "--output", path] for command in (TRAIN, TRAIN_DIGITS) for path in PATHS),
+    *([*command, path] for path in UNREADABLE for command in (
+        ["train", "--decisions", "100", "--resume"], ["train-digits", "--resume"], ["evaluate", "--model"],
+        ["evaluate-digits", "--model"], ["copilot-table", "--model"])),
+    *(["--user-dir", path, "physics"] for path in ("", " ", "/", "loop", "a\0b", "\ud800")),
+    *([*command, argument]
+      for command in ([], ["train"], ["evaluate"], ["train-digits"], ["physics"], ["copilot-table"])
+      for argument in ("--nonsense", f"--{LONG}", "nonsense", LONG, "\ud800", "--seed", "-1")),
+    ["--windowed", "--fullscreen"], ["train"], ["train-digits"], ["evaluate"], ["evaluate-digits"],
+]  # fmt: skip
+
+
+def in_short(arguments: list[str]) -> str:
+    shown = [argument if argument != MODEL else "MODEL" for argument in arguments]
+    return ascii(" ".join(each if len(each) < 24 else f"{each[:12]}[{len(each)}]" for each in shown))[1:-1]
+
+
+def went_on(*_, **__):
+    raise AssertionError("it went on")
+
+
+@pytest.fixture
+def refused(tmp_path, monkeypatch, capsys):
+    """Runs a command that has to be refused, and returns what it says; the folder it runs in stays as it was."""
+    for kind, method in ((Training, "advance"), (DigitTraining, "advance"), (LanderEnv, "step")):
+        monkeypatch.setattr(kind, method, went_on)
+    monkeypatch.setattr("game.start.play", went_on)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("dear diary")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "letter").write_text("dear you")
+    (tmp_path / "empty").mkdir()
+    for name, content in (("deep", DEEP), ("list", "[]")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "config.json").write_text(content)
+    if sys.platform != "win32":
+        (tmp_path / "loop").symlink_to(tmp_path / "loop")
+
+    def refused(arguments):
+        before = sorted(map(str, tmp_path.rglob("*")))
+        try:
+            code = main(arguments)
+        except SystemExit as ended:
+            code = ended.code
+        told = capsys.readouterr().err
+        assert code in (1, 2)
+        assert 0 < len(told) < 1_000
+        assert told.count("\n") <= 4
+        assert told.replace("\n", "").isprintable()
+        assert "Traceback" not in told
+        assert sorted(map(str, tmp_path.rglob("*"))) == before
+        return told
+
+    return refused
+
+
+@pytest.mark.parametrize("arguments", CASES, ids=in_short)
+def test_what_makes_no_sense_is_refused_in_a_sentence_before_anything_is_begun(refused, arguments):
+    refused(arguments)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """A run of each kind on disk, with a score, and with a history."""
+    folder = tmp_path_factory.mktemp("runs")
+    training = Training(SMALL, 3, validation_episodes=2)
+    training.advance()
+    training.evaluate()
+    save_run(training, folder / "lander")
+    images, labels = np.zeros((200, 28, 28), np.float32), np.zeros(200, np.uint8)
+    digits = DigitTraining(DIGITS, data=(images, labels))
+    digits.advance()
+    save_digit_run(digits, folder / "digits")
+    return folder
+
+
+WRONG = [None, "x", [], {}, True, -1, 1.5, float("inf"), float("nan"), 10**400, [[1]], "x" * 10_000]
+WRONG_OF = [
+    *(("lander", name, value) for name in ("seed", "episodes", "landings") for value in WRONG),
+    *(("lander", "seconds", value) for value in WRONG if value != 1.5),
+    *(("lander", "best", value) for value in WRONG if value is not None),
+    *(("lander", f"best.{name}", value) for name in ("success", "mean_return") for value in WRONG
+      if not isinstance(value, int | float) or not abs(value) < 10),
+    *(("digits", name, value) for name in ("seed", "step", "preset") for value in WRONG),
+    *(("digits", "seconds", value) for value in WRONG if value != 1.5),
+    *(("digits", "held_out", value) for value in WRONG if value not in (None, -1, 1.5)),
+    *(("digits", "history", value) for value in WRONG if value not in ([], {})),
+    *(("digits", "changes", value) for value in WRONG if value not in ([], {})),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "name", "value"), WRONG_OF, ids=lambda value: ascii(str(value)[:12])[1:-1])
+def test_a_run_that_says_nonsense_of_itself_is_not_gone_on_with(refused, runs, monkeypatch, kind, name, value):
+    images, labels = np.zeros((200, 28, 28), np.float32), np.zeros(200, np.uint8)
+    monkeypatch.setattr("ai.digits.training.load_part", lambda part: (images, labels))
+    file = runs / kind / TRAINING_FILE
+    sound = file.read_text()
+    described = json.loads(sound)
+    place, _, inner = name.rpartition(".")
+    (described[place] if place else described)[inner] = value
+    file.write_text(json.dumps(described))
+    try:
+        command = ["train", "--decisions", "100"] if kind == "lander" else ["train-digits"]
+        assert TRAINING_FILE in refused([*command, "--resume", str(runs / kind)])
+    finally:
+        file.write_text(sound)
+
+
+@pytest.mark.parametrize("content", [DEEP, "\xff", '{"best": ' + DEEP, "", "null", "3", "[]"], ids=range(7))
+def test_a_run_whose_file_makes_no_sense_is_not_gone_on_with(refused, runs, content):
+    for kind, command in (("lander", ["train", "--decisions", "100"]), ("digits", ["train-digits"])):
+        file = runs / kind / TRAINING_FILE
+        sound = file.read_text()
+        file.write_bytes(content.encode("latin-1"))
+        try:
+            assert TRAINING_FILE in refused([*command, "--resume", str(runs / kind)])
+        finally:
+            file.write_text(sound)
+
+
+@pytest.mark.parametrize("value", [None, "x", [], True, -1, float("inf"), float("nan"), {}], ids=str)
+@pytest.mark.parametrize("entry", ["checkpoints", "alterations", "validations"])
+def test_a_history_with_nonsense_for_numbers_is_named(tmp_path, entry, value):
+    history = History()
+    history.append(Checkpoint(0.0, 0, 0.0, np.zeros(3, np.float32)))
+    history.append(Alteration(5, "updates", 1, 2))
+    history.append(Validation(7, 0.5, 1.0, True))
+    history.write(tmp_path)
+    assert len(History.read(tmp_path).checkpoints) == 1
+    with np.load(tmp_path / HISTORY_FILE) as arrays:
+        kept = dict(arrays)
+    described = json.loads(str(kept["described"]))
+    described[entry][0]["decisions"] = value
+    np.savez(tmp_path / HISTORY_FILE, **kept | {"described": np.array(json.dumps(described))})
+    with pytest.raises(ModelFormatError, match=r"history\.npz"):
+        History.read(tmp_path)
+
+
+class Terminal(io.TextIOWrapper):
+    """A terminal that knows no more letters than its encoding."""
+
+    def __init__(self, encoding):
+        super().__init__(io.BytesIO(), encoding=encoding, errors="strict", write_through=True)
+
+    @property
+    def shown(self):
+        return self.buffer.getvalue().decode(self.encoding)
+
+
+STRANGE = "m\N{LATIN SMALL LETTER U WITH DIAERESIS}n\N{EN DASH}\N{GREEK SMALL LETTER EPSILON}\udcff"
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="file names are letters there, not bytes")
+@pytest.mark.parametrize("encoding", ["ascii", "cp437", "latin-1", "utf-8"])
+def test_a_terminal_that_knows_few_letters_ends_no_command(encoding, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    terminal = Terminal(encoding), Terminal(encoding)
+    monkeypatch.setattr(sys, "stdout", terminal[0])
+    monkeypatch.setattr(sys, "stderr", terminal[1])
+    small = [f"--set={each}" for each in ("num_envs=2", "hidden=[4]", "batch_size=8", "warm_up=8", "updates=1")]
+    assert main(["train", "--decisions", "40", "--validation", "2", "--output", STRANGE, *small]) == 0
+    assert "kept in m" in terminal[0].shown
+    assert main(["evaluate", "--model", STRANGE, "--episodes", "2"]) == 0  # no landing: dashes for times
+    assert "mean time" in terminal[0].shown
+    assert main(["evaluate", "--model", f"no {STRANGE}"]) == 1
+    assert main(["train", "--output", "x", "--decisions", "1", "--preset", STRANGE]) == 1
+    assert "--preset is one of" in terminal[1].shown
+    for command in ("train", "evaluate", "train-digits", "evaluate-digits", "copilot-table", "physics"):
+        with pytest.raises(SystemExit, match="0"):
+            main([command, "--help"])
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp437"])
+def test_a_process_with_such_a_terminal_is_refused_in_a_sentence_too(encoding, tmp_path):
+    process = subprocess.run(
+        [sys.executable, str(ROOT / "main.py"), "evaluate", "--model", "m\N{EN DASH}n"],
+        cwd=tmp_path, capture_output=True, env=os.environ | {"PYTHONIOENCODING": encoding}, timeout=120, check=False,
+    )  # fmt: skip
+    assert process.returncode == 1
+    assert b"no readable model in m?n" in process.stderr
+    assert b"Traceback" not in process.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device")
+def test_an_output_that_takes_nothing_ends_a_command_in_a_sentence():
+    with Path("/dev/full").open("w") as output:
+        process = subprocess.run([sys.executable, "main.py", "evaluate", "--model", MODEL, "--episodes", "1"], cwd=ROOT,
+                                 stdout=output, stderr=subprocess.PIPE, timeout=120, check=False)  # fmt: skip
+    assert process.returncode == 1
+    assert process.stderr == b"tranquility: cannot write: No space left on device\n"

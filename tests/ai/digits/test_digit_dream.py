@@ -1,0 +1,80 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.digits.dream import INK, STEPS, Dream
+
+MODELS = Path(__file__).parents[3] / "models" / "digits"
+
+
+@pytest.fixture(scope="module", params=["classic", "modern"])
+def classifier(request):
+    return DigitClassifier.load(MODELS / request.param)
+
+
+def dreamt(classifier, digit, steps, **options):
+    dream = Dream(classifier, digit, np.random.default_rng(0), **options)
+    for _ in range(steps):
+        dream.advance()
+    return dream
+
+
+@pytest.mark.parametrize("calm", [0.0, 0.7])
+def test_the_network_comes_to_read_the_digit_it_dreams_of(classifier, calm):
+    dream = dreamt(classifier, 3, 40, calm=calm)
+    assert dream.probabilities[3] > 0.5 > Dream(classifier, 3, np.random.default_rng(0)).probabilities[3]
+    np.testing.assert_array_equal(dream.probabilities, classifier.predict(dream.image)[0])
+
+
+def test_a_calm_dream_has_no_more_ink_than_a_digit_and_a_wild_one_has(classifier):
+    grey = np.full((28, 28), 0.5)
+    calm, wild = (dreamt(classifier, 8, 5, calm=calm, start=grey).image.sum() for calm in (1.0, 0.0))
+    assert calm <= INK * 1.01 < wild
+
+
+def test_the_gradient_is_that_of_what_is_to_grow(classifier):
+    """Against finite differences of the logarithm of the probability, or of the outputs' difference."""
+    dream = Dream(classifier, 2, np.random.default_rng(3), calm=0.0)
+    network = classifier.network
+
+    def worth(image):
+        outputs = network.predict(classifier.shaped(image))[0].astype(float)
+        if network.cost.logits:
+            return outputs[2] - np.log(np.exp(outputs).sum())
+        return outputs[2] - np.delete(outputs, 2).mean()
+
+    gradient = dream._gradient(dream.image)
+    way = gradient / np.linalg.norm(gradient)
+    step = 1e-2
+    rise = (worth(dream.image + step * way) - worth(dream.image - step * way)) / (2 * step)
+    assert rise == pytest.approx(np.linalg.norm(gradient), rel=0.03)
+
+
+def test_it_begins_with_a_drawing_and_comes_to_an_end():
+    classifier = DigitClassifier.load(MODELS / "classic")
+    drawing = np.zeros((28, 28), np.float32)
+    drawing[4:24, 13:16] = 1
+    dream = Dream(classifier, 1, np.random.default_rng(0), start=drawing)
+    np.testing.assert_array_equal(dream.image, drawing)
+    while not dream.done:
+        dream.advance()
+    assert dream.step == STEPS
+    assert 0 <= dream.image.min() <= dream.image.max() <= 1
+
+
+def test_the_same_seed_dreams_the_same():
+    classifier = DigitClassifier.load(MODELS / "classic")
+    np.testing.assert_array_equal(dreamt(classifier, 5, 9).image, dreamt(classifier, 5, 9).image)
+
+
+@pytest.mark.parametrize("start", [np.full((28, 28), np.nan), np.full((28, 28), 1e9), np.zeros((28, 28))])
+def test_it_makes_do_with_any_image(start):
+    dream = dreamt(DigitClassifier.load(MODELS / "classic"), 0, 5, start=start)
+    assert np.isfinite(dream.image).all()
+
+
+def test_there_is_no_eleventh_digit():
+    with pytest.raises(ValueError, match="from 0 to 9"):
+        Dream(DigitClassifier.load(MODELS / "classic"), 10, np.random.default_rng(0))

@@ -1,0 +1,87 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.digits.fix import ENOUGH, STEPS, Fixed, FixStep, fix, steps_to_fix
+from ai.digits.mnist import load_part
+from ai.nn import ModelFormatError
+
+CLASSIC = Path(__file__).parents[3] / "models" / "digits" / "classic"
+
+
+@pytest.fixture(scope="module")
+def data():
+    images, labels = load_part("test")
+    return images[:1000], labels[:1000]
+
+
+@pytest.fixture(scope="module")
+def misread(data):
+    """An image that the network misreads, and what it is."""
+    images, labels = data
+    wrong = np.flatnonzero(DigitClassifier.load(CLASSIC).predict(images).argmax(axis=1) != labels)
+    return images[wrong[0]], int(labels[wrong[0]])
+
+
+def fixed(data, misread, keep, **options) -> Fixed:
+    told = [each for message in fix(CLASSIC, *misread, keep, train=data, test=data, **options) for each in message]
+    assert all(isinstance(each, FixStep) for each in told[:-1])
+    return told[-1]
+
+
+def test_a_fix_teaches_the_drawing_says_what_it_cost_and_is_kept(tmp_path, data, misread):
+    image, digit = misread
+    done = fixed(data, misread, tmp_path / "fixed")
+    before, after = done.probability
+    assert before < 0.5 < ENOUGH - 0.05 < after
+    assert 0 < done.steps <= STEPS
+    assert done.accuracy[0] > 0.97
+    assert done.accuracy[1] > 0.95  # it has not forgotten the others
+    kept = DigitClassifier.load(tmp_path / "fixed")
+    assert kept.predict(image)[0].argmax() == digit
+    assert DigitClassifier.load(CLASSIC).predict(image)[0].argmax() != digit
+    right = (kept.predict(data[0]).argmax(axis=1) == data[1]).mean()
+    assert right == pytest.approx(done.accuracy[1])
+
+
+def test_what_is_known_of_the_network_before_is_not_measured_again(tmp_path, data, misread):
+    assert fixed(data, misread, tmp_path / "fixed", before=0.5).accuracy[0] == 0.5
+
+
+def test_what_it_is_sure_of_already_changes_nothing(tmp_path, data):
+    images, labels = data
+    sure = np.flatnonzero(DigitClassifier.load(CLASSIC).predict(images)[np.arange(len(labels)), labels] > 0.95)[0]
+    done = fixed(data, (images[sure], int(labels[sure])), tmp_path / "fixed")
+    assert (done.steps, done.folder) == (0, None)
+    assert done.accuracy[0] == done.accuracy[1]
+    assert not (tmp_path / "fixed").exists()
+
+
+def test_a_fix_that_cannot_be_kept_says_why(tmp_path, data, misread):
+    (tmp_path / "file").write_text("in the way")
+    done = fixed(data, misread, tmp_path / "file" / "fixed")
+    assert done.folder is None
+    assert done.problem
+
+
+@pytest.mark.parametrize(
+    ("image", "digit"),
+    [(np.zeros((28, 28)), 3), (np.full((28, 28), np.nan), 3), (np.ones((28, 28)), 10), (np.ones((28, 28)), -1)],
+)
+def test_what_is_no_drawing_or_no_digit_is_refused(data, image, digit):
+    with pytest.raises(ValueError, match=r"digit|learn"):
+        list(steps_to_fix(DigitClassifier.load(CLASSIC), image, digit, data, np.random.default_rng(0)))
+
+
+def test_a_damaged_network_is_named(tmp_path, data, misread):
+    with pytest.raises(ModelFormatError):
+        list(fix(tmp_path / "nothing", *misread, tmp_path / "fixed", train=data, test=data))
+
+
+def test_the_same_fix_is_the_same_network(tmp_path, data, misread):
+    for name in "ab":
+        fixed(data, misread, tmp_path / name)
+    a, b = (DigitClassifier.load(tmp_path / name).network.values for name in "ab")
+    np.testing.assert_array_equal(a, b)

@@ -1,0 +1,490 @@
+"""What lies on disk and what comes from strangers: read within bounds, replaced only if it is ours, lost never."""
+
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tracemalloc
+import zipfile
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.agent.agent import KIND, DeepQAgent
+from ai.agent.config import PRESETS
+from ai.digits.classifier import DigitClassifier
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    ConvolutionLayer,
+    CostFunctions,
+    ModelFormatError,
+    NeuralNetwork,
+    atomic_folder,
+)
+from ai.nn.budget import MOST_LAYERS
+from ai.nn.files import inside, parse_json, read_arrays, read_bytes, read_json, write_text
+from ai.nn.folder import claimed_folder, recover_folder
+from ai.nn.lock import take, take_folder
+from ai.training.checkpoints import resume_run, save_run
+from ai.training.demonstrations import Demonstration
+from ai.training.gym_task import gym_config
+from ai.training.history import History
+from ai.training.lander_task import LanderTask
+from ai.training.loop import Training
+from benchmarks.faults import SUBJECTS, damaged, killed, limited
+from main import main
+
+ROOT = Path(__file__).parents[3]
+SMALL = PRESETS["modern"].changed(hidden=(8,), num_envs=2, replay_size=200)
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pipes, forks and alarms are not there")
+
+
+@pytest.fixture(autouse=True)
+def _measured_quickly(monkeypatch):
+    monkeypatch.setattr(LanderTask, "test_episodes", 4)
+
+
+@contextmanager
+def little_memory(megabytes: int = 100):
+    """Fail if more is asked for in the block, NumPy's arrays included."""
+    tracemalloc.start()
+    try:
+        yield
+        assert tracemalloc.get_traced_memory()[1] < megabytes * 1e6
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("saved") / "run"
+    training = Training(SMALL, validation_episodes=1)
+    training.conclude()  # so that it has a score
+    save_run(training, folder)
+    return folder
+
+
+@pytest.fixture
+def run(saved, tmp_path):
+    return shutil.copytree(saved, tmp_path / "run")
+
+
+def edit(path: Path, **changes):
+    path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+
+# Readers
+
+
+@pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
+def test_damage_of_any_kind_is_read_or_refused(subject, tmp_path):
+    found = list(damaged(subject, 60, 1, tmp_path))
+    assert set(found) <= {"read", "refused"}
+    assert "refused" in found or not subject.refusals
+
+
+@pytest.mark.parametrize("name", ["config.json", "online/config.json", "online/layer-0-bias.npy", "optimizer.npz",
+                                  "last/config.json", "training.json"])  # fmt: skip
+@pytest.mark.parametrize("damage", ["pipe", "device", "loop", "outside", "holes", "folder"])
+def test_what_is_no_ordinary_file_of_the_folder_is_named(run, name, damage):
+    path = run / name
+    held = path.read_bytes()
+    path.unlink()
+    match damage:
+        case "pipe":
+            os.mkfifo(path)
+        case "device":
+            path.symlink_to("/dev/zero")
+        case "loop":
+            path.symlink_to(path.name)
+        case "outside":
+            (run.parent / "stranger").write_bytes(held)
+            path.symlink_to(run.parent / "stranger")
+        case "folder":
+            path.mkdir()
+        case "holes":
+            path.touch()
+            os.truncate(path, 3_300_000_000)
+    with little_memory(), limited(20), pytest.raises(ModelFormatError) as caught:
+        resume_run(run)
+    assert any(path.name in problem or "last" in problem for problem in caught.value.problems)
+
+
+def test_a_small_archive_cannot_ask_for_much_memory(run):
+    with zipfile.ZipFile(run / "optimizer.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in ("gradient_sum", "square_sum"):
+            header = io.BytesIO()
+            shape = {"descr": "<f4", "fortran_order": False, "shape": (500_000_000,)}
+            np.lib.format.write_array_header_1_0(header, shape)
+            with archive.open(f"{name}.npy", "w") as member:
+                member.write(header.getvalue())
+                for _ in range(10):
+                    member.write(bytes(1_000_000))
+    with little_memory(), pytest.raises(ModelFormatError, match="gradient_sum is no state of Adam"):
+        DeepQAgent.load(run)
+
+
+def packed(path, method, names=("steps",)):
+    with zipfile.ZipFile(path, "w", method) as archive:
+        for name in names:
+            held = io.BytesIO()
+            np.save(held, np.array(3))
+            archive.writestr(f"{name}.npy", held.getvalue())
+    return path
+
+
+def anything(*_):
+    pass
+
+
+def test_archives_that_numpy_does_not_write_are_refused(tmp_path):
+    path = packed(tmp_path / "a.npz", zipfile.ZIP_STORED)
+    assert read_arrays(path, 1000, anything)["steps"] == 3
+    whole = path.read_bytes()
+    encrypted, unknown = bytearray(whole), bytearray(whole)
+    directory = whole.rfind(b"PK\1\2")
+    encrypted[directory + 8] |= 1
+    unknown[directory + 10] = 99
+    for held, said in (
+        (encrypted, "encrypted"),
+        (unknown, "unknown way"),
+        (whole[:-1], "no archive"),
+        (b"", "no archive"),
+    ):
+        path.write_bytes(held)
+        with pytest.raises(ValueError, match=said):
+            read_arrays(path, 1000, anything)
+    with pytest.raises(ValueError, match="unknown way"):
+        read_arrays(packed(path, zipfile.ZIP_LZMA), 1000, anything)
+    with pytest.raises(ValueError, match="too many"):
+        read_arrays(packed(path, zipfile.ZIP_STORED, [f"a{number}" for number in range(2000)]), 10**6, anything)
+    with pytest.raises(OSError, match="larger than"):
+        read_arrays(path, 1000, anything)
+
+
+def layers_of(folder, layers):
+    config = json.loads((folder / "config.json").read_text())
+    (folder / "config.json").write_text(json.dumps(config | {"layers": layers}))
+
+
+def fully(inputs, outputs):
+    return {"type": "FullyConnectedLayer", "inputs": inputs, "outputs": outputs, "arrays": {}}
+
+
+def convolution(shape, filters):
+    sizes = {"inputs": shape, "filters": filters, "kernel": 1, "stride": 1, "padding": 0}
+    return {"type": "ConvolutionLayer", **sizes, "arrays": {}}
+
+
+@pytest.mark.parametrize(
+    ("layers", "said"),
+    [
+        ([{"type": "ActivationLayer", "activation": {"name": "tanh"}}] * 60_000, "at most 500 layers"),
+        ([fully(1024, 1024)] * 400, "at most 12,000,000 parameters"),
+        ([fully(1_000_000, 64)], "at most 12,000,000 parameters"),
+        ([convolution([28, 28, 1], 1 << 20)], "values of an example"),
+        ([convolution([32, 32, 256], 256)] * 100, "multiplications"),
+        ([convolution([1024, 1024, 1], 1 << 20)], "values of an example"),
+    ],
+)
+def test_a_small_config_cannot_ask_for_a_huge_network(tmp_path, layers, said):
+    NeuralNetwork(*CostFunctions.use_mse()).save(tmp_path / "model")
+    layers_of(tmp_path / "model", layers)
+    with little_memory(), limited(20), pytest.raises(ModelFormatError, match=said) as caught:
+        NeuralNetwork.load(tmp_path / "model")
+    assert len(str(caught.value)) < 10_000
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"hidden": [1024] * 400}, {"hidden": [1] * 60_000}, {"hidden": [1024] * 20}, {"env": "x" * 100_000 + ":y"},
+     {"preset" * 20_000: 1}, {"batch_size": 10**30}, {"env": None}],
+)  # fmt: skip
+def test_a_small_agent_cannot_ask_for_a_huge_network_or_message(run, changes):
+    config = json.loads((run / "config.json").read_text())["config"]
+    edit(run / "config.json", config=config | changes)
+    with little_memory(), limited(20), pytest.raises(ModelFormatError) as caught:
+        DeepQAgent.load(run)
+    assert len(str(caught.value)) < 1000
+
+
+@pytest.mark.parametrize("wrong", [{"features": 1_000_000}, {"features": -1}, {"actions": True}, {"decisions": 0.5},
+                                   {"decisions": 10**400}, {"train_count": None}])  # fmt: skip
+def test_counts_of_an_agent_are_checked(run, wrong):
+    edit(run / "config.json", **wrong)
+    with little_memory(), pytest.raises(ModelFormatError, match=r"config\.json"):
+        DeepQAgent.load(run)
+
+
+@pytest.mark.parametrize("text", ['{"seed": Infinity}', '{"seed": 1e999}', "[" * 100_000, '{"a":' * 5000])
+def test_numbers_that_are_none_and_depths_that_are_too_deep_are_refused(run, text):
+    (run / "training.json").write_text(text)
+    with pytest.raises(ModelFormatError, match=r"training\.json"):
+        resume_run(run)
+
+
+@pytest.mark.parametrize("success", ["x", None, [], True])
+def test_a_score_is_made_of_numbers(run, success):
+    best = json.loads((run / "training.json").read_text())["best"]
+    edit(run / "training.json", best=best | {"success": success})
+    with pytest.raises(ModelFormatError, match="no finite number"):
+        resume_run(run)
+
+
+def test_json_is_nested_so_deep_and_no_deeper():
+    assert parse_json("[" * 31 + "]" * 31)
+    assert parse_json('"[[[["') == "[[[["
+    for text in ("[" * 33 + "]" * 33, '{"a":' * 33 + "1" + "}" * 33):
+        with pytest.raises(ValueError, match="too deeply"):
+            parse_json(text)
+    with pytest.raises(ValueError, match="too large a number"):
+        parse_json("1" * 41)
+
+
+def test_a_file_is_as_large_as_it_may_be_and_no_larger(tmp_path):
+    (tmp_path / "a").write_bytes(b"12345")
+    assert read_bytes(tmp_path / "a", 5) == b"12345"
+    with pytest.raises(OSError, match="larger than"):
+        read_bytes(tmp_path / "a", 4)
+    with pytest.raises(OSError, match="such a name"):
+        read_bytes("a\0b")
+    with pytest.raises(OSError, match="not an ordinary file"):
+        read_json("/dev/zero")
+    with pytest.raises(OSError, match="leads out"):
+        inside(tmp_path, "../a")
+
+
+def test_a_network_too_large_to_be_read_is_not_made_either():
+    network = NeuralNetwork(*CostFunctions.use_mse())
+    for _ in range(MOST_LAYERS):
+        network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+    with pytest.raises(ValueError, match="at most 500 layers"):
+        network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+    with little_memory(), pytest.raises(ValueError, match="parameters"):
+        DeepQAgent(config=PRESETS["modern"].changed(hidden=(1024,) * 400))
+    with pytest.raises(ValueError, match="values of an example"):
+        NeuralNetwork(*CostFunctions.use_mse()).add_layer(ConvolutionLayer((28, 28, 1), 1 << 12, 1))
+
+
+def test_a_history_is_checked_entry_by_entry(run):
+    history = History()
+    history.write(run)
+    with np.load(run / "history.npz") as arrays:
+        kept = dict(arrays)
+    said = json.loads(str(kept["described"]))
+    for wrong in ({"validations": [{"decisions": 1, "success": "x", "mean_return": 0, "best": True}]},
+                  {"alterations": [{"decisions": "1", "name": "x", "before": 0, "after": 0}]},
+                  {"stride": 10**400}):  # fmt: skip
+        np.savez(run / "history.npz", **kept | {"described": np.array(json.dumps(said | wrong))})
+        with pytest.raises(ModelFormatError, match=r"history\.npz"):
+            History.read(run)
+
+
+def test_hills_of_a_demonstration_have_a_seed():
+    with pytest.raises(ValueError, match="whole numbers"):
+        Demonstration(0, (0,), ground="x")
+
+
+@pytest.mark.parametrize("name", ["modern", "classic"])
+def test_shipped_networks_load(name):
+    assert DeepQAgent.load(ROOT / "models" / "lander" / name).decisions
+    assert DigitClassifier.load(ROOT / "models" / "digits" / name).predict(np.zeros((28, 28))).shape == (1, 10)
+
+
+# No code from files
+
+
+def test_a_file_never_starts_code(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("gymnasium")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "payload.py").write_text("from pathlib import Path\nPath('ran').touch()\n")
+    training = Training(gym_config("CartPole-v1").changed(num_envs=2), validation_episodes=1)
+    save_run(training, "run")
+    for folder in (Path("run"), Path("run", "last")):
+        config = json.loads((folder / "config.json").read_text())["config"]
+        edit(folder / "config.json", config=config | {"env": "payload:CartPole-v1"})
+    for command in (
+        ["evaluate", "--model", "run", "--episodes", "2"],
+        ["train", "--resume", "run", "--decisions", "9"],
+    ):
+        assert main(command) == 1
+        assert "--env" in capsys.readouterr().err
+        assert not Path("ran").exists()
+    assert main(["evaluate", "--model", "run", "--episodes", "2", "--env", "payload:CartPole-v1"]) == 0
+    assert Path("ran").exists()
+
+
+# Writers
+
+
+@pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.name)
+def test_a_writer_that_is_killed_leaves_the_old_or_the_new(subject, tmp_path):
+    found = list(killed(subject, tmp_path, every=29 if subject.name == "run" else 7 if subject.name == "digits" else 1))
+    assert found
+    assert set(found) <= {"old", "new"}
+
+
+def thesis(folder):
+    (folder / ".git").mkdir(parents=True)
+    (folder / "config.json").write_text("{}")
+    (folder / "chapter").write_text("three years")
+
+
+def digits(folder):
+    save = ROOT / "models" / "digits" / "classic"
+    folder.parent.mkdir(exist_ok=True)
+    subprocess.run(["cp", "-r", str(save), str(folder)], check=True)
+
+
+def ours_with(name):
+    def make(folder):
+        save_run(Training(SMALL, validation_episodes=1), folder)
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text("of somebody's own")
+
+    return make
+
+
+def linked(folder):
+    save_run(Training(SMALL, validation_episodes=1), folder)
+    (folder / "target").rename(folder.parent / "elsewhere")
+    (folder / "target").symlink_to(folder.parent / "elsewhere")
+
+
+def listing(folder):
+    return {path: path.read_bytes() if path.is_file() else None for path in sorted(folder.rglob("*"))}
+
+
+@pytest.mark.parametrize(
+    "make", [thesis, digits, ours_with("notes.txt"), ours_with("online/notes.txt"), ours_with(".git/HEAD"), linked,
+             lambda folder: folder.write_text("a file")],
+    ids=["thesis", "digits", "notes", "notes within", "repository", "linked", "file"],
+)  # fmt: skip
+@pytest.mark.parametrize("option", ["--output", "--resume"])
+def test_training_replaces_only_what_is_its_own(make, option, tmp_path, capsys):
+    make(tmp_path / "d")
+    before = listing(tmp_path)
+    small = [f"--set={change}" for change in ("num_envs=2", "hidden=[8]")] if option == "--output" else []
+    assert main(["train", "--decisions", "300", "--validation", "4", option, str(tmp_path / "d"), *small]) == 1
+    told = capsys.readouterr().err.strip()
+    assert str(tmp_path / "d") in told
+    assert "left as it is" in told or "no readable model" in told
+    assert listing(tmp_path) == before
+
+
+def test_what_systems_leave_in_a_folder_is_no_obstacle(run):
+    (run / ".DS_Store").write_bytes(b"\0")
+    save_run(Training(SMALL, validation_episodes=1), run)
+
+
+@pytest.mark.parametrize("output", ["/", ".", "x" * 300, "loop/run"])
+def test_places_that_cannot_be_written_are_told_in_a_sentence(output, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("mine").touch()
+    Path("loop").symlink_to("loop")
+    try:
+        code = main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", output])
+    except SystemExit as end:  # of what can be no folder anywhere
+        code = end.code
+    assert code in (1, 2)
+    assert "\n" not in capsys.readouterr().err.strip()
+    assert {path.name for path in tmp_path.iterdir()} == {"mine", "loop"}
+
+
+def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, monkeypatch, capsys):
+    from ai.cli import lander as cli
+
+    def advance(training, clock, output, stop):
+        output.mkdir()
+        (output / "diary").write_text("dear")
+
+    monkeypatch.setattr(cli, "_advance", advance)
+    assert main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]) == 0
+    assert (tmp_path / "run" / "diary").read_text() == "dear"
+    assert resume_run(tmp_path / "run 2")
+    assert "run 2" in capsys.readouterr().out
+
+
+def test_the_second_training_of_a_folder_is_told(tmp_path, capsys):
+    command = ["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]
+    with take_folder(tmp_path / "run"):
+        holder = "from ai.nn.lock import take_folder; import sys; take_folder(sys.argv[1])"
+        other = subprocess.run([sys.executable, "-c", holder, str(tmp_path / "run")], cwd=ROOT, capture_output=True,
+                               text=True, check=False)  # fmt: skip
+        assert "BlockingIOError" in other.stderr
+        assert main(command) == 1
+        assert "another training" in capsys.readouterr().err
+    assert main(command) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+def test_a_lock_that_was_let_go_is_free_at_once_and_leaves_nothing(tmp_path):
+    first = take(tmp_path / "a.lock")
+    assert take(tmp_path / "a.lock") is None
+    first.release()
+    with take(tmp_path / "a.lock"):
+        assert take(tmp_path / "a.lock") is None
+        first.release()  # once more, which must not free what another holds
+        assert take(tmp_path / "a.lock") is None
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes")
+def test_a_pipe_in_place_of_a_lock_lets_nobody_wait(tmp_path):
+    os.mkfifo(tmp_path / ".run.lock")
+    waiter = "from ai.nn.lock import take_folder; import sys; take_folder(sys.argv[1]).release()"
+    subprocess.run([sys.executable, "-c", waiter, tmp_path / "run"], check=True, timeout=30)
+
+
+def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(run, monkeypatch):
+    rename, calls = Path.rename, []
+
+    def meddled(path, target):
+        moved = rename(path, target)
+        calls.append(path.name)
+        if len(calls) == 1:
+            recover_folder(run)
+        return moved
+
+    monkeypatch.setattr(Path, "rename", meddled)
+    training = Training(SMALL, validation_episodes=1)
+    training.episodes = 77
+    save_run(training, run)
+    assert len(calls) > 3
+    assert resume_run(run).episodes == 77
+    assert [path.name for path in run.parent.iterdir()] == ["run"]
+
+
+def test_two_writers_of_one_folder_never_mix(tmp_path):
+    with atomic_folder(tmp_path / "run", KIND) as first, atomic_folder(tmp_path / "run", KIND) as second:
+        assert first != second
+        DeepQAgent(config=SMALL).write(first)
+        DeepQAgent(config=SMALL).write(second)
+    assert DeepQAgent.load(tmp_path / "run")
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+def test_a_claimed_folder_is_checked_before_there_is_anything_to_write(tmp_path):
+    (tmp_path / "letter").write_text("dear")
+    with pytest.raises(FileExistsError, match="left as it is"), claimed_folder(tmp_path, KIND):
+        pytest.fail("this was not ours")
+
+
+def no_links(*_):
+    raise PermissionError(1, "this disk has none")
+
+
+def test_a_new_file_takes_no_name_that_is_taken(tmp_path, monkeypatch):
+    write_text(tmp_path / "a", "first", new=True)
+    for _ in range(2):
+        with pytest.raises(FileExistsError):
+            write_text(tmp_path / "a", "second", new=True)
+        monkeypatch.setattr(os, "link", no_links)
+    assert (tmp_path / "a").read_text() == "first"
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]

@@ -1,0 +1,178 @@
+import numpy as np
+import pytest
+
+from ai.lander.environment import PARAMS, LanderEnv, Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.audio.flight_sounds import HEIGHTS, FlightSound
+from game.audio.instruments import RUNGS
+from game.flight.flight import Flight
+from tests.support.listener import Listener
+
+STANDING = PARAMS.pad_top + PARAMS.stand
+NOTHING = np.zeros(3)
+
+
+class Heard:
+    """A flight with somebody who listens."""
+
+    def __init__(self, *start: float, warns: bool = True) -> None:
+        self.flight = Flight(seed=3)
+        env = self.flight.env
+        env.place(np.ones(1, bool), np.array([start or (float(env.pad[0, 0]), STANDING + 8, 0.0, 0.0, 0.0, 0.0)]))
+        self.sound = Listener()
+        self.ears = FlightSound(self.sound, env, warns=warns)
+
+    def step(self, action: int = 0, number: int = 1) -> None:
+        for _ in range(number):
+            self.flight.step(action)
+            self.ears.follow(NOTHING)
+
+    def to_the_end(self, pilot: ScriptedPilot | None = None) -> list[str]:
+        while not self.flight.over:
+            self.step(int(pilot.act(self.flight.observation)[0]) if pilot else 0)
+        self.step(number=5)
+        return self.sound.heard()
+
+
+def over_the_pad(height: float, across: float = 0.0, angle: float = 0.0, fall: float = 0.0) -> Heard:
+    middle = float(Flight(seed=3).env.pad[0, 0])
+    return Heard(middle + across, STANDING + height, 0.0, -fall, angle, 0.0)
+
+
+def notes(played: list[str]) -> list[int]:
+    return [int(key.removeprefix("altitude_")) for key in played if key.startswith("altitude_")]
+
+
+def test_engines_sound_as_they_burn():
+    heard = over_the_pad(8)
+    heard.ears.follow(np.array([0.7, 0.0, 0.2]))
+    assert heard.sound.loops == {"engine": 0.7, "jet_left": 0.0, "jet_right": 0.2}
+
+
+def test_a_fall_is_warned_of_then_a_crash_once():
+    played = over_the_pad(14).to_the_end()
+    assert played.count("crash") == 1
+    assert "too_fast" in played[: played.index("crash")]
+    assert not {"landed", "contact", "too_tilted"} & set(played)
+
+
+def test_a_landing_touches_lights_up_and_ends_in_a_chord():
+    heard = over_the_pad(6)
+    played = heard.to_the_end(ScriptedPilot())
+    assert heard.flight.outcome is Outcome.LANDED
+    assert played.count("contact") == played.count("landed") == 1
+    assert 1 <= played.count("touchdown") <= 6
+    assert played.index("touchdown") < played.index("landed")
+    assert "crash" not in played
+
+
+def test_a_harder_touch_is_louder():
+    def blow(fall: float) -> float:
+        heard = over_the_pad(0.3, fall=fall)
+        played = heard.to_the_end()
+        return heard.sound.volumes[played.index("touchdown")]
+
+    assert 0.15 <= blow(0.2) < blow(1.4) <= 1.0
+
+
+@pytest.mark.parametrize(("height", "fall", "angle", "warning"), [
+    (2.0, 3.0, 0.0, "too_fast"), (2.0, 1.0, 0.0, None), (12.0, 3.0, 0.0, None), (12.0, 7.0, 0.0, "too_fast"),
+    (4.0, 0.0, 0.7, "too_tilted"), (4.0, 0.0, -0.7, "too_tilted"), (12.0, 0.0, 0.7, None), (4.0, 0.0, 0.3, None),
+])  # fmt: skip
+def test_warnings_come_when_they_matter(height: float, fall: float, angle: float, warning: str | None):
+    heard = over_the_pad(height, fall=fall, angle=angle)
+    heard.step()
+    assert [key for key in heard.sound.heard() if key.startswith("too")] == ([warning] if warning else [])
+
+
+def test_who_brakes_in_time_is_not_warned():
+    heard = over_the_pad(3.6, fall=3.8)
+    heard.step(3)
+    assert not [key for key in heard.sound.heard() if key.startswith("too")]
+    heard = over_the_pad(3.6, fall=3.8)
+    heard.step(0)
+    assert [key for key in heard.sound.heard() if key.startswith("too")] == ["too_fast"]
+
+
+@pytest.mark.parametrize(("height", "share", "warned"), [
+    (3.8, 0.6, False), (3.8, 1.0, True), (4.5, 1.0, False), (4.5, 1.4, True),
+])  # fmt: skip
+def test_warnings_know_the_gravity_of_the_flight(height: float, share: float, warned: bool):
+    heard = over_the_pad(height, fall=3.8)
+    heard.flight.set_gravity(share)
+    heard.step()
+    assert ("too_fast" in heard.sound.heard()) is warned
+
+
+def test_two_warnings_take_turns():
+    heard = over_the_pad(4.5, fall=5.0, angle=0.8)
+    heard.flight.env.world.gravity[:] = 0
+    heard.step(number=45)
+    assert [key for key in heard.sound.heard() if key.startswith("too")] == ["too_fast", "too_tilted"]
+
+
+def test_who_only_watches_is_not_warned():
+    heard = Heard(0.0, STANDING + 2, 0.0, -3.0, 0.8, 0.0, warns=False)
+    heard.step()
+    assert not [key for key in heard.sound.heard() if key.startswith("too")]
+
+
+def test_height_is_a_scale_and_speed_its_pace():
+    assert len(HEIGHTS) == RUNGS
+    slow, fast = over_the_pad(12, fall=1.0), over_the_pad(12, fall=5.0)
+    slow.step(number=60)
+    fast.step(number=60)
+    slowly, quickly = notes(slow.sound.heard()), notes(fast.sound.heard())
+    assert quickly == sorted(quickly, reverse=True)
+    assert len(quickly) >= len(slowly) + 3
+    assert HEIGHTS[slowly[0]] == HEIGHTS[quickly[0]] == 11  # the whole metre under it
+
+
+def test_a_note_is_struck_again_while_the_height_stays_and_does_not_flutter():
+    heard = over_the_pad(10.0)
+    env = heard.flight.env
+    for step in range(200):
+        height = 10.0 + 0.05 * np.sin(step)  # about the bound between two notes
+        env.place(np.ones(1, bool), np.array([[float(env.pad[0, 0]), STANDING + height, 0, 0, 0, 0]]))
+        heard.ears._time = 0.0
+        heard.ears.follow(NOTHING)
+    assert len(notes(heard.sound.heard())) == 3
+    assert heard.sound.volumes == [1.0, 0.6, 0.6]
+
+
+@pytest.mark.parametrize(("across", "side"), [(-8.0, 1), (0.0, 0), (8.0, -1)])
+def test_the_note_lies_on_the_pads_side(across: float, side: int):
+    heard = over_the_pad(10, across=across)
+    heard.step()
+    assert np.sign(np.round(heard.sound.pans[0], 2)) == side
+
+
+@pytest.mark.parametrize("height", [-3.0, 0.0, 21.0, 25.0, 400.0])
+def test_every_height_has_a_note(height: float):
+    heard = over_the_pad(height)
+    heard.ears.follow(NOTHING)
+    assert len(notes(heard.sound.heard())) == 1
+
+
+def test_turning_to_another_lander_is_no_event():
+    env = LanderEnv(2, seed=1, frame_skip=1)
+    env.reset()
+    sound = Listener()
+    ears = FlightSound(sound, env)
+    ears.follow(NOTHING, 0)
+    sound.heard()
+    env.outcome[1] = Outcome.CRASHED
+    ears.follow(NOTHING, 1)
+    ears.follow(NOTHING, 1)
+    assert sound.heard() == []
+    env.outcome[0] = Outcome.TIMED_OUT
+    ears.follow(NOTHING, 0)
+    assert sound.heard() == []
+
+
+def test_a_flight_that_begins_anew_is_heard_anew():
+    heard = over_the_pad(14)
+    heard.to_the_end()
+    heard.flight.env.reset()
+    heard.ears.follow(NOTHING)
+    assert len(heard.sound.heard()) == 1  # its height

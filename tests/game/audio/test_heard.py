@@ -1,0 +1,126 @@
+"""What the player's doings sound like, in every part of the game that sounds."""
+
+import pygame
+import pytest
+
+from game.core import texts
+from game.flight.flight import Hand
+from game.scenes.menu import Menu
+from game.scenes.play import Play
+from game.scenes.settings import SettingsScene
+from game.scenes.watch import Watch
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.listener import Listener
+
+DOWN, UP, LEFT, RIGHT, ENTER = pygame.K_DOWN, pygame.K_UP, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RETURN
+
+
+@pytest.fixture
+def sound(context: Context) -> Listener:
+    context.sound = Listener()
+    return context.sound
+
+
+def focus(game: Driver, label: str) -> None:
+    (widget,) = [widget for widget in game.top._form.widgets if widget.label == label]
+    game.top._form.focus(widget)
+
+
+def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):
+    game: Driver = open_game(Menu())
+    sound.heard()
+    game.key(DOWN)
+    assert sound.heard() == ["move"]
+    game.keys(UP, UP, UP)  # round to Quit, then Settings
+    sound.heard()
+    game.key(ENTER)
+    assert sound.heard() == ["choose"]
+    game.key(pygame.K_ESCAPE)
+    assert sound.heard() == ["back"]
+
+
+def test_the_mouse_is_heard_when_it_presses_not_when_it_passes(sound: Listener, open_game):
+    game: Driver = open_game(SettingsScene())
+    game.move((100, 180))
+    game.move((100, 244))
+    sound.heard()
+    game.move((100, 180))
+    game.move((100, 244))
+    assert sound.heard() == []
+    game.click((100, 244))
+    assert sound.heard() == ["adjust"]
+    game.click((900, 620))  # nothing is there
+    assert sound.heard() == []
+
+
+def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_game):
+    game: Driver = open_game(SettingsScene())
+    sound.heard()
+    game.key(ENTER)
+    assert sound.heard() == ["adjust"]
+    game.key(RIGHT)  # it is on already, so the arrow leads on
+    assert sound.heard() == ["move"]
+    focus(game, texts.SOUND_GROUPS["interface"])
+    for heard in [["adjust"]] * 3 + [[]]:  # clicks, from 70 % up to all there is
+        game.key(RIGHT)
+        assert sound.heard() == heard
+
+
+def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(sound: Listener, context, open_game):
+    game: Driver = open_game(SettingsScene())
+    focus(game, texts.SOUND_GROUPS["altitude"])
+    game.key(RIGHT)
+    game.app.settings_writer.wait()
+    settings = context.settings_file.load()
+    assert settings.altitude_volume == pytest.approx(0.1)
+    assert [key for key in sound.heard() if key.startswith("altitude")]
+    game.keys(UP, UP, UP, *[LEFT] * 12)
+    assert "touchdown" in sound.heard()
+    game.app.settings_writer.wait()
+    assert context.settings_file.load().effects_volume == 0
+
+
+def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
+    scene = Play(seed=4)
+    game: Driver = open_game(scene)
+    game.frames(2)
+    game.post(pygame.KEYDOWN, key=UP, mod=0)
+    game.post(pygame.KEYUP, key=UP, mod=0)
+    assert sound.heard()[-1].startswith("altitude")
+    game.key(pygame.K_TAB)
+    assert scene.flight.hand is Hand.NETWORK
+    assert sound.heard()[0] == "to_network"
+    game.key(pygame.K_TAB)
+    assert "to_human" in sound.heard()
+
+
+@pytest.mark.parametrize("make", [lambda: Play(seed=4), lambda: Watch(1, seed=4), lambda: Watch(16, seed=4)])
+def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, open_game, make, monkeypatch):
+    asked: list[dict[str, float]] = []
+    monkeypatch.setattr(sound, "update", lambda: (asked.append(dict(sound.loops)), sound.loops.clear()))
+    game: Driver = open_game(make())
+    game.post(pygame.WINDOWMINIMIZED)  # nothing need be drawn
+    game.key(pygame.K_TAB if isinstance(game.top, Play) else pygame.K_F1)
+    for _ in range(1500):
+        game.frames(1)
+        if {"landed", "crash"} & set(sound.played):
+            break
+    assert {"landed", "crash"} & set(sound.played)
+    assert max(loops.get("engine", 0.0) for loops in asked) > 0.5
+    assert not [key for key in sound.played if key.startswith("too")] or isinstance(game.top, Play)
+    game.key(pygame.K_ESCAPE)
+    asked.clear()
+    game.frames(3)
+    assert asked == [{}, {}, {}]
+
+
+def test_the_game_follows_volumes_and_focus(sound: Listener, context, open_game, monkeypatch):
+    events, followed = [], []
+    monkeypatch.setattr(sound, "handle_event", lambda event: events.append(event.type))
+    monkeypatch.setattr(sound, "follow", followed.append)
+    game: Driver = open_game(SettingsScene())
+    game.post(pygame.WINDOWFOCUSLOST)
+    assert pygame.WINDOWFOCUSLOST in events
+    game.app.apply_settings()
+    assert followed == [context.settings] * 2

@@ -1,0 +1,605 @@
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pygame
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ai.training.history import Alteration, History
+from game.charts import plotting
+from game.charts.chart import RUN_STYLES, Chart, Series, Tick
+from game.charts.charts import Charts
+from game.core import texts
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.panels.reward_bar import PART_COLOURS, Strip, signed
+from game.panels.training_charts import _ticks
+from tests.ai.training.test_hints import HEALTHY
+
+BOX = (40, 450, 372, 128)
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.fixture
+def canvas() -> Canvas:
+    return Canvas(pygame.Surface((1280, 720)))
+
+
+@pytest.fixture
+def drawn(canvas: Canvas) -> Callable[[Chart], np.ndarray]:
+    """Draw a chart on a black ground and return the pixels of its plot, (columns, rows, 3)."""
+
+    def draw(chart: Chart) -> np.ndarray:
+        canvas.surface.fill((0, 0, 0))
+        chart.draw(canvas)
+        return pygame.surfarray.array3d(canvas.surface.subsurface(canvas.rect(*chart.plot)))
+
+    return draw
+
+
+def settle(chart: Chart, steps: int = 200) -> None:
+    for _ in range(steps):
+        chart.update()
+
+
+def chart_of(y: object, x: object = None, **options: object) -> Chart:
+    chart = Chart(BOX, "LOSS", **options)  # type: ignore[arg-type]
+    values = np.asarray(y, float)
+    place = np.arange(len(values), dtype=float) if x is None else np.asarray(x, float)
+    chart.set([Series(place, values, "this run")], (0.0, max(1.0, len(values) - 1.0)))
+    settle(chart)
+    return chart
+
+
+# Limits and grids
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(0, 1), (0.021, 0.83), (-412, 118), (0, 1e30), (-1e-7, 3e-7), (5, 5), (0, 0)]
+)
+def test_grid_lines_are_few_even_and_around_the_numbers(low: float, high: float) -> None:
+    lines = plotting.grid(low, high)
+    assert 2 <= len(lines) <= 4
+    slack = 1e-9 * (lines[-1] - lines[0])
+    assert lines[0] <= low + slack
+    assert lines[-1] >= high - slack
+    np.testing.assert_allclose(np.diff(lines), lines[1] - lines[0])
+    mantissa = (lines[1] - lines[0]) / 10.0 ** np.floor(np.log10(lines[1] - lines[0]))
+    assert min(abs(mantissa - good) for good in (1, 2, 2.5, 5, 10)) < 1e-6
+
+
+def test_a_few_exploded_values_do_not_flatten_the_rest() -> None:
+    y = np.abs(np.sin(np.arange(500.0)))
+    y[480:] = 1e30
+    assert chart_of(y).limits[1] < 100
+
+
+def test_a_range_that_is_only_wide_is_kept_whole() -> None:
+    y = np.concatenate([np.linspace(5, 0.1, 30), np.full(200, 0.1) + 0.02 * np.sin(np.arange(200))])
+    assert chart_of(y).limits[1] >= 5
+    stage = np.repeat([0.0, 1.0], [300, 10])  # its middle half has no width at all
+    assert chart_of(stage).limits[1] >= 1
+
+
+def test_limits_ease_to_where_they_go_and_jump_with_reduced_motion() -> None:
+    chart = chart_of(np.linspace(0, 1, 50))
+    series = Series(np.arange(50.0), np.linspace(0, 3, 50), "this run")
+    chart.set([series], (0, 49))
+    chart.update()
+    _, before = chart.place(0, 3.0)
+    assert before == pytest.approx(chart.plot.top)  # still too high for the old limits
+    _, top = chart.place(0, 1.0)
+    chart.update()
+    _, next_top = chart.place(0, 1.0)
+    assert next_top > top
+    chart.update(at_once=True)
+    low, high = chart.limits
+    assert chart.place(0, high) == (chart.plot.x, chart.plot.top)
+    assert chart.place(0, low) == (chart.plot.x, chart.plot.bottom)
+
+
+def test_limits_do_not_flicker_while_the_numbers_still_fit() -> None:
+    lines = plotting.steady_grid((0.0, 0.99), None)
+    for most in (1.01, 0.97, 1.02, 0.95):
+        lines = plotting.steady_grid((0.0, most), lines)
+    np.testing.assert_array_equal(plotting.steady_grid((0.0, 0.93), lines), lines)
+    assert plotting.steady_grid((0.0, 0.1), lines)[-1] < 0.5
+
+
+def test_fixed_limits_stay() -> None:
+    assert chart_of([3, 250, -4], limits=(0.0, 100.0)).limits == (0.0, 100.0)
+
+
+# Curves
+
+
+def test_smoothing_neither_lags_nor_bends_a_straight_line() -> None:
+    x = np.arange(900.0)
+    line = plotting.trace(x, 3 - 0.01 * x, (0, 899), 300, 9)
+    np.testing.assert_allclose(line, 3 - 0.01 * np.linspace(0, 899, 300), atol=0.02)
+
+
+def test_smoothing_takes_noise_away_and_keeps_a_bump_in_its_place() -> None:
+    x = np.arange(2000.0)
+    bump = np.exp(-(((x - 700) / 150) ** 2))
+    noise = np.random.default_rng(0).normal(size=2000)
+    line = plotting.trace(x, bump + 0.2 * noise, (0, 1999), 400, 9)
+    assert abs(np.argmax(line) * 1999 / 399 - 700) < 60
+    assert np.std(line - np.interp(np.linspace(0, 1999, 400), x, bump)) < 0.06
+
+
+def test_an_unsmoothed_trace_passes_through_its_points() -> None:
+    line = plotting.trace(np.array([0.0, 50, 100]), np.array([1.0, 0.0, 0.5]), (0, 100), 101, 0)
+    assert (line[0], line[25], line[50], line[75], line[100]) == (1.0, 0.5, 0.0, 0.25, 0.5)
+
+
+@pytest.mark.parametrize("bad", [NAN, INF, -INF])
+def test_values_that_are_no_numbers_make_a_gap(bad: float) -> None:
+    y = np.ones(101)
+    y[40:60] = bad
+    line = plotting.trace(np.arange(101.0), y, (0, 100), 101, 3)
+    assert np.isnan(line[40:60]).all()
+    assert np.isfinite(line[:40]).all()
+    assert np.isfinite(line[60:]).all()
+
+
+def test_a_gap_between_sparse_points_is_not_bridged() -> None:
+    line = plotting.trace(np.array([0.0, 30, 50, 100]), np.array([1.0, 1.0, NAN, 1.0]), (0, 100), 101, 0)
+    assert np.isfinite(line[:31]).all()
+    assert np.isnan(line[31:100]).all()
+    assert line[100] == 1
+
+
+def test_no_line_is_drawn_before_or_after_the_data() -> None:
+    line = plotting.trace(np.arange(20.0, 61.0), np.ones(41), (0, 100), 101, 3)
+    np.testing.assert_array_equal(np.flatnonzero(np.isfinite(line)), np.arange(20, 61))
+
+
+@given(st.integers(1, 5000), st.integers(2, 400), st.integers(0, 2**32 - 1))
+@settings(max_examples=40, deadline=None)
+def test_thinning_keeps_extremes_and_at_most_a_point_a_column(count: int, columns: int, seed: int) -> None:
+    y = np.random.default_rng(seed).normal(size=count)
+    kept = plotting.thinned(np.arange(float(count)), y, (0.0, float(count)), columns)
+    assert len(kept) <= columns + 1
+    assert (np.diff(kept) > 0).all()
+    assert y[kept].min() == y.min()
+    assert y[kept].max() == y.max()
+
+
+def test_a_stroke_is_as_thick_as_it_should_be_and_smooth() -> None:
+    first, cover = plotting.stroke(np.full(40, 10.3), 30, 1.6)
+    np.testing.assert_allclose(cover.sum(axis=0), 1.6, atol=1e-5)
+    middle = (cover * (first + np.arange(len(cover)))[:, None]).sum(axis=0) / cover.sum(axis=0)
+    np.testing.assert_allclose(middle, 10.3, atol=0.15)
+    _, slanted = plotting.stroke(np.linspace(5, 45, 40), 60, 1.6)  # about 45 degrees: √2 thicker upright
+    assert slanted.sum(axis=0)[5:-5].mean() == pytest.approx(1.6 * np.hypot(1, 40 / 39), rel=0.05)
+
+
+def test_a_jump_is_drawn_without_spikes_beyond_its_ends() -> None:
+    first, cover = plotting.stroke(np.repeat([90.0, 10.0], 20), 100, 1.6)
+    covered = np.flatnonzero(cover.max(axis=1) > 0.05) + first
+    assert covered.min() >= 10 - 5
+    assert covered.max() <= 90 + 5
+
+
+def test_dashes_leave_gaps() -> None:
+    _, cover = plotting.stroke(np.full(200, 5.0), 10, 2.0, (7.0, 5.0))
+    most = cover.max(axis=0)
+    assert 0.5 < (most > 0.5).mean() < 0.67
+    assert (most == 0).any()
+
+
+# Pointing
+
+
+@pytest.mark.parametrize("x", [0.0, 3.7, 20.0])
+def test_x_at_is_the_inverse_of_place(x: float) -> None:
+    chart = chart_of(np.arange(21.0))
+    across, up = chart.place(x, 5.0)
+    assert chart.x_at((across, up)) == pytest.approx(x, abs=1e-3)
+
+
+def test_x_at_is_none_outside_and_never_beyond_the_axis() -> None:
+    chart = chart_of(np.arange(21.0))
+    plot = chart.plot
+    assert chart.x_at((plot.x - 50, plot.centery)) is None
+    assert chart.x_at((plot.centerx, chart.box.y - 10)) is None
+    assert chart.x_at((plot.x - 3, plot.centery)) == 0.0
+    assert chart.x_at((plot.right + 3, plot.centery)) == 20.0
+
+
+def test_the_cursor_reads_the_nearest_point_of_each_run(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[float] = []
+
+    def reading(value: float) -> str:
+        read.append(value)
+        return str(value)
+
+    chart = Chart(BOX, "RETURN", read=reading)
+    chart.set(
+        [
+            Series([0.0, 10.0, 20.0], [1.0, 2.0, 3.0], "this run"),
+            Series([0.0, 9.0, 20.0], [4.0, NAN, 6.0], "before", *RUN_STYLES[1]),
+            Series([0.0, 1.0], [7.0, 8.0], "ended long ago", *RUN_STYLES[2]),
+        ],
+        (0.0, 20.0),
+    )
+    settle(chart)
+    chart.draw(canvas)
+    read.clear()
+    chart.hover(chart.place(12.0, 2.0))
+    chart.draw(canvas)
+    assert read == [2.0, 6.0]  # nearest to 12 that are numbers; a run that had ended says nothing
+
+
+def test_the_readout_stays_inside_the_box(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    from game.charts import chart as module
+
+    boxes = []
+    original = module.draw_tooltip
+
+    def draw(*arguments: object) -> pygame.FRect:
+        boxes.append(original(*arguments))  # type: ignore[arg-type]
+        return boxes[-1]
+
+    monkeypatch.setattr(module, "draw_tooltip", draw)
+    chart = chart_of(np.arange(21.0))
+    for x in (0.0, 7.0, 13.0, 20.0):
+        chart.hover(chart.place(x, 3.0))
+        chart.draw(canvas)
+        assert chart.box.contains(boxes[-1])
+    chart.hover((0.0, 0.0))
+    chart.draw(canvas)
+    assert len(boxes) == 4
+
+
+def test_the_cursor_is_shared_and_the_values_are_told_where_the_mouse_is(canvas: Canvas) -> None:
+    top, bottom = Chart((40, 40, 300, 120), "A"), Chart((40, 200, 200, 120), "B")
+    for chart in (top, bottom):
+        chart.set([Series([0.0, 10.0], [0.0, 1.0], "this run")], (0.0, 10.0))
+    charts = Charts([top, bottom])
+    assert charts.hover(bottom.place(5.0, 0.5)) == pytest.approx(5.0, abs=0.01)
+    before = pygame.surfarray.array3d(canvas.surface)
+    charts.draw(canvas)
+    after = pygame.surfarray.array3d(canvas.surface)
+    x, _ = map(round, top.place(5.0, 0.0))
+    column = slice(int(top.plot.top) + 2, int(top.plot.bottom) - 2)
+    assert (after[x - 1 : x + 2, column] != before[x - 1 : x + 2, column]).any(axis=(0, 2)).all()
+    assert charts.hover((5.0, 5.0)) is None
+
+
+# Drawing
+
+
+def test_the_same_numbers_are_not_drawn_again(canvas: Canvas) -> None:
+    def series(last: float) -> list[Series]:
+        return [Series(np.arange(30.0), np.append(np.arange(29.0), last), "this run")]
+
+    chart = Chart(BOX, "RETURN")
+    chart.set(series(1.0), (0, 29))
+    for _ in range(30):
+        chart.update()
+        chart.draw(canvas)
+    redraws = chart.redraws
+    for _ in range(30):
+        chart.set(series(1.0), (0, 29))
+        chart.hover(chart.place(float(_), 3.0))
+        chart.update()
+        chart.draw(canvas)
+    assert chart.redraws == redraws
+    chart.set(series(2.0), (0, 29))
+    for _ in range(30):
+        chart.update()
+        chart.draw(canvas)
+    assert chart.redraws == redraws + 1
+
+
+def test_an_array_that_grows_in_place_is_noticed(canvas: Canvas) -> None:
+    memory = np.arange(30.0)
+    chart = Chart(BOX, "RETURN")
+    chart.set([Series(memory, memory, "this run")], (0, 29))
+    chart.draw(canvas)
+    redraws = chart.redraws
+    memory[-1] = 28.5
+    chart.set([Series(memory, memory, "this run")], (0, 29))
+    settle(chart)
+    chart.draw(canvas)
+    assert chart.redraws > redraws
+
+
+def test_charts_take_turns_and_rest(canvas: Canvas) -> None:
+    boxes = [(40, 40 + 100 * number, 300, 90) for number in range(6)]
+    charts = Charts([Chart(box, "A") for box in boxes])
+    most = total = 0
+    charts.draw(canvas)
+    for frame in range(60):
+        for chart in charts.charts:
+            chart.set([Series(np.arange(9.0), np.arange(9.0) + 1e-6 * frame, "this run")], (0, 8))
+        before = [chart.redraws for chart in charts.charts]
+        charts.update()
+        charts.draw(canvas)
+        drawn = sum(chart.redraws for chart in charts.charts) - sum(before)
+        most, total = max(most, drawn), total + drawn
+    assert most == 1
+    assert 6 * 8 <= total <= 6 * 10
+    assert min(chart.redraws for chart in charts.charts) >= 8
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "lines"),
+    [(0.3, 700.0, [0.2, 1, 10, 100, 1000]), (1.0, 10.0, [1, 10]), (2.1, 4.0, [2, 5]), (0.9, 1.1, [0.5, 1, 2]),
+     (3.0, 3.0, [2, 5]), (1e-300, 1e300, None)],
+)  # fmt: skip
+def test_decades_enclose_what_is_shown(low: float, high: float, lines: list[float] | None) -> None:
+    found = 10 ** plotting.decades(np.log10(low), np.log10(high))
+    if lines is None:
+        assert np.isfinite(found).all()
+    else:
+        np.testing.assert_allclose(found, lines)
+
+
+def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_they_are(canvas: Canvas) -> None:
+    chart = Chart((40, 40, 300, 100), "LOSS", log=True)
+    x = np.arange(4.0)
+    chart.set([Series(x, [1.0, 10.0, 100.0, 0.0], "this run", smooth=False)], (0, 3))
+    chart.update(at_once=True)
+    chart.draw(canvas)
+    heights = [chart.place(0.0, np.log10(value))[1] for value in (1.0, 10.0, 100.0)]
+    assert heights[0] - heights[1] == pytest.approx(heights[1] - heights[2])
+    assert chart.read(2.0) == "100"
+    assert chart._runs[0].last() == 2.0
+
+
+def test_a_log_axis_says_so(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    write = Canvas.text
+    monkeypatch.setattr(
+        Canvas, "text", lambda self, string, *a, **k: written.append(string) or write(self, string, *a, **k)
+    )
+    for log in (False, True):
+        written.clear()
+        chart = Chart((40, 40, 172, 112), "LOSS", log=log)
+        chart.set([Series(np.arange(4.0), [1.0, 10.0, 100.0, 20.0], "this run", smooth=False)], (0, 3))
+        chart.draw(canvas)
+        assert (texts.CHART_LOG[0] in written) is log
+
+
+def test_a_new_window_size_is_drawn_at_once(canvas: Canvas) -> None:
+    chart = chart_of(np.arange(20.0))
+    chart.draw(canvas)
+    canvas.attach(pygame.Surface((1920, 1080)))
+    redraws = chart.redraws
+    chart.draw(canvas)
+    assert chart.redraws == redraws + 1
+
+
+def test_the_curve_is_where_its_values_are(drawn: Callable[[Chart], np.ndarray]) -> None:
+    chart = chart_of(np.full(100, 25.0), limits=(0.0, 100.0))
+    pixels = drawn(chart)
+    blue = pixels[:, :, 2].astype(int) - pixels[:, :, 0]
+    rows = blue[20:-20].sum(axis=0)
+    assert rows.argmax() == pytest.approx(0.75 * (pixels.shape[1] - 1), abs=1)
+
+
+def test_what_lies_beyond_the_limits_is_marked(drawn: Callable[[Chart], np.ndarray]) -> None:
+    inside = chart_of(np.full(100, 50.0), limits=(0.0, 100.0))
+    y = np.full(100, 50.0)
+    y[60:] = 1e30
+    beyond = chart_of(y, limits=(0.0, 100.0))
+    columns = np.flatnonzero((drawn(beyond) != drawn(inside))[:, :3].any(axis=(1, 2)))
+    assert len(columns)
+    assert abs(columns.mean() / len(drawn(inside)) - 0.6) < 0.06  # an arrow, where the curve leaves
+
+
+def test_a_single_wild_value_is_marked_though_the_line_hardly_shows_it(drawn: Callable[[Chart], np.ndarray]) -> None:
+    y = np.full(400, 50.0)
+    plain = drawn(chart_of(y, limits=(0.0, 100.0)))
+    y[100] = 1e4
+    wild = drawn(chart_of(y, limits=(0.0, 100.0)))
+    columns = np.flatnonzero((plain != wild)[:, :3].any(axis=(1, 2)))
+    assert len(columns)
+    assert abs(columns.mean() / len(plain) - 0.25) < 0.02
+    rows = np.flatnonzero((plain != wild)[:, 10:].any(axis=(0, 2)))
+    assert np.ptp(rows) < 0.2 * plain.shape[1]  # it does not drag the line along
+
+
+def test_a_turned_knob_is_told_before_a_checkpoint(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    from game.charts import chart as module
+
+    told: list[list[str]] = []
+    monkeypatch.setattr(module, "draw_tooltip", lambda canvas, point, box, lines, rows: told.append(lines))
+    chart = Chart(BOX, "RETURN")
+    ticks = [Tick(9.9, "knob", "knob"), Tick(10.0, "checkpoint"), Tick(15.0, "another")]
+    chart.set([Series([0.0, 20.0], [0.0, 1.0], "this run")], (0.0, 20.0), ticks)
+    for x in (10.0, 15.0, 18.0):
+        chart.hover(chart.place(x, 0.5))
+        chart.draw(canvas)
+    assert [lines[1:] for lines in told] == [["knob"], ["another"], []]
+
+
+UGLY = {
+    "nothing": [],
+    "one point": [3.0],
+    "no number at all": [NAN] * 9,
+    "infinite": [INF, -INF, 1.0, INF],
+    "one number among none": [NAN, 2.0, NAN, NAN],
+    "constant": [7.0] * 40,
+    "zero": [0.0] * 40,
+    "negative": [-5.0, -400.0, -3e5],
+    "exploding": list(10.0 ** np.arange(-8.0, 31.0)),
+    "as large as can be": [-1e300, 1e300, 1e308, -1e308, 0.0],
+    "as small as can be": [5e-324, 1e-310, 0.0],
+    "alternating": [(-1.0) ** k * 1e12 for k in range(60)],
+}
+
+
+@pytest.mark.parametrize("name", UGLY)
+@pytest.mark.parametrize("smooth", [True, False])
+def test_ugly_numbers_are_drawn(canvas: Canvas, name: str, smooth: bool) -> None:
+    y = UGLY[name]
+    chart = Chart(BOX, "LOSS")
+    series = [
+        Series(np.arange(len(y)), y, "this run", smooth=smooth),
+        Series(np.arange(len(y)), y, "b", *RUN_STYLES[1]),
+    ]
+    chart.set(series, (0.0, len(y)), [Tick(1.0, "checkpoint"), Tick(1e9, "a knob", "knob")])
+    chart.mark(2.0, "checkpoint 2 s: fly against it, and a caption that is much too long for such a small chart")
+    for point in ((60.0, 500.0), (405.0, 577.0), None):
+        chart.hover(point)
+        settle(chart, 30)
+        chart.draw(canvas)
+    low, high = chart.limits
+    assert np.isfinite([low, high]).all()
+    assert low < high
+
+
+@pytest.mark.parametrize("x_range", [(0.0, 0.0), (5.0, 1.0), (NAN, 3.0), (0.0, INF)])
+def test_an_ugly_x_axis_is_mended(canvas: Canvas, x_range: tuple[float, float]) -> None:
+    chart = Chart(BOX, "LOSS")
+    chart.set([Series([0.0, NAN, 2.0], [1.0, 2.0, 3.0, 4.0], "this run")], x_range)
+    chart.draw(canvas)
+    assert chart.x_at(chart.plot.center) is not None
+
+
+def test_an_empty_chart_has_no_x_but_its_axis(canvas: Canvas) -> None:
+    chart = Chart(BOX, "LOSS")
+    chart.draw(canvas)
+    assert chart.x_at(chart.plot.center) == pytest.approx(0.5)
+    Charts([]).update()
+    Charts([]).draw(canvas)
+
+
+def test_a_chart_writes_no_number_that_is_not_there(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    write = Canvas.text
+    monkeypatch.setattr(Canvas, "text", lambda *args, **more: written.append(args[1]) or write(*args, **more))
+    chart = Chart(BOX, "SKILL", limits=(0.0, 100.0), read_x="flight {:.0f}".format, empty="of your last ten")
+    chart.draw(canvas)
+    assert written == ["–", "SKILL", "of your last ten"]
+    for flights, ends in ((1, ["flight 1"]), (2, ["flight 1", "flight 2"])):
+        written.clear()
+        chart.set([Series(range(1, flights + 1), [50.0] * flights, "you")], (1.0, float(flights)))
+        chart.renew()
+        chart.draw(canvas)
+        assert [each for each in written if each.startswith("flight")] == ends
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"), (0.0213, "0.0213"), (0.84, "0.840"), (-0.5, "−0.500"), (118.2, "118"), (12_345, "12.3k"),
+        (148_000, "148k"), (1.23e30, "1.2e30"), (-4e-7, "−4.0e−7"), (NAN, "–"), (INF, "–"),
+    ],
+)  # fmt: skip
+def test_numbers_are_written_short(value: float, text: str) -> None:
+    assert plotting.compact(value) == text
+
+
+# The reward strip
+
+PARTS = ("distance", "feet", "time", "terminal")
+
+
+def test_parts_grow_outwards_from_zero_in_their_order() -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [40.0, 30.0, -90.0, 120.0])
+    strip.update(at_once=True)
+    distance, feet, time, terminal = strip.pieces()
+    assert time.right == distance.left
+    assert distance.right == feet.left
+    assert feet.right == terminal.left
+    assert (terminal.right - terminal.left) / (distance.right - distance.left) == pytest.approx(3)
+    assert strip.box.x <= time.left
+    assert terminal.right <= strip.box.right
+
+
+def test_a_part_keeps_its_colour_whatever_stands_beside_it() -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [40.0, 30.0, -90.0, 120.0])
+    before = {piece.name: piece.colour for piece in strip.pieces()}
+    strip.set(PARTS[::-1], [-120.0, 0.0, 3.0, -4.0])
+    assert {piece.name: piece.colour for piece in strip.pieces()} == before
+    assert len(set(PART_COLOURS.values())) == len(PART_COLOURS)
+
+
+def test_the_mouse_finds_a_part() -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [40.0, 30.0, -90.0, 0.0])
+    for piece in strip.pieces()[:3]:
+        found = strip.piece_at(((piece.left + piece.right) / 2, 60.0))
+        assert found is not None
+        assert (found.name, found.value) == (piece.name, piece.value)
+    assert strip.piece_at((60.0, 200.0)) is None
+
+
+def test_every_part_of_the_reward_has_a_colour_and_a_sentence() -> None:
+    from ai.lander.rewards import REWARDS
+    from game.core import texts
+
+    assert set(REWARDS) == set(PART_COLOURS)
+    assert set(REWARDS) <= set(texts.REWARD_PARTS)
+
+
+@pytest.mark.parametrize("values", [[], [0.0] * 4, [NAN, INF, 1e30, -1e30], [1e-12] * 4, [-5.0] * 4, [1.0, 2.0]])
+def test_ugly_parts_are_drawn(canvas: Canvas, values: list[float]) -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.draw(canvas)
+    for _ in range(3):
+        strip.set(PARTS, values)
+        strip.hover((200.0, 62.0))
+        strip.update()
+        strip.draw(canvas)
+
+
+def test_a_strip_that_rests_is_not_drawn_again(canvas: Canvas) -> None:
+    strip = Strip((40, 30, 380, 60))
+    strip.set(PARTS, [1.0, 2.0, 3.0, 4.0])
+    strip.set(PARTS, [2.0, 2.0, 3.0, 4.0])
+    for _ in range(200):
+        strip.update()
+        strip.draw(canvas)
+    redraws = strip.redraws
+    for _ in range(20):
+        strip.update()
+        strip.draw(canvas)
+    assert strip.redraws == redraws
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(98.2, "+98"), (-3.21, "−3.2"), (0.01, "0"), (1e30, "+1.0e30"), (NAN, "–")]
+)
+def test_sums_are_written_with_their_sign(value: float, text: str) -> None:
+    assert signed(value) == text
+
+
+def test_a_name_in_large_type_leaves_room_for_the_latest_number(canvas: Canvas, monkeypatch) -> None:
+    boxes: dict[str, pygame.FRect] = {}
+    text = Canvas.text
+
+    def noted(sheet: Canvas, string: str, position: tuple[float, float], **more) -> pygame.FRect:
+        boxes[string] = text(sheet, string, position, **more)
+        return boxes[string]
+
+    chart = Chart((0, 0, 170, 100), "EXPLORATION ε", read=lambda value: f"{value:.2f}")
+    chart.set([Series(np.arange(2.0), np.full(2, 0.33), "this run")], (0.0, 1.0))
+    typeface.grow(1.25)
+    try:
+        monkeypatch.setattr(Canvas, "text", noted)
+        chart.draw(canvas)
+    finally:
+        typeface.grow(1.0)
+    assert boxes["EXPLORATION ε"].right < boxes["0.33"].left
+
+
+def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
+    run = History()
+    for number in range(40):
+        run.append(replace(HEALTHY, seconds=float(number), decisions=1000.0 * number))
+    for name in ("learning_rate", "final_learning_rate", "discount", "n_step", "updates"):
+        run.append(Alteration(10_000, name, 0, 1))
+    run.append(Alteration(20_000, "updates", 1, 2))
+    marks = [tick for tick in _ticks(run) if tick.kind == "knob"]
+    assert [tick.x for tick in marks] == [10.0, 20.0]
+    assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"

@@ -1,0 +1,474 @@
+"""Workers with real processes. Whatever is waited for comes within moments; the limits are for when it does not."""
+
+import gc
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.agent.config import Config
+from ai.training.checkpoints import resume_run
+from ai.training.history import Checkpoint, History
+from ai.training.loop import Training
+from ai.training.session import Change, Refused, Save, Saved, live
+from game.core import texts, worker
+from game.core.assets import MODELS_DIR
+from game.core.worker import State, Worker
+from game.core.worker_process import CREDIT, MOST_WAITING, Waiting
+from game.digits import fixing, measuring
+from game.digits.reader import Switches
+from game.export import export
+from tests.support import chores
+from tests.support.chores import Echo, Latest, Tick, Trace
+
+ROOT = Path(__file__).parents[3]
+LIMIT = 60.0  # seconds
+POSIX = pytest.mark.skipif(sys.platform == "win32", reason="signals")
+TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000)
+
+
+@pytest.fixture
+def start():
+    """Starts workers and sees to it that nothing of them is left."""
+    before = set(threading.enumerate())
+    started = []
+
+    def start(function, *args, **kwargs):
+        started.append(Worker(function, *args, **kwargs))
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.close(0.0)
+    assert multiprocessing.active_children() == []
+    assert set(threading.enumerate()) <= before
+
+
+def polled(worker, until):
+    """Poll until `until(messages so far)` holds; return the messages."""
+    told, deadline = [], time.monotonic() + LIMIT
+    while not until(told):
+        assert time.monotonic() < deadline, f"waited in vain: {worker.state} {worker.problem} {told[-3:]}"
+        time.sleep(0.002)
+        told += worker.poll()
+    return told
+
+
+def over(worker):
+    return polled(worker, lambda _: worker.state in (State.ENDED, State.FAILED))
+
+
+def ticks(told):
+    return [each.number for each in told if isinstance(each, Tick)]
+
+
+def settled(worker):
+    """Poll until a command comes back: whatever was ordered before it has been done."""
+    worker.send("settle")
+    return polled(worker, lambda told: Echo("settle") in told)
+
+
+def test_every_message_comes_once_and_in_order(start):
+    counter = start(chores.counting, 400)
+    assert counter.state is State.STARTING
+    told = over(counter)
+    assert ticks(told) == list(range(400))
+    assert counter.state is State.ENDED
+    assert counter.problem == ""
+
+
+def test_of_a_class_that_is_newest_only_the_latest_comes(start):
+    counter = start(chores.counting, 300)
+    counter._process.join(LIMIT)  # nobody asks while it counts
+    told = over(counter)
+    assert ticks(told) == list(range(300))
+    latest = [each.number for each in told if isinstance(each, Latest)]
+    assert len(latest) <= CREDIT + 1
+    assert latest[-1] == 299
+    assert latest == sorted(latest)
+
+
+def test_what_waits_for_long_is_thinned_where_it_may_be():
+    waiting = Waiting()
+    for number in range(10 * MOST_WAITING):
+        waiting.add([Trace(number)] + [Tick(number)] * (number % 1000 == 0))
+    told = waiting.take()
+    traces = [each.number for each in told if isinstance(each, Trace)]
+    assert MOST_WAITING / 4 < len(traces) <= MOST_WAITING
+    assert traces == sorted(traces)
+    assert ticks(told) == list(range(0, 10 * MOST_WAITING, 1000))
+    assert not waiting
+
+
+def test_much_that_must_not_be_lost_is_kept_and_handed_over_in_parts():
+    waiting = Waiting()
+    waiting.add(Tick(number) for number in range(3 * MOST_WAITING))
+    first = waiting.take(10)
+    assert ticks(first + waiting.take()) == list(range(3 * MOST_WAITING))
+
+
+def test_a_paused_worker_stands_still_and_steps_one_turn_at_a_time(start):
+    counter = start(chores.counting)
+    polled(counter, lambda told: len(told) > 3)
+    counter.step()  # not while it runs
+    counter.pause()
+    assert counter.state is State.PAUSED
+    settled(counter)
+    counter.step()
+    (last,) = ticks(polled(counter, ticks))
+    assert ticks(settled(counter)) == []
+    for _ in range(3):
+        counter.step()
+    stepped = polled(counter, lambda told: len(ticks(told)) >= 3)
+    assert ticks(stepped) == [last + 1, last + 2, last + 3]
+    assert ticks(settled(counter)) == []
+    counter.resume()
+    assert counter.state is State.RUNNING
+    assert len(ticks(polled(counter, lambda told: len(ticks(told)) > 5))) > 5
+
+
+def test_steps_that_were_not_taken_are_forgotten_when_it_goes_on(start):
+    counter = start(chores.counting)
+    counter.pause()
+    settled(counter)
+    counter.step()
+    counter.resume()
+    counter.pause()
+    settled(counter)
+    assert ticks(settled(counter)) == []
+
+
+def test_it_turns_at_the_pace_that_is_set(start):
+    counter = start(chores.counting)
+    counter.set_pace(1e-4)  # a turn in three hours: one may be due at once
+    settled(counter)
+    settled(counter)
+    assert ticks(settled(counter)) == []
+    counter.set_pace(None)
+    assert len(ticks(polled(counter, lambda told: len(ticks(told)) > 20))) > 20
+
+
+def test_commands_are_answered_in_order_also_while_paused(start):
+    counter = start(chores.counting)
+    counter.pause()
+    for number in range(20):
+        counter.send(number)
+    told = polled(counter, lambda told: Echo(19) in told)
+    assert [each.command for each in told if isinstance(each, Echo)] == list(range(20))
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (FloatingPointError("the rate is too high"), "the rate is too high"),
+        (ValueError(), "ValueError"),
+        (KeyError("name"), "KeyError: 'name'"),
+    ],
+)
+def test_a_generator_that_raises_fails_with_its_words(start, error, words):
+    failed = start(chores.failing, error)
+    told = over(failed)
+    assert ticks(told) == [0, 1, 2]
+    assert failed.state is State.FAILED
+    assert failed.problem == texts.WORKER_RAISED.format(reason=words)
+
+
+def test_what_cannot_be_sent_fails_and_says_so(start):
+    failed = start(chores.unsendable)
+    over(failed)
+    assert failed.state is State.FAILED
+    assert "pickle" in failed.problem
+
+
+@pytest.mark.parametrize(
+    ("function", "words"), [(chores.babbling, ""), (chores.strange, "dict"), (chores.poisonous, "poison")]
+)
+def test_nonsense_fails_and_says_so(start, function, words):
+    failed = start(function)
+    over(failed)
+    assert failed.state is State.FAILED
+    assert failed.problem.startswith(texts.WORKER_NONSENSE.partition("{")[0])
+    assert words in failed.problem
+    polled(failed, lambda _: not failed._process.is_alive())
+
+
+def test_a_function_that_does_not_start_fails(start):
+    failed = start(chores.counting, "not a number")
+    over(failed)
+    assert failed.state is State.FAILED
+    assert "TypeError" in failed.problem
+
+
+@pytest.mark.parametrize(
+    ("how", "problem"),
+    [
+        ({"code": 3}, texts.WORKER_EXITED.format(code=3)),
+        pytest.param({"signal_name": "SIGKILL"}, texts.WORKER_KILLED.format(signal="SIGKILL"), marks=POSIX),
+        pytest.param({"signal_name": "SIGSEGV"}, texts.WORKER_SIGNAL.format(signal="SIGSEGV"), marks=POSIX),
+    ],
+)
+def test_a_process_that_dies_fails_with_the_cause(start, how, problem):
+    dead = start(chores.dying, **how)
+    told = over(dead)
+    assert dead.state is State.FAILED
+    assert dead.problem == problem
+    assert ticks(told) in ([], [0])
+
+
+def test_a_process_that_hangs_is_ended(start):
+    hung = start(chores.hanging)
+    polled(hung, lambda told: ticks(told) == [0])
+    hung.patience = 0.3
+    over(hung)
+    assert hung.state is State.FAILED
+    assert hung.problem == texts.WORKER_SILENT.format(seconds=0.3)
+    polled(hung, lambda _: not hung._process.is_alive())
+
+
+def test_a_window_that_was_away_does_not_take_its_worker_for_hung(start):
+    moments = [0.0]
+    counter = start(chores.counting)
+    counter.clock = lambda: moments[0]
+    for _ in range(50):
+        moments[0] += 3600.0  # asleep between any two polls
+        counter.poll()
+    assert counter.state in (State.STARTING, State.RUNNING)
+
+
+@POSIX
+def test_a_process_stopped_in_the_middle_of_a_message_holds_up_nothing(start):
+    counter = start(chores.counting, weight=3_000_000)  # more than fits into a pipe
+    polled(counter, lambda told: len(ticks(told)) > 3)
+    os.kill(counter._process.pid, signal.SIGSTOP)
+    for number in range(3000):  # more than fits into the other direction
+        counter.send("x" * 200)
+        if number % 100 == 0:
+            counter.poll()
+    assert counter.state is State.RUNNING
+    counter.patience = 0.1
+    over(counter)
+    assert counter.state is State.FAILED
+
+
+@POSIX
+def test_workers_killed_at_any_moment_leave_nothing_but_a_reason(start):
+    rng = np.random.default_rng(50)
+    for _ in range(5):
+        workers = [start(chores.counting, weight=200_000) for _ in range(10)]
+        moments = sorted((float(rng.uniform(0.0, 0.5)), each) for each in range(10))
+        began = time.monotonic()
+        for moment, index in moments:
+            while time.monotonic() - began < moment:
+                time.sleep(0.002)
+                for each in workers:
+                    each.poll()
+            os.kill(workers[index]._process.pid, signal.SIGKILL)
+        for each in workers:
+            over(each)
+            assert each.state is State.FAILED
+            assert each.problem == texts.WORKER_KILLED.format(signal="SIGKILL")
+
+
+@POSIX
+def test_a_run_killed_at_any_moment_can_be_loaded(start, tmp_path):
+    keep = tmp_path / "run"
+    rng = np.random.default_rng(5)
+    decisions = []
+    for _ in range(5):
+        run = start(chores.eager, TINY, 0, keep)
+        polled(run, lambda told: keep.exists() and sum(isinstance(each, Checkpoint) for each in told) > 0)
+        moment = time.monotonic() + float(rng.uniform(0.0, 0.3))
+        polled(run, lambda _, moment=moment: time.monotonic() > moment)
+        os.kill(run._process.pid, signal.SIGKILL)
+        over(run)
+        decisions.append(resume_run(keep).agent.decisions)
+        assert len(History.read(keep).checkpoints) > 0
+    assert all(decisions)
+
+
+@POSIX
+def test_a_run_that_is_terminated_keeps_itself(start, tmp_path):
+    run = start(live, TINY, 0, keep=tmp_path / "run")
+    polled(run, lambda told: any(isinstance(each, Checkpoint) and each.decisions > 0 for each in told))
+    os.kill(run._process.pid, signal.SIGTERM)
+    over(run)
+    assert run.state is State.FAILED
+    assert run.problem == texts.WORKER_SIGNAL.format(signal="SIGTERM")
+    assert resume_run(tmp_path / "run").agent.decisions > 0
+
+
+def test_stopping_lets_the_generator_close(start, tmp_path):
+    ending = start(chores.ending_well, tmp_path / "closed")
+    polled(ending, ticks)
+    ending.stop()
+    over(ending)
+    assert ending.state is State.ENDED
+    polled(ending, lambda _: (tmp_path / "closed").exists())
+
+
+def test_one_that_will_not_stop_is_ended(start, tmp_path, monkeypatch):
+    monkeypatch.setattr(worker, "STOP_SECONDS", 0.2)
+    stubborn = start(chores.ending_well, tmp_path / "closed", stubborn=True)
+    polled(stubborn, ticks)
+    stubborn.stop()
+    over(stubborn)
+    assert stubborn.state is State.ENDED
+    polled(stubborn, lambda _: not stubborn._process.is_alive())
+
+
+def test_closing_is_for_certain_and_may_be_done_at_any_time(start):
+    at_once = start(chores.counting)
+    at_once.close()
+    hung = start(chores.hanging)
+    polled(hung, ticks)
+    hung.close(0.05)
+    ended = start(chores.counting, 2)
+    over(ended)
+    for each in (at_once, hung, ended):
+        each.close()
+        each.send("nobody listens")
+        each.pause()
+        assert each.state is State.ENDED
+        assert each.poll() is not None
+        assert not each._process.is_alive()
+
+
+def test_ten_in_a_row_leave_no_process_and_no_thread(start):
+    threads = threading.active_count()
+    for _ in range(10):
+        counter = start(chores.counting)
+        polled(counter, ticks)
+        counter.close()
+        assert threading.active_count() == threads
+        assert multiprocessing.active_children() == []
+
+
+def test_a_worker_that_is_forgotten_ends():
+    forgotten = Worker(chores.counting)
+    process = forgotten._process
+    polled(forgotten, ticks)
+    del forgotten
+    gc.collect()
+    assert not process.is_alive()
+
+
+PARENT = """
+import sys, time
+from game.core.worker import State, Worker
+from tests.support import chores
+if __name__ == "__main__":
+    workers = [Worker(chores.counting), Worker(chores.counting), Worker(chores.hanging)]
+    workers[0].pause()
+    while any(worker.state is State.STARTING for worker in workers):
+        time.sleep(0.02)
+        for worker in workers:
+            worker.poll()
+    print(*[worker._process.pid for worker in workers], flush=True)
+    {then}
+"""
+
+
+def parent(tmp_path, then):
+    script = tmp_path / "parent.py"
+    script.write_text(PARENT.format(then=then), encoding="utf-8")
+    return subprocess.Popen(
+        [sys.executable, str(script)], env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, text=True
+    )
+
+
+def is_gone(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes by way of /proc")
+@pytest.mark.parametrize(
+    "then", ["time.sleep(600)", "import os, signal; os.kill(workers[1]._process.pid, signal.SIGSTOP)"]
+)
+def test_no_process_outlives_the_window(tmp_path, then):
+    window = parent(tmp_path, then)
+    pids = [int(pid) for pid in window.stdout.readline().split()]
+    assert len(pids) == 3
+    if "sleep" in then:
+        window.kill()
+    window.wait(LIMIT)
+    window.stdout.close()
+    deadline = time.monotonic() + LIMIT
+    while not all(is_gone(pid) for pid in pids):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_the_process_has_one_core_and_no_pygame(start):
+    looking = start(chores.looking_around)
+    (told,) = over(looking)
+    assert told == {"modules": {"numpy"}, "threads": "1", "interrupted": True}
+
+
+def test_the_program_can_be_imported_by_its_workers():
+    # What a new process does with the program that started it.
+    code = "import runpy, sys; runpy.run_path('main.py', run_name='__mp_main__'); print('numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
+def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path):
+    run = start(live, TINY, 7, keep=tmp_path / "keep")
+    run.send(Change("no such knob", 1))
+    told = polled(run, lambda told: sum(isinstance(each, Checkpoint) for each in told) == 2)
+    assert any(isinstance(each, Refused) for each in told)
+    run.pause()
+    run.send(Save(tmp_path / "named"))
+    told += polled(run, lambda told: Saved(tmp_path / "named") in told)
+    run.stop()
+    over(run)
+    checkpoints = [each for each in told if isinstance(each, Checkpoint)]
+    headless = Training(TINY, 7, evaluate_every=0)
+    for checkpoint in checkpoints:
+        while headless.agent.decisions < checkpoint.decisions:
+            headless.advance()
+        assert np.array_equal(headless.agent.network.values, checkpoint.values)
+    saved = resume_run(tmp_path / "named").agent
+    while headless.agent.decisions < saved.decisions:
+        headless.advance()
+    assert headless.agent.train_count > 0
+    assert np.array_equal(headless.agent.online.values, saved.online.values)
+    kept = resume_run(tmp_path / "keep").agent
+    assert kept.decisions >= saved.decisions
+
+
+def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    """A process takes up to half a second to end by itself; a killed one is gone at once."""
+    graces: list[float] = []
+
+    class Ending:
+        state, problem, patience = State.ENDED, "", 0.0
+
+        def __init__(self, *_: object, **__: object) -> None: ...
+        def poll(self) -> list[object]:
+            return []
+
+        def pause(self) -> None: ...
+        def send(self, command: object) -> None: ...
+        def close(self, grace: float = 0.5) -> None:
+            graces.append(grace)
+
+    for module in (export, fixing, measuring):
+        monkeypatch.setattr(module, "Worker", Ending)
+    export.Export(None, tmp_path / "film.gif").close()
+    fix = fixing.Fixing(tmp_path, MODELS_DIR)
+    fix.begin("classic", np.ones((28, 28), np.float32), 3)
+    fix.poll()
+    measured = measuring.Measuring(dict)
+    measured.ask(Switches())
+    measured.anew(Switches())
+    assert graces == [0.0, 0.0, 0.0]

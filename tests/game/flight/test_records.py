@@ -1,0 +1,295 @@
+import json
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ai.lander.environment import Outcome
+from ai.lander.missions import MISSIONS
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.flight import flight_file
+from game.flight import logbook as records
+from game.flight.flight import Flight, Hand, Recording
+from game.flight.flight_file import Entry, Record, from_text, to_text
+from game.flight.logbook import Records, best, skill, totals
+from game.scenes.logbook import _row
+from game.scenes.missions import _best_by_course
+from tests.support.flights import NOON, fly_out, scripted
+
+
+def fly(seed: int = 3, *, by_hand: bool = False, pads: int = 1) -> Flight:
+    """A flight to its end: the scripted pilot's, or, by hand, a fall."""
+    return fly_out(Flight(seed, ScriptedPilot(), pads=pads)) if by_hand else scripted(seed, pads=pads)
+
+
+def entry(outcome: str = "LANDED", when: float = NOON, **figures) -> Entry:
+    return Entry(**{"when": when, "outcome": outcome, "seconds": 10.0, "fuel": 3.0, "touchdown": 0.5, "human": 1.0,
+                    "alone": True}
+                 | figures)  # fmt: skip
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Records:
+    return Records(tmp_path / "user")
+
+
+def test_two_games_that_keep_a_flight_in_one_millisecond_keep_both(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    write, others = flight_file.write, Records(kept.folder.parent)
+
+    def after_another(path: Path, record: Record) -> None:
+        monkeypatch.setattr(flight_file, "write", write)
+        others.keep(fly(seed=4), NOON)
+        write(path, record)
+
+    monkeypatch.setattr(flight_file, "write", after_another)
+    kept.keep(fly(seed=3), NOON)
+    assert sorted(kept.read(each.file).recording.seed for each in kept.entries()) == [3, 4]
+    assert len(kept.kept()) == 2
+
+
+def test_of_a_huge_logbook_the_end_is_read(kept: Records):
+    kept.keep(fly(), NOON)
+    line = kept.logbook.read_bytes()
+    with kept.logbook.open("wb") as file:
+        file.truncate(300_000_000)
+        file.seek(0, 2)
+        file.write(b"\n" + line)
+    assert [each.when for each in kept.entries()] == [NOON]
+
+
+def test_a_pipe_in_place_of_a_flight_or_the_logbook_is_named(kept: Records):
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("there are no such pipes here")
+    kept.folder.mkdir(parents=True)
+    os.mkfifo(kept.folder / "a.json")
+    os.mkfifo(kept.logbook)
+    with pytest.raises(ValueError, match=r"a\.json"):
+        kept.read("a.json")
+    assert kept.entries() == []
+    assert "logbook" in kept.problem
+
+
+@pytest.mark.parametrize("pads", [1, 3])
+def test_a_flight_comes_back_from_its_file_and_flies_as_it_did(kept: Records, pads: int):
+    flight = fly(pads=pads)
+    line = kept.keep(flight, NOON, network="modern")
+    assert not kept.problem
+    record = kept.read(line.file)
+    assert record.recording == flight.recording
+    assert record.entry == line
+    again = Flight(record.recording.seed, spawn=record.recording.spawn, pads=record.recording.pads)
+    for action in record.recording.actions:
+        again.step(action)
+    assert again.outcome is Outcome.LANDED
+    assert again.poses.now[0].tolist() == list(record.end)
+
+
+def test_the_logbook_tells_who_flew_what_came_of_it_and_on_what(kept: Records):
+    kept.keep(fly(), NOON, network="modern")
+    kept.keep(fly(by_hand=True), NOON + 60, alone=True)
+    first, second = kept.entries()
+    assert (first.outcome, first.human, first.alone, first.network) == ("LANDED", 0.0, False, "modern")
+    assert (second.outcome, second.alone, second.fuel) == ("CRASHED", True, 0.0)
+    assert second.touchdown > 2
+    assert 0 < first.seconds < 25
+
+
+def test_a_flight_takes_little_room(kept: Records):
+    line = kept.keep(fly(), NOON)
+    assert (kept.folder / line.file).stat().st_size < 8_000
+
+
+def test_flights_that_end_at_one_moment_keep_a_file_each(kept: Records):
+    assert kept.keep(fly(), NOON).file != kept.keep(fly(), NOON).file
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda text: "",
+        lambda text: text[: len(text) // 2],
+        lambda text: "[]",
+        lambda text: text.replace('"version": 4', '"version": 9'),
+        lambda text: text.replace('"seed": 3', '"seed": -3'),
+        lambda text: text.replace('"random"', '"nowhere"'),
+        lambda text: text.replace('"actions": "', '"actions": "9*1 '),
+        lambda text: text.replace('"actions": "', '"actions": "0*99999999999 '),
+        lambda text: text.replace('"actions": "', '"actions": "0*-5 '),
+        lambda text: text.replace('"network*', '"nobody*'),
+        lambda text: text.replace('"LANDED"', '"FLOWN"'),
+        lambda text: text.replace('"pads": 1', '"pads": 2'),
+        lambda text: text.replace('"entry"', '"other"'),
+        lambda text: text.replace('"end": [', f'"end": [{10**400}, '),
+        lambda text: text.replace('"gravity": []', '"gravity": [[Infinity, 1.0]]'),
+        lambda text: text.replace('"when": ', '"when": 99999999999'),
+        lambda text: "[" * 100_000,
+        lambda text: " " * 2_000_000,
+    ],
+)
+def test_a_damaged_file_is_named_and_left_alone(kept: Records, spoil):
+    line = kept.keep(fly(), NOON)
+    path = kept.folder / line.file
+    path.write_text(spoiled := spoil(path.read_text()))
+    with pytest.raises(ValueError, match=line.file):
+        kept.read(line.file)
+    assert path.read_text() == spoiled
+
+
+def test_a_file_that_is_gone_is_named(kept: Records):
+    with pytest.raises(ValueError, match=r"flight\.json is not there"):
+        kept.read("flight.json")
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.text(max_size=200))
+def test_no_text_at_all_breaks_the_reader(text: str):
+    with pytest.raises((ValueError, KeyError, TypeError, AttributeError)):
+        from_text(text)
+
+
+def test_damaged_lines_of_the_logbook_are_counted_and_the_rest_is_read(kept: Records):
+    kept.keep(fly(), NOON)
+    with kept.logbook.open("a") as file:
+        file.write('nonsense\n{"when": 1}\n{"when": NaN, "outcome": "LANDED"}\n\n')
+        file.write(
+            '{"when": 1' + 400 * "0" + ', "outcome": "LANDED", "seconds": 1, "fuel": 1, "touchdown": 0, "human": 1}\n'
+        )
+        file.write('{"when": 17')  # a killed game
+    kept.keep(fly(), NOON + 1)
+    assert [line.when for line in kept.entries()] == [NOON, NOON + 1]
+    assert "5 lines" in kept.problem
+
+
+def test_a_line_cannot_lead_out_of_the_folder():
+    with pytest.raises(ValueError, match="plain name"):
+        entry(file="../settings.json")
+
+
+def test_without_a_disk_the_flight_is_lost_and_the_game_goes_on(tmp_path: Path):
+    (tmp_path / "user").write_text("a file where the folder should be")
+    records = Records(tmp_path / "user")
+    assert records.keep(fly(), NOON).landed
+    assert "could not be kept" in records.problem
+    assert records.entries() == []
+
+
+def test_old_files_make_room_but_the_best_and_the_logbook_stay(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(records, "RECENT", 6)
+    monkeypatch.setattr(records, "_SLACK", 2)
+    flight = fly()
+    good = [kept.keep(flight, NOON + second, alone=True).file for second in range(6)]
+    fall = fly(by_hand=True)
+    bad = [kept.keep(fall, NOON + 10 + second).file for second in range(9)]
+    (kept.folder / "mine.json").write_text("not in the logbook")
+    kept.keep(fall, NOON + 30)
+    assert set(good[:5]) <= kept.kept()
+    assert bad[0] not in kept.kept()
+    assert "mine.json" in kept.kept()
+    assert len(kept.entries()) == 16
+
+
+def test_a_clock_that_is_set_back_costs_no_new_flight(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(records, "RECENT", 6)
+    monkeypatch.setattr(records, "_SLACK", 2)
+    fall = fly(by_hand=True)
+    for second in range(8):
+        kept.keep(fall, NOON + second)
+    new = [kept.keep(fall, NOON - 365 * 86400 + second).file for second in range(12)]
+    assert set(new[-6:]) <= kept.kept()
+    assert [line.file for line in kept.entries()][-12:] == new
+
+
+def test_flights_of_one_moment_are_told_apart_also_by_two_games(kept: Records, tmp_path: Path):
+    other = Records(kept.folder.parent)
+    flight = fly()
+    names = [games.keep(flight, NOON).file for _ in range(3) for games in (kept, other)]
+    assert len(set(names)) == len(kept.kept()) == 6
+    assert not kept.problem
+
+
+def test_a_flight_can_be_thrown_away_and_brought_back_and_its_line_stays(kept: Records):
+    line = kept.keep(fly(), NOON)
+    held = (kept.folder / line.file).read_bytes()
+    assert kept.why_gone(line) == ""
+    assert kept.throw_away(line.file)
+    assert kept.kept() == set()
+    assert kept.thrown() == {line.file}
+    assert kept.why_gone(line) == texts.FLIGHT_THROWN
+    assert len(kept.entries()) == 1
+    assert not kept.throw_away(line.file)
+    assert kept.problem
+    assert kept.bring_back(line.file)
+    assert kept.problem == kept.why_gone(line) == ""
+    assert (kept.folder / line.file).read_bytes() == held
+    assert not kept.bring_back(line.file)
+
+
+def test_the_latest_that_were_thrown_away_can_be_brought_back(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(kept._files, "_most_thrown", 3)
+    flight = fly()
+    lines = [kept.keep(flight, NOON + second) for second in range(5)]
+    for line in lines:
+        assert kept.throw_away(line.file)
+    assert kept.thrown() == {line.file for line in lines[2:]}
+    assert [kept.why_gone(line) for line in lines[1:3]] == [texts.FLIGHT_MISSING, texts.FLIGHT_THROWN]
+
+
+def test_why_a_flight_is_gone_is_told_as_it_is(kept: Records, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(records, "RECENT", 3)
+    monkeypatch.setattr(records, "_SLACK", 0)
+    flight = fly(by_hand=True)
+    lines = [kept.keep(flight, NOON + second) for second in range(5)]
+    assert kept.why_gone(lines[0]) == texts.FLIGHT_TOO_OLD
+    (kept.folder / lines[4].file).unlink()
+    assert kept.why_gone(lines[4]) == texts.FLIGHT_MISSING
+    assert kept.why_gone(entry(file="")) == texts.FLIGHT_NEVER_KEPT
+
+
+def test_best_are_landings_by_hand_by_points_and_in_missions_by_fuel():
+    lines = [entry(score=score, file=f"{score}.json") for score in (40, 20, 90, 10, 30, 50)]
+    lines += [entry(score=99, alone=False, file="helped"), entry("CRASHED", score=99, file="crash"), entry(score=99)]
+    lines += [entry(fuel=fuel, score=round(10 * fuel), medal=medal, course="wind", file=f"w{fuel}")
+              for fuel, medal in ((8.0, 1), (6.0, 3), (5.0, 1), (7.0, 3))]  # fmt: skip
+    lines += [entry(fuel=7.0, pads=3, file="p")]
+    wanted = ["90.json", "50.json", "40.json", "30.json", "20.json", "p", "w6.0", "w7.0", "w5.0", "w8.0"]
+    assert [line.file for line in best(lines)] == wanted
+
+
+def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(kept: Records):
+    line = kept.keep(scripted(0, mission="earth"), NOON, course="earth", alone=True)
+    assert line.rules == MISSIONS["earth"].rules == 1
+    text = (kept.folder / line.file).read_text()
+    older = text.replace('"version": 4', '"version": 2').replace(',\n  "rules": 1', "")
+    assert older.count("rules") == 0
+    (kept.folder / "older.json").write_text(older)
+    before = kept.read("older.json").entry
+    assert (before.outdated, line.outdated) == (True, False)
+    assert best([replace(before, file="older.json"), line], most=1) == [replace(before, file="older.json"), line]
+    assert [(each.bar, _row(each)[-1]) for each in (before, line)] == [("outdated", "network"), ("", "network")]
+    assert _best_by_course([replace(before, fuel=0.0, medal=3, outcome="LANDED")]) == {}
+    assert not entry(course="wind").outdated
+    assert not entry().outdated
+
+
+def test_totals_and_skill_are_of_what_was_flown():
+    assert totals([]) == records.Totals()
+    assert skill([]) == []
+    outcomes = ["CRASHED", "LANDED", "LANDED", "TIMED_OUT", "LANDED"]
+    lines = [entry(outcome) for outcome in outcomes]
+    lines.insert(2, entry(alone=False))  # the network's landing says nothing of the person
+    assert totals(lines) == records.Totals(6, 4, 60.0, 18.0, 2)
+    assert skill(lines, window=2) == [0.0, 0.5, 1.0, 0.5, 0.5]
+
+
+@given(st.lists(st.sampled_from(range(6)), min_size=1, max_size=300), st.integers(0, 2**40))
+@settings(max_examples=50, deadline=None)
+def test_any_recording_survives_its_file(actions: list[int], seed: int):
+    hands = [Hand.HUMAN if action % 2 else Hand.NETWORK for action in actions]
+    recording = Recording(seed, "hard", 3, actions, hands)
+    record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
+    assert from_text(to_text(record)) == record
+    assert json.loads(to_text(record))["version"] == 4

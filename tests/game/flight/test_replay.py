@@ -1,0 +1,288 @@
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander.environment import Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight.flight import Flight, Hand
+from game.flight.flight_file import Record
+from game.flight.logbook import Records
+from game.flight.replay import Rerun, Tape
+from game.scenes.logbook import Logbook
+from game.scenes.replay import Replay
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.flights import NOON, fly_out, kept, scripted
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture
+def record(context: Context) -> Record:
+    return kept(context, scripted(by_hand=40))
+
+
+def state(tape: Tape) -> tuple:
+    env = tape.flight.env
+    return (*env.position[0].tolist(), *env.velocity[0].tolist(), float(env.angle[0]), int(env.outcome[0]),
+            int(env.main_steps[0]), tape.flight.share)  # fmt: skip
+
+
+def test_a_tape_can_be_wound_to_any_moment_and_shows_it_as_it_was(record: Record):
+    tape = Tape(record)
+    seen = [state(tape)]
+    for _ in range(tape.length):
+        tape.step()
+        seen.append(state(tape))
+    assert tape.flight.outcome is Outcome.LANDED
+    for step in (0, 1, 19, 20, 21, 77, tape.length - 1, tape.length, 40, 39, 3, tape.length):
+        tape.seek(step)
+        assert tape.at == step
+        assert state(tape) == seen[step]
+    tape.seek(60)
+    for step in range(61, 90):
+        tape.step()
+        assert state(tape) == seen[step]
+
+
+def test_read_outs_turn_to_the_pads_that_they_turned_to_in_flight():
+    flight, pilot = Flight(3, pads=3), ScriptedPilot()
+    first = int(flight.env.target[0])
+    flown, replayed = [], []
+    while not flight.over:
+        flight.step(int(pilot.act(flight.env.observe((first + 1) % 3))[0]))
+        flown.append((int(flight.env.target[0]), float(flight.env.altitude[0])))
+    assert flown[0][0] == first != flown[-1][0]
+    again = Rerun(flight.recording)
+    while not again.over:
+        again.step(0)
+        replayed.append((int(again.env.target[0]), float(again.env.altitude[0])))
+    assert replayed == flown
+
+
+def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flight(record: Record):
+    tape = Tape(record)
+    tape.scout(30)
+    tape.seek(500)
+    assert tape.at == 30
+    tape.seek(-5)
+    assert tape.at == 0
+    assert not tape.touching
+    tape.scout(10_000)
+    assert tape.touching
+    tape.seek(10_000)
+    assert (tape.at, tape.complete, tape.faithful) == (tape.length, True, True)
+    assert len(tape.path) == tape.length + 1
+    tape.step()
+    assert tape.at == tape.length
+
+
+@pytest.mark.parametrize("pads", [1, 3])
+def test_hands_are_those_that_flew(context: Context, pads: int):
+    records = Records(context.user_dir)
+    flight = scripted(pads=pads, by_hand=40)
+    tape = Tape(records.read(records.keep(flight, NOON).file))
+    tape.scout(10_000)
+    tape.seek(40)
+    assert tape.flight.flown_by is Hand.HUMAN
+    tape.seek(41)
+    assert tape.flight.flown_by is Hand.NETWORK
+    tape.seek(tape.length)
+    assert tape.flight.share == flight.share
+
+
+def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: Record):
+    x, y, angle = record.end
+    tape = Tape(replace(record, end=(x + 0.01, y, angle)))
+    tape.scout(10_000)
+    assert not tape.faithful
+    driver = open_game(Replay(replace(record, end=(x, y + 1, angle))))
+    driver.frames(120)
+    assert "other rules" in said(driver)
+
+
+def said(driver: Driver) -> str:
+    return driver.app._notes._text
+
+
+def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):
+    record.recording.actions[50:], record.recording.hands[50:] = [], []
+    tape = Tape(record)
+    for _ in range(70):
+        tape.step()
+    assert (tape.at, tape.complete, tape.faithful) == (50, True, False)
+
+
+# The scene
+
+
+@pytest.fixture
+def replay(open_game: Open, record: Record) -> Driver:
+    driver = open_game(Replay(record))
+    driver.frames(2)
+    return driver
+
+
+def scene(driver: Driver) -> Replay:
+    assert isinstance(driver.top, Replay)
+    return driver.top
+
+
+def test_it_plays_at_its_own_pace_and_at_others(replay: Driver):
+    before = scene(replay).tape.at
+    replay.frames(20)
+    assert scene(replay).tape.at == before + 20
+    replay.keys(pygame.K_MINUS, pygame.K_MINUS)
+    before = scene(replay).tape.at
+    replay.frames(40)
+    assert scene(replay).tape.at == pytest.approx(before + 10, abs=1)
+
+
+def test_space_stops_a_period_steps_and_arrows_wind(replay: Driver):
+    replay.frames(60)
+    replay.key(pygame.K_SPACE)
+    at = scene(replay).tape.at
+    replay.frames(10)
+    assert scene(replay).tape.at == at
+    replay.key(pygame.K_PERIOD)
+    assert scene(replay).tape.at == at + 1
+    replay.key(pygame.K_LEFT)
+    assert scene(replay).tape.at == at - 5
+    replay.key(pygame.K_HOME)
+    assert scene(replay).tape.at == 0
+    replay.frames(120)
+    replay.key(pygame.K_END)
+    assert scene(replay).tape.at == scene(replay).tape.length
+    assert scene(replay).ended
+
+
+def test_at_the_end_it_stays_and_space_begins_anew(replay: Driver):
+    replay.frames(scene(replay).tape.length + 30)
+    assert scene(replay).ended
+    replay.key(pygame.K_SPACE)
+    replay.frames(3)
+    assert 0 < scene(replay).tape.at < 10
+
+
+@pytest.mark.parametrize(("reduced", "faster", "slow"), [(False, 0, True), (False, 1, False), (True, 0, False)])
+def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, reduced: bool, faster: int, slow: bool):
+    context.settings_file.save(replace(context.settings, reduced_motion=reduced))
+    driver = open_game(Replay(kept(context, fly_out(Flight(5)))))
+    driver.frames(2)
+    driver.keys(*[pygame.K_PLUS] * faster)
+    driver.wait(lambda: scene(driver).ended)
+    assert scene(driver).tape.flight.outcome is Outcome.CRASHED
+    assert scene(driver)._pace.slow is slow
+    driver.keys(pygame.K_HOME)
+    assert not scene(driver)._pace.slow
+    before = scene(driver).tape.at
+    driver.frames(10)
+    assert scene(driver).tape.at == before + 10 * (1 + faster)
+
+
+def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
+    replay.frames(150)
+    box = scene(replay)._strip.box
+    replay.click((box.left + 84 + 0.5 * (box.width - 84), box.centery))
+    assert scene(replay).tape.at == pytest.approx(scene(replay).tape.length / 2, abs=5)
+    assert not scene(replay).stopped
+
+
+def test_a_gamepad_stops_winds_and_leaves(open_game: Open, record: Record, context: Context):
+    Records(context.user_dir)
+    driver = open_game(Logbook())
+    driver.frames(2)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert driver.top_name == "Replay"
+    driver.frames(100)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert scene(driver).stopped
+    at = scene(driver).tape.at
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
+    assert scene(driver).tape.at < at
+    driver.button(pygame.CONTROLLER_BUTTON_B)
+    assert driver.top_name == "Logbook"
+
+
+def test_drawing_changes_nothing(replay: Driver):
+    replay.frames(70)
+    pictures = []
+    for _ in range(2):
+        replay.top.draw(replay.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(replay.app.canvas.surface))
+    assert np.array_equal(*pictures)
+
+
+# The logbook
+
+
+@pytest.fixture
+def book(open_game: Open, context: Context) -> Driver:
+    records = Records(context.user_dir)
+    fall, landing = Flight(5), scripted()
+    while not fall.over:
+        fall.step(0)
+    records.keep(landing, NOON, alone=True)
+    records.keep(fall, NOON + 60, alone=True)
+    driver = open_game(Logbook())
+    driver.frames(3)
+    return driver
+
+
+def page(driver: Driver) -> Logbook:
+    assert isinstance(driver.top, Logbook)
+    return driver.top
+
+
+def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
+    driver = open_game(Logbook())
+    driver.keys(pygame.K_RETURN, pygame.K_DELETE, pygame.K_DOWN, pygame.K_UP)
+    assert page(driver).chosen is None
+    assert not driver.key(pygame.K_ESCAPE)
+
+
+def test_flights_are_listed_newest_first_and_filtered(book: Driver):
+    assert [entry.outcome for entry in page(book)._shown] == ["CRASHED", "LANDED"]
+    page(book)._form.focus(page(book)._filter)
+    book.key(pygame.K_RIGHT)
+    assert [entry.outcome for entry in page(book)._shown] == ["LANDED"]
+    book.key(pygame.K_RIGHT)
+    assert [entry.alone for entry in page(book)._shown] == [True]
+    assert page(book)._totals.flights == 2
+
+
+def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(book: Driver, monkeypatch):
+    entry = page(book).chosen
+    book.key(pygame.K_DELETE)
+    assert len(page(book)._shown) == 2
+    assert [word.label for word in page(book)._verbs] == [texts.LOGBOOK_BRING_BACK, texts.BACK]
+    assert said(book) == texts.LOGBOOK_THROWN
+    book.key(pygame.K_RETURN)  # there is nothing to watch any more
+    assert book.top_name == "Logbook"
+    written: list[str] = []
+    monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
+    book.frames(1)
+    assert texts.FLIGHT_THROWN in written
+    assert texts.FLIGHT_TOO_OLD not in written
+    page(book)._form.focus(page(book)._verbs[0])
+    book.key(pygame.K_RETURN)
+    assert said(book) == texts.LOGBOOK_BROUGHT_BACK
+    assert page(book).chosen == entry
+    book.key(pygame.K_RETURN)
+    assert book.top_name == "Replay"
+
+
+def test_a_damaged_flight_is_named_and_left_alone(book: Driver):
+    entry = page(book).chosen
+    assert entry
+    path = page(book)._records.folder / entry.file
+    path.write_text("{")
+    book.key(pygame.K_RETURN)
+    assert book.top_name == "Logbook"
+    assert "damaged" in said(book)
+    assert path.read_text() == "{"

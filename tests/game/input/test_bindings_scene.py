@@ -1,0 +1,125 @@
+import json
+
+import pygame
+import pytest
+
+from game.core import texts
+from game.input.bindings import Command, Held
+from game.scenes.bindings import BindingsScene
+from tests.support.driver import Driver
+
+A, B, X, START = (
+    pygame.CONTROLLER_BUTTON_A, pygame.CONTROLLER_BUTTON_B, pygame.CONTROLLER_BUTTON_X, pygame.CONTROLLER_BUTTON_START,
+)  # fmt: skip
+DOWN, RIGHT = pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_RIGHT
+
+
+@pytest.fixture
+def table(open_game) -> Driver:
+    driver = open_game(BindingsScene())
+    driver.frames(2)
+    return driver
+
+
+def controls(driver: Driver):
+    return driver.app.context.controls
+
+
+def saved(driver: Driver, name: str) -> dict:
+    driver.app.settings_writer.wait()
+    return json.loads((driver.app.context.user_dir / "settings.json").read_text())[name]
+
+
+def said(driver: Driver) -> str:
+    return driver.top._said
+
+
+def test_a_key_is_changed_kept_and_named_at_once(table: Driver):
+    table.keys(pygame.K_RETURN, pygame.K_f)
+    assert saved(table, "keys") == {"main": ["f"]}
+    assert controls(table).word(Held.MAIN) == "F"
+    assert not controls(table).listening
+
+
+def test_a_clash_is_named_and_the_keys_change_places(table: Driver):
+    table.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN, pygame.K_c)
+    assert texts.BINDINGS["CHOICES"] in said(table)
+    assert saved(table, "keys") == {"retry": ["c"], "choices": ["r"]}
+
+
+@pytest.mark.parametrize("key", [pygame.K_RETURN, pygame.K_UP, pygame.K_BACKSPACE, pygame.K_5])
+def test_what_menus_need_cannot_be_taken(table: Driver, key: int):
+    table.keys(*[pygame.K_DOWN] * 4, pygame.K_RETURN, key)
+    assert said(table)
+    assert controls(table).listening  # for another
+    table.keys(pygame.K_ESCAPE)
+    assert not controls(table).listening
+    assert table.top_name == "BindingsScene"
+    assert saved(table, "keys") == {}
+
+
+def test_full_screen_and_pictures_do_not_happen_while_a_key_is_waited_for(table: Driver):
+    table.keys(pygame.K_RETURN, pygame.K_F12)
+    assert saved(table, "keys") == {"main": ["f12"], "screenshot": ["w"]}
+    assert not (table.app.context.user_dir / "screenshots").exists()
+
+
+def test_the_only_key_of_another_is_refused_by_name_and_another_is_waited_for(table: Driver):
+    table.keys(pygame.K_RETURN, pygame.K_f)
+    table.keys(*[pygame.K_DOWN] * 3, pygame.K_RETURN, pygame.K_f)
+    assert said(table) == texts.BINDINGS_ONLY.format(key="F", other=texts.BINDINGS["MAIN"])
+    assert controls(table).listening
+    assert saved(table, "keys") == {"main": ["f"]}
+    table.key(pygame.K_h)
+    assert saved(table, "keys") == {"main": ["f"], "handover": ["h"]}
+
+
+def test_one_row_and_all_of_them_go_back(table: Driver):
+    table.keys(pygame.K_RETURN, pygame.K_f, pygame.K_DOWN, pygame.K_RETURN, pygame.K_g)
+    assert saved(table, "keys").keys() == {"main", "left", "mode"}
+    table.keys(pygame.K_DELETE)
+    assert saved(table, "keys").keys() == {"main"}  # what had changed places with it goes back as well
+    table.click((410, 644))
+    assert saved(table, "keys") == {}
+
+
+def test_a_pad_changes_its_own_buttons_and_start_leaves_them(table: Driver):
+    table.button(RIGHT)
+    table.button(A)
+    table.button(START)
+    assert not controls(table).listening
+    table.button(A)
+    table.button(X)
+    assert saved(table, "buttons")["main"] == ["x"]
+    assert A not in controls(table).buttons.codes(Command.RETRY)  # it confirms
+    table.button(B)
+    assert not table.app.scenes.running or table.top_name != "BindingsScene"
+
+
+def test_a_trigger_can_be_bound(table: Driver):
+    table.button(DOWN)
+    table.button(RIGHT)
+    table.button(A)
+    table.axis(pygame.CONTROLLER_AXIS_TRIGGERLEFT, 30000)
+    table.axis(pygame.CONTROLLER_AXIS_TRIGGERLEFT, 0)
+    assert saved(table, "buttons") == {"left": ["triggerleft"]}
+
+
+def test_without_a_pad_nothing_is_waited_for(table: Driver):
+    table.keys(pygame.K_RIGHT, pygame.K_RETURN)
+    assert said(table) == texts.BINDINGS_NO_PAD
+    assert not controls(table).listening
+
+
+def test_a_pad_pulled_out_is_not_waited_for(table: Driver):
+    table.button(RIGHT)
+    table.button(A)
+    table.post(pygame.CONTROLLERDEVICEREMOVED, instance_id=0)
+    assert not controls(table).listening
+
+
+def test_a_click_elsewhere_or_a_leave_ends_the_waiting(table: Driver):
+    table.click((410, 160))
+    assert controls(table).listening
+    table.click((90, 644))  # Back
+    assert not controls(table).listening

@@ -1,0 +1,276 @@
+import numpy as np
+import pygame
+import pytest
+
+from game.core.settings import Settings
+from game.drawing.glyphs import SIGN
+from game.input.bindings import FIXED_KEYS, KEYBOARD, KEYS, PAD, Bindings, Command, Held
+from game.input.controls import Controls, key_name, presses_main, translate
+from game.input.signs import family_of, sign
+
+
+def send(controls: Controls, event_type: int, **values) -> pygame.event.Event:
+    event = pygame.event.Event(event_type, values)
+    controls.process(event)
+    return event
+
+
+def hold(controls: Controls, *keys: int) -> None:
+    for key in keys:
+        send(controls, pygame.KEYDOWN, key=key, mod=0)
+
+
+@pytest.mark.parametrize(
+    ("keys", "action"),
+    [
+        ((), 0),
+        ((pygame.K_LEFT,), 1),
+        ((pygame.K_d,), 2),
+        ((pygame.K_SPACE,), 3),
+        ((pygame.K_w, pygame.K_a), 4),
+        ((pygame.K_UP, pygame.K_RIGHT), 5),
+        ((pygame.K_a, pygame.K_d), 0),
+    ],
+)
+def test_held_keys_make_the_action(keys, action):
+    controls = Controls()
+    hold(controls, *keys)
+    assert controls.action == action
+    for key in keys:
+        send(controls, pygame.KEYUP, key=key, mod=0)
+    assert controls.action == 0
+
+
+def test_losing_focus_lets_go_of_everything():
+    controls = Controls()
+    hold(controls, pygame.K_SPACE, pygame.K_LEFT)
+    send(controls, pygame.CONTROLLERAXISMOTION, instance_id=3, axis=pygame.CONTROLLER_AXIS_LEFTX, value=-32768)
+    send(controls, pygame.WINDOWFOCUSLOST)
+    assert controls.action == 0
+
+
+def test_a_pad_pulled_out_lets_go_and_another_goes_on():
+    controls = Controls()
+    send(controls, pygame.CONTROLLERDEVICEADDED, device_index=7)  # there is none: must not raise
+    send(controls, pygame.CONTROLLERBUTTONDOWN, instance_id=0, button=pygame.CONTROLLER_BUTTON_A)
+    send(controls, pygame.CONTROLLERAXISMOTION, instance_id=1, axis=pygame.CONTROLLER_AXIS_LEFTX, value=30000)
+    assert controls.action == 5
+    send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=0)
+    assert controls.action == 2
+    send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=1)
+    send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=1)
+    send(controls, pygame.CONTROLLERBUTTONUP, instance_id=1, button=pygame.CONTROLLER_BUTTON_A)
+    assert controls.action == 0
+
+
+def test_a_stick_commands_once_a_push():
+    controls = Controls()
+    pushes = [
+        translate(
+            send(
+                controls,
+                pygame.CONTROLLERAXISMOTION,
+                instance_id=0,
+                axis=pygame.CONTROLLER_AXIS_LEFTY,
+                value=value,
+            )
+        )
+        for value in (9000, 24000, 32000, 16000, 24000, 3000, 24000, -24000)
+    ]
+    assert pushes == [None, Command.DOWN, None, None, None, None, Command.DOWN, Command.UP]
+
+
+def test_hints_name_the_device_in_use():
+    controls = Controls()
+    assert controls.word(Command.HANDOVER) == "Tab"
+    send(controls, pygame.CONTROLLERBUTTONDOWN, instance_id=0, button=pygame.CONTROLLER_BUTTON_Y)
+    assert controls.word(Command.HANDOVER) == sign("xbox", pygame.CONTROLLER_BUTTON_Y)
+    assert controls.word(Command.FULLSCREEN) == "F11"
+    hold(controls, pygame.K_TAB)
+    assert controls.word(Command.HANDOVER) == "Tab"
+
+
+def test_signs_go_with_the_pad_and_another_pads_release_does_not_matter():
+    controls = Controls()
+    send(controls, pygame.CONTROLLERBUTTONDOWN, instance_id=4, button=pygame.CONTROLLER_BUTTON_A)
+    assert SIGN.fullmatch(controls.word(Command.CONFIRM))
+    event = send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=9)
+    assert controls.pad_in_use
+    assert translate(event) is None
+    event = send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=4)
+    assert translate(event) is Command.UNPLUGGED
+    assert controls.word(Command.CONFIRM) == "Enter"
+
+
+@pytest.mark.parametrize(
+    ("name", "family"),
+    [
+        ("Xbox Wireless Controller", "xbox"),
+        ("DualSense Wireless Controller", "playstation"),
+        ("PS4 Controller", "playstation"),
+        ("Nintendo Switch Pro Controller", "nintendo"),
+        ("Generic USB Joystick", "xbox"),
+    ],
+)
+def test_a_pad_has_the_signs_of_its_make(name: str, family: str):
+    assert family_of(name) == family
+
+
+@pytest.mark.parametrize("device", [KEYBOARD, PAD])
+def test_no_key_has_two_meanings(device):
+    for table in (device.standard, device.fixed):
+        bound = [key for keys in table.values() for key in keys]
+        assert len(bound) == len(set(bound))
+
+
+def test_every_command_has_a_key():
+    bound = {meaning for table in (KEYS, FIXED_KEYS) for meaning in table if isinstance(meaning, Command)}
+    assert bound == set(Command) - {Command.UNPLUGGED}
+
+
+def test_a_key_that_is_bound_means_that_alone():
+    controls = Controls()
+    assert controls.keys.bind(Held.MAIN, pygame.K_f) is None
+    hold(controls, pygame.K_UP)
+    assert controls.action == 0
+    hold(controls, pygame.K_f)
+    assert controls.action == 3
+    assert controls.word(Held.MAIN) == "F"
+    assert presses_main(send(controls, pygame.KEYDOWN, key=pygame.K_f, mod=0))
+    assert not presses_main(send(controls, pygame.KEYDOWN, key=pygame.K_w, mod=0))
+    assert presses_main(send(controls, pygame.KEYDOWN, key=pygame.K_SPACE, mod=0))
+
+
+def test_keys_change_places():
+    keys = Bindings(KEYBOARD)
+    assert keys.bind(Command.RETRY, pygame.K_c) is Command.CHOICES
+    assert keys.command(pygame.K_c) is Command.RETRY
+    assert keys.command(pygame.K_r) is Command.CHOICES
+    assert keys.bind(Command.CHOICES, pygame.K_n) is Command.NEXT
+    assert keys.codes(Command.NEXT) == (pygame.K_PAGEDOWN,)
+    assert keys.bind(Held.MAIN, pygame.K_g) is Command.MODE
+    assert keys.codes(Command.MODE) == (pygame.K_w,)  # of three keys, the one that menus can spare
+    keys.reset()
+    assert keys.table == KEYS
+    assert keys.to_dict() == {}
+
+
+def test_one_meaning_can_be_reset_alone():
+    keys = Bindings(KEYBOARD)
+    keys.bind(Command.RETRY, pygame.K_c)
+    keys.reset(Command.CHOICES)
+    assert keys.codes(Command.CHOICES) == (pygame.K_c,)
+    assert keys.codes(Command.RETRY) == (pygame.K_r,)  # its only key is taken back, so it gets its own back, too
+
+
+def test_what_would_be_left_without_a_key_keeps_it():
+    keys = Bindings(KEYBOARD)
+    keys.bind(Held.MAIN, pygame.K_f)
+    assert keys.bereft(Command.HANDOVER, pygame.K_f) is Held.MAIN  # Tab, which is given up, fires no engine
+    with pytest.raises(ValueError, match="MAIN"):
+        keys.bind(Command.HANDOVER, pygame.K_f)
+    assert keys.codes(Held.MAIN) == (pygame.K_f,)
+    assert keys.codes(Command.HANDOVER) == (pygame.K_TAB,)
+
+
+def lacking(bindings: Bindings) -> list[object]:
+    standard = bindings.device.standard
+    return [meaning for meaning in bindings.table if standard[meaning] and not bindings.codes(meaning)]
+
+
+@pytest.mark.parametrize("device", [KEYBOARD, PAD])
+def test_nothing_is_ever_left_without_a_key(device):
+    """Bind and reset at random, ten thousand times, and read half of it again from a damaged file."""
+    rng, bindings = np.random.default_rng(1), Bindings(device)
+    meanings, codes = list(device.standard), sorted(set(device.names.values()))
+    for _ in range(10_000):
+        meaning, code = meanings[rng.integers(len(meanings))], int(rng.choice(codes))
+        if rng.random() < 0.1:
+            bindings.reset(meaning)
+        elif bindings.may(meaning, code) and bindings.bereft(meaning, code) is None:
+            bindings.bind(meaning, code)
+        assert not lacking(bindings)
+        saved = bindings.to_dict()
+        if saved and rng.random() < 0.05:
+            saved[str(rng.choice(list(saved)))] = []
+            bindings.follow(saved)
+            assert not lacking(bindings)
+            owned = [code for codes in bindings.table.values() for code in codes]
+            assert len(owned) == len(set(owned))
+
+
+@pytest.mark.parametrize("device", [KEYBOARD, PAD])
+def test_nobody_can_lock_themselves_out(device):
+    """Bind everything that can be bound to everything: menus can still be walked and left."""
+    bindings = Bindings(device)
+    for meaning in device.standard:
+        for code in set(device.names.values()):
+            if bindings.may(meaning, code) and bindings.bereft(meaning, code) is None:
+                bindings.bind(meaning, code)
+            for command, codes in device.fixed.items():
+                assert all(bindings.command(each) is command for each in codes)
+    owners = [code for codes in bindings.table.values() for code in codes]
+    assert len(owners) == len(set(owners))
+
+
+def test_bindings_survive_the_settings_file():
+    controls, settings = Controls(), Settings()
+    controls.keys.bind(Held.LEFT, pygame.K_j)
+    controls.keys.bind(Command.NEXT, 0xE9)  # a letter that only some keyboards have
+    controls.buttons.bind(Command.RETRY, pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
+    settings.keys, settings.buttons = controls.keys.to_dict(), controls.buttons.to_dict()
+    again = Controls()
+    again.follow(Settings.from_dict(settings.to_dict()))
+    assert again.keys.table == controls.keys.table
+    assert again.buttons.table == controls.buttons.table
+    assert again.word(Command.NEXT) == "\xc9"
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        {"keys": {"main": "space", "left": 5, "retry": ["no such key", None, 7, "#x", "#-1"]}},
+        {"keys": {"retry": ["escape", "return", "up"], "unheard": ["a"], "7": []}},
+        {"keys": [1], "buttons": "a"},
+        {"keys": {"retry": ["c"], "next": ["c"], "choices": ["c", "c"]}},
+        {"buttons": {"retry": ["start", "#99999999999999999999"], "main": [["a"]]}},
+    ],
+)
+def test_damaged_bindings_are_passed_over(damaged):
+    controls = Controls()
+    controls.follow(Settings.from_dict(damaged))
+    for bindings in (controls.keys, controls.buttons):
+        codes = [code for codes in bindings.table.values() for code in codes]
+        assert len(codes) == len(set(codes))
+    assert translate(send(controls, pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0)) is Command.PAUSE
+    assert translate(send(controls, pygame.KEYDOWN, key=pygame.K_RETURN, mod=0)) is Command.CONFIRM
+
+
+def test_what_cannot_be_written_is_a_number():
+    assert [key_name(code) for code in (0xE9, 0x85, 0xD800, 0xE3FF, 0x110000)] == [
+        "\xc9", "#133", "#55296", "#58367", "#1114112"
+    ]  # fmt: skip
+
+
+def test_triggers_are_buttons_like_others():
+    controls = Controls()
+
+    def pull(value: int) -> pygame.event.Event:
+        axis = pygame.CONTROLLER_AXIS_TRIGGERRIGHT
+        return send(controls, pygame.CONTROLLERAXISMOTION, instance_id=0, axis=axis, value=value)
+
+    pull(20000)
+    assert controls.action == 3
+    pull(0)
+    assert controls.action == 0
+    controls.buttons.bind(Command.RETRY, 33)
+    assert [translate(pull(value)) for value in (9000, 30000, 7000, 9000, 0, 9000)] == [
+        Command.RETRY, None, None, None, None, Command.RETRY,
+    ]  # fmt: skip
+    assert controls.action == 0
+
+
+def test_space_confirms_as_the_main_engine_does():
+    space = pygame.event.Event(pygame.KEYDOWN, key=pygame.K_SPACE, mod=0)
+    assert presses_main(space)
+    assert translate(space) is None

@@ -1,0 +1,87 @@
+"""The hint on the training screen, with a run that flew better before."""
+
+from dataclasses import replace
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.config import PRESETS
+from ai.training.hints import RULES, Hint
+from ai.training.history import Checkpoint, History
+from game.core import texts
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.prose import wrapped
+from game.drawing.tokens import SMALL, TEXT_SIZES
+from game.panels.advice import Advice
+from game.ui.context import Context
+from game.ui.form import Form
+from tests.ai.training.test_hints import HEALTHY
+
+MODERN = PRESETS["modern"]
+
+
+@pytest.fixture
+def collapsed() -> History:
+    run = History()
+    for number in range(400):
+        success = 0.97 if number < 300 else 0.2
+        run.append(replace(HEALTHY, seconds=number / 10, decisions=1000.0 * number, episodes=9.0 * number,
+                           success=success, landed=success))  # fmt: skip
+    run.append(Checkpoint(20.0, 200_000, 0.97, np.zeros(3, np.float32)))
+    run.append(Checkpoint(39.0, 390_000, 0.2, np.zeros(3, np.float32)))
+    return run
+
+
+@pytest.mark.parametrize("growth", TEXT_SIZES.values())
+def test_every_hint_has_room_in_its_frame(growth: float) -> None:
+    typeface.grow(growth)
+    try:
+        canvas = Canvas(pygame.Surface((1280, 720)))
+        for said in texts.HINTS.values():
+            assert len(wrapped(canvas, said, SMALL, 384 - 28)) <= 2, said
+        assert set(texts.HINTS) == {rule.name for rule in RULES}
+    finally:
+        typeface.grow(1.0)
+
+
+def test_while_something_else_waits_no_hint_asks(context: Context, collapsed: History) -> None:
+    form = Form(context)
+    advice = Advice(form, pygame.Rect(868, 612, 384, 60), lambda *_: None, lambda _: None)
+    advice._lay(Hint("overfed", {"num_envs": 256}))
+    assert advice.shown
+    advice.hush(True)
+    assert not advice.shown
+    assert not form.widgets
+    advice.hush(False)
+    assert [each.label for each in form.widgets] == [texts.HINT_APPLY, texts.HINT_DISMISS]
+
+
+def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, collapsed: History) -> None:
+    turned: list[tuple[str, float]] = []
+    gone_to: list[int] = []
+    form = Form(context)
+    box = pygame.Rect(868, 612, 384, 50)
+    advice = Advice(form, box, lambda name, value: turned.append((name, value)), gone_to.append)
+    growing = History()
+    for checkpoint in collapsed.checkpoints:
+        growing.append(checkpoint)
+    for row in collapsed.points:
+        values = row.tolist()
+        growing.append(replace(HEALTHY, seconds=values[0], decisions=values[1], episodes=values[2],
+                               success=values[3], landed=values[3]))  # fmt: skip
+        advice.follow(growing, MODERN)
+    assert advice.adviser.shown is not None
+    assert advice.adviser.shown.name == "collapsed"
+    form.widgets[0].press()
+    assert gone_to == [200_000]
+    applied = dict(turned)
+    assert applied["learning_rate"] < MODERN.learning_rate
+    assert advice.shown, "the way back is offered"
+    assert advice.done.startswith("Learning rate")
+    assert "200,000" in advice.done, "and what was done is said"
+    form.widgets[0].press()
+    assert gone_to == [200_000, 399_000]
+    assert dict(turned)["learning_rate"] == MODERN.learning_rate
+    assert not advice.shown

@@ -1,0 +1,61 @@
+"""Runs side by side: their names, their lines, and the axis they are measured by."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ai.training.history import Checkpoint, History
+from game.core import texts
+from game.panels.training_charts import Board
+from game.training.training_run import EARLIER, Beside, put_beside
+from tests.ai.training.test_hints import HEALTHY
+
+
+def run_of(seconds: float, decisions: float) -> History:
+    run = History()
+    for number in range(50):
+        share = number / 49
+        run.append(replace(HEALTHY, seconds=share * seconds, decisions=share * decisions))
+    return run
+
+
+def test_a_run_keeps_its_style_as_others_come_and_go():
+    runs: list[Beside[str]] = []
+    for name in ("a", "b", "c"):
+        assert put_beside(runs, name, name) == ""
+    styles = {each.name: each.style for each in runs}
+    assert len(set(styles.values())) == 3
+    assert 0 not in styles.values(), "that is the run that goes on"
+    assert put_beside(runs, "d", "d") == "a", "who makes room is told"
+    assert len(runs) == EARLIER
+    assert {each.name: each.style for each in runs} == {"b": styles["b"], "c": styles["c"], "d": styles["a"]}
+    assert put_beside(runs, "c", "again") == ""
+    assert next(each.style for each in runs if each.name == "c") == styles["c"]
+
+
+def look(board: Board, history: History, beside: list[Beside[History]]) -> None:
+    for _ in range(12):
+        board.look(history, beside)
+
+
+@pytest.mark.parametrize(("axis", "end", "reach"), [(0, 367.0, 12.0), (1, 4e6, 2e5), (2, 100.0, 100.0)])
+def test_a_short_run_beside_a_long_one_can_be_measured_so_that_it_is_seen(axis: int, end: float, reach: float):
+    board, short = Board(), run_of(12.0, 200_000.0)
+    look(board, short, [Beside("long", run_of(367.0, 4e6), 1)])
+    board.measure_by(axis)
+    look(board, short, [Beside("long", run_of(367.0, 4e6), 1)])
+    for chart in board.charts.charts:
+        assert chart._x_range == (0.0, pytest.approx(end))
+        assert chart._runs[0].x[-1] == pytest.approx(reach)
+        assert chart.read_x(end) == texts.TRAIN_AXIS[axis].format(end)
+
+
+def test_a_checkpoint_is_chosen_where_it_stands_on_the_axis():
+    board, run = Board(), run_of(100.0, 1e6)
+    checkpoints = [Checkpoint(25.0 * number, 250_000 * number, 0.0, np.zeros(1, np.float32)) for number in range(5)]
+    for axis, place in ((0, 51.0), (1, 510_000.0), (2, 51.0)):
+        board.measure_by(axis)
+        look(board, run, [])
+        board.choose(place, checkpoints)
+        assert board.chosen is checkpoints[2]

@@ -1,0 +1,324 @@
+from typing import Any
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import build_network
+from ai.agent.config import Config
+from ai.lander.environment import ACTION_NAMES, FEATURE_NAMES
+from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.panels.network_plan import Plan, steady_choice, strongest_edges
+from game.panels.network_view import NetView
+from tests.game.shell.test_draw import state_of
+
+BOX = (868, 420, 384, 180)
+LARGE = (90, 80, 1100, 560)
+OBSERVATION = np.linspace(-1, 1, 9)
+
+
+@pytest.fixture
+def canvas() -> Canvas:
+    return Canvas(pygame.Surface((1280, 720)))
+
+
+def network_of(features: int = 9, actions: int = 6, **options: object) -> NeuralNetwork:
+    network = build_network(features, actions, Config().changed(**options), np.random.default_rng(0))
+    network.gradients[:] = np.random.default_rng(1).normal(size=len(network.gradients))
+    return network
+
+
+def view_of(network: NeuralNetwork, box: tuple[int, int, int, int] = BOX) -> NetView:
+    view = NetView(box, FEATURE_NAMES, ACTION_NAMES)
+    view.set(network, OBSERVATION)
+    return view
+
+
+def play(view: NetView, canvas: Canvas, frames: int = 40) -> None:
+    for _ in range(frames):
+        view.update()
+        view.draw(canvas)
+
+
+# What is shown
+
+
+def test_the_strongest_units_are_chosen_and_stay_until_another_is_much_stronger() -> None:
+    strength = np.array([5.0, 1, 4, 1, 3, 1])
+    chosen = steady_choice(strength, 3)
+    np.testing.assert_array_equal(chosen, [0, 2, 4])
+    strength[1] = 3.5  # stronger than the third, but not by much
+    np.testing.assert_array_equal(steady_choice(strength, 3, chosen), chosen)
+    np.testing.assert_array_equal(steady_choice(strength, 3), [0, 1, 2])
+    strength[1] = 9.0
+    np.testing.assert_array_equal(steady_choice(strength, 3, chosen), [0, 1, 2])
+
+
+def test_damaged_units_are_shown_first_and_few_units_all() -> None:
+    strength = np.ones(30)
+    strength[[7, 21]] = np.nan, np.inf
+    assert {7, 21} <= set(steady_choice(strength, 4).tolist())
+    np.testing.assert_array_equal(steady_choice(np.ones(4), 12), np.arange(4))
+
+
+def test_the_shown_units_do_not_flicker_as_learning_goes_on() -> None:
+    network = network_of()
+    view = view_of(network)
+    rng = np.random.default_rng(2)
+    changes = 0
+    for _ in range(20):
+        before = [column.units for column in view.columns]
+        network.values += 0.002 * rng.normal(size=len(network.values)).astype(np.float32)
+        view.set(network, OBSERVATION + 0.05 * rng.normal(size=9))
+        changes += sum(len(np.setdiff1d(c.units, old)) for c, old in zip(view.columns, before, strict=True))
+    assert changes <= 6
+
+
+def test_it_says_how_many_units_there_are() -> None:
+    view = view_of(network_of())
+    assert [column.total for column in view.columns] == [9, 64, 64, 6]
+    assert [len(column.units) for column in view.columns] == [9, 12, 12, 6]
+    view.place(LARGE)
+    assert len(view.columns[1].units) > 12
+
+
+def test_only_the_largest_links_are_drawn_and_the_largest_last() -> None:
+    matrix = np.array([[0.5, -2.0], [0.1, 1.0]])
+    edges = strongest_edges(matrix, 3, 3)
+    assert [(edge.start, edge.end, edge.positive) for edge in edges] == [(0, 0, True), (1, 1, True), (0, 1, False)]
+    assert edges[-1].size == 1
+    assert edges[0].size == 0.25
+    assert {edge.column for edge in edges} == {3}
+    assert strongest_edges(np.zeros((3, 3)), 0, 5) == []
+    assert strongest_edges(np.full((3, 3), np.nan), 0, 5) == []
+
+
+def test_edges_follow_what_is_to_be_shown() -> None:
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(3, 2))
+    weights, _ = network.layers[0].parameters
+    network.values[:] = 0
+    weights.value[:] = [[3, 0], [0, -2], [1, 0]]
+    network.gradients[:] = 0
+    weights.gradient[:] = [[0, 0], [0, 0], [0, 5]]
+    plan = Plan(network, [0.0, 2.0, -1.0], 12)
+
+    def drawn(show: str) -> list[tuple[int, int, bool]]:
+        return [(edge.start, edge.end, edge.positive) for edge in plan.edges(show, 12)]  # type: ignore[arg-type]
+
+    assert drawn("weights") == [(2, 0, True), (1, 1, False), (0, 0, True)]
+    assert drawn("activations") == [(2, 0, False), (1, 1, False)]  # an input of 0 sends nothing
+    assert drawn("gradients") == [(2, 1, False)]  # learning goes down the gradient
+
+
+def test_a_plan_is_a_copy() -> None:
+    network = network_of()
+    plan = Plan(network, OBSERVATION, 12)
+    before = [edge.size for edge in plan.edges("weights", 50)]
+    network.values[:] = 7
+    assert [edge.size for edge in plan.edges("weights", 50)] == before
+
+
+def test_the_best_output_is_the_one_the_network_would_take() -> None:
+    network = network_of()
+    plan = Plan(network, OBSERVATION, 12)
+    assert plan.best() == int(network.predict(OBSERVATION.astype(np.float32)).argmax())
+    assert Plan(network, None, 12).best() is None
+
+
+# Pointing
+
+
+def test_a_unit_is_found_where_it_is_drawn_and_named() -> None:
+    view = view_of(network_of())
+    for number, column in enumerate(view._centres):
+        for place, centre in enumerate(column):
+            assert view.unit_at(centre) == (number, place)
+            assert view.box.collidepoint(centre)
+    assert view.unit_at((0.0, 0.0)) is None
+    assert view.name(0, 3) == FEATURE_NAMES[3]
+    assert view.name(3, 5) == ACTION_NAMES[5]
+    assert str(view.columns[1].units[2] + 1) in view.name(1, 2)
+
+
+def test_the_hovered_unit_s_edges_stand_out(canvas: Canvas) -> None:
+    view = view_of(network_of())
+    play(view, canvas)
+    edge = view.edges[-1]
+    plain = _light_along(view, edge.column, edge.start, edge.end)
+    view.hover(view._centres[edge.column][edge.start])
+    play(view, canvas)
+    touched = _light_along(view, edge.column, edge.start, edge.end)
+    other = next(e for e in view.edges[::-1] if e.column == edge.column and e.start != edge.start)
+    view.hover(view._centres[other.column][other.start])
+    play(view, canvas)
+    assert touched > plain > _light_along(view, edge.column, edge.start, edge.end)
+
+
+def _light_along(view: NetView, column: int, start: int, end: int) -> float:
+    """Return how bright the sheet of light is a quarter along an edge, where not many cross."""
+    assert view._sheets is not None
+    (x0, y0), (x1, y1) = (view._on_sheet(view._centres[column + k][place]) for k, place in enumerate((start, end)))
+    x, y = x0 + 0.25 * (x1 - x0), y0 + 0.25 * (y1 - y0)
+    pixels = pygame.surfarray.array3d(view._sheets[0].surface)
+    return float(pixels[round(x) - 1 : round(x) + 2, round(y) - 2 : round(y) + 3].max(axis=(0, 1)).sum())
+
+
+# Drawing
+
+
+def test_new_numbers_are_drawn_at_most_ten_times_a_second_and_old_ones_not_again(canvas: Canvas) -> None:
+    network = network_of()
+    view = view_of(network)
+    for frame in range(120):
+        network.values[frame] += 1
+        view.set(network, OBSERVATION)
+        view.update()
+        view.draw(canvas)
+    assert 8 <= view.redraws <= 21
+    play(view, canvas)
+    redraws = view.redraws
+    play(view, canvas)
+    assert view.redraws == redraws
+
+
+def test_drawing_leaves_the_painting_to_steps(canvas: Canvas) -> None:
+    network = network_of()
+    view = view_of(network, LARGE)
+    view.show = "gradients"
+    view.draw(canvas)
+    for frame in range(40):
+        network.values[frame] += 1
+        view.set(network, OBSERVATION)
+        view.update()
+        before = state_of(view)
+        view.draw(canvas)
+        assert state_of(view) == before
+    assert view.redraws > 3
+
+
+def test_what_is_drawn_in_parts_ends_up_the_same_as_at_once(canvas: Canvas) -> None:
+    network = network_of()
+    view = view_of(network, LARGE)
+    view.draw(canvas)
+    network.values *= -1
+    view.set(network, -OBSERVATION)
+    view.update()
+    play(view, canvas, 90)
+    other = NetView(LARGE, FEATURE_NAMES, ACTION_NAMES)
+    other.plan, other._given = view.plan, view._given
+    other._centres = other._lay_out()
+    other._pick_edges()
+    other.draw(canvas)
+    assert view._sheets is not None
+    assert other._sheets is not None
+    for mine, theirs in zip(view._sheets, other._sheets, strict=True):
+        assert pygame.image.tobytes(mine.surface, "RGBA") == pygame.image.tobytes(theirs.surface, "RGBA")
+
+
+def test_pulses_travel_backwards_and_stand_still_with_reduced_motion(canvas: Canvas) -> None:
+    view = view_of(network_of())
+    view.show = "gradients"
+    play(view, canvas)
+
+    def frame(at_once: bool) -> bytes:
+        canvas.surface.fill((0, 0, 0))
+        view.update(at_once)
+        view.draw(canvas)
+        return pygame.image.tobytes(canvas.surface, "RGB")
+
+    assert frame(False) != frame(False)
+    assert frame(True) == frame(True)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"hidden": (1,)}, {"hidden": (1024, 3)}, {"hidden": (16, 16, 16, 16, 16)}, {"dueling": True},
+        {"layer_normalisation": False, "activation": "tanh"}, {"activation": "leaky_relu"}, {"activation": "sigmoid"},
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("box", [BOX, LARGE, (10, 10, 60, 40)])
+def test_any_network_is_drawn_in_any_box(
+    canvas: Canvas, options: dict[str, object], box: tuple[int, int, int, int]
+) -> None:
+    view = view_of(network_of(**options), box)
+    for view.show in ("weights", "activations", "gradients"):
+        play(view, canvas, 2)
+    view.hover(view._centres[1][0])
+    play(view, canvas, 8)
+
+
+@pytest.mark.parametrize("features", [1, 4, 40])
+def test_other_numbers_of_inputs_are_drawn(canvas: Canvas, features: int) -> None:
+    view = NetView(BOX, FEATURE_NAMES, ACTION_NAMES)
+    view.set(network_of(features, 2), np.ones(features))
+    play(view, canvas, 3)
+    assert view.columns[0].total == features
+    assert len(view.columns[0].units) == min(features, 12)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 3e38])
+def test_damaged_numbers_are_drawn_and_marked(canvas: Canvas, bad: float) -> None:
+    network = network_of()
+    network.values[::7] = bad
+    network.gradients[::5] = bad
+    view = view_of(network)
+    for view.show in ("weights", "activations", "gradients"):
+        view.hover(view._centres[1][3])
+        play(view, canvas, 8)
+    if not np.isfinite(bad):
+        assert view.columns[1].damaged.any()
+    view.set(network, np.full(9, bad))
+    play(view, canvas, 8)
+
+
+@pytest.mark.parametrize("observation", [None, np.ones(4), np.ones((3, 9)), np.zeros(0)])
+def test_without_a_fitting_observation_the_weights_are_drawn(canvas: Canvas, observation: object) -> None:
+    view = NetView(BOX, FEATURE_NAMES, ACTION_NAMES)
+    view.set(network_of(), observation)  # type: ignore[arg-type]
+    play(view, canvas, 3)
+    assert view.edges
+    assert not any(column.damaged.any() for column in view.columns)
+
+
+def test_nothing_is_drawn_of_no_network(canvas: Canvas) -> None:
+    view = NetView(BOX)
+    view.hover((900.0, 450.0))
+    play(view, canvas, 3)
+    view.set(NeuralNetwork(*CostFunctions.use_mse()), np.ones(3))
+    play(view, canvas, 9)
+    assert view.unit_at((900.0, 450.0)) is None
+
+
+def test_a_network_of_another_size_takes_its_place_while_a_unit_is_looked_at(canvas: Canvas) -> None:
+    view = view_of(network_of())
+    view.hover(view._centres[2][11])
+    play(view, canvas, 3)
+    view.set(network_of(hidden=(3,)), OBSERVATION)
+    play(view, canvas, 20)
+    assert [column.total for column in view.columns] == [9, 3, 6]
+
+
+def test_outputs_are_told_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -> None:
+    network = network_of()
+    values = network.predict(np.atleast_2d(OBSERVATION))[0]
+    view = NetView(LARGE, FEATURE_NAMES, ACTION_NAMES)
+    view.output_scale = 0.01
+    view.set(network, OBSERVATION)
+    written: list[str] = []
+    real = Canvas.text
+
+    def text(self: Canvas, string: str, *args: Any, **kinds: Any) -> pygame.FRect:
+        written.append(string)
+        return real(self, string, *args, **kinds)
+
+    monkeypatch.setattr(Canvas, "text", text)
+    play(view, Canvas(pygame.Surface((1280, 720))))
+    for value in (values / np.float32(0.01)).tolist():
+        assert f"{value:.2f}".replace("-", "\u2212") in written
+    view.hover(view._centres[-1][0])
+    written.clear()
+    play(view, Canvas(pygame.Surface((1280, 720))))
+    assert texts.NET_POINTS in written

@@ -1,0 +1,184 @@
+"""Watch and the co-pilot's panel draw what was decided, over whole flights of the networks that come with the game."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.common.decision import Decision
+from ai.copilot.copilot import Mode
+from ai.lander.environment import Outcome
+from game.cockpit.copilot_panel import Insight
+from game.cockpit.decision_panel import draw_mind
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight.flight import DECISION_STEPS, Flight
+from game.panels.q_values import SPAN
+from game.scenes.watch import Watch
+from game.ui.context import Context
+from tests.support.drawn import Drawn, Panel, number, read_panel
+from tests.support.driver import Driver
+
+MODELS = Path(__file__).parents[3] / "models" / "lander"
+NETWORKS = ("modern", "classic")
+TINY = 1e-3  # points by which values may differ that were computed beside others, and alone
+Open = Callable[..., Driver]
+
+
+class Witness:
+    """Flies as an agent does, and writes down each decision: when, for which observations, and what came of it."""
+
+    def __init__(self, agent: DeepQAgent) -> None:
+        self.agent, self.made = agent, list[Decision]()
+
+    def q_values(self, observation: np.ndarray) -> np.ndarray:
+        return self.agent.q_values(observation)
+
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
+        return self.decide(observation, held=held).action
+
+    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
+        self.made.append(self.agent.decide(observation.copy(), held=held))
+        return self.made[-1]
+
+
+@pytest.fixture(params=NETWORKS, scope="module")
+def agent(request: pytest.FixtureRequest) -> DeepQAgent:
+    return DeepQAgent.load(MODELS / request.param)
+
+
+@pytest.fixture
+def canvas() -> Canvas:
+    return Canvas(pygame.Surface((1280, 720)))
+
+
+def check(panel: Panel, points: np.ndarray, flown: int) -> None:
+    """Compare what can be read off a panel with values in points (6,) and the action that was flown."""
+    assert [row.marked for row in panel.rows] == [action == flown for action in range(6)]
+    assert number(panel.expected) == pytest.approx(points.max(), abs=0.051)
+    loss = points.max() - points
+    assert [-number(row.figure) for row in panel.rows] == pytest.approx(loss.tolist(), abs=0.051)
+    assert [row.fraction for row in panel.rows] == pytest.approx(np.clip(1 - loss / SPAN, 0, 1).tolist(), abs=1e-4)
+    assert [row.beyond for row in panel.rows] == (loss > SPAN).tolist()
+
+
+@pytest.mark.parametrize("count", [1, 16])
+def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
+    open_game: Open, context: Context, agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, count: int
+):
+    context.models_dir = MODELS.parent
+    context.settings.reduced_motion = True
+    driver = open_game(Watch(count, seed=4))
+    watch = driver.top
+    assert isinstance(watch, Watch)
+    watch.swarm.flyer = Witness(agent)
+    watch._show(count - 1)
+    slot, env = watch.shown, watch.swarm.env
+    drawn = Drawn(monkeypatch)
+    kept = longest = steps = 0
+    for step in range(1000):
+        before = env.observe()[slot].copy()
+        decided, flying = watch.swarm.decided[slot], watch.swarm.since_end[slot] == 0
+        watch.update()
+        if watch.swarm.landed + watch.swarm.lost > 2 * count:
+            break
+        if watch.swarm.decided[slot] == decided and step < DECISION_STEPS:
+            continue  # what was decided before the witness came
+        if watch.swarm.decided[slot] > decided and flying:
+            sensed = before
+        elif watch.swarm.fresh[slot]:
+            sensed = watch.swarm.decision.observation[slot]
+            assert sensed[1] > 0.5  # of the new start, not of where the last flight ended
+        drawn.clear()
+        draw_mind(canvas, watch.decision)
+        panel = read_panel(drawn)
+        points = agent.q_values(sensed)[0] / agent.config.reward_scale
+        if env.outcome[slot] == Outcome.FLYING:
+            check(panel, points, int(env.actions[slot]))
+            steps += 1
+            said = any("is kept" in word for word in drawn.words)
+            kept += said
+            longest += not said
+            behind = points.max() - points[env.actions[slot]]
+            assert behind <= watch.decision.margin + TINY if said else behind < TINY
+        assert [number(figure) for figure in panel.inputs] == pytest.approx(sensed.tolist(), abs=0.0051)
+    assert steps > 300
+    assert kept > 50 if agent.config.steadiness else longest == steps
+
+
+def test_the_scene_draws_that_panel(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch):
+    context.models_dir = MODELS.parent
+    driver = open_game(Watch(1, seed=4))
+    driver.frames(40)
+    watch = driver.top
+    assert isinstance(watch, Watch)
+    drawn = Drawn(monkeypatch)
+    watch.draw(driver.app.canvas, 0.5)
+    points = watch.decision.points
+    assert points is not None
+    check(read_panel(drawn), points[0], int(watch.swarm.env.actions[0]))
+
+
+def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
+    agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch
+):
+    flight, drawn = Flight(5, agent), Drawn(monkeypatch)
+    insight = Insight(flight.env.ground)
+    flight.hand_over()
+    while not flight.over:
+        if len(flight.recording.actions) % DECISION_STEPS == 0:
+            sensed = flight.env.observe()
+        flight.step(0)
+        if flight.over:
+            break
+        insight.follow(flight)
+        drawn.clear()
+        insight.draw(canvas, 0.0)
+        points = agent.q_values(sensed)[0] / agent.config.reward_scale
+        check(read_panel(drawn), points, flight.recording.actions[-1])
+        said = any("is kept" in word for word in drawn.words)
+        assert said or points.max() - points[flight.recording.actions[-1]] < TINY
+    assert len(flight.recording.actions) > 200
+
+
+@pytest.mark.parametrize("pads", [1, 3])
+@pytest.mark.parametrize("mode", list(Mode))
+def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
+    agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, mode: Mode, pads: int
+):
+    flight, drawn = Flight(5, agent, pads=pads), Drawn(monkeypatch)
+    insight = Insight(flight.env.ground)
+    flight.help(0.5, mode)
+    rng = np.random.default_rng(1)
+    titles, held = set(), 0
+    while not flight.over and len(flight.recording.actions) < 900:
+        if len(flight.recording.actions) % 7 == 0:
+            held = int(rng.choice([0, 0, 1, 2, 3, 4, 5]))
+        flight.step(held)
+        insight.follow(flight)
+        if flight.over:
+            break
+        decision = flight.decision
+        assert decision is not None
+        drawn.clear()
+        insight.draw(canvas, 0.5)
+        pad, flown = int(flight.env.target[0]), flight.recording.actions[-1]
+        points = agent.q_values(decision.observation[0, pad])[0] / agent.config.reward_scale
+        check(read_panel(drawn), points, flown)
+        titles.add(insight.why[0])
+        read_why(insight.why, overridden=flight.overridden)
+    assert len(titles) > 2
+
+
+def read_why(why: tuple[str, str, str], *, overridden: bool) -> None:
+    """The words agree with what was flown, and with each other."""
+    title, *lines = why
+    assert not (overridden and title == texts.INSIGHT_WHY["PILOT"][0])
+    figures = [float(figure) for line in lines for figure in re.findall(r"\d+\.\d+", line)]
+    if len(figures) == 2:
+        below, allowed = figures
+        assert below > allowed if overridden else below <= allowed

@@ -1,0 +1,140 @@
+"""What flies and what is said keep clear of each other: paths, panels, read-outs, hints."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander.environment import Outcome
+from game.cockpit.copilot_panel import PANEL
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.scenes.play import Play
+from game.scenes.watch import Watch
+from game.ui.context import Context
+from tests.game.play.test_words_agree import Weighs
+from tests.support.driver import Driver
+from tests.support.flights import play
+
+Open = Callable[..., Driver]
+READ_OUTS = 640
+
+
+@pytest.fixture
+def shared(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch) -> Driver:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
+    context.settings.assist, context.settings.reduced_motion = 0.5, True
+    context.settings_file.save(context.settings)
+    driver = open_game(Play(4))
+    driver.frames(2)
+    return driver
+
+
+def place(driver: Driver, *state: float) -> None:
+    play(driver).waiting = False
+    play(driver).flight.env.place(np.ones(1, bool), np.array([state]))
+
+
+def drawn(monkeypatch: pytest.MonkeyPatch, *kinds: str) -> list[tuple[float, float]]:
+    """Note where dots and markers are drawn from now on."""
+    places: list[tuple[float, float]] = []
+    for kind in kinds:
+        monkeypatch.setattr(Canvas, kind, note(getattr(Canvas, kind), places, 1 if kind == "marker" else 0))
+    return places
+
+
+def note(draw: Callable[..., None], places: list[tuple[float, float]], at: int) -> Callable[..., None]:
+    def noted(canvas: Canvas, *args: object, **more: object) -> None:
+        places.append(args[at])  # type: ignore[arg-type]
+        draw(canvas, *args, **more)
+
+    return noted
+
+
+def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(shared: Driver, monkeypatch):
+    panels: list[bool] = []
+    insight = play(shared)._cockpit._insight
+    monkeypatch.setattr(insight, "draw", lambda *_: panels.append(True))
+    place(shared, 0, 12, 0, 0, 0, 0)
+    shared.frames(4)
+    assert panels
+    x, y = play(shared)._scenery.view(1.0).metres(PANEL.center).tolist()
+    place(shared, x, y, 0, 0, 0, 0)
+    shared.frames(2)  # it leaps there between two steps
+    panels.clear()
+    shared.frames(3)
+    assert not panels
+
+
+def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Open, monkeypatch):
+    driver = open_game(Play(4))
+    driver.frames(40)
+    scene = play(driver)
+    x, y = scene.flight.env.position[0].tolist()
+    scene._outlook._drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
+    places = drawn(monkeypatch, "dot", "marker")
+    scene._outlook.draw(driver.app.canvas, scene._scenery.view(driver.app.canvas.scale), scene._scenery.clear.head)
+    assert places
+    assert min(row for _, row in places) > scene._scenery.clear.head
+
+
+@pytest.mark.parametrize("state", [(21.9, 3.0, 6.0, 0.0, 0, 0), (0, 25.9, 0, 6.0, 0, 0), (-21.9, 12, -6.0, 0, 0, 0)])
+@pytest.mark.parametrize("calm", [True, False])
+def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context, monkeypatch, state, calm: bool):
+    context.settings.reduced_motion = calm
+    context.settings_file.save(context.settings)
+    driver = open_game(Play(4))
+    place(driver, *state)
+    driver.frames(10)
+    assert play(driver).flight.outcome is Outcome.OUT_OF_BOUNDS
+    crafts: list[object] = []
+    monkeypatch.setattr(play(driver)._scenery.stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    places = drawn(monkeypatch, "marker")
+    play(driver)._scenery.draw_craft(driver.app.canvas, 1.0)
+    assert not crafts
+    ((x, y),) = places
+    assert 0 < x < 1280
+    assert 80 < y < READ_OUTS
+
+
+def test_the_word_beside_a_craft_keeps_off_the_panel(shared: Driver, monkeypatch):
+    left = play(shared)._cockpit.clear.right
+    place(shared, 0, 12, 0, 0, 0, 0)
+    shared.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    shared.frames(6)
+    overrides, view = play(shared)._cockpit.overrides, play(shared)._scenery.view(1.0)
+    assert overrides.strength > 0
+    clear = play(shared)._cockpit.clear
+    assert clear.right < PANEL.left < left
+    boxes: list[pygame.FRect] = []
+    write = Canvas.text
+    monkeypatch.setattr(Canvas, "text", lambda *args, **more: boxes.append(write(*args, **more)) or boxes[-1])
+    for x in np.linspace(300, clear.right - 20, 12):
+        pose = np.array([*view.metres((x, 200.0)), 0.0])
+        overrides.draw_word(shared.app.canvas, view, pose, clear)
+        assert boxes[-1].right <= clear.right
+
+
+@pytest.mark.parametrize("count", [1, 16])
+def test_what_is_lost_in_a_swarm_lies_on_no_words_either(open_game: Open, monkeypatch, count: int):
+    driver = open_game(Watch(count, seed=2))
+    driver.frames(2)
+    watch, swarm = driver.top, driver.top.swarm
+    lost = np.zeros((count, 6))
+    lost[:, 1], lost[:, 3] = swarm.env.limits.ceiling - 0.1, 6.0  # through the top, behind the words at the head
+    for _ in range(3):
+        swarm.env.place(np.ones(count, bool), lost)
+        swarm.since_end[:] = 0
+        for _ in range(8):
+            watch._fly()
+    assert swarm.env.outcome[0] == Outcome.OUT_OF_BOUNDS
+    crafts: list[object] = []
+    monkeypatch.setattr(watch._stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    places = drawn(monkeypatch, "marker")
+    canvas, view = driver.app.canvas, watch._camera.view(driver.app.canvas.scale)
+    watch._trails.draw(canvas, view, 0, 80.0)
+    watch._draw_shown(canvas, view, swarm.poses.at(1.0)[0])
+    assert not crafts
+    assert places
+    assert all(80 < y < READ_OUTS for _, y in places)

@@ -1,0 +1,214 @@
+"""Reads what the first flight says and does it to the letter, or the opposite, with every device there is."""
+
+import re
+from collections.abc import Callable
+
+import pygame
+import pytest
+
+from ai.lander.environment import Outcome
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.input.bindings import Command, Held
+from game.play.tutorial import Tutorial
+from game.scenes.play import Play
+from tests.support.driver import Driver
+from tests.support.flights import play
+
+pytestmark = pytest.mark.usefixtures("scripted_network")
+PILOT = ScriptedPilot()
+LEFT, MAIN, RIGHT = "left", "main", "right"
+MARKED = ("TOO_FAST", "TOO_HIGH", "TOO_TILTED", "AWAY", "STANDS", "LET_GO", "AGAIN", "READY")
+LINES = texts.TUTORIAL | {name: (getattr(texts, f"TUTORIAL_{name}"),) for name in MARKED}
+SENTENCES = [
+    (name, re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(line))))
+    for name, lines in LINES.items()
+    for line in lines
+    if line
+]
+KEYS = {MAIN: pygame.K_UP, LEFT: pygame.K_LEFT, RIGHT: pygame.K_RIGHT}
+BUTTONS = {MAIN: 1, LEFT: 3, RIGHT: 3}
+
+
+class Reader:
+    """Does with one device what is written beside the craft, or the opposite, `late` frames after it was read."""
+
+    def __init__(self, driver: Driver, device: str, late: int = 0) -> None:
+        self.driver, self.device, self.late = driver, device, late
+        self.held: set[str] = set()
+        self.read: list[tuple[str, dict[str, str]]] = []
+        self.still = 0  # frames in which nothing has moved, in a row
+        self.touch()
+
+    @property
+    def course(self) -> Tutorial:
+        course = play(self.driver)._course
+        assert isinstance(course, Tutorial)
+        return course
+
+    def touch(self) -> None:
+        """Let the game know which device is in use."""
+        if self.device == "pad":
+            self.driver.axis(pygame.CONTROLLER_AXIS_RIGHTY, 0)
+            self.driver.app.context.controls._used = 0
+        elif self.device == "mouse":
+            self.driver.move((640, 300))
+            self.driver.move((644, 300))
+
+    def sentence(self) -> tuple[str, dict[str, str]]:
+        """Return which sentence is written, and the keys that it names."""
+        scene = play(self.driver)
+        moment = scene._moment(1.0)
+        words = self.course.words(scene.flight, moment.controls, waiting=moment.waiting, stuck=moment.stuck)
+        for name, pattern in SENTENCES:
+            if found := pattern.fullmatch(words):
+                return name, found.groupdict()
+        assert words in texts.TUTORIAL_GOOD.values(), words
+        return "praise", {}
+
+    def side(self, sign: str) -> str:
+        """Return which way a turn goes that is named so."""
+        controls = self.driver.app.context.controls
+        signs = {side: controls.word(held) for side, held in ((LEFT, Held.LEFT), (RIGHT, Held.RIGHT))}
+        if signs[LEFT] == signs[RIGHT]:
+            both = texts.TUTORIAL_POINT if self.device == "mouse" else texts.TUTORIAL_PUSH
+            signs = {side: text.format(key=signs[LEFT]) for side, text in zip((LEFT, RIGHT), both, strict=True)}
+        return next(side for side, each in signs.items() if each == sign)
+
+    def asked(self, name: str, keys: dict[str, str]) -> set[str]:
+        """Return what a sentence asks to be held down."""
+        env = play(self.driver).flight.env
+        match name:
+            case "fire" | "TOO_FAST" | "READY":
+                assert keys["main"] == self.driver.app.context.controls.word(Held.MAIN)
+                return {MAIN}
+            case "brake":
+                return {MAIN} if env.velocity[0, 1] < -0.8 else set()
+            case "lean":
+                return {LEFT}
+            case "upright" | "TOO_TILTED":
+                return {self.side(keys["other"])}
+            case "AWAY":
+                side = self.side(keys["inward"])
+                leans = env.angle[0] * (1 if side == LEFT else -1)
+                return {MAIN} if leans > 0.3 else {side}
+            case "land":
+                action = int(PILOT.act(env.observe())[0])
+                return ({MAIN} if action >= 3 else set()) | {("", LEFT, RIGHT)[action % 3]} - {""}
+        return set()
+
+    def follow(self, *, opposite: bool = False) -> None:
+        """Play one frame."""
+        self.read.append(self.sentence())
+        name, keys = self.read[max(0, len(self.read) - 1 - self.late)]
+        steps = len(play(self.driver).flight.recording.actions)
+        wanted = self.asked(name, keys)
+        if opposite:
+            wanted = {MAIN, LEFT, RIGHT} - wanted if wanted & {LEFT, RIGHT} else {MAIN} - wanted
+        self.hold(wanted)
+        if name in ("hand_over", "take_back") and not opposite and len(self.read) % 40 == 0:
+            self.press_hand_over()
+        self.driver.skip()
+        flight = play(self.driver).flight
+        moved = flight.over or len(flight.recording.actions) != steps
+        self.still = 0 if moved else self.still + 1
+
+    def hold(self, wanted: set[str]) -> None:
+        for name in sorted(self.held ^ wanted):
+            self.tell(name, down=name in wanted)
+        self.held = wanted
+
+    def tell(self, name: str, *, down: bool) -> None:
+        if self.device == "keys":
+            pygame.event.post(pygame.Event(pygame.KEYDOWN if down else pygame.KEYUP, key=KEYS[name], mod=0))
+        elif self.device == "mouse":
+            at = self.driver.to_window((20 if name == LEFT else 1260, 400)) if name != MAIN else pygame.mouse.get_pos()
+            if name != MAIN:
+                pygame.event.post(pygame.Event(pygame.MOUSEMOTION, pos=at, rel=(0, 0), buttons=(0, 0, 0)))
+            kind = pygame.MOUSEBUTTONDOWN if down else pygame.MOUSEBUTTONUP
+            pygame.event.post(pygame.Event(kind, pos=at, button=BUTTONS[name]))
+        elif name == MAIN:
+            kind = pygame.CONTROLLERBUTTONDOWN if down else pygame.CONTROLLERBUTTONUP
+            pygame.event.post(pygame.Event(kind, button=pygame.CONTROLLER_BUTTON_A, instance_id=0))
+        else:
+            value = (-32000 if name == LEFT else 32000) if down else 0
+            axis = pygame.CONTROLLER_AXIS_LEFTX
+            pygame.event.post(pygame.Event(pygame.CONTROLLERAXISMOTION, axis=axis, value=value, instance_id=0))
+
+    def press_hand_over(self) -> None:
+        driver = self.driver
+        if self.device == "keys":
+            driver.key(pygame.K_TAB)
+        elif self.device == "pad":
+            driver.button(pygame.CONTROLLER_BUTTON_Y)
+        else:
+            driver.frames(1)
+            driver.click(next(box for box, key in driver.app.canvas.links if key.command is Command.HANDOVER).center)
+
+
+Open = Callable[..., Driver]
+DEVICES = ("keys", "pad", "mouse")
+
+
+def reader(open_game: Open, device: str, late: int = 0) -> Reader:
+    return Reader(open_game(Play(0, course=Tutorial())), device, late)
+
+
+def to_the_landing(pupil: Reader, most: int = 6000) -> None:
+    for _ in range(most):
+        pupil.follow()
+        if pupil.course.through:
+            break
+    assert pupil.course.flown, pupil.read[-1]
+    assert play(pupil.driver).flight.outcome is Outcome.LANDED
+
+
+@pytest.mark.parametrize(("device", "late"), [("keys", 0), *((device, 18) for device in DEVICES)])
+def test_who_does_all_that_is_said_to_the_letter_lands(open_game: Open, device: str, late: int):
+    pupil = reader(open_game, device, late)
+    to_the_landing(pupil)
+    assert pupil.driver.app.context.settings.first_flown
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_who_does_the_opposite_never_stands_still_for_anything_but_a_key_that_is_named(open_game: Open, device: str):
+    """Each lesson is done the wrong way for six seconds when it comes, and then to the letter, which leads on."""
+    pupil = reader(open_game, device)
+    opposed = set()
+    for _ in range(6000):
+        if pupil.course.through:
+            break
+        lesson = pupil.course.lesson.name
+        if lesson not in opposed:
+            opposed.add(lesson)
+            for _ in range(360):
+                pupil.follow(opposite=True)
+                name, keys = pupil.read[-1]
+                assert not pupil.still or keys or name in ("fall", "LET_GO")
+        pupil.follow()
+    assert pupil.course.flown
+    assert opposed >= set(texts.TUTORIAL)
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_who_holds_on_to_the_engine_is_warned_lost_told_why_and_goes_on_by_letting_go(open_game: Open, device: str):
+    pupil = reader(open_game, device)
+    pupil.driver.frames(2)
+    pupil.hold({MAIN})
+    seen, why = [], ""
+    for _ in range(600):
+        pupil.driver.skip()
+        seen.append(pupil.sentence()[0])
+        why = why or pupil.course.why
+    assert seen.index("TOO_HIGH") < seen.index("AGAIN")
+    assert "at the top" in why
+    assert seen[-1] == "fall"  # which says to let go of everything
+    assert play(pupil.driver).waiting
+    pupil.hold(set())
+    pupil.driver.skip(30)
+    assert not play(pupil.driver).waiting
+    assert play(pupil.driver).flight.env.velocity[0, 1] < -0.3
+    assert pupil.course.why
+    while pupil.course.lesson.name == "fall":
+        pupil.follow()
+    assert not pupil.course.why  # what went wrong before is done with

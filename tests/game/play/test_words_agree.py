@@ -1,0 +1,387 @@
+"""Reads every word of a flight in every state it can be in: who flies, who flew, what counts and why never disagree."""
+
+import re
+from collections.abc import Callable
+from datetime import date
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.common.decision import Decision, decide
+from ai.lander.environment import PARAMS, Outcome
+from ai.lander.missions import MISSIONS
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.flight import Flight, Hand
+from game.flight.flight_file import Entry
+from game.flight.logbook import Records
+from game.flight.replay import Tape
+from game.play.challenge import Daily, Flown
+from game.play.race import fly_on, race
+from game.play.tutorial import Tutorial
+from game.scenes.choices import ChoicesScene
+from game.scenes.logbook import Logbook, _row
+from game.scenes.missions import Missions
+from game.scenes.play import Play
+from game.scenes.replay import Replay
+from game.ui.context import Context
+from tests.support.driver import Driver
+from tests.support.flights import fly_out, kept, play
+
+Open = Callable[..., Driver]
+
+
+class Weighs:
+    """A network that wants the main engine while it falls."""
+
+    def q_values(self, observation: np.ndarray) -> np.ndarray:
+        falls = observation[:, 3] < -0.5
+        return np.where(falls[:, None], [0, 1, 1, 9, 5, 5], [9, 6, 6, 0, 1, 1]).astype(np.float32)
+
+    def decide(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> Decision:
+        return decide(observation, self.q_values(observation), held)
+
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
+        return self.decide(observation, held=held).action
+
+
+class OnlyFlies:
+    """A network that can have the stick, but not share it: it doesn't weigh actions."""
+
+    def act(self, observation: np.ndarray, *, held: np.ndarray | None = None) -> np.ndarray:
+        return np.zeros(len(observation), int)
+
+
+WHO = {texts.YOU_FLY: "person", texts.CHECK_FLIGHT: "person", texts.YOU_SHARE: "both", texts.NETWORK_FLIES: "network"}
+WHO |= {lines[0]: "network" if name == "ALONE" else "both" for name, lines in texts.INSIGHT_WHY.items()}
+FLEW = {texts.YOU_FLEW: "you", texts.BOTH_FLEW: "both", texts.NETWORK_FLEW: "network"}
+COUNTS = [
+    texts.CHECK_ALONE,
+    *texts.MEDALS[1:],
+    texts.MEDAL_GOLD,
+    texts.SCORE_BEST,
+    texts.MEDAL_NEXT,
+    texts.MISSION_GOAL,
+]
+COUNTS_NOT = [*texts.NOT_COUNTED.values(), texts.PRACTICE, texts.MEDALS[0]]
+
+
+def pattern(text: str) -> re.Pattern[str]:
+    return re.compile(re.sub(r"\\{\w+(:[^}]*)?\\}", ".+", re.escape(text)) + r"($|  ·  )")
+
+
+SAYS = [(pattern(text), counts) for counts, group in ((True, COUNTS), (False, COUNTS_NOT)) for text in group]
+
+
+class Page:
+    """What one picture says."""
+
+    def __init__(self, words: list[str]) -> None:
+        self.words = words
+        parts = [part for word in words for part in word.split(texts.DIAL_JOIN)]
+        self.who = {WHO[part] for part in parts if part in WHO}
+        self.flew = {FLEW[part] for part in parts if part in FLEW}
+        self.counts = {counts for part in parts for says, counts in SAYS if says.match(part)}
+        self.shares = [int(found[2]) * (1 if found[1] == "you" else -1)
+                       for part in parts if (found := re.fullmatch(r"(you|network) (\d+) %", part))]  # fmt: skip
+
+
+class Reading:
+    """A driver that reads every page it turns."""
+
+    def __init__(self, driver: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.driver, self.words, write = driver, list[str](), Canvas.text
+
+        def text(canvas: Canvas, string: str, *args: object, **more: object) -> pygame.FRect:
+            self.words.append(string)
+            return write(canvas, string, *args, **more)  # type: ignore[arg-type]
+
+        monkeypatch.setattr(Canvas, "text", text)
+
+    def page(self, frames: int = 1) -> Page:
+        """Let frames pass, and read the last one."""
+        self.driver.skip(frames - 1)
+        self.words.clear()
+        self.driver.frames(1)
+        return Page([*self.words])
+
+    def check(self, frames: int = 1) -> Page:
+        """Read a page of the flight, and compare it with the flight itself."""
+        page, flight = self.page(frames), play(self.driver).flight
+        assert len(page.counts) < 2, page.words
+        if flight.over:
+            assert not page.who, page.words
+            assert page.flew == {flew(flight.recording.hands)}, page.words
+        else:
+            shared = flight.copilot is not None and flight.copilot.assist > 0
+            truth = "network" if flight.hand is Hand.NETWORK else "both" if shared else "person"
+            assert page.who == {truth}, page.words
+            assert not page.flew
+            if truth == "person":
+                assert not any("assist" in word or "guards" in word for word in page.words), page.words
+        for share in page.shares:
+            assert abs(abs(share) / 100 - (flight.share if share > 0 else 1 - flight.share)) <= 0.01
+        hint = texts.HINT_TAKE_BACK if flight.hand is Hand.NETWORK else texts.HINT_HAND_OVER
+        told = {texts.HINT_TAKE_BACK, texts.HINT_HAND_OVER} & set(page.words)
+        assert told == ({hint} if flight.network and not flight.over else set()), page.words
+        return page
+
+
+def flew(hands: list[Hand]) -> str:
+    kinds = set(hands)
+    return "both" if len(kinds) > 1 else "you" if kinds == {Hand.HUMAN} else "network"
+
+
+def recorded(context: Context, *, mission: str = "", hand: Hand = Hand.HUMAN) -> Replay:
+    flight = Flight(3, Weighs(), mission=mission)
+    if hand is Hand.NETWORK:
+        flight.hand_over()
+    fly_out(flight)
+    return Replay(kept(context, flight, course=mission, alone=hand is Hand.HUMAN))
+
+
+def raced(replay: Replay) -> Play:
+    return Play(replay.record.recording.seed, course=race(replay.record))
+
+
+def flown_on(context: Context, **more: object) -> Play:
+    replay = recorded(context, **more)  # type: ignore[arg-type]
+    tape = Tape(replay.record)
+    tape.scout(40)
+    tape.seek(30)
+    return Play(replay.record.recording.seed, course=fly_on(replay.record, tape))
+
+
+SCENES: dict[str, Callable[[Context], Play]] = {
+    "free": lambda _: Play(4),
+    "mission": lambda _: Play(0, course=Flown(MISSIONS["brake"])),
+    "daily": lambda _: Play(0, course=Daily(date(2026, 1, 1))),
+    "duel": lambda _: Play(4, rival=Weighs(), rival_name="it"),
+    "race": lambda context: raced(recorded(context)),
+    "race a mission": lambda context: raced(recorded(context, mission="brake")),
+    "flown on": flown_on,
+    "flown on a network's": lambda context: flown_on(context, hand=Hand.NETWORK),
+    "flown on a mission": lambda context: flown_on(context, mission="brake"),
+    "tutorial": lambda _: Play(0, course=Tutorial()),
+}
+FREE: dict[str, dict[str, object]] = {
+    "three pads": {"three_pads": True},
+    "laggy": {"hands": "laggy"},
+    "no main engine": {"hands": "sensor"},
+    "light": {"gravity": 0.8},
+    "slow": {"pace": 0.5},
+    "check": {"check_flights": True, "assist": 0.5},
+    "check, slow": {"check_flights": True, "assist": 0.5, "pace": 0.5},
+    "guarded": {"assist": 0.7, "copilot": "guardian"},
+    "guarded, three pads": {"assist": 0.7, "copilot": "guardian", "three_pads": True},
+}
+WAYS = ("by hand", "hands off", "handed over", "handed over and back", "dial to and fro")
+MORE: tuple[dict[str, object], ...] = ({}, {"assist": 0.3}, {"assist": 1.0}, {"pace": 0.5})
+# Every way of flying free flights and missions, with help and without; all else in one way each, turn and turn about.
+STATES = [(scene, more, way) for scene in ("free", "mission") for more in MORE[:2] for way in WAYS]
+REST = [("free", more) for more in FREE.values()] + [(scene, more) for scene in SCENES for more in MORE]
+STATES += [(scene, more, WAYS[number % len(WAYS)]) for number, (scene, more) in enumerate(REST)]
+
+
+@pytest.mark.parametrize(("scene", "settings", "way"), STATES)
+def test_header_panel_hints_card_and_logbook_say_the_same(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, scene: str, settings: dict, way: str
+):
+    reading = begin(open_game, context, monkeypatch, scene, settings)
+    driver = reading.driver
+    reading.check(2)
+    set_off(reading, way)
+    page = reading.check(6)
+    reading.check(30)
+    land(driver)
+    page = reading.check(70)
+    course = play(driver)._course
+    if course and not course.kept:
+        return
+    entry = Records(context.user_dir).entries()[-1]
+    flight = play(driver).flight
+    assert entry.landed
+    assert entry.alone == (False not in page.counts) == (not entry.bar)
+    if entry.bar:
+        assert any(texts.NOT_COUNTED[entry.bar] in word or texts.PRACTICE in word for word in page.words), page.words
+    assert _row(entry)[-1] == flew(flight.recording.hands)
+    won = [medal for medal in (1, 2, 3) if texts.MEDALS[medal] in page.words]
+    assert won == [entry.medal] * bool(entry.medal)
+    best = [word for word in page.words if word == texts.SCORE_BEST.format(points=entry.score)]
+    assert not best or entry.alone
+    assert_book_agrees(reading, entry)
+
+
+def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, scene: str, settings: dict) -> Reading:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
+    first = SCENES[scene](context)
+    if settings.get("check_flights"):
+        for _ in range(4):
+            kept(context, fly_out(Flight(5)), alone=False, barred="helped")
+    for name, value in {**settings, "reduced_motion": True}.items():
+        setattr(context.settings, name, value)
+    context.settings_file.save(context.settings)
+    reading, flight = Reading(open_game(first), monkeypatch), first.flight
+    assert (flight.copilot is not None) == (flight.network is not None and flight.shares)  # or nothing is shared here
+    return reading
+
+
+def set_off(reading: Reading, way: str) -> None:
+    driver = reading.driver
+    if way != "handed over":
+        driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+        reading.check(4)
+    if way in ("hands off", "handed over and back"):
+        driver.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    if way.startswith("handed over"):
+        driver.key(pygame.K_TAB)
+        reading.check(10)
+    if way == "handed over and back":
+        driver.key(pygame.K_TAB)
+    if way == "dial to and fro":
+        driver.keys(pygame.K_PLUS, pygame.K_PLUS)
+        reading.check(10)
+        driver.keys(*[pygame.K_MINUS] * 12)
+
+
+def land(driver: Driver) -> None:
+    end(driver, Outcome.LANDED)
+
+
+def end(driver: Driver, outcome: Outcome) -> None:
+    """Bring the flight to an end of that kind."""
+    play(driver).waiting = False
+    env = play(driver).flight.env
+    x, y = env.pad[0].tolist()
+    driver.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    state = {
+        Outcome.LANDED: (x, y + PARAMS.stand + 0.002, 0, 0, 0, 0),
+        Outcome.CRASHED: (x, y + PARAMS.stand + 0.1, 0, -9, 0, 0),
+        Outcome.OUT_OF_BOUNDS: (-env.limits.half_width + 0.1, 15, -8, 0, 0, 0),
+        Outcome.TIMED_OUT: (x, 15, 0, 0, 0, 0),
+    }[outcome]
+    env.place(np.ones(1, bool), np.array([state]))
+    if outcome is Outcome.TIMED_OUT:
+        env.steps[:] = round(60 * env.limits.time) - 3
+    for _ in range(400):
+        driver.skip()
+        if play(driver).flight.over:
+            break
+    assert play(driver).flight.outcome is outcome
+
+
+def assert_book_agrees(reading: Reading, entry: Entry) -> None:
+    """Open the logbook at that flight: it is told as the card told it."""
+    from game.core.scene import Push
+
+    reading.driver.app.scenes.apply(Push(Logbook()))
+    page = reading.page(2)
+    assert reading.driver.top.chosen == entry
+    assert (texts.NOT_COUNTED[entry.bar] in page.words) if entry.bar else not page.counts
+    if entry.landed:
+        assert f"({entry.score})" in page.words if entry.bar else f"{entry.score}" in page.words
+
+
+@pytest.mark.parametrize("network", [OnlyFlies(), None])
+def test_nobody_is_said_to_help_who_can_not(open_game: Open, context: Context, monkeypatch, network: object):
+    context.settings.assist = 0.6
+    context.settings_file.save(context.settings)
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", network, "it is gone"))
+    reading = Reading(open_game(Play(4)), monkeypatch)
+    reading.check(3)
+    reading.driver.key(pygame.K_UP)
+    assert reading.check(20).who == {"person"}
+    land(reading.driver)
+    assert reading.check(70).flew == {"you"}
+    assert Records(context.user_dir).entries()[-1].alone
+
+
+def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, context: Context, monkeypatch):
+    reading = begin(open_game, context, monkeypatch, "daily", {"assist": 0.8})
+    driver = reading.driver
+    driver.key(pygame.K_TAB)
+    assert driver.app._notes._text == texts.FLOWN_ALONE
+    play(driver)._choose_network("stand-in")  # in a pause
+    driver.keys(pygame.K_TAB, pygame.K_PLUS)
+    assert play(driver).flight.hand is Hand.HUMAN
+    assert reading.check(3).who == {"person"}
+
+
+@pytest.mark.parametrize("assist", [0.0, 0.5])
+def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context, monkeypatch, assist: float):
+    reading = begin(open_game, context, monkeypatch, "free", {"assist": assist})
+    driver = reading.driver
+    driver.key(pygame.K_c)
+    assert isinstance(driver.top, ChoicesScene)
+    words = " ".join(reading.page(2).words)
+    assert ("and it flies" in words) is (assist > 0)
+    assert ("you fall" in words) is (assist == 0)
+    driver.keys(*[pygame.K_RIGHT if assist == 0 else pygame.K_LEFT] * 6)
+    assert ("and it flies" in " ".join(reading.page(2).words)) is (assist == 0)
+
+
+def test_the_page_of_a_mission_says_whose_landing_earns_bronze(open_game: Open, context: Context, monkeypatch):
+    kept(context, fly_out(Flight(0, mission="brake")), course="brake", alone=False, barred="helped")
+    reading = Reading(open_game(Missions()), monkeypatch)
+    assert texts.MISSION_ANY in reading.page(2).words
+    assert "own hand" in texts.MISSION_ANY
+
+
+@pytest.mark.parametrize("hand", list(Hand))
+def test_a_replay_says_who_flew_from_its_first_moment_on(open_game: Open, context: Context, monkeypatch, hand: Hand):
+    reading = Reading(open_game(recorded(context, hand=hand)), monkeypatch)
+    reading.driver.key(pygame.K_SPACE)
+    for step in (0, 1, 20):
+        reading.driver.top.seek(step)
+        assert reading.page().flew == {"you" if hand is Hand.HUMAN else "network"}
+
+
+def test_a_change_after_the_end_changes_nothing_of_what_was_flown(open_game: Open, context: Context, monkeypatch):
+    reading = begin(open_game, context, monkeypatch, "free", {})
+    reading.driver.key(pygame.K_UP)
+    land(reading.driver)
+    before = reading.check(70)
+    for name, value in {"assist": 1.0, "gravity": 0.6, "pace": 0.5, "hands": "laggy"}.items():
+        setattr(reading.driver.app.context.settings, name, value)
+    after = reading.check(4)
+    assert (after.flew, after.counts) == (before.flew, before.counts) == ({"you"}, set())
+
+
+LOST = [Outcome.CRASHED, Outcome.OUT_OF_BOUNDS, Outcome.TIMED_OUT]
+MEDALS_AND_POINTS = [pattern(text) for text in (*texts.MEDALS, texts.SCORE, texts.SCORE_BEST, texts.MEDAL_NEXT)]
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings", "way", "outcome"),
+    [(scene, more, WAYS[(number + 2 * row) % len(WAYS)], outcome)
+     for row, (scene, more) in enumerate([*((name, {}) for name in SCENES), ("free", {"pace": 0.5}),
+                                          ("free", {"check_flights": True, "assist": 0.5}), ("free", {"assist": 0.5})])
+     for number, outcome in enumerate(LOST)],
+)  # fmt: skip
+def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch,
+    scene: str, settings: dict, way: str, outcome: Outcome,
+):  # fmt: skip
+    reading = begin(open_game, context, monkeypatch, scene, settings)
+    set_off(reading, way)
+    end(reading.driver, outcome)
+    if scene == "tutorial":  # which begins again, and says why
+        page, course = reading.page(), play(reading.driver)._course
+        assert page.flew == {flew(play(reading.driver).flight.recording.hands)}
+        assert course.why in page.words
+        return
+    page = reading.check(100)
+    title = texts.OUTCOMES[outcome.name][0]
+    titles = {word for word in page.words if word in {each for each, _ in texts.OUTCOMES.values()}}
+    assert title in titles
+    assert titles <= {title, *texts.RIVAL_RESULTS.values()}
+    assert not [word for word in page.words if any(says.match(word) for says in MEDALS_AND_POINTS)]
+    entry = Records(context.user_dir).entries()[-1]
+    assert (entry.outcome, entry.medal, entry.score) == (outcome.name, 0, 0)
+    assert entry.alone == (not entry.bar)
+    assert False not in page.counts or entry.bar
+    assert _row(entry)[2] == title
+    assert _row(entry)[-1] == flew(play(reading.driver).flight.recording.hands)
+    assert_book_agrees(reading, entry)

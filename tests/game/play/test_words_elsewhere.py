@@ -1,0 +1,156 @@
+"""Reads Watch, Train and Digits in the states they can be in: who flies or reads, what goes on, what came of it."""
+
+from collections.abc import Callable
+from types import SimpleNamespace
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander.environment import Outcome
+from game.core import texts
+from game.core.worker import State
+from game.digits.answer import best_two, percent
+from game.flight import networks
+from game.scenes.digit_training import DigitTrainingScene
+from game.scenes.digits import Digits
+from game.scenes.train import Train
+from game.scenes.watch import COUNTS, Watch
+from game.training.training_run import Learner
+from game.ui.context import Context
+from tests.game.play.test_words_agree import COUNTS as EARNED
+from tests.game.play.test_words_agree import FLEW, OnlyFlies, Reading, Weighs, pattern
+from tests.game.scenes.test_digits import draw, strokes
+from tests.support.driver import Driver
+
+Open = Callable[..., Driver]
+NOBODYS = [pattern(text) for text in (*FLEW, texts.YOU_FLY, texts.YOU_SHARE, *texts.NOT_COUNTED.values(), *EARNED)]
+NETWORKS = {"weighs": Weighs(), "only flies": OnlyFlies(), networks.SCRIPTED: OnlyFlies()}
+BROKEN = "its target is missing"
+
+
+class Roster:
+    """Stands in for what lies on the disk; the last one is damaged."""
+
+    names = (*NETWORKS, "broken")
+
+    def __init__(self, *_: object) -> None: ...
+
+    def __getitem__(self, name: str) -> networks.Network:
+        return networks.Network(name, NETWORKS.get(name), "" if name in NETWORKS else BROKEN)
+
+    def first_fit(self) -> networks.Network:
+        return self["weighs"]
+
+
+@pytest.mark.parametrize("count", [1, 16])
+@pytest.mark.parametrize("name", Roster.names)
+def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context: Context, monkeypatch, name, count):
+    monkeypatch.setattr(networks, "Roster", Roster)
+    reading = Reading(open_game(Watch(count, seed=2)), monkeypatch)
+    driver, watch = reading.driver, reading.driver.top
+    watch._model_choice.choose(Roster.names.index(name))
+    swarm = watch.swarm
+    for stopped in (False, True):
+        watch.stopped = stopped
+        for frames in (1, 7):
+            check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
+            driver.skip(frames)
+    watch.stopped = False
+    lost = np.zeros((count, 6))
+    lost[:, :4] = -swarm.env.limits.half_width + 0.1, 12, -8, 0
+    swarm.env.place(np.ones(count, bool), lost)
+    driver.skip(12)
+    assert (swarm.env.outcome == Outcome.OUT_OF_BOUNDS).all()
+    check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
+    assert swarm.lost == count
+    watch.stopped = True
+    watch._count_choice.choose(2)
+    check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
+
+
+def check_watch(reading: Reading, flies: str, broken: bool) -> None:
+    words, watch = set(reading.page().words), reading.driver.top
+    scripted, count, swarm = flies == networks.SCRIPTED, COUNTS[watch._count], watch.swarm
+    who = {texts.WATCH_SCRIPTED, texts.WATCH_STOPPED, *(texts.WATCH_FLIES.format(name=each) for each in Roster.names)}
+    flying = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=flies)
+    assert who & words == {texts.WATCH_STOPPED if watch.stopped else flying}
+    assert {texts.HINT_GO, texts.HINT_STOP} & words == {texts.HINT_GO if watch.stopped else texts.HINT_STOP}
+    assert {texts.WATCH_ONE, *map(many, COUNTS)} & words == {texts.WATCH_ONE if count == 1 else many(count)}
+    weighs = flies == "weighs"
+    assert (texts.MIND_TITLE in words) == weighs == (texts.MIND_SCRIPTED_TITLE not in words)
+    assert (texts.Q_WEIGHS_NOTHING[0] in words) == (not weighs)
+    counted = texts.WATCH_COUNTS.format(landed=swarm.landed, lost=swarm.lost)
+    assert (counted in words) == (swarm.landed + swarm.lost > 0)
+    assert any(BROKEN in word for word in words) == broken
+    assert not [word for word in words if any(says.match(word) for says in NOBODYS)]
+
+
+def many(count: int) -> str:
+    return texts.WATCH_MANY.format(count=count)
+
+
+STATES = [None, *State]
+LINES = {Train: (texts.TRAIN_BEGINS, texts.TRAIN_LINE), DigitTrainingScene: (texts.PUPIL_LOADING, texts.PUPIL_LINE)}
+BUTTON = dict.fromkeys([State.RUNNING, State.STARTING], texts.TRAIN_PAUSE) | {State.PAUSED: texts.TRAIN_RESUME}
+
+
+@pytest.mark.parametrize("make", [Train, DigitTrainingScene])
+def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game: Open, monkeypatch, make):
+    reading = Reading(open_game(make()), monkeypatch)
+    driver, scene = reading.driver, reading.driver.top
+    learner = scene.student if make is Train else scene.pupil
+    told: list[State | None] = [None]
+    monkeypatch.setattr(Learner, "state", property(lambda _: told[0]))
+    for state in (*STATES, *reversed(STATES)):
+        told[0] = state
+        quiet = {name: lambda *_: None for name in ("pause", "resume", "stop", "close", "step", "send", "set_pace")}
+        learner._worker = state and SimpleNamespace(state=state, problem="the disk is full", gone=True,
+                                                    poll=list, **quiet)  # fmt: skip
+        words = set(reading.page(12).words)
+        offered = {texts.TRAIN_START, texts.TRAIN_PAUSE, texts.TRAIN_RESUME} & words
+        assert offered == {BUTTON.get(state, texts.TRAIN_START)}, state
+        assert any("the disk is full" in word for word in words) == (state is State.FAILED), state
+        begins, invites = LINES[make]
+        assert {begins, invites} & words == {begins if learner.alive else invites}, state
+        if make is DigitTrainingScene:
+            assert (texts.PUPIL_STOP in words) == learner.alive, state
+    learner._worker = None
+    assert driver.top is scene
+
+
+VERDICTS = [pattern(text) for text in (texts.DIGITS_SURE, texts.DIGITS_LIKELY, texts.DIGITS_DISPUTED)]
+
+
+def test_one_verdict_is_said_of_a_drawing_and_it_is_that_of_the_figures(open_game: Open, monkeypatch):
+    reading = Reading(open_game(Digits()), monkeypatch)
+    driver = reading.driver
+    assert texts.DIGITS_EMPTY in reading.page(3).words
+    said: set[str] = set()
+    for digit, style in [(1, 0), (3, 0), (5, 0), (8, 0), (4, 0)]:
+        for much in (1, None):  # the first stroke alone, and then all of it
+            driver.key(pygame.K_c)
+            driver.frames(4)
+            draw(driver, strokes(digit, style)[:much])
+            for _ in range(2):
+                said |= check_digits(reading)
+                driver.key(pygame.K_n)  # the other network
+                driver.frames(4)
+    assert len(said) > 1
+    driver.key(pygame.K_c)
+    assert texts.DIGITS_EMPTY in reading.page(6).words
+
+
+def check_digits(reading: Reading) -> set[str]:
+    words, scene = reading.page(6).words, reading.driver.top
+    assert texts.DIGITS_EMPTY not in words
+    first, second = best_two(scene.probabilities)
+    share = percent(scene.probabilities[first])
+    verdicts = [word for word in words if any(says.match(word) for says in VERDICTS)]
+    rivals = [word for word in words if pattern(texts.DIGITS_OR).match(word)]
+    unsure = "?" in words and not verdicts
+    assert len(verdicts) == (not unsure)
+    assert all(word.endswith(share) for word in verdicts)
+    assert all(f" {second}," in word for word in rivals)
+    assert unsure or str(first) in words
+    return {verdicts[0].partition(",")[0]} if verdicts else {"unsure"}

@@ -1,0 +1,231 @@
+"""How a flight in Play feels: camera, slow motion, what is said on the spot; and that none of it changes a flight."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander.environment import PARAMS, Outcome
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.replay import Rerun
+from game.play.captions import BELOW_OPENING
+from game.scenes.play import Play
+from game.world.camera import View
+from tests.support.driver import Driver
+
+Open = Callable[..., Driver]
+FALL = (8.0, 4.0, 1.0, -3.0, 0.3, 0.0)  # beside the pad
+REST = (0.0, PARAMS.pad_top + PARAMS.stand + 0.3, 0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.fixture
+def game(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Driver:
+    monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None))
+    return open_game(Play(seed=3))
+
+
+@pytest.fixture
+def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    strings: list[str] = []
+    text = Canvas.text
+
+    def note(self: Canvas, string: str, *args: object, **words: object) -> pygame.FRect:
+        strings.append(string)
+        return text(self, string, *args, **words)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Canvas, "text", note)
+    return strings
+
+
+def scene(driver: Driver) -> Play:
+    assert isinstance(driver.top, Play)
+    return driver.top
+
+
+def place(driver: Driver, start: tuple[float, ...]) -> None:
+    play = scene(driver)
+    play.waiting = False
+    play.flight.env.place(np.ones(1, bool), np.array([start]))
+
+
+def crash(driver: Driver) -> None:
+    place(driver, FALL)
+    while not scene(driver).flight.over:
+        driver.frames(1)
+    assert scene(driver).flight.outcome is Outcome.CRASHED
+
+
+def frames_to_card(driver: Driver) -> int:
+    frames = 0
+    while scene(driver).ending.shown < 1:
+        driver.frames(1)
+        frames += 1
+        assert frames < 300
+    return frames
+
+
+def test_a_crash_is_slow_for_under_a_second_more_and_adds_nothing_to_the_flight(game: Driver):
+    crash(game)
+    flight = scene(game).flight
+    flown = len(flight.recording.actions)
+    assert scene(game)._pace.slow
+    slowly = frames_to_card(game)
+    assert len(flight.recording.actions) == flown
+    assert flight.env.steps[0] == flown
+    game.key(pygame.K_r)
+    game.app.context.settings.reduced_motion = True
+    game.key(pygame.K_r)
+    crash(game)
+    assert not scene(game)._pace.slow
+    assert 20 < slowly - frames_to_card(game) < 60
+
+
+def test_with_and_without_motion_the_same_hands_fly_the_same_flight(game: Driver):
+    """Every effect on, and every effect off: the same, bit for bit, and so is the replay."""
+    ends = []
+    for reduced in (False, True):
+        game.app.context.settings.reduced_motion = reduced
+        game.key(pygame.K_r)
+        game.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+        game.frames(80)
+        game.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+        game.skip(900)
+        flight = scene(game).flight
+        assert flight.over
+        again = Rerun(flight.recording)
+        while not again.over:
+            again.step(0)
+        assert np.array_equal(again.poses.now, flight.poses.now)
+        ends.append((flight.recording.actions, flight.poses.now.tolist()))
+    assert ends[0] == ends[1]
+
+
+def test_slow_motion_can_be_cut_short_and_loses_no_key(game: Driver):
+    crash(game)
+    game.frames(30)
+    assert scene(game)._pace.slow
+    game.key(pygame.K_RETURN)
+    assert not scene(game)._pace.slow
+    assert frames_to_card(game) < 20
+    game.key(pygame.K_r)
+    crash(game)
+    game.frames(5)
+    game.key(pygame.K_r)  # in the midst of it
+    assert not scene(game).flight.over
+    assert not scene(game)._pace.slow
+
+
+def test_slow_motion_ends_where_motion_is_reduced_in_its_midst(game: Driver):
+    crash(game)
+    for reduced in (False, True):
+        game.key(pygame.K_ESCAPE)
+        game.app.context.settings.reduced_motion = reduced
+        game.key(pygame.K_ESCAPE)
+        assert scene(game)._pace.slow is not reduced
+
+
+@pytest.mark.parametrize("reduced", [False, True])
+def test_a_crash_is_heard_as_it_is_seen_also_if_motion_was_reduced_on_the_way(game: Driver, reduced: bool, monkeypatch):
+    heard: list[str] = []
+    monkeypatch.setattr(game.app.context.sound, "play", lambda key, *_: heard.append(key))
+    game.app.context.settings.reduced_motion = not reduced
+    game.key(pygame.K_r)
+    game.key(pygame.K_UP)
+    game.key(pygame.K_ESCAPE)
+    game.app.context.settings.reduced_motion = reduced
+    game.key(pygame.K_ESCAPE)
+    crash(game)
+    assert scene(game)._pace.slow is not reduced
+    assert [key for key in heard if "crash" in key] == ["crash" if reduced else "slow_crash"]
+
+
+def test_the_reason_of_a_crash_is_told_on_the_spot_before_the_card(game: Driver, written: list[str]):
+    crash(game)
+    written.clear()
+    game.frames(3)
+    assert scene(game).ending.shown == 0
+    assert texts.CAUSES["TERRAIN"] in written
+
+
+@pytest.mark.parametrize("reduced", [False, True])
+def test_contact_light_is_told_when_both_feet_are_down_and_then_no_more(
+    game: Driver, written: list[str], reduced: bool
+):
+    game.app.context.settings.reduced_motion = reduced
+    game.key(pygame.K_r)
+    place(game, REST)
+    game.frames(5)
+    assert texts.CONTACT_LIGHT not in written
+    game.frames(60)
+    assert scene(game).flight.env.contacts.all()
+    assert texts.CONTACT_LIGHT in written
+    game.frames(200)
+    written.clear()
+    game.frames(30)
+    assert texts.CONTACT_LIGHT not in written
+
+
+def test_the_camera_comes_near_lingers_and_draws_back_for_the_card(game: Driver):
+    place(game, REST)
+    game.frames(120)
+    near = scene(game)._scenery.view(1.0).zoom
+    frames_to_card(game)
+    game.frames(240)
+    assert near > 1.6
+    assert scene(game)._scenery.view(1.0).zoom == pytest.approx(1.0, abs=0.02)
+
+
+def test_with_reduced_motion_nothing_zooms_pans_or_shakes(game: Driver):
+    game.app.context.settings.reduced_motion = True
+    game.key(pygame.K_r)
+    still = scene(game)._scenery.view(1.5)
+    place(game, FALL)
+    for _ in range(150):
+        game.frames(1)
+        assert scene(game)._scenery.view(1.5, 0.3) == still
+
+
+@pytest.mark.parametrize("reduced", [False, True])
+def test_a_craft_that_waits_high_up_hangs_below_the_words(game: Driver, reduced: bool):
+    game.app.context.settings.reduced_motion = reduced
+    game.key(pygame.K_r)
+    place(game, (3.0, 16.0, 0.0, 0.0, 0.0, 0.0))
+    scenery = scene(game)._scenery
+    scenery.cut()
+    _, y = scenery.view(1.0).points((3.0, 16.0 + PARAMS.stand))
+    assert y > BELOW_OPENING.head
+    assert scenery.view(1.0).centre[0] == 0 or not reduced
+
+
+def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypatch: pytest.MonkeyPatch):
+    place(game, (0.0, PARAMS.pad_top + PARAMS.stand + 0.4, 0.0, -1.6, 0.0, 0.0))
+    game.frames(2)
+    jolts = []
+    stage = scene(game)._scenery.stage
+    for _ in range(60):
+        game.frames(1)
+        jolts.append(stage.jolt)
+    assert max(jolts) > 1.0
+    assert sum(jolt > 0 for jolt in jolts) <= 3
+
+
+def test_motion_can_be_reduced_in_the_midst_of_a_flight(game: Driver):
+    place(game, (8.0, 12.0, 0.0, 0.0, 0.0, 0.0))
+    game.frames(30)
+    assert scene(game)._scenery.view(1.0) != View(1.0)
+    game.key(pygame.K_ESCAPE)
+    game.app.context.settings.reduced_motion = True
+    game.key(pygame.K_ESCAPE)
+    game.frames(2)
+    assert scene(game)._scenery.view(1.0) == View(1.0)
+
+
+def test_nothing_is_heard_of_a_craft_that_hangs_and_waits(game: Driver, monkeypatch: pytest.MonkeyPatch):
+    heard: list[str] = []
+    monkeypatch.setattr(scene(game)._sound, "play", lambda key, *_: heard.append(key))
+    game.frames(200)
+    assert scene(game).waiting
+    assert heard == []

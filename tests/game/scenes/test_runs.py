@@ -1,0 +1,354 @@
+import json
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import pygame
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from game.core import collection as collection_module
+from game.core import texts
+from game.core.scene import Pop, Push
+from game.scenes.menu import Menu
+from game.scenes.runs import Runs
+from game.training.library import Library
+from game.ui.context import Context
+from tests.support.driver import Driver
+
+Open = Callable[..., Driver]
+DESCRIBED = {
+    "env": "lander", "preset": "modern", "changes": {"care": 0.8}, "seed": 3, "decisions": 5000, "seconds": 61.5,
+    "best": {"success": 0.75},
+}  # fmt: skip
+UP, DOWN, LEFT, RIGHT, ENTER, ESCAPE = (
+    pygame.K_UP, pygame.K_DOWN, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RETURN, pygame.K_ESCAPE,
+)  # fmt: skip
+
+
+@pytest.fixture
+def library(context: Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Library:
+    context.models_dir = tmp_path / "shipped"
+    monkeypatch.setattr(collection_module.platformdirs, "user_documents_dir", lambda: str(tmp_path / "Documents"))
+    write(context.models_dir / "lander" / "modern")
+    return Library(context.user_dir)
+
+
+def write(folder: Path, **described: object) -> Path:
+    """A small network that flies, and what is said of it."""
+    DeepQAgent(config=Config(hidden=(4,))).save(folder)
+    (folder / "training.json").write_text(json.dumps({**DESCRIBED, **described}))
+    return folder
+
+
+@pytest.fixture
+def three(library: Library) -> Library:
+    """Runs called a, b and c, the first the latest."""
+    for age, name in enumerate("abc"):
+        folder = write(library.folder / name, seed=age)
+        (folder / "last").mkdir()
+        os.utime(folder / "training.json", (2e9 - age, 2e9 - age))
+    return library
+
+
+@pytest.fixture
+def open_runs(open_game: Open, library: Library) -> Callable[..., Driver]:
+    def begin(**arguments: object) -> Driver:
+        driver = open_game(Menu())
+        driver.app.scenes.apply(Push(Runs(**arguments)))  # type: ignore[arg-type]
+        driver.frames(2)
+        return driver
+
+    return begin
+
+
+def scene(driver: Driver) -> Runs:
+    assert isinstance(driver.top, Runs)
+    return driver.top
+
+
+def shown(driver: Driver) -> str:
+    run = scene(driver).shown
+    assert run is not None
+    return run.name
+
+
+def verbs(driver: Driver) -> list[str]:
+    return [widget.label for widget in scene(driver)._verbs]
+
+
+def click(driver: Driver, label: str) -> None:
+    word = next(widget for widget in scene(driver)._form.widgets if widget.label == label)
+    driver.click((word.box.left + 8, word.box.centery))
+
+
+def click_row(driver: Driver, number: int) -> None:
+    box = scene(driver)._list.box
+    driver.click((box.left + 20, box.top + 34 * number + 17))
+
+
+def note(driver: Driver) -> str:
+    return driver.app._notes._text
+
+
+def type_text(driver: Driver, text: str) -> None:
+    driver.frames(2)
+    driver.post(pygame.TEXTINPUT, text=text)
+
+
+def test_the_latest_runs_come_first_and_the_games_own_last(open_runs, three: Library):
+    driver = open_runs()
+    assert [run.name for run in scene(driver).runs] == ["a", "b", "c", "modern"]
+    assert scene(driver)._list.rows[0][:3] == ("a", "75.0 %", "5 k")
+    assert "Go on training" in verbs(driver)
+    driver.keys(DOWN, DOWN, DOWN)
+    assert shown(driver) == "modern"
+    assert verbs(driver) == [texts.RUN_WATCH, texts.RUN_FLY]
+
+
+def test_without_runs_a_sentence_says_how_to_make_one(open_runs):
+    driver = open_runs()
+    assert scene(driver)._line == texts.RUNS_NONE
+    assert shown(driver) == "modern"
+
+
+def test_without_any_network_the_screen_still_stands(open_runs, context: Context, tmp_path: Path):
+    context.models_dir = tmp_path / "nothing"
+    driver = open_runs()
+    driver.keys(ENTER, pygame.K_DELETE, pygame.K_F2, RIGHT)
+    assert driver.top_name == "Runs"
+    driver.keys(DOWN, ENTER)  # Back
+    assert driver.top_name == "Menu"
+
+
+def test_the_keyboard_renames(open_runs, three: Library):
+    driver = open_runs()
+    driver.keys(DOWN, ENTER, DOWN, DOWN, DOWN)
+    assert scene(driver)._form.focused.label == texts.RUN_RENAME
+    driver.key(ENTER)
+    type_text(driver, "moon / walker?")
+    driver.key(ENTER)
+    assert sorted(run.name for run in three.runs()) == ["a", "c", "moon  walker"]
+    assert shown(driver) == "moon  walker"
+
+
+def test_a_name_that_is_taken_is_explained_and_can_be_changed(open_runs, three: Library):
+    driver = open_runs()
+    driver.key(pygame.K_F2)
+    type_text(driver, "B")
+    driver.key(ENTER)
+    assert "already" in note(driver)
+    assert scene(driver)._form.typing
+    type_text(driver, "B2")
+    driver.key(ENTER)
+    assert sorted(run.name for run in three.runs()) == ["B2", "b", "c"]
+
+
+@pytest.mark.parametrize("way", ["escape", "word", "another row"])
+def test_a_name_can_be_left_as_it_was(open_runs, three: Library, way: str):
+    driver = open_runs()
+    driver.key(pygame.K_F2)
+    type_text(driver, "other")
+    match way:
+        case "escape":
+            driver.key(ESCAPE)
+        case "word":
+            click(driver, texts.RUN_LEAVE_NAME)
+        case _:
+            click_row(driver, 2)
+    assert scene(driver)._entry is None
+    assert sorted(run.name for run in three.runs()) == ["a", "b", "c"]
+    driver.key(ESCAPE)
+    assert driver.top_name == "Menu"
+
+
+def test_the_mouse_accepts_a_name_and_letters_are_no_commands_meanwhile(open_runs, three: Library):
+    driver = open_runs()
+    click_row(driver, 1)
+    click(driver, texts.RUN_RENAME)
+    driver.keys(pygame.K_DELETE, pygame.K_n, pygame.K_SPACE)  # Delete clears the line, and nothing more
+    type_text(driver, "new one")
+    click(driver, texts.RUN_KEEP_NAME)
+    assert sorted(run.name for run in three.runs()) == ["a", "c", "new one"]
+
+
+def test_a_gamepad_renames_with_a_name_made_of_the_figures(open_runs, three: Library):
+    driver = open_runs()
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    for _ in range(3):
+        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    driver.frames(2)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert sorted(run.name for run in three.runs()) == ["b", "c", "modern 5k 75.0"]
+
+
+def test_a_gamepad_deletes_brings_back_and_leaves(open_runs, three: Library):
+    driver = open_runs()
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    for _ in range(5):
+        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert [run.name for run in three.runs()] == ["b", "c"]
+    for _ in range(4):
+        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    assert scene(driver)._form.focused.label == texts.RUN_RESTORE.format(name="a")
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert [run.name for run in three.runs()] == ["a", "b", "c"]
+    driver.button(pygame.CONTROLLER_BUTTON_B)
+    assert driver.top_name == "Menu"
+
+
+def test_the_mouse_deletes_and_brings_back(open_runs, three: Library):
+    driver = open_runs()
+    click_row(driver, 1)
+    click(driver, texts.RUN_DELETE)
+    assert shown(driver) == "c"  # what took its place
+    click(driver, texts.RUN_RESTORE.format(name="b"))
+    assert shown(driver) == "b"
+    assert texts.RUN_RESTORED.format(name="b") == note(driver)
+    assert not any("Bring back" in widget.label for widget in scene(driver)._form.widgets)
+
+
+def test_the_games_own_networks_are_not_to_be_changed(open_runs, context: Context, three: Library):
+    driver = open_runs()
+    driver.keys(DOWN, DOWN, DOWN, pygame.K_DELETE, pygame.K_F2)
+    assert scene(driver)._entry is None
+    assert (context.models_dir / "lander" / "modern").is_dir()
+
+
+def test_deleting_all_there_is_leaves_a_screen_that_works(open_runs, three: Library):
+    driver = open_runs()
+    driver.keys(*[pygame.K_DELETE] * 5)
+    assert three.runs() == []
+    assert scene(driver)._line == texts.RUNS_NONE
+
+
+def test_export_says_where_to(open_runs, three: Library, tmp_path: Path):
+    driver = open_runs()
+    click(driver, texts.RUN_EXPORT)
+    assert (tmp_path / "Documents" / "Tranquility" / "a" / "config.json").is_file()
+    assert "Tranquility" in note(driver)
+
+
+def test_what_cannot_be_done_is_said_and_the_screen_stays(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
+    driver = open_runs()
+    for run in three.runs():
+        three.delete(run.name)  # somebody else was faster
+    click(driver, texts.RUN_EXPORT)
+    assert "not there" in note(driver)
+    assert shown(driver) == "a"
+    click(driver, texts.RUN_DELETE)
+    assert shown(driver) == "modern"
+
+
+def test_a_damaged_run_is_shown_with_its_problem(open_runs, three: Library):
+    (three.folder / "a" / "config.json").unlink()
+    driver = open_runs()
+    assert scene(driver).shown.problem == "config.json is missing"
+    assert verbs(driver) == [texts.RUN_RENAME, texts.RUN_EXPORT, texts.RUN_DELETE]
+    driver.frames(3)
+
+
+def test_watch_and_fly_with_the_chosen_one_and_come_back_to_it(open_runs, three: Library, context: Context):
+    driver = open_runs()
+    for verb, name in ((texts.RUN_WATCH, "Watch"), (texts.RUN_FLY, "Play")):
+        click_row(driver, 1)
+        click(driver, verb)
+        assert driver.top_name == name
+        assert driver.top._network.name == "b"
+        assert context.settings.model == "b"
+        driver.keys(ESCAPE, UP, ENTER)  # pause, leave
+        assert shown(driver) == "b"
+
+
+def test_a_new_name_is_still_the_one_that_flies(open_runs, three: Library, context: Context):
+    driver = open_runs()
+    context.settings.model = "a"
+    driver.key(pygame.K_F2)
+    type_text(driver, "z")
+    driver.key(ENTER)
+    assert context.settings.model == "z"
+
+
+def test_go_on_training_opens_a_training_of_that_folder(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
+    asked: list[Path] = []
+    stand_in = SimpleNamespace(Train=lambda resume: (asked.append(resume), Menu())[1])
+    monkeypatch.setitem(sys.modules, "game.scenes.train", stand_in)
+    driver = open_runs()
+    click(driver, texts.RUN_TRAIN)
+    assert asked == [three.folder / "a"]
+    assert driver.top_name == "Menu"
+
+
+def test_who_opens_the_screen_may_train_in_a_way_of_their_own(open_runs, three: Library):
+    asked: list[Path] = []
+    driver = open_runs(train=lambda folder: (asked.append(folder), Pop())[1])
+    click(driver, texts.RUN_TRAIN)
+    assert asked == [three.folder / "a"]
+    assert driver.top_name == "Menu"
+
+
+@pytest.mark.parametrize("way", ["enter", "word", "pad", "second click"])
+def test_choosing_hands_the_name_back_and_closes(open_runs, three: Library, way: str):
+    chosen: list[str] = []
+    driver = open_runs(choose=chosen.append)
+    assert shown(driver) == "modern"  # the one that flies now
+    driver.key(pygame.K_HOME)
+    match way:
+        case "enter":
+            driver.keys(DOWN, ENTER)
+        case "word":
+            click_row(driver, 1)
+            click(driver, texts.RUN_CHOOSE)
+        case "pad":
+            driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+            driver.button(pygame.CONTROLLER_BUTTON_A)
+        case _:
+            click_row(driver, 1)
+            click_row(driver, 1)
+    assert chosen == ["b"]
+    assert driver.top_name == "Menu"
+
+
+def test_what_cannot_fly_cannot_be_chosen(open_runs, three: Library):
+    (three.folder / "a" / "config.json").unlink()
+    chosen: list[str] = []
+    driver = open_runs(choose=chosen.append)
+    driver.keys(pygame.K_HOME, ENTER)
+    assert not chosen
+    assert driver.top_name == "Runs"
+
+
+def test_a_folder_that_is_dropped_is_copied_in(open_runs, three: Library, tmp_path: Path):
+    write(tmp_path / "from a friend")
+    driver = open_runs()
+    driver.post(pygame.DROPFILE, file=str(tmp_path / "from a friend" / "config.json"))
+    assert shown(driver) == "from a friend"
+    driver.post(pygame.DROPFILE, file=str(tmp_path))
+    assert "no folder with a network" in note(driver)
+
+
+def test_many_runs_scroll(open_runs, library: Library):
+    for number in range(30):
+        write(library.folder / f"run {number}")
+    driver = open_runs()
+    driver.key(pygame.K_END)
+    assert shown(driver) == "modern"
+    driver.key(pygame.K_PAGEUP)
+    driver.post(pygame.MOUSEWHEEL, x=0, y=3, flipped=False)
+    driver.frames(3)
+    assert len(scene(driver).runs) == 31
+
+
+def test_draw_changes_nothing(open_runs, three: Library):
+    driver = open_runs()
+    driver.frames(60)
+    pictures = []
+    for _ in range(2):
+        driver.top.draw(driver.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(driver.app.canvas.surface))
+    assert (pictures[0] == pictures[1]).all()

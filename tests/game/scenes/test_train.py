@@ -1,0 +1,367 @@
+"""The training screen, through real pygame events and with a real worker beside it."""
+
+import gc
+import threading
+import time
+from collections.abc import Callable
+from multiprocessing import active_children
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.config import PRESETS
+from ai.lander.pilots import ScriptedPilot
+from ai.lander.rewards import RewardWeights
+from ai.training.checkpoints import resume_run
+from ai.training.demonstrations import demonstrate, write
+from ai.training.history import History
+from ai.training.loop import Training
+from ai.training.session import TAUGHT
+from game.charts.scrubber import Scrubber
+from game.core import texts
+from game.core.scene import Push
+from game.core.worker import State
+from game.flight.demonstrations import FILE_NAME
+from game.panels.network_panel import Inside
+from game.panels.network_view import NetView
+from game.scenes.dialog import Asking, Naming
+from game.scenes.menu import Menu
+from game.scenes.play import Play
+from game.scenes.train import Train
+from game.training.lander_run import Student
+from game.training.library import Library
+from game.ui import focus
+from game.ui.widget import Widget
+from game.ui.widgets import Choice
+from tests.support.driver import Driver
+
+SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1)
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver]) -> Driver:
+    driver = open_game(Train())
+    driver.frames(2)
+    driver.top.knobs.set_config(SMALL, 3)
+    return driver
+
+
+def start(driver: Driver) -> None:
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: len(driver.top.student.history) >= 2)
+
+
+def test_start_pause_step_and_go_on(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    assert scene.student.state is State.RUNNING
+    assert len(scene.swarm.sight.outcome) == 4
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.student.state is State.PAUSED)
+    train.frames(20)
+    time.sleep(0.2)
+    train.frames(5)
+    stood = scene.student.sight.decisions
+    time.sleep(0.3)
+    train.frames(5)
+    assert scene.student.sight.decisions == stood
+    train.key(pygame.K_PERIOD)
+    train.wait(lambda: scene.student.sight.decisions > stood)
+    assert scene.student.sight.decisions == stood + 4
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.student.sight.decisions > stood + 8)
+
+
+def test_it_learns_as_it_would_without_a_window(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    train.wait(lambda: len(scene.student.history.checkpoints) >= 2)
+    checkpoint = scene.student.history.checkpoints[1]
+    training = Training(SMALL, 3)
+    while training.agent.decisions < checkpoint.decisions:
+        training.advance()
+    assert np.array_equal(training.agent.network.values, checkpoint.values)
+
+
+def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
+    start(train)
+    scene = train.top
+    scene._form.focus(scene._save_word)
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, Naming)
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    library = Library(tmp_path / "user")
+    train.wait(library.runs)
+    (run,) = library.runs()
+    assert not run.problem
+    assert run.seed == 3
+
+
+def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game: Callable[..., Driver]) -> None:
+    start(train)
+    decisions = train.top.student.history["decisions"][-1]
+    train.app.close()
+    driver = open_game(Train())
+    driver.frames(2)
+    assert isinstance(driver.top, Asking)
+    driver.key(pygame.K_RETURN)
+    scene = driver.top
+    driver.wait(lambda: scene.student.begun or scene.student.sight)
+    assert scene.student.sight.decisions >= decisions
+    assert scene.student.config.num_envs == SMALL.num_envs
+
+
+def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_game: Callable[..., Driver]) -> None:
+    train.top.knobs.set_config(PRESETS["classic"].changed(hidden=(8,)), 3)
+    start(train)
+    assert train.top.student.name == "Classic 1"
+    train.app.close()
+    driver = open_game(Train())
+    driver.frames(2)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: driver.top.student.sight)
+    driver.frames(2)
+    assert driver.top.student.name == "Classic 1"
+
+
+def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game: Callable[..., Driver]) -> None:
+    start(train)
+    train.app.close()
+    driver = open_game(Train())
+    driver.frames(2)
+    driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
+    assert isinstance(driver.top, Train)
+    driver.frames(2)
+    assert isinstance(driver.top, Train)
+    library = driver.top.student.library
+    assert library.rescued() is None
+    assert library.last_deleted
+
+
+def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    scene._save_as("mine")
+    train.wait(scene.student.library.runs)
+    train.app.scenes.apply(scene._open_runs())
+    train.frames(2)
+    verbs = train.top._verbs
+    train.top._form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    train.wait(lambda: scene.student.sight is not None)
+    assert scene.student.state is State.RUNNING
+
+
+def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    (scene.student.library.folder / "mine").mkdir()
+    train.app.scenes.apply(scene._save())
+    train.top._entry.text = "mine"
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, Naming)
+    train.post(pygame.TEXTINPUT, text="M2")
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    train.wait(scene.student.library.runs)
+
+
+def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
+    scene, notes = train.top, list[str]()
+    train.app.context.note = notes.append
+    (word,) = [widget for widget in scene._form.widgets if widget.label == texts.TRAIN_TEACH]
+    scene._form.focus(word)
+    train.key(pygame.K_RETURN)
+    assert scene.student.state is None, "nothing to learn from, nothing begun"
+    assert texts.TRAIN_NO_LESSONS in notes
+    write(tmp_path / "user" / FILE_NAME, demonstrate(ScriptedPilot(), 2, seed=5, spawn="near"))
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: scene.student.lessons == 2 and len(scene.student.history))
+    assert scene.student.config.success_pass
+    assert scene.knobs.config.success_pass
+    train.frames(1)
+    assert texts.TRAIN_TAUGHT.format(count=2) in notes
+    scene._form.focus(scene._save_word)
+    train.key(pygame.K_RETURN)
+    train.key(pygame.K_RETURN)
+    train.wait(scene.student.library.runs)
+    (run,) = scene.student.library.runs()
+    assert "trained on you" in run.name
+    assert sum(each.name == TAUGHT for each in History.read(run.folder).alterations) == 1
+
+
+def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    scene.knobs.turn("discount", 0.9)
+    train.wait(lambda: scene.student.config.discount == 0.9)
+    assert scene.student.history.alterations[-1].name == "discount"
+    scene.knobs.turn("n_step", 3)
+    assert scene.knobs.waiting == ["n_step"]
+    assert scene.student.config.n_step == SMALL.n_step
+
+
+def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    scene._form.focus(next(each for each in scene._form.widgets if isinstance(each, Scrubber)))
+    train.key(pygame.K_LEFT)
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, Play)
+    train.wait(lambda: scene.student.state is State.PAUSED)
+    train.frames(3)
+    train.key(pygame.K_ESCAPE)
+    assert train.top is scene
+    train.wait(lambda: scene.student.state is State.RUNNING)
+
+
+def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    train.wait(lambda: scene.inside._network is not None)
+    train.click((1060, 530))
+    assert scene.inside.large
+    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[1]  # for that is what the panel shows now
+    train.click((150, 102))
+    assert scene.inside._view.show == "activations"
+    train.frames(3)
+    train.key(pygame.K_ESCAPE)
+    assert train.top is scene
+    assert not scene.inside.large
+    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
+    scene._form.focus(scene.inside._closer)
+    train.key(pygame.K_RETURN)
+    assert scene.inside.large
+    train.key(pygame.K_RETURN)
+    assert not scene.inside.large
+    assert scene._form.focused is scene.inside._closer
+    train.key(pygame.K_RETURN)
+    train.click((900, 441))  # the heading of the small network
+    assert not scene.inside.large
+    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
+
+
+def shown_heading(inside: Inside) -> str:
+    return str(inside._heading.options[inside._heading.index])
+
+
+PAD = {
+    "up": pygame.CONTROLLER_BUTTON_DPAD_UP, "down": pygame.CONTROLLER_BUTTON_DPAD_DOWN,
+    "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT, "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
+    "confirm": pygame.CONTROLLER_BUTTON_A, "back": pygame.CONTROLLER_BUTTON_B,
+}  # fmt: skip
+KEYS = {
+    "up": pygame.K_UP, "down": pygame.K_DOWN, "left": pygame.K_LEFT, "right": pygame.K_RIGHT,
+    "confirm": pygame.K_RETURN, "back": pygame.K_ESCAPE,
+}  # fmt: skip
+
+
+def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
+    scene = train.top
+    form = scene._form
+    for page in range(len(scene.knobs._pages)):
+        scene.knobs._turn_page(page)
+        boxes = [widget.box for widget in form.widgets]
+        reached, frontier = {0}, [0]
+        while frontier:
+            index = frontier.pop()
+            # Left and right turn some, and lead nowhere; a choice leads on at its ends.
+            turns = type(form.widgets[index]).shift not in (Widget.shift, Choice.shift)
+            ways = (focus.UP, focus.DOWN) if turns else (focus.UP, focus.DOWN, focus.LEFT, focus.RIGHT)
+            fresh = {focus.neighbour(boxes, index, way) for way in ways} - reached
+            reached |= fresh
+            frontier += fresh
+        missed = [widget.label or type(widget).__name__ for n, widget in enumerate(form.widgets) if n not in reached]
+        assert missed == [], scene.knobs._pages[page]
+
+
+@pytest.mark.parametrize("device", ["keys", "pad"])
+def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: str) -> None:
+    def press(name: str) -> None:
+        train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
+
+    scene = train.top
+    press("confirm")
+    train.wait(lambda: len(scene.student.history) >= 2)
+    press("confirm")
+    train.wait(lambda: scene.student.state is State.PAUSED)
+    press("right")
+    assert scene._form.focused is scene._step_word
+    scene._form.focus(scene._save_word)
+    press("confirm")
+    assert isinstance(train.top, Naming)
+    press("confirm")
+    assert train.top is scene
+    train.wait(scene.student.library.runs)
+    press("back")
+    assert not train.app.scenes.running, "the scene was left, and nothing was below it"
+
+
+def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp_path: Path) -> None:
+    start(train)
+    scene = train.top
+    train.wait(lambda: scene.student.library.unsaved.is_dir() or scene.student.state is State.FAILED, 60)
+    for child in active_children():
+        child.kill()
+    train.wait(lambda: scene.student.state is State.FAILED)
+    assert scene.student.problem
+    train.frames(20)
+    scene._save_as("saved all the same")
+    (run,) = Library(tmp_path / "user").runs()
+    assert (run.name, run.problem) == ("saved all the same", "")
+
+
+def test_numbers_that_run_away_are_told(train: Driver) -> None:
+    wild = SMALL.changed(cost="mse", reward_scale=1.0, weights=RewardWeights(terminal=1e30))
+    train.top.knobs.set_config(wild, 0)
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: train.top.student.state is State.FAILED, 60)
+    assert "learning step" in train.top.student.problem
+    train.frames(20)
+    assert isinstance(train.top, Train)
+
+
+def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(train: Driver) -> None:
+    scene = train.top
+    for number in range(4):
+        start(train)
+        scene._save_as(f"run {number}")
+        time.sleep(0.05 * number)
+        for child in active_children():
+            child.kill()
+        train.wait(lambda: scene.student.state is State.FAILED)
+        assert train.top is scene
+    for run in scene.student.library.runs():
+        assert not run.problem
+        assert resume_run(run.folder).agent.decisions > 0
+
+
+def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
+    threads = threading.active_count()
+    for visit in range(10):
+        assert isinstance(game.top, Menu)
+        scene = Train()
+        game.app.scenes.apply(Push(scene))
+        game.frames(2)
+        if isinstance(game.top, Asking):  # about the run of the visit before
+            game.key(pygame.K_ESCAPE)
+        scene.knobs.set_config(SMALL, 0)
+        game.key(pygame.K_RETURN)
+        if visit % 4 == 0:  # the others leave while it starts
+            game.wait(lambda scene=scene: scene.student.sight)
+        game.key(pygame.K_ESCAPE)
+        assert not active_children()
+    del scene
+    game.wait(lambda: threading.active_count() <= threads)
+    gc.collect()
+    assert not [each for each in gc.get_objects() if isinstance(each, Train | Student | NetView)]
+
+
+def test_closing_the_game_ends_the_worker(train: Driver) -> None:
+    start(train)
+    train.app.close()
+    assert not active_children()

@@ -1,0 +1,295 @@
+"""Every screen can be walked, seen and left by a gamepad alone and by the keyboard alone: real events, no window."""
+
+import json
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.lander.environment import Outcome
+from benchmarks.tour import scene_types
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.core.scene import Push, Scene
+from game.flight.flight import Hand
+from game.flight.flight_file import Record
+from game.flight.skill import Skill
+from game.input.controls import Command
+from game.scenes.bindings import BindingsScene
+from game.scenes.choices import ChoicesScene
+from game.scenes.dialog import Asking, Naming, Picking
+from game.scenes.digit_training import DigitTrainingScene
+from game.scenes.digits import Digits
+from game.scenes.dream import Dream
+from game.scenes.logbook import Logbook
+from game.scenes.menu import Menu
+from game.scenes.missions import Missions
+from game.scenes.pause import Pause
+from game.scenes.physics import Physics
+from game.scenes.play import Play
+from game.scenes.quiz import Quiz
+from game.scenes.replay import Replay
+from game.scenes.runs import Runs
+from game.scenes.settings import SettingsScene
+from game.scenes.train import Train
+from game.scenes.watch import Watch
+from game.ui.context import Context
+from game.ui.widget import Widget
+from tests.support.driver import Driver
+from tests.support.flights import kept, scripted
+from tests.support.player import DEVICES, Player
+
+SCREENS: dict[str, Callable[[Context], Scene]] = {
+    "Menu": lambda _: Menu(),
+    "Missions": lambda _: Missions(),
+    "Watch": lambda _: Watch(seed=1),
+    "Train": lambda _: Train(),
+    "Digits": lambda _: Digits(),
+    "DigitTrainingScene": lambda _: DigitTrainingScene(),
+    "Dream": lambda _: Dream(reader()),
+    "Quiz": lambda _: Quiz(reader()),
+    "Physics": lambda _: Physics(),
+    "Logbook": lambda _: Logbook(),
+    "SettingsScene": lambda _: SettingsScene(),
+    "BindingsScene": lambda _: BindingsScene(),
+    "Runs": lambda _: Runs(),
+    "Replay": lambda context: Replay(flown(context)),
+}
+OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
+    "Pause": lambda below: Pause(below, retry=lambda: None),
+    "ChoicesScene": lambda below: ChoicesScene(below, Skill([]), begun=False),
+    "Asking": lambda below: Asking(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
+    "Naming": lambda below: Naming(below, "?", "name", lambda _: ""),
+    "Picking": lambda below: Picking(below, "?", [("a",), ("b",)], lambda _: None),
+}
+# Flown rather than walked, shown once something has failed, or a part of others.
+NO_SCREENS = {"Play", "Fault", "Dialog", "Vista"}
+
+
+def reader() -> DigitClassifier:
+    return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
+
+
+def flown(context: Context) -> Record:
+    return kept(context, scripted(), time.time(), alone=True)
+
+
+@pytest.fixture(params=DEVICES)
+def open_screen(
+    request: pytest.FixtureRequest, open_game: Callable[..., Driver], context: Context
+) -> Iterator[Callable[..., Player]]:
+    def open_it(make: Callable[[Context], Scene]) -> Player:
+        context.settings.reduced_motion = True
+        context.settings_file.save(context.settings)
+        player = Player(open_game(make(context)), request.param)
+        player.frames(3)
+        return player
+
+    return open_it
+
+
+def test_every_screen_there_is_will_be_walked():
+    assert {each.__name__ for each in scene_types()} - NO_SCREENS == SCREENS.keys() | OVER_OTHERS.keys()
+
+
+@pytest.mark.parametrize("name", SCREENS)
+def test_every_widget_is_reached_and_seen_and_there_is_a_way_out(open_screen, name: str):
+    player = open_screen(SCREENS[name])
+    if name in ("Watch", "Physics", "Replay"):
+        player.press("step")
+    walk(player)
+    for _ in range(3):
+        if player.app.scenes.running and player.top_name != "Pause":
+            player.press("back")
+    if player.top_name == "Pause":
+        player.choose(texts.PAUSE_LEAVE)
+    assert not player.app.scenes.running  # it was the only scene
+
+
+@pytest.mark.parametrize("name", OVER_OTHERS)
+def test_so_are_those_that_stand_over_another(open_screen, name: str):
+    player = open_screen(SCREENS["Menu"])
+    menu = player.top
+    player.app.scenes.apply(Push(OVER_OTHERS[name](menu)))
+    player.frames(3)
+    if name == "Naming":
+        player.press("down")  # out of the line, with what stands there
+    walk(player)
+    player.press("back")
+    assert player.top is menu
+
+
+def walk(player: Player) -> None:
+    found = player.ways()
+    player.app.context.settings.reduced_motion = True
+    widgets = list(player.form.widgets)  # what is chosen on the way may have changed them
+    assert not [widget.label for index, widget in enumerate(widgets) if index not in found]
+    for widget in widgets[:24]:
+        if widget in player.form.widgets:
+            assert is_seen(player, widget), f"no focus is seen on {widget.label}"
+
+
+def is_seen(player: Player, widget: Widget) -> bool:
+    """Whether the picture around a widget changes when the focus comes to it."""
+    form, canvas = player.form, player.app.canvas
+    pictures = []
+    for focused in (next((each for each in form.widgets if each is not widget), widget), widget):
+        form.focus(focused)
+        player.frames(2)
+        around = canvas.rect(*widget.box.inflate(28, 16)).clip(canvas.surface.get_rect())
+        pictures.append(pygame.surfarray.array3d(canvas.surface.subsurface(around)).astype(int))
+    return len(form.widgets) == 1 or int((np.abs(pictures[0] - pictures[1]).max(axis=2) > 40).sum()) >= 12
+
+
+def wait_for_card(player: Player) -> None:
+    player.frames(90)
+
+
+def saved(player: Player) -> dict[str, object]:
+    player.app.settings_writer.wait()
+    settings: dict[str, object] = json.loads((player.app.context.user_dir / "settings.json").read_text())
+    return settings
+
+
+def test_a_mission_is_found_flown_and_left(open_screen):
+    player = open_screen(SCREENS["Menu"])
+    player.choose(texts.MENU["missions"][0])
+    assert player.top_name == "Missions"
+    player.press("confirm")  # the list is where it begins
+    player.frames(2)
+    player.press("pause")  # nothing has begun: it leads back at once
+    assert player.top_name == "Missions"
+    player.press("confirm")
+    player.fly()
+    assert player.top.flight.outcome is Outcome.LANDED
+    wait_for_card(player)
+    player.press("confirm")
+    assert player.top_name == "Missions"
+    assert player.top._row("fall")[1] in texts.MEDALS[1:]
+    player.press("back")
+    assert player.top_name == "Menu"
+
+
+def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
+    player = open_screen(SCREENS["Menu"])
+    player.choose(texts.MENU["play"][0])
+    player.press("main", "hand over")
+    assert player.top.flight.hand is Hand.NETWORK
+    player.press("hand over", "pause")
+    assert player.top_name == "Pause"
+    player.choose(texts.PAUSE_LEAVE)
+    assert player.top_name == "Menu"
+
+
+def test_a_replay_is_watched_wound_and_flown_on(open_screen):
+    player = open_screen(lambda context: [flown(context), Menu()][1])
+    player.choose(texts.MENU["logbook"][0])
+    player.press("confirm")
+    replay = player.top
+    assert player.top_name == "Replay"
+    player.frames(60)
+    player.press("step")
+    assert replay.stopped
+    at = replay.tape.at
+    player.press("left")  # the strip of what was done is where it begins
+    assert replay.tape.at < at
+    player.press("hand over")
+    assert player.top_name == "Play"
+    player.press("main")
+    player.press("pause")
+    player.choose(texts.PAUSE_LEAVE)
+    assert player.top is replay
+    player.press("back", "back")
+    assert player.top_name == "Menu"
+
+
+def test_settings_are_changed_and_kept(open_screen):
+    player = open_screen(SCREENS["Menu"])
+    player.choose(texts.MENU["settings"][0])
+    player.press("down", "down", "confirm")
+    assert saved(player)["colour_safe"] is True
+    player.press("left")
+    assert saved(player)["colour_safe"] is False
+    while player.form.focused.label != texts.SOUND_GROUPS["effects"]:
+        player.press("down")
+    player.press("left", "left")
+    assert saved(player)["effects_volume"] == pytest.approx(0.7)
+    while player.form.focused.label != texts.BACK:
+        player.press("down")
+    player.press("right", "up", "confirm")
+    assert player.top_name == "BindingsScene"
+    kind = "keys" if player.device == "keys" else "buttons"
+    while player.form.focused.label != texts.BINDINGS["PREVIOUS"]:
+        player.press("down")
+    if player.device == "pad":
+        player.press("right")
+    player.press("confirm", "another")
+    player.press("up")
+    player.press("confirm", "another")  # the one above takes it away again
+    assert saved(player)[kind].keys() == {"next", "previous"}
+    player.choose(texts.BINDINGS_ALL)
+    assert saved(player)[kind] == {}
+    player.press("back", "back")
+    assert player.top_name == "Menu"
+
+
+def hint(player: Driver, words: str) -> tuple[float, float]:
+    """Where a hint of these words can be clicked."""
+    presses = {KEY_OF.get(words, words)}
+    boxes = [box for box, press in player.app.canvas.links if press.command in presses or press.key in presses]
+    assert boxes, f"no hint can be clicked for {words}"
+    return boxes[-1].center
+
+
+KEY_OF = {"back": Command.BACK, "pause": Command.PAUSE, "hand over": Command.HANDOVER, "choices": Command.CHOICES,
+          "retry": Command.RETRY, "confirm": Command.CONFIRM, "stop": pygame.K_SPACE}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SCREENS)
+def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str):
+    game: Driver = open_game(SCREENS[name](context))
+    game.move((640, 700))
+    game.frames(3)
+    for _ in range(3):
+        if not game.app.scenes.running:
+            break
+        words = {word.label: word for word in game.top._form.widgets}
+        exits = [label for label in (texts.BACK, texts.PAUSE_LEAVE, texts.MENU["quit"][0]) if label in words]
+        if exits:
+            game.click(words[exits[0]].box.center)
+        else:
+            commands = {press.command for _, press in game.app.canvas.links}
+            game.click(hint(game, "back" if Command.BACK in commands else "pause"))
+        game.frames(3)
+    assert not game.app.scenes.running
+
+
+def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
+    context.settings.tutored, context.settings.show_hints = True, False
+    context.settings_file.save(context.settings)
+    game: Driver = open_game(Play(3))
+    play = game.top
+    game.move((640, 400))
+    game.frames(3)
+    left, right = 1, 3
+    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((20, 400)), button=left)
+    game.frames(5)
+    assert play.flight.recording.actions[-1] == 3
+    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((20, 400)), button=right)
+    game.frames(2)
+    assert play.flight.recording.actions[-1] == 4
+    game.move((1260, 400))
+    assert play.flight.recording.actions[-1] == 5
+    for button in (left, right):
+        game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1260, 400)), button=button)
+    assert play.flight.recording.actions[-1] == 0
+    game.click(hint(game, "hand over"))
+    assert play.flight.hand is Hand.NETWORK
+    game.click(hint(game, "pause"))
+    assert game.top_name == "Pause"
+    game.frames(2)
+    game.click(next(word for word in game.top._form.widgets if word.label == texts.PAUSE_LEAVE).box.center)
+    assert not game.app.scenes.running or game.top_name != "Play"

@@ -1,0 +1,274 @@
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from game.core.settings import SettingsFile
+from game.drawing.canvas import Canvas
+from game.flight.flight import DECISION_STEPS
+from game.panels.run_status import draw_standing
+from game.scenes.runs import Runs
+from game.scenes.watch import Watch
+from game.training.library import Library
+from game.ui.context import Context
+from game.world.camera import Camera
+from tests.support.driver import Driver
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture
+def watching(open_game: Open, context: Context, tmp_path: Path) -> Driver:
+    context.models_dir = tmp_path / "models"  # only the scripted pilot is here
+    return open_game(Watch(seed=2))
+
+
+def scene(driver: Driver) -> Watch:
+    assert isinstance(driver.top, Watch)
+    return driver.top
+
+
+def steps(driver: Driver) -> int:
+    return scene(driver).swarm._step
+
+
+def test_space_stops_and_a_period_goes_one_decision(watching: Driver):
+    watching.frames(5)
+    watching.key(pygame.K_SPACE)
+    swarm = scene(watching).swarm
+    before, decided = steps(watching), swarm.decided[0]
+    watching.frames(10)
+    assert steps(watching) == before
+    start = swarm.env.position[0].copy()
+    sensed = []
+    for press in range(12):
+        watching.key(pygame.K_PERIOD)
+        assert swarm.decided[0] == decided + press + 1
+        sensed.append(scene(watching).decision.observation[0])
+    assert steps(watching) <= before + 12 * DECISION_STEPS
+    assert len(np.unique(sensed, axis=0)) == 12
+    assert np.hypot(*(swarm.env.position[0] - start)) > 0.5  # a viewer sees that it moved
+    watching.key(pygame.K_SPACE)
+    watching.frames(5)
+    assert steps(watching) > before + 12 * DECISION_STEPS
+
+
+def test_one_step_leads_from_the_end_of_a_flight_to_the_first_decision_of_the_next(watching: Driver):
+    watch = scene(watching)
+    watch.stopped = True
+    while watch.swarm.since_end[0] == 0:
+        watch.swarm.step()
+    last = watch.decision
+    watching.key(pygame.K_PERIOD)
+    assert watch.swarm.since_end[0] == 0
+    assert watch.decision.observation[0, 1] > last.observation[0, 1] + 1.0
+    assert watch.swarm.env.actions[0] == watch.decision.action[0]
+
+
+def test_another_number_of_landers_while_stopped_shows_what_they_will_fly(watching: Driver):
+    watching.frames(30)
+    watching.keys(pygame.K_SPACE, pygame.K_DOWN, pygame.K_RIGHT)
+    watch = scene(watching)
+    assert watch.stopped
+    assert watch.swarm.env.num_envs == 16
+    assert steps(watching) == 0
+    shown = watch.decision
+    assert np.array_equal(shown.observation[0], watch.swarm.env.observe()[0])
+    watch.swarm.step()
+    assert watch.swarm.env.actions[0] == shown.action[0]
+
+
+@pytest.mark.parametrize(
+    ("key", "times", "speed"), [(pygame.K_MINUS, 2, 0.25), (pygame.K_PLUS, 2, 4), (pygame.K_PLUS, 9, 4)]
+)
+def test_slower_and_faster(watching: Driver, key: int, times: int, speed: float):
+    watching.keys(*[key] * times)
+    before = steps(watching)
+    watching.frames(40)
+    assert steps(watching) - before == pytest.approx(40 * speed, abs=1)
+
+
+def test_arrows_choose_how_many_and_the_same_starts_stay(watching: Driver):
+    first = scene(watching).swarm.poses.before[0].copy()
+    watching.keys(pygame.K_DOWN, pygame.K_RIGHT)
+    assert scene(watching).swarm.env.num_envs == 16
+    assert np.abs(scene(watching).swarm.poses.now[0] - first).max() < 0.5
+    watching.keys(pygame.K_RIGHT, pygame.K_RIGHT)
+    assert scene(watching).swarm.env.num_envs == 256
+    watching.frames(3)
+
+
+def test_the_mouse_chooses_words_and_landers(watching: Driver):
+    choice = scene(watching)._count_choice
+    watching.click((choice.row.lefts[1] + 4, choice.box.centery))
+    assert scene(watching).swarm.env.num_envs == 16
+    scene(watching).stopped = True
+    positions = scene(watching).swarm.env.position
+    apart = [np.sort(np.hypot(*(positions - place).T))[1] for place in positions]
+    free = [slot for slot in np.argsort(apart)[::-1] if abs(positions[slot][0]) < 9 and slot]
+    watching.click(tuple(Camera().view(1.0).points(positions[free[0]])))
+    assert scene(watching).shown == free[0]
+    watching.keys(pygame.K_n)
+    assert scene(watching).shown == (free[0] + 1) % 16
+
+
+def test_a_gamepad_stops_steps_and_chooses(watching: Driver):
+    watching.button(pygame.CONTROLLER_BUTTON_Y)
+    assert scene(watching).stopped
+    before = scene(watching).swarm.decided[0]
+    watching.button(pygame.CONTROLLER_BUTTON_RIGHTSTICK)
+    assert scene(watching).swarm.decided[0] == before + 1
+    watching.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    watching.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    assert scene(watching).swarm.env.num_envs == 16
+    watching.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    assert scene(watching).shown == 1
+    watching.button(pygame.CONTROLLER_BUTTON_START)
+    assert watching.top_name == "Pause"
+
+
+def test_restart_flies_new_starts(watching: Driver):
+    first = scene(watching).swarm
+    watching.key(pygame.K_r)
+    assert scene(watching).swarm is not first
+    assert np.abs(scene(watching).swarm.poses.now - first.poses.before).max() > 0.5
+
+
+@pytest.fixture
+def many(open_game: Open, context: Context, tmp_path: Path) -> Driver:
+    """Twenty networks of the player's own, the game's, and the scripted pilot."""
+    context.models_dir = tmp_path / "shipped"
+    agent = DeepQAgent(config=Config(hidden=(4,)))
+    agent.save(context.models_dir / "lander" / "modern")
+    for number in range(20):
+        agent.save(context.user_dir / "models" / f"run {number:02}")
+    context.settings.model = "run 03"
+    SettingsFile(context.user_dir).save(context.settings)
+    return open_game(Watch(seed=2))
+
+
+def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):
+    assert scene(many)._network.name == "run 03"
+    assert set(scene(many)._roster._read) == {"run 03"}
+    many.key(pygame.K_RIGHT)
+    assert set(scene(many)._roster._read) == {"run 03", "run 04"}
+
+
+@pytest.mark.parametrize("way", ["key", "pad", "mouse", "pause"])
+def test_a_list_opens_to_choose_from(many: Driver, context: Context, way: str):
+    row = scene(many)._model_choice
+    match way:
+        case "key":
+            many.key(pygame.K_RETURN)
+        case "pad":
+            many.button(pygame.CONTROLLER_BUTTON_A)
+        case "mouse":
+            many.click((row.box.right - 6, row.box.centery))
+        case _:
+            many.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    runs = many.top
+    assert isinstance(runs, Runs)
+    assert runs.shown is not None
+    assert runs.shown.name == "run 03"
+    many.keys(pygame.K_HOME, pygame.K_RETURN)
+    name = runs.runs[0].name
+    if way == "pause":
+        many.key(pygame.K_ESCAPE)
+    assert scene(many)._network.name == context.settings.model == name
+    assert scene(many)._model_choice.options[scene(many)._model_choice.index] == name
+    many.frames(5)
+
+
+def test_the_mouse_turns_pages_and_takes_words_beside_the_list(many: Driver):
+    row = scene(many)._model_choice
+    last = next(page.stop for page in row.row.pages if row.index in page)
+    many.click((row._open_left - 24, row.box.centery))
+    assert scene(many)._network.name == row.options[last]
+
+
+def test_what_was_renamed_or_deleted_meanwhile_is_noted(many: Driver, context: Context):
+    library = Library(context.user_dir)
+    many.key(pygame.K_ESCAPE)
+    library.delete("run 03")
+    library.rename("run 04", "better")
+    many.key(pygame.K_ESCAPE)
+    watch = scene(many)
+    assert "better" in watch._model_choice.options
+    assert "run 03" not in watch._model_choice.options
+    assert watch._network.name == watch._model_choice.options[watch._model_choice.index]
+    many.frames(5)
+
+
+def test_a_missing_network_is_listed_with_what_is_wrong_and_another_flies(watching: Driver):
+    watching.frames(2)
+    watch = scene(watching)
+    assert "missing" in watch.problem
+    assert watch._network.name == "scripted"
+    watching.key(pygame.K_RIGHT)
+    assert not watch.problem
+    watching.frames(60)
+    assert watching.top is watch
+
+
+def test_landings_are_counted_and_a_resize_is_survived(watching: Driver):
+    watching.keys(pygame.K_DOWN, pygame.K_RIGHT, pygame.K_PLUS, pygame.K_PLUS)
+    watching.resize((900, 700))
+    watching.skip(400)
+    assert scene(watching).swarm.landed > 5
+    watching.resize((1280, 720))
+    watching.frames(2)
+
+
+def test_draw_changes_nothing(watching: Driver):
+    watching.keys(pygame.K_DOWN, pygame.K_RIGHT)
+    watching.frames(200)
+    pictures = []
+    for _ in range(2):
+        watching.top.draw(watching.app.canvas, 0.5)
+        pictures.append(pygame.surfarray.array3d(watching.app.canvas.surface))
+    assert np.array_equal(*pictures)
+
+
+def test_menu_leads_to_watch_and_back(open_game: Open):
+    driver = open_game()
+    driver.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    assert driver.top_name == "Watch"
+    driver.frames(5)
+    driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
+    assert driver.top_name == "Watch"
+    driver.key(pygame.K_BACKSPACE)
+    assert driver.top_name == "Menu"
+
+
+def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
+    watch = scene(watching)
+    assert watch._camera.view(1.0).zoom != 1
+    watching.key(pygame.K_ESCAPE)
+    watching.app.context.settings.reduced_motion = True
+    watching.key(pygame.K_ESCAPE)
+    assert scene(watching) is watch
+    watching.frames(5)
+    assert watch._camera.view(1.0) == Camera().view(1.0)
+
+
+@pytest.mark.parametrize(("landed", "good"), [(0, False), (5, False), (8, True)])
+def test_only_a_rate_of_success_has_its_colour(
+    watching: Driver, monkeypatch: pytest.MonkeyPatch, landed: int, good: bool
+):
+    watch = scene(watching)
+    watch.swarm.landed, watch.swarm.lost = landed, 10 - landed
+    colours: dict[str, object] = {}
+
+    def text(_: Canvas, string: str, *__: object, **looks: object) -> pygame.FRect:
+        colours[string] = looks.get("colour")
+        return pygame.FRect()
+
+    monkeypatch.setattr(Canvas, "text", text)
+    watch._draw_counts(watching.app.canvas)
+    draw_standing(watching.app.canvas, (0, 0), "", "", f"{10 * landed}.00", "", drop=0, room=100)
+    for figure in (f"{10 * landed}", f"{10 * landed}.00"):
+        assert (colours[figure] == watching.app.canvas.palette.good) == good

@@ -1,0 +1,405 @@
+import gc
+import signal
+import weakref
+from pathlib import Path
+
+import pygame
+import pytest
+
+from game.core.scene import Pop, Push, Quit, Replace
+from game.core.settings import Settings, SettingsFile
+from game.scenes import scene_of
+from game.scenes.menu import Menu
+from game.scenes.pause import Pause
+from game.scenes.settings import SettingsScene
+from game.shell.app import LOG_NAME, App, log_to
+from game.shell.window import NoDisplayError
+from game.ui.context import Context
+from tests.support.driver import Driver
+
+SIZES = [(1280, 720), (1920, 1080), (1000, 800), (640, 360), (2000, 500)]
+
+
+class Probe:
+    """A scene that records what it is given and does as it is told."""
+
+    def __init__(self) -> None:
+        self.events: list[pygame.event.Event] = []
+        self.updates = self.draws = self.entered = self.left = 0
+        self.alphas: list[float] = []
+        self.next = None
+        self.fails_in = ""
+
+    def _fail(self, where: str) -> None:
+        if self.fails_in == where:
+            raise ZeroDivisionError("a fault on purpose")
+
+    def enter(self, context: Context) -> None:
+        self.entered += 1
+        self._fail("enter")
+
+    def exit(self) -> None:
+        self.left += 1
+        self._fail("exit")
+
+    def handle_event(self, event: pygame.event.Event):
+        self._fail("handle_event")
+        self.events.append(event)
+        return self.next
+
+    def update(self):
+        self._fail("update")
+        self.updates += 1
+
+    def draw(self, canvas, alpha: float) -> None:
+        self._fail("draw")
+        self.draws += 1
+        self.alphas.append(alpha)
+
+
+def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
+    game.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
+    assert game.top_name == "SettingsScene"
+    game.key(pygame.K_ESCAPE)
+    assert game.top_name == "Menu"
+
+
+def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
+    game.click((90, 585))
+    assert game.top_name == "SettingsScene"
+    game.button(pygame.CONTROLLER_BUTTON_B)
+    assert game.top_name == "Menu"
+    game.axis(pygame.CONTROLLER_AXIS_LEFTY, -30000)  # from Settings up to the logbook
+    game.axis(pygame.CONTROLLER_AXIS_LEFTY, 0)
+    game.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    game.button(pygame.CONTROLLER_BUTTON_A)
+    assert game.top_name == "SettingsScene"
+
+
+def test_escape_in_the_menu_asks_twice(game: Driver):
+    assert game.key(pygame.K_ESCAPE)
+    assert not game.key(pygame.K_ESCAPE)
+
+
+@pytest.mark.parametrize("name", ["full_screen", "reduced_motion", "colour_safe", "show_hints"])
+def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context: Context, name: str):
+    rows = ["full_screen", "reduced_motion", "colour_safe", "show_hints"]
+    before = getattr(Settings(), name)
+    game = open_game(SettingsScene())
+    game.keys(*[pygame.K_DOWN] * rows.index(name), pygame.K_RETURN)
+    game.app.settings_writer.wait()
+    assert getattr(SettingsFile(context.user_dir).load(), name) is not before
+    game.app.close()
+    again = open_game()
+    assert getattr(again.app.context.settings, name) is not before
+    assert again.app.window.full_screen == again.app.context.settings.full_screen
+
+
+def test_colours_change_with_the_setting(open_game):
+    game = open_game(SettingsScene())
+    usual = game.app.canvas.palette
+    game.click((460, 124 + 2 * 60 + 28))
+    assert game.app.canvas.palette != usual
+    game.click((460, 124 + 2 * 60 + 28))
+    assert game.app.canvas.palette == usual
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_view_is_16_to_9_in_any_window_and_the_mouse_is_in_points(open_game, size: tuple[int, int]):
+    probe = Probe()
+    game = open_game(probe)
+    game.resize(size)
+    canvas = game.app.canvas
+    assert canvas.size[0] <= size[0]
+    assert canvas.size[1] <= size[1]
+    assert canvas.size[0] / canvas.size[1] == pytest.approx(16 / 9, rel=0.01)
+    assert size[0] - canvas.size[0] <= 1 or size[1] - canvas.size[1] <= 1
+    for corner in [(0, 0), (1280, 720), (640, 360)]:
+        game.move(corner)
+        assert probe.events[-1].pos == pytest.approx(corner, abs=1.2 / canvas.scale)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
+    game.resize(size)
+    game.click((90, 585))
+    assert game.top_name == "SettingsScene"
+    game.frames(3)
+    game.click((80, 640))
+    assert game.top_name == "Menu"
+
+
+def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
+    size = game.app.window.size
+    for _ in range(5):
+        game.key(pygame.K_F11)
+        assert context.settings.full_screen
+        game.key(pygame.K_RETURN, pygame.KMOD_LALT)
+        assert not context.settings.full_screen
+    assert game.app.window.size == size
+    assert game.top_name == "Menu"
+
+
+def test_a_mouse_at_rest_takes_nothing_from_the_keyboard(open_game, monkeypatch: pytest.MonkeyPatch):
+    game = open_game(SettingsScene())
+    controls, at = game.app.context.controls, (600, 300)
+    game.move(at)
+    assert controls.mouse_in_use
+    game.key(pygame.K_DOWN)
+    game.move(at)  # as the system says when the window below it changes
+    assert not controls.mouse_in_use
+    left, top = game.app.window.position
+    monkeypatch.setattr(type(game.app.window), "position", property(lambda _: (left - 160, top - 90)))
+    game.move((760, 390))  # it is the window that went up and left
+    assert not controls.mouse_in_use
+    game.move((770, 390))
+    assert controls.mouse_in_use
+
+
+def test_sixty_updates_a_second_and_no_spiral(open_game, context: Context):
+    probe = Probe()
+    app = App(
+        context,
+        probe,
+        now=iter([0.0, *(n / 144 for n in range(1, 145)), 100.0, 100.01]).__next__,
+        scene_of=scene_of,
+        capped=False,
+    )
+    for _ in range(144):
+        app.tick()
+    assert probe.updates == 60
+    assert all(0 <= alpha <= 1 for alpha in probe.alphas)
+    app.tick()
+    assert probe.updates == 65
+    app.tick()
+    assert probe.updates <= 66
+    app.close()
+
+
+@pytest.mark.parametrize("where", ["enter", "handle_event", "update", "draw"])
+def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Context, where: str):
+    log_to(context.user_dir)
+    broken = Probe()
+    broken.fails_in = where
+    game.app._guarded(lambda: game.app.scenes.apply(Push(broken)))
+    game.key(pygame.K_x)
+    game.frames(2)
+    assert game.top_name == "Fault"
+    assert "a fault on purpose" in (context.user_dir / LOG_NAME).read_text()
+    game.key(pygame.K_RETURN)
+    assert game.top_name == "Menu"
+    assert game.frames(2)
+
+
+class Holder(Probe):
+    """Holds something that it gives back, unless it failed too early to have it."""
+
+    closed = 0
+
+    def close(self) -> None:
+        if self.fails_in == "enter":
+            raise AttributeError("there is nothing to close yet")
+        self.closed += 1
+
+
+@pytest.mark.parametrize("way", ["first", "over another"])
+def test_a_scene_that_fails_too_early_to_be_closed_is_told_of_and_the_others_are_closed(open_game, way: str):
+    below, broken = Holder(), Holder()
+    broken.fails_in = "enter"
+    game = open_game(broken if way == "first" else below)
+    if way != "first":
+        game.app.show(broken)
+    game.frames(2)
+    assert game.top_name == "Fault"
+    assert below.closed == (way != "first")
+    game.key(pygame.K_RETURN)
+    assert game.top_name == "Menu"
+
+
+@pytest.mark.parametrize("leave", [Replace(Probe()), Pop(), Pop(2)])
+def test_a_scene_that_fails_to_leave_gives_back_what_it_holds(open_game, leave):
+    held = [Holder(), Holder()]
+    game = open_game(held[0])
+    game.app.show(held[1])
+    held[1].fails_in = "exit"
+    game.app._guarded(lambda: game.app.scenes.apply(leave))
+    assert not game.app.scenes.running or game.top_name == "Fault"
+    game.app.close()
+    assert held[1].closed == 1
+
+
+def test_closing_the_window_closes_every_scene_whatever_fails(open_game):
+    held = [Holder(), Holder(), Holder()]
+    game = open_game(held[0])
+    for scene in held[1:]:
+        game.app.show(scene)
+    held[1].close = lambda: 1 / 0
+    held[2].fails_in = "exit"
+    game.app.close()
+    assert [scene.closed for scene in held] == [1, 0, 1]
+
+
+def test_making_a_window_leaves_the_collector_of_the_process_alone(open_game):
+    before = gc.get_freeze_count(), gc.get_threshold()
+    open_game()
+    assert (gc.get_freeze_count(), gc.get_threshold()) == before
+
+
+@pytest.mark.parametrize("scene", [Menu, SettingsScene, lambda: Pause(Probe()), Probe])
+def test_closing_the_window_anywhere_saves_the_settings(open_game, context: Context, scene):
+    game = open_game(scene())
+    context.settings.model = "mine"
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    assert game.app.run() == 0
+    assert SettingsFile(context.user_dir).load().model == "mine"
+
+
+def test_settings_are_saved_even_if_the_last_scene_fails_to_leave(open_game, context: Context):
+    probe = Probe()
+    game = open_game(probe)
+    context.settings.model = "mine"
+    probe.fails_in = "exit"
+    game.app.close()
+    assert SettingsFile(context.user_dir).load().model == "mine"
+
+
+def test_pause_stops_the_scene_below_and_resumes_it(open_game):
+    probe = Probe()
+    game = open_game(probe)
+    game.app.scenes.apply(Push(Pause(probe)))
+    assert probe.left == 1
+    updates = probe.updates
+    game.frames(5)
+    assert (probe.updates, probe.draws) == (updates, 1)
+    game.key(pygame.K_ESCAPE)
+    assert game.top is probe
+    assert probe.entered == 2
+
+
+def test_pause_offers_retry_settings_and_the_way_out(open_game):
+    retried = []
+    game = open_game()
+    game.app.scenes.apply(Push(probe := Probe()))
+    game.app.scenes.apply(Push(Pause(probe, lambda: retried.append(True))))
+    game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
+    assert game.top_name == "SettingsScene"
+    game.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_SPACE)
+    assert retried == [True]
+    assert game.top is probe
+    game.app.scenes.apply(Push(Pause(probe)))
+    game.keys(pygame.K_UP, pygame.K_RETURN)
+    assert game.top_name == "Menu"
+
+
+def test_a_scene_that_is_left_for_good_is_in_memory_no_more(game: Driver):
+    game.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
+    settings = weakref.ref(game.top)
+    game.frames(20)
+    gc.disable()
+    try:
+        game.key(pygame.K_ESCAPE)
+        assert settings() is None
+    finally:
+        gc.enable()
+
+
+def test_stack_pops_several_levels_and_ends_empty(game: Driver):
+    probes = [Probe(), Probe()]
+    for probe in probes:
+        game.app.scenes.apply(Push(probe))
+    game.app.scenes.apply(Pop(2))
+    assert game.top_name == "Menu"
+    game.app.scenes.apply(Pop())
+    assert not game.frames(1)
+
+
+def test_quit_from_a_scene(open_game):
+    probe = Probe()
+    game = open_game(probe)
+    probe.next = Quit()
+    assert not game.key(pygame.K_x)
+
+
+def test_minimised_draws_nothing_and_comes_back(open_game):
+    probe = Probe()
+    game = open_game(probe)
+    game.post(pygame.WINDOWMINIMIZED)
+    draws = probe.draws
+    game.frames(3)
+    assert probe.draws == draws
+    game.post(pygame.WINDOWRESTORED)
+    assert probe.draws > draws
+
+
+def test_screenshot_is_a_picture_of_the_view(game: Driver, context: Context):
+    game.frames(2)
+    game.key(pygame.K_F12)
+    (path,) = (context.user_dir / "screenshots").iterdir()
+    assert pygame.image.load(path).get_size() == (1280, 720)
+
+
+def test_a_screenshot_on_a_full_disk_is_no_picture_and_says_so(game: Driver, context: Context):
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (900, limits[1]))
+    try:
+        game.key(pygame.K_F12)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "could not be saved" in game.app._notes._text
+    assert not list((context.user_dir / "screenshots").iterdir())
+
+
+def test_screenshot_into_a_folder_that_cannot_be(game: Driver, context: Context):
+    context.user_dir.mkdir(parents=True, exist_ok=True)
+    (context.user_dir / "screenshots").write_text("in the way")
+    assert game.key(pygame.K_F12)
+
+
+def test_no_display_is_a_clear_error(context: Context, monkeypatch):
+    monkeypatch.setenv("SDL_VIDEODRIVER", "nonesuch")
+    pygame.display.quit()
+    with pytest.raises(NoDisplayError, match="nonesuch"):
+        App(context, scene_of=scene_of)
+
+
+def test_user_folder_that_cannot_be_written_does_not_stop_the_game(open_game, context: Context, tmp_path: Path):
+    context.user_dir = tmp_path / "file" / "inside"
+    (tmp_path / "file").write_text("in the way")
+    game = open_game(SettingsScene())
+    game.keys(pygame.K_DOWN, pygame.K_RETURN)
+    assert game.app.context.settings.reduced_motion
+    assert game.frames(3)
+
+
+def test_interrupt_reaches_the_caller(game: Driver, monkeypatch):
+    monkeypatch.setattr(game.app.scenes, "update", lambda: signal.raise_signal(signal.SIGINT))
+    with pytest.raises(KeyboardInterrupt):
+        game.app.run()
+    assert not pygame.display.get_init()
+
+
+def test_the_picture_of_a_scene_gives_way_to_the_next_and_not_where_motion_is_reduced(game: Driver, context: Context):
+    def corner() -> tuple[int, ...]:
+        return tuple(game.app.canvas.surface.get_at((0, 0)))
+
+    class Plain(Probe):
+        def __init__(self, colour: tuple[int, int, int]) -> None:
+            super().__init__()
+            self.colour = colour
+
+        def draw(self, canvas, alpha: float) -> None:
+            canvas.surface.fill(self.colour)
+
+    for still in (False, True):
+        context.settings.reduced_motion = still
+        game.app.scenes.apply(Replace(Plain((200, 0, 0))))
+        game.frames(30)
+        game.app.scenes.apply(Replace(Plain((0, 0, 200))))
+        reds = []
+        for _ in range(20):
+            game.frames(1)
+            reds.append(corner()[0])
+        assert reds[-1] == 0
+        assert reds == sorted(reds, reverse=True)
+        assert (100 < reds[0] < 200) is not still

@@ -1,0 +1,66 @@
+"""Notes stand where they hide nothing that is to be read or pressed."""
+
+from collections.abc import Callable
+
+import pygame
+import pytest
+
+from game.core.scene import Push, Scene
+from game.drawing.tokens import VIEW_SIZE
+from game.scenes.choices import ChoicesScene
+from game.scenes.dialog import Naming
+from game.scenes.digits import Digits
+from game.scenes.logbook import Logbook
+from game.scenes.menu import Menu
+from game.scenes.missions import Missions
+from game.scenes.pause import Pause
+from game.scenes.play import Play
+from game.scenes.runs import Runs
+from game.scenes.settings import SettingsScene
+from game.scenes.train import Train
+from game.scenes.watch import Watch
+from tests.support.driver import Driver
+
+Open = Callable[..., Driver]
+NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
+
+
+def scenes() -> dict[str, Scene]:
+    return {
+        "menu": Menu(), "settings": SettingsScene(), "logbook": Logbook(), "missions": Missions(), "runs": Runs(),
+        "digits": Digits(), "play": Play(seed=1), "watch": Watch(seed=1), "pause": Pause(Menu()),
+        "choices": Play(seed=1), "naming": Menu(), "train": Train(),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", scenes())
+def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, name: str):
+    driver = open_game(scenes()[name])
+    driver.frames(3)
+    if name == "choices":
+        driver.key(pygame.K_c)
+        assert isinstance(driver.top, ChoicesScene)
+    if name == "naming":
+        driver.app.scenes.apply(Push(Naming(driver.top, "What shall it be called?", "one", lambda _: "")))
+    driver.frames(3)
+    driver.app.context.note(NOTE)
+    driver.frames(2)
+    notes, canvas = driver.app._notes, driver.app.canvas
+    place = canvas.rect(*notes._box(canvas))
+    written = [area for area in canvas._covered if area.colliderect(place)]
+    assert not written, (notes._place, written)
+    driver.frames(30)
+    assert place == canvas.rect(*notes._box(canvas))  # and it stays there
+
+
+def test_a_note_moves_aside_where_the_middle_is_taken_in_every_row(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    driver = open_game(Menu())
+    driver.frames(2)
+    notes, canvas = driver.app._notes, driver.app.canvas
+    taken = canvas.rect(800, 0, VIEW_SIZE[0] - 800, VIEW_SIZE[1])
+    monkeypatch.setattr(canvas, "words", [taken])
+    notes.show(NOTE)
+    notes.update(canvas)
+    box = canvas.rect(*notes._box(canvas))
+    assert not box.colliderect(taken)
+    assert canvas.surface.get_rect().contains(box)

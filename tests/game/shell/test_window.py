@@ -1,0 +1,106 @@
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support.window import ROOT, Window, screen, skip_without_a_screen, start
+
+
+@pytest.fixture(scope="module")
+def display() -> Iterator[str]:
+    skip_without_a_screen()
+    with screen() as name:
+        yield name
+
+
+def setting(window: Window, name: str) -> object:
+    return json.loads((window.user_dir / "settings.json").read_text())[name]
+
+
+def test_a_setting_chosen_with_real_keys_survives_a_restart(display: str, tmp_path: Path):
+    with start(display, tmp_path / "user") as window:
+        window.key(*["Down"] * 7, "Return")  # Settings
+        window.key("Down", "Return")  # Reduced motion
+        window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
+        window.key("Escape")
+        assert window.close() == 0
+    with start(display, tmp_path / "user") as window:
+        window.key(*["Down"] * 7, "Return", "Down", "Return")
+        window.wait_for(lambda: setting(window, "reduced_motion") is False, "the setting to change back")
+        assert window.close() == 0
+
+
+def test_the_mouse_meets_what_it_sees_in_a_letterboxed_window(display: str, tmp_path: Path):
+    with start(display, tmp_path / "user") as window:
+        window.resize(900, 760)
+        scale, top = 900 / 1280, (760 - 900 * 9 / 16) / 2
+        window.click(round(90 * scale), round(578 * scale + top))  # Settings
+        window.click(round(464 * scale), round((124 + 60 + 28) * scale + top))
+        window.wait_for(lambda: setting(window, "reduced_motion") is True, "the setting to be saved")
+        assert window.close() == 0
+
+
+def test_full_screen_ten_times_in_a_real_window(display: str, tmp_path: Path):
+    with start(display, tmp_path / "user") as window:
+        for wanted in [True, False] * 5:
+            window.key("F11")
+            window.wait_for(lambda: setting(window, "full_screen") is wanted, "the toggle")  # noqa: B023
+        window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window's old size")
+        window.key("F11")
+        window.wait_for(lambda: window.picture().get_size() == (1280, 800), "the whole screen")
+        assert window.picture_is_bright()
+        assert window.close() == 0
+
+
+def test_a_game_that_begins_in_full_screen_covers_the_screen(display: str, tmp_path: Path):
+    with start(display, tmp_path / "user", "--fullscreen") as window:
+        window.wait_for(lambda: window.picture().get_size() == (1280, 800), "the whole screen")
+        window.key("F11")
+        window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window")
+        assert window.close() == 0
+
+
+def test_interrupt_ends_the_game_without_a_traceback(display: str, tmp_path: Path):
+    with start(display, tmp_path / "user") as window:
+        assert window.interrupt() == 130
+        assert "Traceback" not in window.output()
+        assert (tmp_path / "user" / "settings.json").exists()
+
+
+def test_no_screen_is_a_message_and_exit_code_2(tmp_path: Path):
+    hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+    environment = {name: value for name, value in os.environ.items() if name not in hidden}
+    finished = subprocess.run(
+        [sys.executable, str(ROOT / "main.py"), "--user-dir", str(tmp_path)],
+        env=environment,
+        capture_output=True,
+        check=False,
+        text=True,
+        timeout=30,
+    )
+    assert finished.returncode == 2
+    assert "needs a screen" in finished.stderr
+    assert "Traceback" not in finished.stderr
+
+
+def test_the_mouse_meets_what_it_sees_in_full_screen_and_back(tmp_path: Path):
+    skip_without_a_screen()
+    with screen("1366x768x24") as display, start(display, tmp_path / "user") as window:
+        for wide, high in ((1366, 768), (1280, 720)):  # the whole screen, and the window as it was before
+            if wide == 1366:
+                window.key("F11")
+                window.wait_for(lambda: window.picture().get_size() == (1366, 768), "the whole screen")
+                window.key(*["Down"] * 7, "Return")
+            else:
+                window.key("F11")
+                window.wait_for(lambda: window.picture().get_size() == (1280, 720), "the window")
+            scale = min(wide / 1280, high / 720)
+            left, top = (wide - 1280 * scale) / 2, (high - 720 * scale) / 2
+            window.click(round(464 * scale + left), round((124 + 60 + 28) * scale + top))
+            wanted = wide == 1366
+            window.wait_for(lambda: setting(window, "reduced_motion") is wanted, "the switch")  # noqa: B023
+        assert window.close() == 0

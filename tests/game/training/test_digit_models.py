@@ -1,0 +1,107 @@
+"""Networks of the player's own in Draw a digit."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, build_digit_network
+from game.core.assets import MODELS_DIR
+from game.digits.reader import Reader
+from game.scenes.dialog import Picking
+from game.scenes.digits import Digits
+from game.training.digit_models import called, runs_dir, shelf
+from game.ui.context import Context
+from tests.game.scenes.test_digits import draw, guess, strokes
+from tests.support.driver import Driver
+
+CONFIGS = [
+    DIGIT_PRESETS["classic"].changed(hidden=(8,), dropout=0.4),  # dropout comes before all weights
+    DIGIT_PRESETS["modern"].changed(filters=(64,), kernel=1, hidden=(16,)),
+    DIGIT_PRESETS["modern"].changed(filters=(8, 16), hidden=(256, 128), kernel=9),
+]
+
+
+def save(context: Context, name: str, config=CONFIGS[0]) -> Path:
+    folder = runs_dir(context.user_dir) / name
+    DigitClassifier(build_digit_network(config, np.random.default_rng(0))).save(folder)
+    return folder
+
+
+@pytest.fixture
+def own(context: Context) -> list[str]:
+    for number, config in enumerate(CONFIGS):
+        save(context, f"Reader {number}", config)
+    return [f"Reader {number}" for number in range(len(CONFIGS))]
+
+
+def test_names_are_those_of_folders_and_none_hides_another(context: Context):
+    for name in ("zero", "Modern", ".training"):
+        save(context, name)
+    (runs_dir(context.user_dir) / "notes").mkdir()
+    found = shelf(MODELS_DIR, context.user_dir)
+    assert list(found) == ["modern", "classic", "Modern (yours)", "zero"]
+    assert [called(name) for name in found] == ["Modern", "Classic", "Modern (yours)", "zero"]
+    assert found["modern"].said == "reads 99.65% of the test images"
+    assert found["zero"].said == ""
+
+
+@pytest.mark.parametrize("config", CONFIGS)
+def test_networks_of_any_shape_are_explained(context: Context, config):
+    reader = Reader()
+    assert reader.load("own", save(context, "own", config))
+    why = reader.explain("own", np.eye(28, dtype=np.float32))
+    assert np.isfinite(why.saliency).all()
+    assert 0 < len(why.filters) <= 32
+
+
+def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable[..., Driver], own: list[str]):
+    driver = open_game(Digits())
+    draw(driver, strokes(3))
+    seen = []
+    for _ in range(5):
+        driver.key(pygame.K_n)
+        seen.append(driver.top.chosen)
+        guess(driver)
+        assert set(driver.top.reading.probabilities) == {driver.top.chosen, driver.top._other}
+    assert seen == ["classic", *own, "modern"]
+    driver.key(pygame.K_b)
+    assert driver.top.chosen == own[-1]
+    driver.key(pygame.K_RETURN)
+    assert isinstance(driver.top, Picking)
+    driver.keys(pygame.K_DOWN, pygame.K_RETURN)
+    assert driver.top.chosen == "classic"
+
+
+def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable[..., Driver], context: Context):
+    driver = open_game(Digits())
+    driver.click(next(word for word in driver.top._form.widgets if word.label == "Train").box.center)
+    assert driver.top_name == "DigitTrainingScene"
+    save(context, "mine")
+    driver.key(pygame.K_ESCAPE)
+    driver.key(pygame.K_b)
+    assert driver.top.chosen == "mine"
+
+
+def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver], context: Context, own: list[str]):
+    (runs_dir(context.user_dir) / own[0] / "config.json").write_text("{", encoding="utf-8")
+    driver = open_game(Digits())
+    driver.keys(pygame.K_n, pygame.K_n)
+    assert driver.top.chosen == own[1]
+    assert "config.json" in driver.top._reader.problems[own[0]]
+    draw(driver, strokes(3))
+    guess(driver)
+    driver.frames(3)
+
+
+def test_fixes_of_a_network_of_ones_own_lie_with_it(context: Context):
+    folder = save(context, "mine")
+    mine = shelf(MODELS_DIR, context.user_dir)["mine"]
+    fix = mine.fixes / "0001"
+    DigitClassifier.load(folder).save(fix)
+    assert mine.versions() == [fix, folder]
+    folder.rename(folder.with_name("ours"))
+    assert shelf(MODELS_DIR, context.user_dir)["ours"].fixed()

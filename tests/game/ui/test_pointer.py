@@ -1,0 +1,127 @@
+"""What a mouse can do, keys alone and a gamepad alone can do as well."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import build_network
+from ai.agent.config import Config
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
+from game.flight.flight import Flight
+from game.flight.logbook import Records
+from game.scenes.logbook import Logbook
+from game.scenes.physics import Physics
+from game.scenes.train import Train
+from game.ui.context import Context
+from game.ui.virtual_pointer import Pointer
+from tests.support.driver import Driver
+from tests.support.flights import NOON, fly_out
+from tests.support.player import DEVICES, Player
+
+Open = Callable[..., Driver]
+Take = Callable[[object], Player]
+
+
+@pytest.fixture(params=DEVICES)
+def take(request: pytest.FixtureRequest, open_game: Open) -> Take:
+    """Open a scene and take its first pointer in hand, by one device alone."""
+
+    def taken(scene: object) -> Player:
+        player = Player(open_game(scene), request.param)
+        player.frames(3)
+        pointer = next(widget for widget in player.form.widgets if isinstance(widget, Pointer))
+        player.form.focus(pointer)
+        player.press("confirm")
+        assert pointer.typing
+        return player
+
+    return taken
+
+
+def pointer(player: Player) -> Pointer:
+    assert isinstance(player.form.focused, Pointer)
+    return player.form.focused
+
+
+def bring(player: Player, place: tuple[float, float]) -> None:
+    """Hold arrows until the pointer is near a place, in points."""
+    for axis, names in enumerate((("left", "right"), ("up", "down"))):
+        away = place[axis] - pointer(player).place[axis]
+        if abs(away) < 4:
+            continue
+        name = names[away > 0]
+        player.hold(name, down=True)
+        for _ in range(400):
+            if abs(place[axis] - pointer(player).place[axis]) < 7:
+                break
+            player.frames(1)
+        player.hold(name, down=False)
+
+
+def test_a_body_is_gripped_lifted_and_let_go(take: Take):
+    player = take(Physics("spin"))
+    scene = player.top
+    disc = scene.exhibit.turning[0]
+
+    def seen() -> tuple[float, float]:
+        x, y = scene._view(1.0).points(disc.position[0]).tolist()
+        return x, y
+
+    bring(player, seen())
+    assert scene._hovered() == disc.index
+    before = seen()
+    player.hold("confirm", down=True)
+    assert scene.grip is not None
+    assert scene.grip.body is disc
+    bring(player, (before[0], before[1] - 150))
+    player.frames(60)
+    assert seen()[1] < before[1] - 120
+    player.hold("confirm", down=False)
+    assert scene.grip is None
+    player.press("back")
+    assert not player.form.typing
+    assert scene._hovered() is None
+    player.press("pause")
+    assert player.top_name == "Pause"
+
+
+def test_who_looks_elsewhere_lets_go(take: Take):
+    player = take(Physics("spin"))
+    scene = player.top
+    bring(player, tuple(scene._view(1.0).points(scene.exhibit.turning[0].position[0]).tolist()))
+    player.hold("confirm", down=True)
+    player.hold("left", down=True)
+    pygame.event.post(pygame.Event(pygame.WINDOWFOCUSLOST))
+    player.frames(2)
+    assert scene.grip is None
+    place = pointer(player).place.copy()
+    player.frames(5)
+    assert pointer(player).place == place
+
+
+def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
+    records = Records(context.user_dir)
+    for number in range(3):
+        records.keep(fly_out(Flight(number)), NOON + number, alone=True)
+    player = take(Logbook())
+    chart, other = player.top._charts.charts
+    bring(player, chart.plot.center)
+    assert chart._pointed
+    assert not other._pointed
+    assert np.isclose(chart._cursor, 2.0, atol=0.1)
+    player.press("back")
+    assert not chart._pointed
+    assert player.top_name == "Logbook"
+
+
+def test_the_network_of_a_run_can_be_pointed_into(take: Take):
+    player = take(Train())
+    view = player.top.inside._view
+    view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
+    bring(player, view._centres[1][3])
+    assert view._hovered == (1, 3)
+    player.press("back")
+    assert view._hovered is None
+    assert player.top_name == "Train"

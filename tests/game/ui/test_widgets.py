@@ -1,0 +1,298 @@
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from game.core import texts
+from game.core.scene import Pop, Transition
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import INK, SMALL, VIEW_SIZE
+from game.input.controls import Command
+from game.scenes.choices import ChoicesScene
+from game.scenes.play import Play
+from game.scenes.settings import SettingsScene
+from game.ui import focus
+from game.ui.context import Context
+from game.ui.form import Form
+from game.ui.listing import shortened
+from game.ui.widget import PointsManager
+from game.ui.widgets import CHOICE_GAP, Choice, Slider, Toggle, Word
+from tests.support.driver import Driver
+
+COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
+
+
+class Page:
+    """One of each widget."""
+
+    def __init__(self) -> None:
+        self.log: list[object] = []
+
+    def enter(self, context: Context) -> None:
+        self.form = form = Form(context, on_back=Pop)
+        manager, log = form.manager, self.log
+        self.word = form.add(Word(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))  # type: ignore[func-returns-value]
+        self.toggle = form.add(Toggle(manager, (64, 150, 400, 32), "Switch", False, log.append))
+        self.slider = form.add(
+            Slider(manager, (64, 200, 400, 24), "Rate", 0.5, (0.0, 1.0), log.append, step=0.1, figure_width=60)
+        )
+        self.choice = form.add(Choice(manager, (64, 250, 400, 32), "", ["one", "two", "three"], 0, log.append))
+
+    def exit(self) -> None:
+        pass
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        return self.form.handle_event(event)
+
+    def update(self) -> Transition | None:
+        return self.form.update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        canvas.surface.fill((0, 0, 0))
+        self.form.draw(canvas)
+
+
+@pytest.fixture
+def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
+    page = Page()
+    return open_game(page), page
+
+
+@pytest.mark.parametrize(
+    ("start", "direction", "end"),
+    [
+        (0, focus.DOWN, 1),
+        (2, focus.DOWN, 0),
+        (0, focus.UP, 2),
+        (1, focus.RIGHT, 4),
+        (4, focus.LEFT, 1),
+        (4, focus.RIGHT, 4),
+        (5, focus.DOWN, 3),
+    ],
+)
+def test_arrows_follow_a_column_round_and_cross_to_the_next(start: int, direction: focus.Direction, end: int):
+    assert focus.neighbour(COLUMNS, start, direction) == end
+
+
+def test_a_single_widget_keeps_the_focus():
+    assert focus.neighbour(COLUMNS[:1], 0, focus.DOWN) == 0
+
+
+def test_tab_visits_every_widget_and_comes_round(page: tuple[Driver, Page]):
+    game, scene = page
+    seen = []
+    for _ in range(5):
+        seen.append(scene.form.focused)
+        game.key(pygame.K_TAB)
+    assert seen == [scene.word, scene.toggle, scene.slider, scene.choice, scene.word]
+    game.key(pygame.K_TAB, pygame.KMOD_LSHIFT)
+    assert scene.form.focused is scene.word
+
+
+def test_keyboard_works_every_widget(page: tuple[Driver, Page]):
+    game, scene = page
+    game.keys(pygame.K_RETURN, pygame.K_DOWN, pygame.K_SPACE, pygame.K_DOWN, pygame.K_RIGHT, pygame.K_LEFT)
+    game.keys(pygame.K_DOWN, pygame.K_RIGHT, pygame.K_RETURN, pygame.K_RETURN)
+    assert scene.log == ["go", True, pytest.approx(0.6), pytest.approx(0.5), 1, 2, 0]
+
+
+def test_pad_works_every_widget(page: tuple[Driver, Page]):
+    game, scene = page
+    down, right = pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_RIGHT
+    for button in (pygame.CONTROLLER_BUTTON_A, down, right, down, right, down, right):
+        game.button(button)
+    assert scene.log == ["go", True, pytest.approx(0.6), 1]
+
+
+def test_mouse_works_every_widget(page: tuple[Driver, Page]):
+    game, scene = page
+    game.click((80, 116))
+    game.click((450, 166))
+    game.click((64 + 142, 212))  # the left end of the track
+    game.click((64 + 60, 266))
+    assert scene.log == ["go", True, 0.0, 1]
+
+
+def test_a_drag_goes_on_outside_and_a_press_let_go_outside_does_nothing(page: tuple[Driver, Page]):
+    game, scene = page
+    down = {"button": 1}
+    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((300, 212)), **down)
+    game.move((1200, 600))
+    assert scene.slider.value == 1.0
+    game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1200, 600)), **down)
+    game.move((300, 212))
+    assert scene.slider.value == 1.0
+    game.post(pygame.MOUSEBUTTONDOWN, pos=game.to_window((80, 116)), **down)
+    game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((600, 600)), **down)
+    assert "go" not in scene.log
+
+
+def test_a_held_direction_repeats(page: tuple[Driver, Page]):
+    game, scene = page
+    scene.form.focus(scene.slider)
+    game.post(pygame.KEYDOWN, key=pygame.K_RIGHT, mod=0, unicode="", scancode=0)
+    game.frames(60)
+    game.post(pygame.KEYUP, key=pygame.K_RIGHT, mod=0, unicode="", scancode=0)
+    assert scene.slider.value == 1.0
+
+
+def test_a_logarithmic_slider_gives_every_decade_the_same_room(context: Context, open_game: Callable[..., Driver]):
+    open_game(Page())
+    form = Form(context)
+    slider = Slider(form.manager, (0, 0, 300, 24), "", 1e-4, (1e-5, 1e-1), lambda _: None, logarithmic=True)
+    assert slider.fraction == pytest.approx(0.25)
+    for _ in range(5):
+        slider.shift(1)
+    assert slider.value == pytest.approx(1e-3)
+
+
+def test_a_ring_shows_for_keys_and_not_for_the_mouse(page: tuple[Driver, Page]):
+    game, scene = page
+    game.key(pygame.K_DOWN)
+    game.frames(2)
+    assert scene.toggle.ringed
+    game.move((100, 212))
+    game.frames(2)
+    assert scene.slider.focused
+    assert not scene.slider.ringed
+
+
+# The canvas
+
+
+@pytest.fixture(params=[(1280, 720), (1920, 1080), (1000, 800), (640, 360)])
+def canvas(request: pytest.FixtureRequest) -> Canvas:
+    return Canvas(pygame.Surface(request.param))
+
+
+@pytest.mark.parametrize("size", [11.5, 15.0, 34.0, 88.0])
+def test_text_is_as_large_as_asked_in_any_window(canvas: Canvas, size: float):
+    canvas.surface.fill((0, 0, 0))
+    box = canvas.text("HHH", (100, 300), size=size)
+    ink = np.argwhere(pygame.surfarray.array3d(canvas.surface).max(axis=2) > 100)
+    left, top = ink.min(axis=0) / canvas.scale
+    right, bottom = (ink.max(axis=0) + 1) / canvas.scale
+    pixel = 1.5 / canvas.scale
+    assert bottom == pytest.approx(300, abs=pixel)  # the baseline
+    assert bottom - top == pytest.approx(0.72 * size, abs=0.03 * size + pixel)  # Manrope's capitals
+    assert box.left - pixel <= left
+    assert right <= box.right + pixel
+    assert box.width == pytest.approx(canvas.text_width("HHH", size=size))
+
+
+@pytest.mark.parametrize("letters", [8_000, 1_000_000])
+def test_a_text_of_any_length_is_drawn_no_wider_than_a_screen(canvas: Canvas, letters: int):
+    for size in (SMALL, 44.0):
+        for letter in "Wi":
+            canvas.text(letter * letters, (40, 100), size=size)
+            surface, _ = typeface.render(letter * letters, size * canvas.scale, "regular", INK)
+            assert surface.get_width() <= 16_384  # SDL's scaling wrote past its memory when it was ten times as wide
+    assert canvas.text_width("a" * 1000 + "b") == canvas.text_width("a" * letters)
+
+
+def test_a_line_that_fits_the_largest_screen_is_drawn_whole():
+    canvas = Canvas(pygame.Surface((7680, 4320)))
+    line = "m" * 100
+    while canvas.text_width(line + "m", size=SMALL) < VIEW_SIZE[0]:
+        line += "m"
+    surface, _ = typeface.render(line, canvas._pixels(line, SMALL, "regular", tabular=False), "regular", INK)
+    assert surface.get_width() >= canvas.text_width(line, size=SMALL) * canvas.scale
+
+
+@pytest.mark.parametrize("letters", [0, 3, 30, 100_000])
+def test_a_shortened_text_is_the_longest_that_fits_and_soon_found(
+    canvas: Canvas, letters: int, monkeypatch: pytest.MonkeyPatch
+):
+    text = "Tranquility "[: max(letters, 1) - 1] + "x" * letters
+    looked, width = [], Canvas.text_width
+    monkeypatch.setattr(Canvas, "text_width", lambda *given, **more: looked.append(1) or width(*given, **more))
+    found = shortened(canvas, text, SMALL, 200)
+    assert len(looked) < 25
+    assert canvas.text_width(found, size=SMALL) <= 200
+    if found != text:
+        assert found[-1] == "…"
+        assert text.startswith(found[:-1])
+        assert canvas.text_width(text[: len(found)] + "…", size=SMALL) > 200
+
+
+def test_a_text_that_finds_no_room_at_all_is_three_dots(canvas: Canvas):
+    assert shortened(canvas, "Tranquility", SMALL, 1) == "…"
+
+
+def test_tabular_figures_keep_their_width(canvas: Canvas):
+    widths = {round(canvas.text_width(text, size=34, tabular=True), 6) for text in ("11.1", "84.0", "00.7")}
+    assert len(widths) == 1
+
+
+def test_nothing_is_drawn_outside_the_view():
+    window = pygame.Surface((1000, 800))
+    canvas = Canvas(window)
+    margin = window.get_at((5, 5))
+    canvas.text("Tranquility", (0, 0), size=200)
+    canvas.glow((0, 0), 300, (255, 255, 255), 2.0)
+    canvas.line((-50, -50), (1400, 800), (255, 255, 255), 6)
+    assert window.get_at((5, 5)) == margin
+    assert window.get_at((5, 794)) == margin
+
+
+def test_rectangles_that_touch_in_points_touch_in_pixels(canvas: Canvas):
+    edges = [canvas.rect(x, 0, 8, 8) for x in range(0, 1280, 8)]
+    assert all(a.right == b.left for a, b in pairwise(edges))
+
+
+def test_texts_are_kept_and_forgotten_with_the_size(tmp_path: Path):
+    from game.drawing import typeface
+
+    canvas = Canvas(pygame.Surface((1280, 720)))
+    canvas.text("kept", (0, 50))
+    first = typeface.render("kept", 15.0, "regular", (232, 236, 244))[0]
+    canvas.text("kept", (0, 90))
+    assert typeface.render("kept", 15.0, "regular", (232, 236, 244))[0] is first
+    canvas.attach(pygame.Surface((1920, 1080)))
+    assert typeface.render.cache_info().currsize == 0
+
+
+def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
+    names = [f"network {number}" for number in range(30)]
+    choice = Choice(PointsManager(), (64, 250, 400, 20), "", names, 0, lambda _: None)
+    pages = choice.row.pages
+    assert [number for page in pages for number in page] == list(range(30))
+    for page in pages:
+        last = choice.row.lefts[page[-1]] + typeface.width(names[page[-1]], 15, "regular")
+        assert last <= 464 - CHOICE_GAP + 1
+
+    def click(x: float) -> None:
+        choice.ui_manager.mouse_position = (int(x), 260)
+        choice.press()
+
+    click(460)
+    assert choice.index == pages[1].start
+    click(choice.row.lefts[pages[1][1]] + 3)
+    assert choice.index == pages[1][1]
+    click(choice.row.lefts[pages[1].start] - 14)
+    assert choice.index == pages[0][-1]
+    for _ in range(40):
+        choice.shift(1)
+    assert choice.index == 29
+
+
+@pytest.mark.parametrize("scene", [SettingsScene, ChoicesScene])
+def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver], scene: type):
+    driver = open_game(SettingsScene() if scene is SettingsScene else Play(seed=1))
+    driver.frames(2)
+    if scene is ChoicesScene:
+        driver.key(pygame.K_c)
+    assert isinstance(driver.top, scene)
+    form = driver.top._form
+    seen = set()
+    for widget in form.widgets:
+        form.focus(widget)
+        by_arrows = isinstance(widget, Slider)
+        seen.add(by_arrows)
+        expected = texts.ARROWS_ASIDE if by_arrows else driver.app.context.controls.word(Command.CONFIRM)
+        assert form.change_hint == (expected, texts.HINT_CHANGE)
+    assert seen == {True, False}

@@ -1,0 +1,39 @@
+"""Flights as tests fly them: to the end, by the scripted pilot."""
+
+from ai.lander.pilots import ScriptedPilot
+from game.flight.flight import Flight
+from game.flight.flight_file import Record
+from game.flight.logbook import Records
+from game.scenes.play import Play
+from game.ui.context import Context
+from tests.support.driver import Driver
+
+NOON = 1_700_000_000.0
+
+
+def fly_out(flight: Flight) -> Flight:
+    """Let a flight go on to its end with nothing pressed."""
+    while not flight.over:
+        flight.step(0)
+    return flight
+
+
+def scripted(seed: int = 3, *, by_hand: int = 0, pads: int = 1, mission: str = "") -> Flight:
+    """The scripted pilot's flight to its end, after the person has coasted for so many steps."""
+    flight = Flight(seed, ScriptedPilot(), pads=pads, mission=mission)
+    for _ in range(by_hand):
+        flight.step(0)
+    flight.hand_over()
+    return fly_out(flight)
+
+
+def kept(context: Context, flight: Flight, when: float = NOON, **more: object) -> Record:
+    """The record of a flight, written into the player's folder and read again."""
+    records = Records(context.user_dir)
+    return records.read(records.keep(flight, when, **more).file)
+
+
+def play(driver: Driver) -> Play:
+    """The flight that is on the screen."""
+    assert isinstance(driver.top, Play)
+    return driver.top
