@@ -464,7 +464,7 @@ def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: p
 
     for module in (export, fixing, measuring):
         monkeypatch.setattr(module, "Worker", Ending)
-    export.Export(None, tmp_path / "film.gif").close()
+    export.Export(list, None, tmp_path / "film.gif").close()
     fix = fixing.Fixing(tmp_path, MODELS_DIR)
     fix.begin("classic", np.ones((28, 28), np.float32), 3)
     fix.poll()

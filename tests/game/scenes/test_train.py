@@ -340,8 +340,12 @@ def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(train: Drive
         assert resume_run(run.folder).agent.decisions > 0
 
 
+def _kept() -> list[object]:
+    return [each for each in gc.get_objects() if isinstance(each, Train | Student | NetView)]
+
+
 def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
-    threads = threading.active_count()
+    threads, others = threading.active_count(), set(map(id, _kept()))
     for visit in range(10):
         assert isinstance(game.top, Menu)
         scene = Train()
@@ -358,7 +362,7 @@ def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> Non
     del scene
     game.wait(lambda: threading.active_count() <= threads)
     gc.collect()
-    assert not [each for each in gc.get_objects() if isinstance(each, Train | Student | NetView)]
+    assert not [each for each in _kept() if id(each) not in others]
 
 
 def test_closing_the_game_ends_the_worker(train: Driver) -> None:
