@@ -16,10 +16,10 @@ T = TypeVar("T", bound=np.generic)
 
 
 class Body:
-    """One body, `world.batch` of it.
+    """Handle on one body, which exists once in each of `world.batch` worlds.
 
     Arrays read through a handle are views that later steps change. They can't be written to: assign a whole
-    property, or use `set` for some of the worlds, so that what is kept about poses and contacts hears of it.
+    property, or use `set` for some of the worlds, so that cached rotations, boxes and contacts are updated.
     """
 
     def __init__(self, world: World, index: int) -> None:
@@ -64,7 +64,7 @@ class Body:
 
     @property
     def active(self) -> Bools:
-        """Whether it takes part, (batch,); an inactive body neither moves nor touches."""
+        """Whether the body takes part, (batch,); an inactive body neither moves nor touches."""
         return _read_only(self.world.state.active[:, self.index])
 
     @active.setter
@@ -73,7 +73,7 @@ class Body:
 
     @property
     def static(self) -> bool:
-        """Whether no force can move it. A static body with a velocity still goes along it, like a lift."""
+        """Whether no force can move the body. A static body with a velocity still moves along it, like a lift."""
         return not self.world.params.dynamic[self.index]
 
     @property
@@ -106,7 +106,7 @@ class Body:
         angular_velocity: object = None,
         mask: Bools | None = None,
     ) -> None:
-        """Put the body somewhere, in the worlds of `mask` (batch,) or in all; what is left out stays.
+        """Set pose and velocity in the worlds of `mask` (batch,), or in all; what is left out stays.
 
         Values are one for all worlds or have a row for each world that is set.
         """

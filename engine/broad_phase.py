@@ -1,4 +1,4 @@
-"""The broad phase: which shapes are near enough for the exact test to be worth its price."""
+"""Broad phase: find the pairs of shapes whose bounding boxes overlap, the only ones worth an exact test."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from engine.vector import Array, Bools, Ints
 
 
 class BroadPhase:
-    """Every two shapes that may ever meet, and which of them are near each other now.
+    """Table of all pairs of shapes that may ever meet, and search for those whose boxes overlap now.
 
     Bodies that move are boxed by the circle around their centre of mass, which needs no trigonometry; fixed
     ones by their corners, once. For up to some hundreds of bodies, comparing all moving boxes with all boxes
@@ -34,11 +34,11 @@ class BroadPhase:
         self.pairs = np.where(turned[:, None], self._movers_first[:, ::-1], self._movers_first)
 
     def forget_boxes(self) -> None:
-        """A body that is not moved by forces was put elsewhere, or will be."""
+        """Discard the cached boxes: a body that forces do not move was put elsewhere, or will be."""
         self._boxes = None
 
     def near(self, state: BodyState) -> tuple[Ints, Ints]:
-        """World and row of `pairs` (n,) of shapes whose boxes overlap; worlds, and pairs in them, rising."""
+        """Return world and row of `pairs`, each (n,), where boxes overlap; sorted by world, then by row."""
         boxes = self._boxes_now(state)
         low_x, low_y, high_x, high_y = boxes[:, :, None, :]
         my_low_x, my_low_y, my_high_x, my_high_y = boxes[:, :, self._moving, None]
@@ -100,10 +100,10 @@ class BroadPhase:
 
 
 def _meeting_pairs(params: BodyParams, shapes: ShapeTable) -> tuple[Ints, Ints, Ints]:
-    """Shapes that may meet (pairs, 2), a moving body's first; and where they stand in that table.
+    """Return the table of shapes that may meet (pairs, 2), a moving body's first, and each body pair's rows in it.
 
-    The first row, and how many rows, of each moving body with each other body: (moving, bodies) twice. Two
-    bodies may meet if one of them can move and their groups let them touch.
+    The rows are given as the first one and their number, (moving, bodies) each, for each moving body with each
+    other body. Two bodies may meet if one of them can move and their groups let them touch.
     """
     bodies = np.arange(len(params.group))
     moving = bodies[span(params.dynamic)]

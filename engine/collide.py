@@ -38,12 +38,12 @@ class Manifold:
 
     @classmethod
     def empty(cls, count: int) -> Manifold:
-        """`count` pairs that do not touch."""
+        """Return the manifold of `count` pairs that do not touch."""
         return cls(np.zeros((count, 2)), np.zeros((count, 2, 2)), np.zeros((count, 2)),
                    np.zeros((count, 2), dtype=bool), np.zeros((count, 2), dtype=np.intp))  # fmt: skip
 
     def rows(self, rows: Ints) -> Manifold:
-        """Only these pairs."""
+        """Return the manifold of these pairs alone."""
         return Manifold(self.normal[rows], self.points[rows], self.depth[rows], self.valid[rows], self.feature[rows])
 
     def put(self, rows: Ints, other: Manifold) -> None:
@@ -180,7 +180,7 @@ def _clip(start: Array, end: Array, incident_start: Array, incident_end: Array) 
 
 
 def _single(normal: Array, point: Array, depth: Array, margin: float) -> Manifold:
-    """One point each; the second stays empty."""
+    """Return manifolds of one point each; the second point stays empty."""
     count = len(depth)
     valid = np.zeros((count, 2), dtype=bool)
     valid[:, 0] = depth >= -margin

@@ -1,4 +1,4 @@
-"""From poses to contacts: the exact test for pairs that are near, and what is remembered of the last step."""
+"""Contact detection: the narrow phase for pairs that are near, and the last step's impulses for a warm start."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools, Ints, rotate
 
 _DEFAULT_FRICTION = 0.5
-# Shapes so near count as touching, metres: a contact that came and went with the last digits would start from
-# nothing each time, and a heap would never come to rest.
+# Distance in metres below which shapes count as touching: a contact that came and went with rounding errors would
+# start from no impulse each time, and a heap would never come to rest.
 MARGIN = 0.002
 
 
 @dataclass(frozen=True)
 class Memory:
-    """The k manifolds of the last step, in the order of their worlds and pairs."""
+    """Impulses of the last step's k manifolds, sorted by world and pair, for a warm start."""
 
     key: Ints  # (k,) world · pairs + pair, rising
     feature: Ints  # (k, 2), 0 for a point that was not there
@@ -29,14 +29,14 @@ class Memory:
 
     @classmethod
     def of(cls, contacts: Contacts, pairs: int) -> Memory:
-        """What is worth remembering of a solved step."""
+        """Return the features and impulses of a solved step."""
         key = contacts.world * pairs + contacts.pair
         rising = np.argsort(key)
         feature = contacts.manifold.feature * contacts.manifold.valid
         return cls(key[rising], feature[rising], contacts.impulse[:, rising])
 
     def where(self, kept: Bools) -> Memory:
-        """Only these manifolds."""
+        """Return the memory of these manifolds alone."""
         return Memory(self.key[kept], self.feature[kept], self.impulse[:, kept])
 
 
@@ -44,7 +44,7 @@ _NOTHING = Memory(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), n
 
 
 class Detector:
-    """Finds what touches in every world, and remembers the impulses, so that a resting stack starts solved."""
+    """Contact detector of every world. It remembers impulses (warm starting), so that a resting stack starts solved."""
 
     def __init__(self, params: BodyParams, shapes: ShapeTable) -> None:
         self.shapes = shapes
@@ -83,20 +83,20 @@ class Detector:
         )
 
     def remember(self, contacts: Contacts | None) -> None:
-        """Keep the impulses of a step for the next one, and only for that."""
+        """Keep the impulses of a step to warm-start the next one, and only that."""
         self._memory = Memory.of(contacts, len(self.pairs)) if contacts else _NOTHING
 
     def memory(self) -> Memory:
-        """What `remember` has kept, to be put back by `recall_memory`."""
+        """Return the impulses that `remember` has kept, to be put back by `recall_memory`."""
         return self._memory
 
     def recall_memory(self, memory: Memory) -> None:
-        """Return to what was kept at the time of a call of `memory`."""
+        """Put back the impulses that a call of `memory` returned."""
         self._memory = memory
         self.broad.forget_boxes()
 
     def forget(self, body: int, worlds: Bools | None) -> None:
-        """A body was put elsewhere: what it touched before has no bearing on what it touches next."""
+        """Forget the contacts of a body that was put elsewhere, in these worlds or in all: they no longer apply."""
         if len(self._memory.key):
             world, pair = np.divmod(self._memory.key, len(self.pairs))
             gone = (self.body_pairs[pair] == body).any(axis=1)
@@ -105,7 +105,7 @@ class Detector:
             self._memory = self._memory.where(~gone)
 
     def _colour(self, world: Ints, pair: Ints, bodies: int) -> tuple[Ints, list[int]]:
-        """Order and ends of the colours, as last time if the same pairs touch."""
+        """Return the order and ends of the colours; those of the last step if the same pairs touch."""
         key = world * len(self.pairs) + pair
         if not np.array_equal(key, self._colours[0]):
             slots = world[:, None] * bodies + self.body_pairs[pair]
@@ -147,7 +147,7 @@ class Detector:
         return Placed(start, end, rotate(self.shapes.normal[shape], cos, sin))
 
     def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> Array:
-        """Impulses (3, m) of the step before, at points that are made by the same faces as then."""
+        """Return the last step's impulses (3, m) for points made by the same faces as then, 0 for others."""
         impulse = np.zeros((3, len(world)))
         last = self._memory
         if not len(last.key):
@@ -162,7 +162,7 @@ class Detector:
 
 
 def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float) -> Array:
-    """One value per pair (pairs, 2): combined if both bodies name one, else the one named, else `default`."""
+    """Mix surface values (pairs, 2) to one per pair: combined if both bodies set one, else the one set, or `default`."""
     a, b = values.T
     either = np.where(np.isnan(a), b, a)
     both = ~np.isnan(a) & ~np.isnan(b)

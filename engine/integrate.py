@@ -9,7 +9,7 @@ from engine.vector import Array, Bools
 
 
 class Movers:
-    """The `chosen` bodies (bodies,) that a step moves, and what of their parameters it takes, gathered once."""
+    """Bodies that a step moves, as `chosen` (bodies,) marks them, with the parameters it needs gathered once."""
 
     def __init__(self, params: BodyParams, chosen: Bools) -> None:
         self.bodies: Span = span(chosen)
@@ -18,19 +18,19 @@ class Movers:
         self.quadratic_drag = params.quadratic_drag[self.bodies]
         self.falls = params.dynamic[self.bodies, None]
         self.all_fall = bool(self.falls.all())
-        self.fast_drag = bool(self.quadratic_drag.any())  # that grows with the speed
+        self.fast_drag = bool(self.quadratic_drag.any())  # whether any grows with the square of the speed
         self.any_drag = self.fast_drag or bool(self.linear_drag.any())
 
 
 def integrate_velocity(state: BodyState, movers: Movers, gravity: Array, dt: float) -> None:
-    """Let gravity (2,) or (batch, 2), gathered forces and drag change the velocities of `movers` in place.
+    """Apply gravity (2,) or (batch, 2), accumulated forces and drag to the velocities of `movers`, in place.
 
     Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. It is taken implicitly
-    in v, so that no coefficient, however large, can turn a motion round; terminal speeds are exact.
+    in v, so that no coefficient, however large, can reverse a motion; terminal speeds are exact.
     """
     bodies = movers.bodies
     velocity = state.velocity[:, bodies]
-    ease = movers.inverse_mass * dt  # how much a unit of force changes a velocity in one step
+    ease = movers.inverse_mass * dt  # change of velocity per unit of force in one step
     fall = np.asarray(gravity)[..., None, :] * dt
     if not movers.all_fall:
         fall = np.where(movers.falls, fall, 0.0)
@@ -44,7 +44,7 @@ def integrate_velocity(state: BodyState, movers: Movers, gravity: Array, dt: flo
     velocity[..., :2] += fall
     if movers.any_drag:
         velocity /= 1.0 + damping * ease
-    if not isinstance(bodies, slice):  # which had them copied
+    if not isinstance(bodies, slice):  # indexing made a copy; a slice is a view
         state.velocity[:, bodies] = velocity
 
 

@@ -1,4 +1,4 @@
-"""Convex shapes: what they cover, and how their mass is spread."""
+"""Convex shapes, discs and polygons, with their area, centroid and second moment of area."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Circle:
 
     @property
     def bounding_radius(self) -> float:
-        """Farthest reach from the centroid."""
+        """Largest distance of any point from the centroid, metres."""
         return self.radius
 
     def moved(self, offset: Array) -> Circle:
@@ -51,7 +51,7 @@ class Circle:
 
 
 class Polygon:
-    """A convex polygon in its body's frame, corners (k, 2) in metres, kept counter-clockwise; it never changes.
+    """A convex polygon in its body's frame, corners (k, 2) in metres, kept counter-clockwise; immutable.
 
     Raises ValueError for fewer than three corners, no area, or a corner that points inwards.
     """
@@ -103,7 +103,7 @@ class Polygon:
 
     @cached_property
     def bounding_radius(self) -> float:
-        """Farthest corner from the centroid."""
+        """Distance of the farthest corner from the centroid, metres."""
         return float(length(self.vertices - self.centroid).max())
 
     def moved(self, offset: Array) -> Polygon:

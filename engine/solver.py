@@ -23,9 +23,9 @@ from engine.vector import Array, Bools, Ints, cross, right_of
 
 # Overlap that is left alone, so that resting contacts persist; metres.
 SLOP = 0.005
-# Share of the overlap beyond it that one step takes back.
+# Share of the overlap beyond SLOP that one step corrects.
 CORRECTION = 0.25
-# An excess so small is not worth a correction: a stack at rest needs none; metres.
+# Smallest excess that is corrected, so that a stack at rest needs no correction; metres.
 TOLERANCE = 1e-4
 
 
@@ -48,7 +48,7 @@ class Contacts:
 
 
 class Solver:
-    """Satisfies one step's contacts: velocities first, overlaps after positions have moved."""
+    """Contact solver of one step: velocities first, overlaps after positions have moved."""
 
     def __init__(self, state: BodyState, params: BodyParams, contacts: Contacts) -> None:
         self.contacts = contacts
@@ -60,7 +60,7 @@ class Solver:
         self._colours = [self._rows.part(span) for span in self._spans]
 
     def solve_velocities(self, state: BodyState, iterations: int, restitution_threshold: float, dt: float) -> None:
-        """Change velocities in place until contacts stop closing, bounce and rub; fills contacts.impulse."""
+        """Apply normal impulses, with restitution, and friction to the velocities in place; fill contacts.impulse."""
         contacts = self.contacts
         closing = contacts.approach[:2]
         rebound = np.where(closing > restitution_threshold, contacts.restitution * closing, 0.0)
@@ -104,7 +104,7 @@ class _Rows:
     index: Ints  # (m, 6): where A's and B's velocities stand among all of them, laid flat
     jacobian: Array  # (3, m, 6): row · velocities is the speed along it
     response: Array  # (3, m, 6): velocity change per unit of impulse
-    mass: Array  # (3, m): impulse per unit of speed; 0 for a point that is not there
+    mass: Array  # (3, m): effective mass, impulse per unit of speed; 0 for a point that is not there
     coupling: Array  # (m,): how a push at one point moves the other
     rub_coupling: Array  # (2, m): how friction moves both points
     inverse: Array  # (2, m): of the 2 × 2 matrix of both pushes, the diagonal
@@ -168,7 +168,7 @@ class _Rows:
         velocity[self.index] = motion + self.effect(change)
 
     def push(self, lacking: Array, total: Array) -> Array:
-        """Impulses (2, m) >= 0 that give both points the speed they are `lacking`; 0 where it is there."""
+        """Impulses (2, m) >= 0 that give both points the speed they are `lacking`; 0 where none is."""
         both = total + self.inverse * lacking + self.cross_inverse * lacking[::-1]
         if (both >= 0).all():
             return both
@@ -178,7 +178,7 @@ class _Rows:
 
 
 def colour(slots: Ints, free: Bools) -> tuple[Ints, list[int]]:
-    """Order m manifolds so that within each colour no two share a body that can move; and the colours' ends.
+    """Colour m manifolds so that no two of a colour share a body that can move; return their order and the ends.
 
     slots (m, 2) name the bodies and `free` (m, 2) says which can move. Each manifold takes the first colour
     that neither of its bodies has yet, so a world is solved in the same order alone and among others.

@@ -1,4 +1,4 @@
-"""A body and how it is to be shown; no picture is held here."""
+"""Sprite: a body and how to draw it; no picture is held here."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from engine.body import Body
 
 @dataclass(frozen=True)
 class Sprite:
-    """What is to be drawn where a body is, turned as the body is.
+    """Description of the picture to draw at a body's position and angle.
 
     Attributes:
-        image: key of a picture in a table of whoever draws; the engine has none.
+        image: key of a picture in the renderer's table; the engine has none.
         size: width and height of the picture in metres, its middle at the body's position.
         layer: higher ones lie on top.
 

@@ -1,4 +1,4 @@
-"""Where everything is, and what it is made of, as arrays: state changes each step, parameters do not.
+"""Arrays of body state, which each step changes, and of body parameters and shapes, which it does not.
 
 Position and angle share an array, and so do velocity and spin, because everything that is integrated, solved
 or reset treats the three components alike.
@@ -28,7 +28,7 @@ def span(chosen: Bools) -> Span:
 
 @dataclass
 class BodyState:
-    """What a step changes. All arrays lead with (batch, bodies)."""
+    """State of the bodies, which each step changes. All arrays lead with (batch, bodies)."""
 
     pose: Array  # (..., 3): x, y in metres, angle in radians
     velocity: Array  # (..., 3): m/s, m/s, rad/s
@@ -39,7 +39,7 @@ class BodyState:
 
     @classmethod
     def empty(cls, batch: int) -> BodyState:
-        """No bodies yet."""
+        """Return the state of `batch` worlds without bodies."""
         triple, single = (batch, 0, 3), (batch, 0)
         return cls(np.zeros(triple), np.zeros(triple), np.zeros(triple),
                    np.zeros(single, dtype=bool), np.zeros(single), np.zeros(single))  # fmt: skip
@@ -65,7 +65,7 @@ class BodyState:
 
 @dataclass
 class BodyParams:
-    """What bodies are made of. Rows are bodies, the same in every world of the batch."""
+    """Mass, drag and surface of the bodies. Rows are bodies, the same in every world of the batch."""
 
     inverse_mass: Array = field(default_factory=lambda: np.zeros((0, 3)))  # 1/kg twice, 1/(kg·m²); 0: static
     linear_drag: Array = field(default_factory=lambda: np.zeros((0, 3)))  # kg/s, kg/s, kg·m²/s
@@ -82,7 +82,7 @@ class BodyParams:
 
     @property
     def dynamic(self) -> Bools:
-        """(bodies,): which ones forces can move."""
+        """Whether forces can move each body, (bodies,)."""
         return self.inverse_mass[:, 0] > 0
 
 

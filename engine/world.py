@@ -74,7 +74,7 @@ class World:
         shapes and mass unless given. Drag coefficients: kg/s and kg/m, kg·m²/s and kg·m². Restitution or
         friction left out take the other body's; if both are given, the larger restitution and the geometric
         mean of the frictions hold. Bodies of the same non-zero group pass through each other. Raises ValueError
-        for a mass or inertia that is not positive and finite, and for what else has no physical sense.
+        for a mass or inertia that is not positive and finite, and for any other value without physical sense.
         """
         shapes = list(shape) if isinstance(shape, Sequence) else [shape]
         if not shapes:
@@ -120,9 +120,9 @@ class World:
         return self.bodies[-1]
 
     def step(self, touching: bool = True) -> None:
-        """Advance every world by exactly 1/60 s; without `touching`, nothing is looked for that is in the way.
+        """Advance every world by exactly 1/60 s; without `touching`, skip collision detection.
 
-        That is cheaper, and the same, bit for bit, as long as nothing is.
+        Skipping is cheaper, and gives the same result, bit for bit, as long as nothing touches.
         """
         contacts = self.detector.find(self.state) if touching else None
         solver = Solver(self.state, self.params, contacts) if contacts else None
@@ -139,7 +139,7 @@ class World:
 
     @property
     def detector(self) -> Detector:
-        """What finds the contacts; made anew when a body has been added."""
+        """Contact detector; made anew when a body has been added."""
         if self._detector is None:
             table = ShapeTable(self.shapes, self._shape_bodies, self.params.dynamic)
             self._detector = Detector(self.params, table)
@@ -153,7 +153,7 @@ class World:
         return self._movers
 
     def moved(self, body: Body, worlds: Bools | None) -> None:
-        """A body was changed by hand, in these worlds or in all: bring up to date what is kept about it."""
+        """Update what is cached about a body that was changed by hand, in these worlds or in all."""
         self.state.refresh_rotation(slice(body.index, body.index + 1))
         if body.static:
             self._movers = None
