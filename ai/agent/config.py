@@ -1,4 +1,4 @@
-"""Every choice in a training run, as one dataclass, and the presets."""
+"""Settings of a training run, as one dataclass, and the presets."""
 
 from __future__ import annotations
 
@@ -18,58 +18,58 @@ _HASTE: Final = RewardWeights(time=-0.4, switch=-0.05)  # quick, and without fli
 
 @dataclass(frozen=True)
 class Config(Knobs):
-    """One training run. The defaults are the `modern` preset."""
+    """Settings of one training run. The defaults are the `modern` preset."""
 
     # fmt: off
-    learning_rate: float = knob(2e-3, "How far each step moves the weights.",
+    learning_rate: float = knob(2e-3, "Learning rate: how far each step moves the weights.",
                                 "learning", low=1e-5, high=1.0, log=True, live=True)
-    final_learning_rate: float = knob(3e-4, "What the learning rate falls to, in a straight line over the horizon.",
+    final_learning_rate: float = knob(3e-4, "Final learning rate, reached in a straight line over the horizon.",
                                       "learning", low=1e-6, high=1.0, log=True, live=True)
-    discount: float = knob(0.985, "How much a reward one decision later is worth: γ.",
+    discount: float = knob(0.985, "Discount γ: how much a reward one decision later is worth.",
                            "learning", low=0.8, high=0.9999, live=True)
-    n_step: int = knob(10, "How many rewards are summed before the network's own estimate takes over.",
+    n_step: int = knob(10, "n-step return: rewards summed before the network's own estimate takes over.",
                        "learning", low=1, high=20)
-    batch_size: int = knob(256, "How many memories each step learns from.", "learning", low=8, high=1024, live=True)
+    batch_size: int = knob(256, "Batch size: memories in each learning step.", "learning", low=8, high=1024, live=True)
     updates: int = knob(12, "Learning steps after each decision of all landers.", "learning", low=1, high=32, live=True)
-    optimizer: str = knob("adam", "How a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
-    cost: str = knob("huber", "How a wrong estimate is measured.", "learning", choices=("mse", "huber"))
-    gradient_clip: float = knob(10.0, "A longer gradient is shortened to this.",
+    optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
+    cost: str = knob("huber", "Cost function: how an error is measured.", "learning", choices=("mse", "huber"))
+    gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
     horizon: int = knob(600_000, "Decisions over which the learning rate falls and care sets in.",
                         "learning", low=1_000, high=10_000_000, log=True)
 
     hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,
                                    offers=((16, 16), (32, 32), (64, 64), (128, 128), (256, 256), (64, 64, 64)))
-    activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
-    layer_normalisation: bool = knob(True, "Keep each layer's inputs in range: steadier learning.", "network")
-    dueling: bool = knob(False, "Estimate the state and the advantage of each action apart.", "network")
-    normalise_inputs: bool = knob(False, "Bring observations to mean 0 and spread 1, as they have been so far.",
+    activation: str = knob("relu", "Activation function of the hidden layers.", "network", choices=tuple(ACTIVATIONS))
+    layer_normalisation: bool = knob(True, "Normalise each layer's inputs: steadier learning.", "network")
+    dueling: bool = knob(False, "Dueling network: state value and advantages estimated apart.", "network")
+    normalise_inputs: bool = knob(False, "Scale observations to running mean 0 and standard deviation 1.",
                                   "network")
-    output_scale: float = knob(0.1, "Shrinks the last layer's first weights, so that early guesses are near 0.",
+    output_scale: float = knob(0.1, "Factor on the last layer's initial weights: early estimates are near 0.",
                                "network", low=0.01, high=1.0, log=True)
 
-    replay_size: int = knob(1_000_000, "How many memories are kept.", "memory", low=100, high=1_000_000, log=True)
-    replay_prune: int = knob(1, "How many of the oldest go when memory is full.", "memory", low=1, high=100_000)
-    warm_up: int = knob(5_000, "Memories before learning begins.", "memory", low=1, high=50_000)
-    prioritised: bool = knob(False, "Replay surprising memories more often.", "memory")
-    priority_exponent: float = knob(0.6, "0 replays all alike, 1 in proportion to the surprise.",
+    replay_size: int = knob(1_000_000, "Replay buffer size, in memories.", "memory", low=100, high=1_000_000, log=True)
+    replay_prune: int = knob(1, "Oldest memories dropped when the buffer is full.", "memory", low=1, high=100_000)
+    warm_up: int = knob(5_000, "Memories collected before learning.", "memory", low=1, high=50_000)
+    prioritised: bool = knob(False, "Prioritised replay: by size of error.", "memory")
+    priority_exponent: float = knob(0.6, "Priority exponent: 0 is uniform, 1 in proportion to error.",
                                     "memory", low=0.0, high=1.0, needs="prioritised")
-    importance_exponent: float = knob(0.4, "How far the bias of prioritised replay is corrected, rising to 1.",
+    importance_exponent: float = knob(0.4, "Importance sampling: correction of replay's bias, rising to 1.",
                                       "memory", low=0.0, high=1.0, needs="prioritised")
-    mirror: bool = knob(True, "Show half of each batch as in a mirror: free experience.", "memory", live=True)
-    success_pass: bool = knob(False, "A second pass over memories of successful landings.", "memory", live=True)
-    success_batch_size: int = knob(32, "How many memories the second pass learns from.",
+    mirror: bool = knob(True, "Mirror half of each batch left to right: free experience.", "memory", live=True)
+    success_pass: bool = knob(False, "Second learning pass over successful landings.", "memory", live=True)
+    success_batch_size: int = knob(32, "Batch size of the second pass, in memories.",
                                    "memory", low=4, high=512, live=True, needs="success_pass")
 
-    double: bool = knob(True, "One network chooses the next action, the other judges it.", "target", live=True)
+    double: bool = knob(True, "Double Q-learning: one network chooses, the other judges.", "target", live=True)
     target_every: int = knob(1, "Learning steps between two updates of the target network.",
                              "target", low=1, high=10_000, log=True, live=True)
-    target_rate: float = knob(0.005, "How far each update moves the target network: 1 copies, less follows softly.",
+    target_rate: float = knob(0.005, "Target update rate τ: 1 copies the network, less follows softly.",
                               "target", low=0.0001, high=1.0, log=True, live=True)
     fly_target: bool = knob(True, "Fly with the target network, which is steadier.", "target", live=True)
 
-    epsilon_start: float = knob(1.0, "Share of random actions at first: ε.", "exploration", low=0.0, high=1.0)
-    epsilon_end: float = knob(0.05, "Share of random actions that remains.",
+    epsilon_start: float = knob(1.0, "Initial ε: share of random actions.", "exploration", low=0.0, high=1.0)
+    epsilon_end: float = knob(0.05, "Final ε: share of random actions.",
                               "exploration", low=0.0, high=1.0, live=True)
     epsilon_decay: float = knob(1.0, "Factor on ε after each episode; 1 leaves it to the next knob.",
                                 "exploration", low=0.9, high=1.0, live=True)
@@ -80,21 +80,21 @@ class Config(Knobs):
     random_main: float = knob(0.3, "How often a random action fires the main engine; half the time is hovering.",
                               "exploration", low=0.0, high=1.0, live=True)
 
-    env: str = knob(LANDER, "What is learnt: our lander, or an environment of Gymnasium by its name.", "task")
-    steadiness: float = knob(0.01, "An action goes on while it is worth as much as the best, but for this.",
+    env: str = knob(LANDER, "Environment to learn: our lander, or one of Gymnasium by its name.", "task")
+    steadiness: float = knob(0.01, "Value by which the action held may fall short of the best.",
                              "lander", low=0.0, high=1.0, live=True)
-    num_envs: int = knob(256, "Landers at once.", "lander", low=1, high=1024)
-    frame_skip: int = knob(4, "Physics steps to a decision.", "lander", low=1, high=12)
+    num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
+    frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
     spawn: str = knob("thorough", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
-    care: float = knob(0.8, "How hard a touch may be by the end of the horizon, as a share of the real limits.",
+    care: float = knob(0.8, "Touchdown limits by the end of the horizon, as a share of the real ones.",
                        "lander", low=0.3, high=1.0)
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
-    weights: RewardWeights = knob(_HASTE, "What each part of the reward pays.", "lander", live=True)  # noqa: RUF009
+    weights: RewardWeights = knob(_HASTE, "Weight of each part of the reward.", "lander", live=True)  # noqa: RUF009
     # fmt: on
 
     def problems(self) -> list[str]:
-        """Say what is wrong with the values."""
+        """Return what is wrong with the values, a sentence each."""
         problems = super().problems()
         if not _pays(self.weights):
             problems.append(f"weights are finite numbers, one for each part of the reward, not {shown(self.weights)}")
@@ -111,7 +111,7 @@ class Config(Knobs):
 
 
 def _pays(weights: Any) -> bool:
-    """Whether these are weights of a reward that can be reckoned with."""
+    """Whether `weights` are reward weights that are all finite numbers."""
     return isinstance(weights, RewardWeights) and all(map(is_number, astuple(weights)))
 
 

@@ -1,4 +1,4 @@
-"""Every choice in teaching a network to read digits, as one dataclass, and the presets; like `ai.agent.config`."""
+"""Settings of a digit training run, as one dataclass, and the presets; like `ai.agent.config`."""
 
 from __future__ import annotations
 
@@ -28,44 +28,44 @@ MOST_VALUES: Final = 20_000_000  # of one layer for one batch: some 450 MB with 
 
 @dataclass(frozen=True)
 class DigitConfig(Knobs):
-    """One training run. The defaults are the `modern` preset."""
+    """Settings of one training run. The defaults are the `modern` preset."""
 
     # fmt: off
-    learning_rate: float = knob(1e-3, "How far each step moves the weights, at most.",
+    learning_rate: float = knob(1e-3, "Peak learning rate: how far a step moves the weights.",
                                 "learning", low=1e-5, high=1.0, log=True, live=True)
-    final_learning_rate: float = knob(1e-6, "What the learning rate falls to, along half a cosine.",
+    final_learning_rate: float = knob(1e-6, "Final learning rate, reached along half a cosine.",
                                       "learning", low=1e-7, high=1.0, log=True, live=True)
     warm_up: float = knob(0.5, "Epochs over which the learning rate rises from 0.", "learning", low=0.0, high=10.0)
-    epochs: int = knob(12, "How often every training image is seen.", "learning", low=1, high=1000)
-    batch_size: int = knob(50, "How many images each step learns from.", "learning", low=1, high=5000)
-    optimizer: str = knob("adam", "How a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
-    cost: str = knob("softmax_cross_entropy", "How a wrong answer is measured.", "learning", choices=tuple(COSTS))
-    smoothing: float = knob(0.05, "Share of each label given to all digits alike: less certainty, fewer slips.",
+    epochs: int = knob(12, "Epochs: passes over all training images.", "learning", low=1, high=1000)
+    batch_size: int = knob(50, "Batch size: images in each learning step.", "learning", low=1, high=5000)
+    optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
+    cost: str = knob("softmax_cross_entropy", "Cost function: how an error is measured.", "learning", choices=tuple(COSTS))
+    smoothing: float = knob(0.05, "Label smoothing: share of each label given to all digits alike.",
                             "learning", low=0.0, high=0.5, live=True)
-    averaging: float = knob(0.998, "What is kept is a moving average of the weights, this slow; 0 for the last.",
+    averaging: float = knob(0.998, "Decay of the moving average of weights that is kept; 0 keeps the last.",
                             "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999))
-    held_out: int = knob(5_000, "Training images that are never learnt from, to choose by.",
+    held_out: int = knob(5_000, "Validation images, never learnt from, to pick the best by.",
                          "learning", low=0, high=30_000)
 
     filters: tuple[int, ...] = knob((32, 64), "Filters of each convolution, each followed by pooling.",
                                     "network", low=1, high=256, offers=((8,), (16,), (8, 16), (16, 32), (32, 64)),
                                     needs="convolutions")
-    convolutions: bool = knob(True, "Look at images through small windows that slide over them.", "network")
-    kernel: int = knob(5, "Pixels along a window.", "network", low=1, high=9, needs="convolutions")
+    convolutions: bool = knob(True, "Convolutions: small windows that slide over the image.", "network")
+    kernel: int = knob(5, "Kernel size, in pixels.", "network", low=1, high=9, needs="convolutions")
     hidden: tuple[int, ...] = knob((128,), "Units in each hidden layer.", "network", low=1, high=2048,
                                    offers=((32,), (128,), (512,), (100, 50), (256, 128)))
-    activation: str = knob("relu", "What bends the sums between layers.", "network", choices=tuple(ACTIVATIONS))
-    output_activation: bool = knob(False, "Bend the outputs as well.", "network")
-    dropout: float = knob(0.3, "Share of hidden values left out of each step.", "network", low=0.0, high=0.9)
+    activation: str = knob("relu", "Activation function of the hidden layers.", "network", choices=tuple(ACTIVATIONS))
+    output_activation: bool = knob(False, "Activate the outputs too.", "network")
+    dropout: float = knob(0.3, "Dropout: share of hidden values left out.", "network", low=0.0, high=0.9)
 
-    augmentation: float = knob(1.0, "How far images are bent, slanted and turned before they are learnt from.",
+    augmentation: float = knob(1.0, "Augmentation: how far images are bent, slanted and turned.",
                                "images", low=0.0, high=2.0, live=True)
-    original: float = knob(0.1, "Share of images that are shown as they are.", "images", low=0.0, high=1.0, live=True,
+    original: float = knob(0.1, "Share of images left without augmentation.", "images", low=0.0, high=1.0, live=True,
                            needs="augmentation")
     # fmt: on
 
     def problems(self) -> list[str]:
-        """Say what is wrong with the values, alone and together."""
+        """Return what is wrong with the values, alone and together, a sentence each."""
         problems = super().problems()
         if problems:
             return problems
