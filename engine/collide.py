@@ -150,7 +150,7 @@ def _deepest_face(a: Placed, corners: Array) -> tuple[Array, Ints]:
 
 
 def _lowest(normal: Array, corners: Array) -> Array:
-    """How far the lowest of the corners (n, k, 2) lies along each normal (n, faces, 2): (n, faces)."""
+    """Return the position of the lowest corner (n, k, 2) along each normal (n, faces, 2): (n, faces)."""
     x, y = np.moveaxis(corners[:, :, None], (3, 1), (0, 1))
     # Corners first, in memory too: a minimum along the last axis would be several times slower.
     along = np.multiply(x, normal[..., 0], order="C")
@@ -160,7 +160,7 @@ def _lowest(normal: Array, corners: Array) -> Array:
 
 
 def _most_opposed(polygon: Placed, normal: Array) -> Ints:
-    """Which face of each polygon looks most against `normal` (n, 2)."""
+    """Return the face of each polygon whose normal is most opposed to `normal` (n, 2): (n,)."""
     faces: Ints = dot(polygon.normal, normal[:, None]).argmin(axis=1)
     return faces
 

@@ -162,7 +162,7 @@ class Detector:
 
 
 def _mix(values: Array, combine: Callable[[Array, Array], Array], default: float) -> Array:
-    """Mix surface values (pairs, 2) to one per pair: combined if both bodies set one, else the one set, or `default`."""
+    """Mix surface values (pairs, 2) to one per pair: combined if both bodies set one, else the one set or `default`."""
     a, b = values.T
     either = np.where(np.isnan(a), b, a)
     both = ~np.isnan(a) & ~np.isnan(b)

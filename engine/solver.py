@@ -205,7 +205,7 @@ def _stiffness(jacobian: Array, response: Array) -> Array:
 
 
 def _coincide(stiffness: Array) -> Bools:
-    """Which manifolds have two points so near each other that no pair of pushes can tell them apart, (m,)."""
+    """Whether a manifold's two points are so near each other that no pair of pushes can tell them apart, (m,)."""
     product = stiffness[0] * stiffness[1]
     near: Bools = (product > 0) & (product - stiffness[3] ** 2 <= 1e-3 * product)
     return near
