@@ -1,4 +1,4 @@
-"""The deep Q-learning agent: its settings, its network, its memory and its schedules."""
+"""Deep Q-learning agent: its settings, network, replay buffers and schedules."""
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import PRESETS, Config

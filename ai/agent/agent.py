@@ -1,4 +1,4 @@
-"""The deep Q-learning agent (Mnih et al. 2015), for any environment with numbers in and a few actions out."""
+"""Deep Q-learning agent (Mnih et al. 2015), for any environment with vector observations and discrete actions."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ FORMAT: Final = "tranquility agent"
 VERSION: Final = 1
 AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
-LAST: Final = "last"  # in the folder of a run: the agent to go on with
+LAST: Final = "last"  # folder within a run's: the agent to resume from
 _ALONE: Final = Kind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
 KIND: Final = Kind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
@@ -46,7 +46,7 @@ _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 @dataclass(frozen=True)
 class Symmetry:
-    """How a transition looks in a mirror: a free second experience for each one made."""
+    """Mirror symmetry of an environment: data augmentation by a second transition for each one made."""
 
     signs: Floats  # (features,) to multiply a state by
     features: Ints  # (features,) which feature stands in each place
@@ -54,7 +54,7 @@ class Symmetry:
 
     @cached_property
     def matrix(self) -> Floats:
-        """What a state is multiplied by, (features, features): exact, since all but one term of a sum are 0."""
+        """Matrix that mirrors a state, (features, features): exact, since all but one term of a sum are 0."""
         size = len(self.features)
         matrix = np.zeros((size, size), dtype=np.float32)
         matrix[self.features, np.arange(size)] = self.signs
@@ -74,9 +74,9 @@ class Symmetry:
 
 
 class DeepQAgent:
-    """Learns what each action is worth in each state, from its own flights.
+    """Deep Q-learning agent: it learns the value of each action in each state from its own flights.
 
-    The default sizes are the lander's. `action_chances` (actions,) are the odds of random actions, uniform by
+    The default sizes are the lander's. `action_chances` (actions,) are the chances of random actions, uniform by
     default. All randomness comes from `rng`.
     """
 
@@ -107,7 +107,7 @@ class DeepQAgent:
 
     @cached_property
     def replay(self) -> ReplayBuffer:
-        """All transitions of late; made when first asked for, since a network that only flies needs none."""
+        """Replay buffer of recent transitions; made when first asked for, since an agent that only flies needs none."""
         config = self.config
         buffer = PrioritisedReplayBuffer if config.prioritised else ReplayBuffer
         replay = buffer(config.replay_size, self.num_features, config.replay_prune)
@@ -117,32 +117,32 @@ class DeepQAgent:
 
     @cached_property
     def successes(self) -> ReplayBuffer:
-        """Transitions of flights that ended well."""
+        """Replay buffer of transitions of flights that ended well."""
         return ReplayBuffer(max(1500, self.config.replay_size // 10), self.num_features)
 
     @property
     def network(self) -> NeuralNetwork:
-        """The network that flies."""
+        """Network that chooses actions: the target network if `config.fly_target`, else the online one."""
         return self.target if self.config.fly_target else self.online
 
     def q_values(self, observation: Floats) -> Floats:
-        """Value of every action, (n, actions), for observations (n, features)."""
+        """Return the Q-value of every action, (n, actions), for observations (n, features)."""
         observation = np.atleast_2d(observation)
         values: Floats = self.network.predict(self.scale(observation) if self.scale else observation)
         return values
 
     def decide(self, observation: Floats, *, held: Ints | None = None) -> Decision:
-        """Choose actions for observations (n, features), and say by what.
+        """Choose actions for observations (n, features); return them with the values that decided.
 
-        Of the actions `held` (n,) until now, those are kept that are worth as much as the best but for
-        `config.steadiness`: engines that flicker between two actions of nearly equal worth are no joy to watch.
+        An action `held` (n,) until now is kept while its value is within `config.steadiness` of the best: engines
+        that flicker between two actions of nearly equal value are unpleasant to watch.
         """
         observation, config = np.atleast_2d(observation), self.config
         values = self.q_values(observation)
         return decide(observation, values, held, steadiness=config.steadiness, reward_scale=config.reward_scale)
 
     def act(self, observation: Floats, epsilon: float | Floats = 0.0, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, features): those of `decide`, or with chance `epsilon` random ones.
+        """Return ε-greedy actions (n,) for observations (n, features): random with chance `epsilon`, else by `decide`.
 
         `epsilon` is one number, or (n,) to let some slots explore more than others.
         """
@@ -155,7 +155,7 @@ class DeepQAgent:
         return actions
 
     def remember(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
-        """Store what `actions` (n,) at `observation` (n, features) led to; `success` marks good endings."""
+        """Store the result of `actions` (n,) at `observation` (n, features); `success` (n,) marks good endings."""
         cells, slots = self._n_step.add(
             observation, actions, result.reward * np.float32(self.config.reward_scale),
             result.observation, result.terminated, result.ended,
@@ -172,10 +172,10 @@ class DeepQAgent:
 
     @np.errstate(over="ignore", invalid="ignore")  # what overflows is found by the optimizer
     def learn(self) -> float | None:
-        """Take `config.updates` steps, and a second pass over successes if asked for; return the mean loss.
+        """Take `config.updates` learning steps, and a second pass over successes if asked for; return the mean loss.
 
         None before the warm-up is over. The targets of all these steps are computed in one go beforehand. Raises
-        DivergenceError when numbers run away.
+        DivergenceError when a number is no longer finite.
         """
         config = self.config
         if self.replay.added < config.warm_up:
@@ -226,7 +226,7 @@ class DeepQAgent:
         return targets, value
 
     def _value(self, states: Floats) -> Floats:
-        """What the target network thinks of the best action in each state, (n,)."""
+        """Return the value of the best action in each state by the target network, (n,)."""
         values = self.target.predict(states)
         # van Hasselt et al. 2016: the online network picks, the target judges.
         best = (self.online.predict(states) if self.config.double else values).argmax(axis=1)
@@ -234,7 +234,7 @@ class DeepQAgent:
         return value
 
     def _update(self, states: Floats, actions: Ints, targets: Floats, weights: Floats) -> Floats:
-        """One step of the optimizer; returns the errors (n,) it was taken on."""
+        """Take one step of the optimizer; return the temporal-difference errors (n,)."""
         predicted = self.online.forward_propagate(states)
         rows = np.arange(len(actions))
         chosen = predicted[rows, actions]
@@ -247,7 +247,7 @@ class DeepQAgent:
         return errors
 
     def _count(self) -> None:
-        """Count a step of the first pass; every so many, the target network follows."""
+        """Count a learning step of the first pass, and update the target network when it is due."""
         self.train_count += 1
         if self.train_count % self.config.target_every == 0:
             self._follow()
@@ -258,7 +258,7 @@ class DeepQAgent:
         self._n_step.discount = config.discount
 
     def go_back(self, values: Floats, scale: RunningScale | None) -> None:
-        """Let both networks have those values again, (parameters,); the optimizer starts afresh."""
+        """Restore both networks to the parameters `values` (parameters,) with their `scale`; reset the optimizer."""
         self.online.values = self.target.values = values
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
         self.scale = scale
@@ -272,7 +272,7 @@ class DeepQAgent:
             self.target.values += rate * (self.online.values - self.target.values)
 
     def take_over(self, other: DeepQAgent) -> None:
-        """Go on as `other`: its networks, optimizer and counts, but not its memories."""
+        """Take over the networks, optimizer and counts of `other`, but not its memories."""
         self.online.values, self.target.values = other.online.values, other.target.values
         self.optimizer.load_state(other.optimizer.state(), self.online.values)
         self.decisions, self.train_count, self.scale = other.decisions, other.train_count, other.scale
@@ -280,7 +280,7 @@ class DeepQAgent:
     def save(self, folder: str | Path) -> None:
         """Write the agent to a folder, whole or not at all. Memories are not kept.
 
-        Raises OSError if the disk does not take it, FileExistsError if the folder holds something else.
+        Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
         """
         with atomic_folder(folder, KIND) as temporary:
             self.write(temporary)
@@ -303,8 +303,8 @@ class DeepQAgent:
     def load(cls, folder: str | Path, rng: np.random.Generator | None = None, *, env: str | None = None) -> DeepQAgent:
         """Read what `save` wrote. Raises ModelFormatError, which names everything that is wrong.
 
-        A file never has code imported: an agent for an environment "module:Name" is refused, unless the caller
-        names that same `env`.
+        Loading imports no code that a file names: an agent for an environment "module:Name" is refused, unless the
+        caller names that same `env`.
         """
         folder = Path(folder)
         recover_folder(folder)
@@ -358,7 +358,7 @@ def build_network(num_features: int, num_actions: int, config: Config, rng: np.r
 
 
 def _check_env(env: str, named: str | None) -> None:
-    """Raise ValueError for an environment whose name would have code imported, unless it was named by the user."""
+    """Raise ValueError for an environment whose name would import code, unless the user has named it."""
     if not isinstance(env, str) or (":" in env and env != named):
         raise ValueError(
             f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "
@@ -367,7 +367,7 @@ def _check_env(env: str, named: str | None) -> None:
 
 
 def _sizes(network: NeuralNetwork) -> list[Any]:
-    """Everything that two networks must have in common to stand for each other."""
+    """Return the dtype, layer types and shapes, which two networks must share to take each other's parameters."""
     return [network.dtype, *((type(layer), dict(layer.shapes)) for layer in network.layers)]
 
 

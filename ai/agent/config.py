@@ -33,7 +33,7 @@ class Config(Knobs):
     updates: int = knob(12, "Learning steps after each decision of all landers.", "learning", low=1, high=32, live=True)
     optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("huber", "Cost function: how an error is measured.", "learning", choices=("mse", "huber"))
-    gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient.",
+    gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient allowed.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
     horizon: int = knob(600_000, "Decisions over which the learning rate falls and care sets in.",
                         "learning", low=1_000, high=10_000_000, log=True)

@@ -1,4 +1,4 @@
-"""From steps to memories: n-step returns, and whole episodes that ended well."""
+"""N-step returns, and the collection of whole episodes that ended well."""
 
 from __future__ import annotations
 

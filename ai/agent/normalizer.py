@@ -1,4 +1,4 @@
-"""Observations brought to one scale, whatever their units."""
+"""Running normalisation of observations, whatever their units."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from ai.common.environment import Doubles, Floats
 from ai.nn.files import count_of
 
-REACH: Final = 10.0  # spreads from the mean: what lies further out is cut off
+REACH: Final = 10.0  # standard deviations from the mean at which values are clipped
 
 
 class RunningScale:
-    """Shifts and stretches observations to mean 0 and spread 1, as far as they are known."""
+    """Running mean and standard deviation, which scale observations to mean 0 and standard deviation 1."""
 
     def __init__(self, num_features: int) -> None:
         self.count = 0
@@ -22,7 +22,7 @@ class RunningScale:
         self._refresh()
 
     def watch(self, observations: Floats) -> None:
-        """Take n more observations (n, features) into account (Chan, Golub and LeVeque 1983)."""
+        """Update mean and deviation by n more observations (n, features) (Chan, Golub and LeVeque 1983)."""
         new, mean = len(observations), observations.mean(axis=0, dtype=float)
         shift, total = mean - self.mean, self.count + new
         self.squares += ((observations - mean) ** 2).sum(axis=0) + shift**2 * (self.count * new / total)
@@ -36,7 +36,7 @@ class RunningScale:
         return scaled
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values."""
+        """Return the values as JSON can hold them."""
         return {"count": self.count, "mean": self.mean.tolist(), "squares": self.squares.tolist()}
 
     def load(self, values: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""Experience replay: what happened, kept in arrays, and drawn from at random."""
+"""Experience replay: transitions kept in arrays and sampled at random."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class MemoryCell(NamedTuple):
 
 
 class ReplayBuffer:
-    """The last `capacity` transitions. When it is full, the oldest `prune` make room at once."""
+    """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once."""
 
     def __init__(self, capacity: int, num_features: int, prune: int = 1) -> None:
         if not 1 <= prune <= capacity:
@@ -41,7 +41,7 @@ class ReplayBuffer:
         self.cells = _fields(self.records)
         self.start = 0  # where the oldest lies
         self.size = 0
-        self.added = 0  # ever, those that had to go included
+        self.added = 0  # ever, dropped ones included
 
     def __len__(self) -> int:
         return self.size
@@ -74,7 +74,7 @@ class ReplayBuffer:
         return _fields(self.records.take(rows))
 
     def surprise(self, rows: Ints, errors: Floats) -> None:
-        """Take note of how wrong the network was about some transitions; here, it makes no difference."""
+        """Take the errors (n,) of the transitions at `rows` as their priorities; without effect in uniform replay."""
 
     def _drop(self, count: int) -> None:
         self.start = (self.start + count) % self.capacity
@@ -87,7 +87,7 @@ def _fields(records: NDArray[np.void]) -> MemoryCell:
 
 
 class PrioritisedReplayBuffer(ReplayBuffer):
-    """Draws a transition with a chance proportional to |error|^exponent (Schaul et al. 2016).
+    """Prioritised replay: sampling with probability proportional to |error|^exponent (Schaul et al. 2016).
 
     New ones get the largest priority seen, so that each is drawn soon. `importance`, which the owner raises
     towards 1, says how far the weights undo the bias that this brings.
@@ -117,7 +117,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         return self.at(rows), rows, (weights / weights.max()).astype(np.float32)
 
     def surprise(self, rows: Ints, errors: Floats) -> None:
-        """Take note of how wrong the network was about some transitions."""
+        """Set the priorities of the transitions at `rows` by their errors (n,)."""
         priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
         self._largest = max(self._largest, float(priorities.max()))
         self.tree.set(rows, priorities)

@@ -1,6 +1,6 @@
-"""Numbers that change as training goes on, by step count and never by the clock: a seed must be reproducible.
+"""Schedules of settings during training, by step count and never by the clock: a seed must be reproducible.
 
-Also which settings such a schedule has left behind: `idle` asks the very functions that training asks.
+`idle` names the settings that have no effect any more; it asks the very functions that training asks.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ai.agent.config import Config
     from ai.common.environment import Doubles
 
-# The settings that schedules are made of, each with the one that acts in its place once it has no effect.
+# Settings that define schedules, each with the one that acts in its place once it has no effect.
 _SCHEDULED: Final = {
     "learning_rate": "final_learning_rate", "final_learning_rate": "learning_rate", "horizon": "final_learning_rate",
     "care": "horizon", "epsilon_start": "epsilon_end", "epsilon_end": "epsilon_start", "epsilon_decay": "epsilon_end",
@@ -26,10 +26,10 @@ _SCHEDULED: Final = {
 
 @dataclass(frozen=True)
 class InForce:
-    """What schedules have made of the settings at one moment of a run.
+    """Values of the scheduled settings in force at one moment of a run.
 
     Attributes:
-        values: what acts now, by the name of the setting that it began as.
+        values: the values in force, by the name of the setting that each began as.
         idle: settings that change nothing any more, each with the one that acts, or decides, in its place.
 
     """
@@ -41,46 +41,46 @@ class InForce:
 
 
 def linear(start: float, end: float, done: int, total: int) -> float:
-    """From `start` to `end` in a straight line over `total` steps, then level."""
+    """Interpolate from `start` to `end` in a straight line over `total` steps, then stay level."""
     share = min(1.0, done / total) if total > 0 else 1.0
     return start * (1.0 - share) + end * share
 
 
 def geometric(start: float, end: float, factor: float, done: int) -> float:
-    """`start` times `factor` for each of `done` steps, never below `end`."""
+    """Return `start` times `factor` for each of `done` steps, never below `end`."""
     return max(end, start * factor**done)
 
 
 def learning_rate(config: Config, decisions: int) -> float:
-    """How far each step moves the weights after so many decisions."""
+    """Return the learning rate after so many decisions."""
     return linear(config.learning_rate, config.final_learning_rate, decisions, config.horizon)
 
 
 def importance(config: Config, decisions: int) -> float:
-    """How far the bias of prioritised replay is corrected."""
+    """Return the importance-sampling exponent, which says how far the bias of prioritised replay is corrected."""
     return linear(config.importance_exponent, 1.0, decisions, config.horizon)
 
 
 def care(config: Config, decisions: int) -> float:
-    """How hard a touch may be, as a share of the real limits."""
+    """Return the limits of a touchdown after so many decisions, as a share of the real ones."""
     return linear(1.0, config.care, decisions, config.horizon)
 
 
 def exploration(config: Config, decisions: int, episodes: int) -> float:
-    """Share of random actions: ε, of the lander that explores the most carefully."""
+    """Return the share of random actions, ε, of the lander that explores least."""
     start, end = config.epsilon_start, config.epsilon_end
     start = geometric(start, end, config.epsilon_decay, episodes)
     return linear(start, end, decisions, config.epsilon_decisions) if config.epsilon_decisions else start
 
 
 def exploration_of_each(config: Config, epsilon: float) -> Doubles:
-    """Each lander's share of random actions, (num_envs,): bold ones go on finding what careful ones never try."""
+    """Return each lander's ε, (num_envs,): bold ones go on finding what careful ones never try."""
     reach = np.linspace(1.0, 1.0 - config.epsilon_spread, config.num_envs)
     return np.asarray(epsilon**reach)
 
 
 def in_force(config: Config, decisions: int, episodes: int) -> InForce:
-    """Return what acts after so many decisions and episodes."""
+    """Return the scheduled values in force after so many decisions and episodes."""
     values = {
         "learning_rate": learning_rate(config, decisions),
         "epsilon_start": exploration(config, decisions, episodes),
@@ -104,7 +104,7 @@ def idle(config: Config, decisions: int = 0, episodes: int = 0) -> Mapping[str, 
 
 
 def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ...]:
-    """Return all that schedules decide at one moment, but for errors of rounding."""
+    """Return all scheduled values at one moment, rounded so that they can be compared."""
     each = exploration_of_each(config, exploration(config, decisions, episodes))
     corrected = importance(config, decisions) if config.prioritised else 0.0
     decided = (learning_rate(config, decisions), care(config, decisions), corrected, float(each[0]), float(each[-1]))

@@ -1,1 +1,1 @@
-"""What agents, environments and digit networks share: an environment's contract, a decision, settings."""
+"""Shared parts of agents, environments and digit networks: environment protocol, decisions, settings."""

@@ -1,4 +1,4 @@
-"""One decision of a network: what it sensed, what each action was worth to it, and which one it took."""
+"""Decision of a network: its observation, the value of each action, and the action taken."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """What was decided for n landers at once, with all that it was decided by.
+    """Decision for n landers at once, with the observations and values behind it.
 
-    It is made once, by whoever decides, and both flown and drawn: nobody needs to compute it a second time.
+    It is computed once, then both flown and drawn.
 
     Attributes:
         observation: (n, features) that it was made on.
         action: (n,) to fly.
         best: (n,) the action of the greatest value.
-        values: (n, actions) as the network gives them; None from a pilot that weighs nothing up.
-        steadiness: by how much a kept action may be worth less than the best, in the unit of `values`.
-        reward_scale: what a point of reward is in the unit of `values`.
+        values: (n, actions) as the network gives them; None from a pilot that computes none.
+        steadiness: how far the value of a kept action may lie below the best, in the unit of `values`.
+        reward_scale: size of one point of reward in the unit of `values`.
 
     """
 
@@ -44,17 +44,17 @@ class Decision:
 
     @property
     def margin(self) -> float:
-        """By how many points of reward a kept action may be worth less than the best."""
+        """Points of reward by which the value of a kept action may lie below the best."""
         return self.steadiness / self.reward_scale
 
     @property
     def kept(self) -> Bools:
-        """Where an action goes on though another one is worth a little more, (n,)."""
+        """Whether an action was kept although another one is worth a little more, (n,)."""
         kept: Bools = self.action != self.best
         return kept
 
     def updated(self, slots: Ints, newer: Decision) -> Decision:
-        """Return the latest decisions of all n landers, where those of `slots` (m,) have taken `newer` ones."""
+        """Return the decisions of all n landers, with those of `slots` (m,) replaced by `newer` ones."""
 
         def put(old: Array, new: Array) -> Array:
             both = old.copy()

@@ -1,4 +1,4 @@
-"""What an agent needs of an environment, whatever is simulated in it."""
+"""Environment protocol: all that an agent needs of an environment, whatever is simulated in it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-# What a network reads and writes is float32, what physics does is float64.
+# Networks read and write float32, physics computes in float64.
 Floats = NDArray[np.floating[Any]]
 Doubles = NDArray[np.floating[Any]]
 Bools = NDArray[np.bool_]
@@ -19,7 +19,7 @@ SUCCESS: Final = 1  # the outcome of an episode that ended well, in every enviro
 
 @dataclass(frozen=True)
 class StepResult:
-    """What one decision led to, for every slot. Unpacks as its first five fields.
+    """Result of one decision in every slot. Unpacks as its first five fields.
 
     A slot that has ended stays ended, with the observation it ended in and no further reward, until it is
     reset. `components` are the parts of `reward` by name.
@@ -37,25 +37,25 @@ class StepResult:
 
     @property
     def ended(self) -> Bools:
-        """Terminated or truncated, (num_envs,)."""
+        """Whether the episode was terminated or truncated, (num_envs,)."""
         return self.terminated | self.truncated
 
     @property
     def succeeded(self) -> Bools:
-        """Ended well, (num_envs,)."""
+        """Whether the episode ended well, (num_envs,)."""
         succeeded: Bools = self.outcome == SUCCESS
         return succeeded
 
 
 class Env(Protocol):
-    """Many slots of one environment, stepped together; ended slots wait for `reset(mask)`."""
+    """Vectorised environment: many slots stepped together; ended slots wait for `reset(mask)`."""
 
     num_envs: int
-    landings: int  # or whatever else a success is called, so far
+    landings: int  # successes so far, whatever the environment calls them
 
     @property
     def stage(self) -> int:
-        """Stage of a curriculum, 0 without one."""
+        """Stage of the curriculum, 0 without one."""
 
     def reset(self, mask: Bools | None = None) -> Floats:
         """Begin a new episode in the slots of `mask`, or in all; return every slot's observation."""

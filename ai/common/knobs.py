@@ -1,4 +1,4 @@
-"""A set of choices as a dataclass whose fields say what they are: what commands, screens and files all read.
+"""Settings as a dataclass whose fields describe themselves, for commands, screens and files alike.
 
 A field's metadata hold a sentence of help, its group, its range, and whether it may change while a run goes on.
 """
@@ -17,7 +17,7 @@ SHOWN: Final = 80  # letters of a wrong value in a message
 
 def knob(
     default: Any,
-    help: str,  # noqa: A002 - what it is called wherever options are described
+    help: str,  # noqa: A002 - the usual name wherever options are described
     group: str,
     *,
     low: float | None = None,
@@ -30,8 +30,8 @@ def knob(
 ) -> Any:
     """Describe a field: its help, group, range or choices, scale, and whether it may change during a run.
 
-    `offers` are a few values for a screen, of a field whose range says too little. `needs` is another field, without
-    which, while it is off or 0, this one changes nothing.
+    `offers` are a few values for a screen to propose, where the range says too little. `needs` names another field:
+    while that is off or 0, this one has no effect.
     """
     described = {
         "help": help,
@@ -49,7 +49,7 @@ def knob(
 
 @dataclass(frozen=True)
 class Knobs:
-    """Choices whose fields are all `knob`s; a value out of range raises ValueError, with all that is wrong."""
+    """Base class of settings whose fields are all `knob`s; values out of range raise ValueError, which names all."""
 
     def __post_init__(self) -> None:
         for item in fields(self):  # a number of NumPy's is as good as a plain one, but no file takes it
@@ -58,7 +58,7 @@ class Knobs:
             raise ValueError("; ".join(problems))
 
     def problems(self) -> list[str]:
-        """Say what is wrong with the values."""
+        """Return what is wrong with the values, a sentence each."""
         return [problem for item in fields(self) if (problem := field_problem(item, getattr(self, item.name)))]
 
     def unused(self) -> dict[str, str]:
@@ -67,7 +67,7 @@ class Knobs:
         return {name: other for name, other in needed.items() if other and not getattr(self, other)}
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values, for a file."""
+        """Return the values as JSON can hold them, by field."""
         return asdict(self)
 
     @classmethod
@@ -96,11 +96,11 @@ class Knobs:
         return tuple(item.name for item in fields(cls) if item.metadata["live"])
 
     def with_live(self, other: Self) -> Self:
-        """Return these choices with the live fields of others; all the rest stay as they are."""
+        """Return these settings with the live fields of `other`; all the rest stay as they are."""
         return self.changed(**{name: getattr(other, name) for name in self.live_names()})
 
     def fixed_differences(self, other: Self) -> list[str]:
-        """Return the names of the fields in which others differ, although a run cannot change them."""
+        """Return the names of the fields in which `other` differs although a run cannot change them."""
         taken = self.with_live(other)
         return [item.name for item in fields(self) if getattr(taken, item.name) != getattr(other, item.name)]
 
