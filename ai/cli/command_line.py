@@ -1,4 +1,4 @@
-"""What all commands without a window share: refusals in one sentence, ranges of options, and an orderly stop."""
+"""Shared parts of the commands without a window: errors in one sentence, ranges of options, an orderly stop."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     Kept = TypeVar("Kept")
 
 FAILED: Final = 1
-LONGEST: Final = 400  # letters of one line that is told: what is in a file or an argument may be of any length
+LONGEST: Final = 400  # letters of a printed line: text from a file or an argument may be of any length
 SEEDS: Final = (0, 2**63 - 1)
 SECONDS: Final = (0.001, 1e9)
 EPISODES: Final = (1, 50_000)  # all are flown at once, in 5 KB each
 
-# What reading a path or settings that somebody has named can come to. A loop of links and JSON that is nested too
-# deeply are RuntimeErrors.
+# Errors of reading a path or settings that the user has named. A loop of links and JSON that is nested too deeply
+# are RuntimeErrors.
 REFUSED: Final = (OSError, ValueError, OverflowError, RuntimeError, ImportError, MemoryError)
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that complains in one line, and not in a page."""
+    """Argument parser that reports an error in one line, not in a page."""
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong with the arguments, and end the program with exit code 2."""
@@ -45,19 +45,19 @@ def fail(message: str) -> int:
 
 
 def readable(line: str) -> str:
-    """Return a line without its middle, if that is too long, and without what would steer a terminal."""
+    """Return a line without its middle, if it is too long, and with control characters escaped."""
     short = line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in short)
 
 
 def folder(text: str) -> Path:
-    """Return the path of a folder that somebody named; raises ArgumentTypeError for what can be none anywhere."""
+    """Return the path of a folder that the user named; raises ArgumentTypeError for one that no system allows."""
     try:
         os.fsencode(text)
         named = "\0" not in text and text.strip() != "" and Path(text).resolve().name != ""
-    except (ValueError, RuntimeError):  # letters that no file system takes, a loop of links
+    except (ValueError, RuntimeError):  # characters that no file system takes, a loop of links
         named = False
-    except OSError:  # whoever opens it will say what is wrong
+    except OSError:  # opening it will report what is wrong
         named = True
     if not named:
         raise argparse.ArgumentTypeError(f"{text!r} cannot be the path of a folder")
@@ -76,7 +76,7 @@ def reason(error: BaseException) -> str:
 
 
 def out_of_range(arguments: argparse.Namespace, **ranges: tuple[float, float]) -> str | None:
-    """Say which option lies outside its range, if one does; both ends belong to it, and "not a number" to none."""
+    """Return a message on the option outside its range, if any; both ends are inside, NaN never is."""
     for name, (low, high) in ranges.items():
         value = getattr(arguments, name)
         if value is not None and not low <= value <= high:
@@ -110,10 +110,10 @@ def refuse_fixed(begun: Settings, wanted: Settings, begun_seed: int, seed: int |
 
 
 def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
-    """Save a run, and return where, and what `save` has to say.
+    """Save a run; return its folder and what `save` returned.
 
-    What somebody has put in that place meanwhile stays, and the run goes beside it. Raises OSError if the disk does
-    not take it.
+    If something else was put there meanwhile, that stays, and the run is saved beside it. Raises OSError if it
+    cannot be written.
     """
     from ai.nn.folder import free_folder
 
@@ -126,7 +126,7 @@ def keep(save: Callable[[Path], Kept], output: Path) -> tuple[Path, Kept]:
 
 
 def keep_checkpoint(save: Callable[[Path], object], output: Path) -> str:
-    """Save, and say what went wrong, if something did: a disk that is full now may have room again by the end."""
+    """Save a checkpoint; return the error as text, if any: a disk that is full now may have room by the end."""
     try:
         save(output)
     except OSError as error:
@@ -135,14 +135,14 @@ def keep_checkpoint(save: Callable[[Path], object], output: Path) -> str:
 
 
 def fail_diverged(stopped: str, output: Path, *, measured: bool) -> int:
-    """Say that numbers ran away, what is kept of the run, and whether that was measured; return the exit code."""
+    """Report that training diverged, what is kept of it, and whether that was measured; return the exit code."""
     kept = "What was best until then" if measured else "The last network, which has not been measured,"
     return fail(f"{stopped}{kept} is kept in {output}.")
 
 
 @contextmanager
 def stoppable() -> Iterator[list[int]]:
-    """Turn Ctrl-C and a request to end into entries of the list, so that a step and its save are never cut short.
+    """Collect Ctrl-C and termination signals in the list, so that they never cut short a step or its save.
 
     An entry is the number of a signal. Meant for the main thread; afterwards, signals do what they did before.
     """
@@ -171,7 +171,7 @@ def _requests() -> list[int]:
 
 
 def _forget(terminals: list[int]) -> None:
-    """Write into the void from now on: a terminal that has been closed takes no more words."""
+    """Redirect closed terminals, given by file descriptor, to the null device: writing to them would fail."""
     void = os.open(os.devnull, os.O_WRONLY)
     for number in terminals:
         os.dup2(void, number)

@@ -113,7 +113,7 @@ def _keep_training(training: DigitTraining, seconds: float | None, output: Path)
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
                 training.rewind()
-            # At once: measuring takes a while, and who wants this to end may not wait.
+            # Save before measuring, which takes a while: the user may stop the program meanwhile.
             output, described = keep(partial(save_digit_run, training), output)
         if not stopped:
             output, described = keep(partial(save_digit_run, training, final=True), output)

@@ -131,7 +131,7 @@ def _keep_training(training: Training, clock: TrainingClock, output: Path) -> in
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
                 rewind(training)
-            # At once: measuring takes seconds, and who wants this to end may not wait.
+            # Save before measuring, which takes seconds: the user may stop the program meanwhile.
             output, _ = keep(partial(save_run, training), output)
         if not stopped:
             output, _ = keep(partial(save_run, training, final=True), output)

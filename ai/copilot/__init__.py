@@ -1,4 +1,4 @@
-"""The co-pilot that shares the stick with a pilot, which pad the pilot means, and how much it helps."""
+"""Co-pilot that shares control with a pilot, inference of the pad the pilot means, measurement of the help."""
 
 from ai.copilot.copilot import CoPilot, Mode, Rule, SharedDecision
 

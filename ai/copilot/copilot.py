@@ -1,4 +1,4 @@
-"""The co-pilot: a person flies, and a network that values every action keeps them from harm."""
+"""Co-pilot (shared autonomy): a person flies, and a network that values every action corrects bad ones."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ from ai.copilot.intent import Wishes, in_question
 from ai.lander.environment import NUM_ACTIONS
 from ai.lander.pilots import COAST
 
-# Points of reward that the guardian's action must bring more than the pilot's, at an assist of one half.
+# Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
 class Valuer(Protocol):
-    """Whoever knows what actions are worth, such as a DeepQAgent."""
+    """Protocol of a source of Q-values, such as a DeepQAgent."""
 
     def q_values(self, observation: Floats) -> Floats:
-        """Value of every action, (n, 6), for observations (n, 9)."""
+        """Return the Q-value of every action, (n, 6), for observations (n, 9)."""
 
 
 class Mode(StrEnum):
-    """When the co-pilot steps in."""
+    """Condition on which the co-pilot steps in."""
 
     TOLERANCE = "tolerance"  # where the pilot's action is not nearly as good as the best
     GUARDIAN = "guardian"  # only where its own is better for every pad, by a margin
 
 
 class Rule(IntEnum):
-    """Whose action it became, in the order in which they are tried."""
+    """Source of the action that is flown, in the order in which the sources are tried."""
 
     PILOT = 0  # the pilot's, untouched
     PILOT_MAIN = 1  # the pilot's main engine with the co-pilot's steering
@@ -48,7 +48,7 @@ class Rule(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class SharedDecision:
-    """One decision of a pilot and a co-pilot, and all that explains it."""
+    """Joint decision of a pilot and a co-pilot, with all that explains it."""
 
     observation: Floats  # (n, pads, 9) that it was made on
     action: Ints  # (n,) what is flown
@@ -61,7 +61,7 @@ class SharedDecision:
     likely: Doubles  # (n, pads) how likely it is that each pad is meant
     assist: float  # how much the co-pilot helped, 0 to 1
     mode: Mode  # and when it stepped in
-    reward_scale: float  # what a point of reward is in the unit of `values`
+    reward_scale: float  # size of one point of reward in the unit of `values`
 
     @cached_property
     def points(self) -> Floats:
@@ -70,33 +70,33 @@ class SharedDecision:
 
     @property
     def gain(self) -> Floats:
-        """Points of reward that the co-pilot's action brings more than the pilot's, for every pad at least, (n,)."""
+        """Advantage of the co-pilot's action over the pilot's in points of reward, the least over all pads, (n,)."""
         rows = np.arange(len(self.action))
         more: Floats = (self.meant[rows, :, self.best] - self.meant[rows, :, self.pilot]).min(axis=1)
         return in_points(more, self.reward_scale)
 
     @property
     def overridden(self) -> Bools:
-        """Whether something else is flown than the pilot asked for, (n,)."""
+        """Whether another action is flown than the pilot asked for, (n,)."""
         overridden: Bools = self.action != self.pilot
         return overridden
 
 
 def guardian_margin(assist: Any) -> Any:
-    """Points of reward that the guardian's action must bring more than the pilot's, by assist (n,), 0 to 1."""
+    """Return by how many points of reward the guardian must be better than the pilot, for assist (n,), 0 to 1."""
     with np.errstate(divide="ignore"):
         return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
 
 
 class CoPilot:
-    """Shares the stick between a pilot and an agent (Reddy, Dragan and Levine 2018).
+    """Shared control between a pilot and an agent (Reddy, Dragan and Levine 2018).
 
     `assist` runs from 0, where every action of the pilot's is flown, to 1, where only the best are good enough.
     A pilot who asks for nothing has their hands off the stick: then the co-pilot flies, whatever the assist.
 
-    In tolerance mode an action is feasible if what it is worth above the worst is at least `assist` of what the
-    best is. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more
-    on the way to every pad by a margin, which falls from without limit at assist 0 to nothing at 1.
+    In tolerance mode an action is feasible if its value above the worst is at least `assist` times that of the
+    best. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more on
+    the way to every pad by a margin, which falls from infinity at assist 0 to 0 at assist 1.
 
     Of several pads, only those count that may still be meant, by what the pilot has done so far
     (`ai.copilot.intent`); with `reads_wishes` off, all do. Hands off, the co-pilot flies to the likeliest. So it
@@ -124,7 +124,7 @@ class CoPilot:
 
     @property
     def assist(self) -> float:
-        """How much the co-pilot helps, 0 to 1; setting anything else raises ValueError."""
+        """Strength of the co-pilot's help, 0 to 1; setting anything else raises ValueError."""
         return self._assist
 
     @assist.setter
@@ -147,7 +147,7 @@ class CoPilot:
         return decision.action, decision.overridden
 
     def decide(self, observation: Floats, pilot_action: Any) -> SharedDecision:
-        """Do what `share` does, and say why."""
+        """Decide as `share` does, and return all that explains it; raises as `share` does."""
         observation = np.atleast_2d(observation)
         if observation.ndim == 2:
             observation = observation[:, None]
@@ -187,7 +187,7 @@ class CoPilot:
         above = values - values.min(axis=2, keepdims=True)
         most = above.max(axis=2, keepdims=True)
         asked = assist.astype(above.dtype)[:, None, None] * most
-        # Whoever means one of several pads may do what is right for that one; the co-pilot, what is right for all.
+        # The pilot's action need only be good for one of several pads; the co-pilot's must be good for all.
         feasible = (above >= asked).all(axis=1)
         rows = np.arange(len(pilot))
         feasible[rows, pilot] = (above[rows, :, pilot] >= asked[:, :, 0]).any(axis=1)
@@ -207,7 +207,7 @@ class CoPilot:
 
     @staticmethod
     def _certain(values: Floats, pilot: Ints, best: Ints, feasible: Bools) -> tuple[Ints, Bools]:
-        """Leave the pilot alone where a ruined network, or pads that ask for different things, leave no better."""
+        """Keep the pilot's action where none is better: values are not finite, or pads need different actions."""
         rows = np.arange(len(pilot))
         worse = ~(values[rows, :, best] >= values[rows, :, pilot]).all(axis=1)
         feasible[rows[worse], pilot[worse]] = True

@@ -1,4 +1,4 @@
-"""Which pad a pilot has in mind, judged by what they do."""
+"""Intent inference: which pad a pilot has in mind, judged by their actions."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.lander.pilots import COAST
 
-_TEMPER: Final = 2.0  # points of reward that an action may be worse, and still be chosen e times more rarely only
-_SLIP: Final = 0.3  # share of actions that mean nothing: hands are clumsy
-_MEMORY: Final = 0.98  # what is left of old evidence after a decision: people change their minds
-_DOUBT: Final = 0.1  # pads so much less likely than the likeliest are ruled out
+_TEMPER: Final = 2.0  # temperature of the Boltzmann model of the pilot, in points of reward
+_SLIP: Final = 0.3  # share of actions that are slips of the hand, and no evidence
+_MEMORY: Final = 0.98  # exponent on old evidence at each decision: people change their minds
+_DOUBT: Final = 0.1  # pads less likely than this share of the likeliest are ruled out
 
 
 class Wishes:
-    """How likely it is that each of several pads is meant, by Bayes' rule (Javdani, Srinivasa and Bagnell 2015).
+    """Probability that each of several pads is meant, by Bayes' rule (Javdani, Srinivasa and Bagnell 2015).
 
-    Whoever heads for a pad is expected to choose actions that are worth much on the way there. Hands off the
-    stick say nothing.
+    A pilot who heads for a pad is modelled to choose actions by their value on the way there (Boltzmann). Hands
+    off the stick are no evidence.
     """
 
     def __init__(self, reward_scale: float) -> None:
@@ -27,7 +27,7 @@ class Wishes:
         self._likely: Doubles = np.ones((0, 0))
 
     def watch(self, values: Floats, pilot: Ints) -> Doubles:
-        """Learn from one action (n,), worth `values` (n, pads, 6) on the way to each pad; return chances (n, pads)."""
+        """Update by one action (n,), given `values` (n, pads, 6) on the way to each pad; return chances (n, pads)."""
         slots, pads, actions = values.shape
         if self._likely.shape != (slots, pads):
             self._likely = np.full((slots, pads), 1.0 / pads)
@@ -42,12 +42,12 @@ class Wishes:
         return self._likely
 
     def forget(self, mask: Bools | None = None) -> None:
-        """Begin anew in the slots of `mask` (n,), or in all: every pad is as likely again."""
+        """Begin anew in the slots of `mask` (n,), or in all: all pads are equally likely."""
         if self._likely.size:
             self._likely[slice(None) if mask is None else mask] = 1.0 / self._likely.shape[1]
 
 
 def in_question(likely: Doubles) -> Bools:
-    """Pads that may still be meant, by chances (n, pads)."""
+    """Return which pads may still be meant, (n, pads), by chances (n, pads)."""
     open_: Bools = likely >= _DOUBT * likely.max(axis=1, keepdims=True)
     return open_

@@ -1,4 +1,4 @@
-"""How much the co-pilot helps: pilots good and bad, alone and with help, over many flights each."""
+"""Measurement of the co-pilot: pilots good and bad, alone and with help, over many flights each."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PILOTS: Final[dict[str, MakePilot]] = {
     "sensor": lambda *_: SensorPilot(),
     "none": lambda *_: NoPilot(),
 }
-WISHFUL: Final = ("full", "laggy", "noisy", "noisier")  # whoever has a pad in mind
+WISHFUL: Final = ("full", "laggy", "noisy", "noisier")  # pilots that have a pad in mind
 GROUNDS: Final = 5  # different hills for the flights with a hidden wish
 ALONE: Final = "alone"
 COPILOT: Final = "co-pilot"  # the pilot of the row in which the network flies alone
@@ -43,7 +43,7 @@ THREE_PADS: Final[tuple[Help, ...]] = (
 
 @dataclass(frozen=True)
 class Row:
-    """What became of a number of flights of one pilot with one kind of help."""
+    """Results of a number of flights of one pilot with one kind of help."""
 
     pilot: str
     mode: str
@@ -58,13 +58,13 @@ class Row:
     own_pad: float  # share of the flights that ended on the pad the pilot had in mind
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values."""
+        """Return the values as JSON can hold them."""
         return asdict(self)
 
 
 @dataclass(frozen=True)
 class Crew:
-    """A pilot, and the help there is."""
+    """Pilot with the kind of help it gets."""
 
     name: str
     pilot: Pilot

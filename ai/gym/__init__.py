@@ -1,1 +1,1 @@
-"""Our lander as an environment of Gymnasium. Needs the extra `gym`."""
+"""The lander as an environment of Gymnasium. Needs the extra `gym`."""

@@ -1,4 +1,4 @@
-"""The lander for others to learn: as an environment of Gymnasium, one at a time or many. Needs the extra `gym`.
+"""The lander as an environment of Gymnasium, one at a time or many. Needs the extra `gym`.
 
     env = gymnasium.make("ai.gym.lander:tranquility/Lander-v0")
     envs = gymnasium.make_vec("ai.gym.lander:tranquility/Lander-v0", num_envs=256)
@@ -104,7 +104,7 @@ class GymLanders(VectorEnv[Floats, Ints, Any]):
         return observation, result.reward.astype(float), terminated, truncated, infos
 
     def _final(self, result: StepResult, ended: Bools) -> dict[str, Any]:
-        """What would be lost by a reset in the same step."""
+        """Return the final observations and info, which a reset in the same step would lose."""
         if not ended.any():
             return {}
         seen = np.full(self.num_envs, None)
