@@ -1,4 +1,4 @@
-"""Reading handwritten digits: the network, MNIST, preprocessing, and how a reader is taught."""
+"""Handwritten digit recognition: classifier, MNIST, preprocessing and training."""
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import MnistError, load_mnist

@@ -1,4 +1,4 @@
-"""What each step of preprocessing is worth: how many drawings a network still reads when one is left out."""
+"""Ablation of preprocessing: the share of drawings that a network still reads when a step is left out."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Steps = dict[str, bool]  # of `ai.digits.preprocessing.stages`, whether each is 
 
 @dataclass(frozen=True)
 class StageAccuracy:
-    """The part of `count` drawings that each network reads rightly, by name, with some steps taken."""
+    """Accuracy of each network, by name, on `count` drawings with some steps taken."""
 
     steps: tuple[tuple[str, bool], ...]
     read: dict[str, float]
@@ -40,7 +40,7 @@ def drawings(images: npt.NDArray[np.float32], rng: np.random.Generator) -> list[
 
 
 def stage_accuracy(folders: dict[str, Path], count: int = COUNT) -> Generator[Answers, Steps | None, None]:
-    """Answer commands: steps give the accuracy of the networks in the folders.
+    """Measure the networks in the folders with each choice of steps that is sent; for a worker.
 
     The drawings are made of test images, the same each time. Raises ModelFormatError or MnistError at the start.
     """

@@ -1,4 +1,4 @@
-"""New handwriting from old: MNIST's images slanted, turned, bent and written with other pens.
+"""Data augmentation: MNIST's images slanted, turned, bent and written with other pens.
 
 After Simard, Steinkraus and Platt 2003. Every change is followed by what preprocessing would do to such a
 drawing: it is fitted to the box and centred again.
@@ -20,7 +20,7 @@ MIDDLE = CENTRE - 0.5  # of pixel 14, counted in pixels from the middle of pixel
 
 @dataclass(frozen=True)
 class Strength:
-    """How far each change goes: standard deviations, except for `shift`, which is the most."""
+    """Strength of each change: standard deviations, except for `shift`, which is the maximum."""
 
     rotation: float = 0.12  # rad
     slant: float = 0.15  # pixels aside for each pixel up

@@ -1,4 +1,4 @@
-"""Runs that teach a network to read digits, on disk: the best network, how it was made, what to go on with."""
+"""Digit training runs on disk: the best network, how it was made, and the state to resume from."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
 def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = False) -> dict[str, Any]:
-    """Keep the best network of a run and what is needed to go on, whole or not at all; return what is said of it.
+    """Save a run's best network and the state to resume from, whole or not at all; return its description.
 
-    `final` measures it on MNIST's test images. Raises OSError if the disk does not take it, MnistError if there
+    `final` measures it on MNIST's test images. Raises OSError if it cannot be written, MnistError if there
     are no test images.
     """
     best = training.best_classifier()
@@ -47,7 +47,7 @@ def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = Fa
 
 
 def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
-    """Go on from what `save_digit_run` kept of an unfinished run; raises ModelFormatError for anything else."""
+    """Resume an unfinished run that `save_digit_run` saved; raises ModelFormatError for anything else."""
     folder = Path(folder)
     best = DigitClassifier.load(folder).network.values
     try:
@@ -81,7 +81,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
 
 
 def _read_last(path: Path, training: DigitTraining) -> dict[str, Any]:
-    """Read the arrays to go on with; raises OSError, or ValueError for others than such a run has."""
+    """Read the arrays to resume from; raises OSError, or ValueError for others than such a run has."""
     remembered = [f"{_OPTIMIZERS}{name}" for name in training.optimizer.remembers]
     names = {"values", "average", *remembered}
 

@@ -1,4 +1,4 @@
-"""Reading handwritten digits: a network, what belongs to it on disk, and its use. The data are in `ai.digits.mnist`."""
+"""Digit classifier: a network that reads handwritten digits, with its files. The data are in `ai.digits.mnist`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _BATCH: Final = 250  # images that a large network reads at a time: more only ne
 
 
 class DigitClassifier:
-    """A network that reads preprocessed images, and says how probable each digit is.
+    """Classifier of preprocessed images: a network that gives the probability of each digit.
 
     The network takes rows of 784 numbers, or images of (28, 28, 1); it has ten outputs: logits if its cost is
     cross-entropy, else numbers that are near 1 for the digit and near 0 for the others.
@@ -53,7 +53,7 @@ class DigitClassifier:
         return array.reshape(-1, *self.input_shape)
 
     def predict(self, images: npt.ArrayLike) -> npt.NDArray[np.float32]:
-        """Return how probable each digit is, (n, 10), for images (n, 28, 28) or a single one (28, 28)."""
+        """Return the probability of each digit, (n, 10), for images (n, 28, 28) or a single one (28, 28)."""
         shaped = self.shaped(images)
         if not len(shaped):
             return np.empty((0, DIGITS), np.float32)

@@ -39,7 +39,7 @@ class DigitConfig(Knobs):
     epochs: int = knob(12, "Epochs: passes over all training images.", "learning", low=1, high=1000)
     batch_size: int = knob(50, "Batch size: images in each learning step.", "learning", low=1, high=5000)
     optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
-    cost: str = knob("softmax_cross_entropy", "Cost function: how an error is measured.", "learning", choices=tuple(COSTS))
+    cost: str = knob("softmax_cross_entropy", "Cost function: measures the error.", "learning", choices=tuple(COSTS))
     smoothing: float = knob(0.05, "Label smoothing: share of each label given to all digits alike.",
                             "learning", low=0.0, high=0.5, live=True)
     averaging: float = knob(0.998, "Decay of the moving average of weights that is kept; 0 keeps the last.",
@@ -55,7 +55,7 @@ class DigitConfig(Knobs):
     hidden: tuple[int, ...] = knob((128,), "Units in each hidden layer.", "network", low=1, high=2048,
                                    offers=((32,), (128,), (512,), (100, 50), (256, 128)))
     activation: str = knob("relu", "Activation function of the hidden layers.", "network", choices=tuple(ACTIVATIONS))
-    output_activation: bool = knob(False, "Activate the outputs too.", "network")
+    output_activation: bool = knob(False, "Apply the activation to the outputs too.", "network")
     dropout: float = knob(0.3, "Dropout: share of hidden values left out.", "network", low=0.0, high=0.9)
 
     augmentation: float = knob(1.0, "Augmentation: how far images are bent, slanted and turned.",

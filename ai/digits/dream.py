@@ -1,4 +1,4 @@
-"""What a network thinks a digit looks like: an image that climbs the gradient of the network's own answer."""
+"""Activation maximisation: an image that climbs the gradient of a network's answer towards a digit."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _NOISE: Final = 0.1
 
 
 class Dream:
-    """One image that grows towards what a network takes for a digit.
+    """Activation maximisation of one image towards a digit, a step at a time.
 
     Gradient ascent on the input (Erhan et al. 2009, Simonyan et al. 2014). Left to itself it finds what no person
-    would read: `calm`, from 0 to 1, grants it no more ink than a digit needs, blurs it, and moves it to and fro, so
-    that only strokes stay that mean the same wherever they are (Yosinski et al. 2015, Mordvintsev et al. 2015).
-    It begins with `start`, an image (28, 28), or with noise. Raises ValueError for a digit that is none.
+    would read. `calm`, the regularisation from 0 to 1, limits its ink, blurs it, and moves it to and fro, so that
+    only strokes stay that mean the same wherever they are (Yosinski et al. 2015, Mordvintsev et al. 2015).
+    It begins with `start`, an image (28, 28), or with noise. Raises ValueError for a digit outside 0 to 9.
 
     Attributes:
         image: (28, 28), 0 to 1.
@@ -54,7 +54,7 @@ class Dream:
 
     @property
     def done(self) -> bool:
-        """Whether it has come as far as it goes."""
+        """Whether all steps have been taken."""
         return self.step >= STEPS
 
     def advance(self) -> None:
@@ -71,7 +71,7 @@ class Dream:
         self.probabilities = self.classifier.predict(self.image)[0]
 
     def _gradient(self, image: Image) -> Image:
-        """Return which pixels speak for the digit and against the others: of cross-entropy, or of their difference."""
+        """Return the gradient (28, 28) towards the digit: of cross-entropy, or of its lead over the other outputs."""
         classifier, network = self.classifier, self.classifier.network
         shaped = classifier.shaped(image)
         error: Array = np.eye(1, DIGITS, self.digit, dtype=np.float32)

@@ -1,4 +1,4 @@
-"""Putting one misread drawing right: a few learning steps on it, and what they cost on the test images."""
+"""Fine-tuning on one misread drawing: a few learning steps, and what they cost on the test images."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LEARNING_RATE: Final = 3e-4
 
 @dataclass(frozen=True)
 class FixStep:
-    """How probable the network finds the right digit by now."""
+    """Progress of a fix: the probability of the right digit by now."""
 
     newest_only: ClassVar = True
 
@@ -34,7 +34,7 @@ class FixStep:
 
 @dataclass(frozen=True)
 class Fixed:
-    """What a fix has done.
+    """Result of a fix.
 
     Attributes:
         digit: what the drawing is.
@@ -42,7 +42,7 @@ class Fixed:
         accuracy: the part of the test images that it read before, and reads now.
         steps: how many were taken; none if it was sure already.
         folder: where the fixed network is; None if it was not kept.
-        problem: why not.
+        problem: why it was not kept.
 
     """
 
@@ -62,11 +62,11 @@ def steps_to_fix(
     rng: np.random.Generator,
     steps: int = STEPS,
 ) -> Generator[FixStep, None, None]:
-    """Teach a classifier, in place, that an image (28, 28) is that digit; ends as soon as it is sure of it.
+    """Fine-tune a classifier, in place, to read an image (28, 28) as `digit`; end as soon as it is sure of it.
 
     Each step learns from the image, bent a little, and from training images (`data`) at the same time: a network
     that sees the new alone forgets the old (rehearsal, Robins 1995). Raises ValueError for a digit that is none,
-    or an image that is empty or not finite, and FloatingPointError if the numbers run away.
+    or an image that is empty or not finite, and FloatingPointError if training diverges.
     """
     image = np.asarray(image, np.float32)
     if digit not in range(DIGITS):
@@ -98,7 +98,7 @@ def fix(
     train: tuple[Images, Labels] | None = None,
     test: tuple[Images, Labels] | None = None,
 ) -> Generator[list[FixStep | Fixed], Any, None]:
-    """Do so with the network in a folder, and write the fixed one to `keep`; for a worker.
+    """Fine-tune the network in a folder on a drawing, and write the fixed one to `keep`; for a worker.
 
     `before` is its accuracy on the test images where that is known. Images are MNIST's, unless others are given.
     Raises what `steps_to_fix`, `DigitClassifier.load` and `load_part` raise.

@@ -1,4 +1,4 @@
-"""What a drawing becomes before a network reads it: what the makers of MNIST did to theirs.
+"""Preprocessing of drawings for a network, as the makers of MNIST preprocessed theirs.
 
 LeCun et al. 1998, section III.A: black and white digits were shrunk into a box of 20×20 pixels, keeping their
 aspect, grey where a pixel is partly covered, and set into 28×28 by their centre of mass. Here pens differ more
@@ -30,7 +30,7 @@ Image = npt.NDArray[np.float32]
 
 
 class Stages(NamedTuple):
-    """A drawing on its way to the network: 2-D float32 images in 0 to 1."""
+    """Stages of a drawing's preprocessing: 2-D float32 images in 0 to 1."""
 
     drawn: Image  # the canvas
     cropped: Image  # the part of it that has ink
@@ -48,7 +48,7 @@ def preprocess(canvas: npt.ArrayLike) -> Image:
 
 
 def preprocess_strokes(strokes: Sequence[Stroke]) -> Image:
-    """Return the same of strokes, each a list of points (x, y), y down, whatever pen they were drawn with."""
+    """Return what a network reads of strokes, each a list of points (x, y), y down, whatever pen drew them."""
     ink = redrawn(strokes)
     if not ink.any():
         return np.zeros((SIDE, SIDE), np.float32)
@@ -86,7 +86,7 @@ def redrawn(strokes: Sequence[Stroke]) -> Image:
 def stages(
     canvas: npt.ArrayLike, *, crop: bool = True, fit: bool = True, width: bool = True, centre: bool = True
 ) -> Stages:
-    """Return a canvas at each stage; any step can be left out, to see what it is good for.
+    """Return a canvas at each stage; any step can be left out, to measure its effect.
 
     Without `crop`, the whole canvas is taken for the ink. Without `fit`, it is the canvas that shrinks to 28
     pixels, and ink is as large and as small in it as it was drawn. Without `width`, strokes stay as wide as they
@@ -190,7 +190,7 @@ def _covered(ink: Image, full: float) -> npt.NDArray[np.bool_]:
 
 
 def _with_stroke_width(ink: npt.NDArray[np.bool_], frame: int | None) -> tuple[Image, float]:
-    """Return ink with strokes that are as wide as they should be once it is enlarged by a factor, and the factor.
+    """Return ink whose strokes are as wide as MNIST's once it is enlarged by a factor, and the factor.
 
     The factor makes what the pen's tip went along fit `frame` pixels again; without a frame it is 1.
     """
@@ -238,7 +238,7 @@ def distance(ink: npt.NDArray[np.bool_], reach: int) -> Image:
 
 
 def _centre_of_mass(ink: Image) -> tuple[float, float]:
-    """Return it as (down, across), from the image's edges."""
+    """Return the centre of mass of ink as (down, across), from the image's edges."""
     rows, columns = ink.sum(axis=1), ink.sum(axis=0)
     middles = np.arange(len(ink)) + 0.5
     return float(rows @ middles / rows.sum()), float(columns @ middles / columns.sum())

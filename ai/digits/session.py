@@ -1,4 +1,4 @@
-"""A digit training that can be watched and steered while it goes on; like `ai.training.session`."""
+"""Live digit training, which can be watched and steered while it goes on; like `ai.training.session`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SHARE: Final = 0.25  # of the time that goes into reading them
 
 @dataclass(frozen=True)
 class DigitsBegun:
-    """The first word of a run: what it is made with, which for a resumed run is what it was begun with."""
+    """First message of a run: its settings; of a resumed run, those it was begun with."""
 
     config: DigitConfig
     seed: int
@@ -37,7 +37,7 @@ class DigitsBegun:
 
 @dataclass(frozen=True)
 class DigitPoint:
-    """How a run stands; loss and accuracy are means of the batches since the last point."""
+    """Point of a run's curves; loss and accuracy are means of the batches since the last point."""
 
     may_thin: ClassVar = True
 
@@ -52,7 +52,7 @@ class DigitPoint:
 
 @dataclass(frozen=True)
 class Score:
-    """The part of the images held out that the network reads, as it would be kept now."""
+    """Accuracy on the images held out, of the network as it would be kept now."""
 
     seconds: float
     accuracy: float
@@ -60,7 +60,7 @@ class Score:
 
 @dataclass(frozen=True, eq=False)
 class Confusion:
-    """How the images held out are read.
+    """Confusion matrix of the images held out, with some that were misread.
 
     Attributes:
         table: (10, 10) how often each digit (row) was read as which (column).
@@ -78,7 +78,7 @@ class Confusion:
 
 @dataclass(frozen=True)
 class Turned:
-    """A knob was turned, or (REVERTED) the network is what it was at its best, which then is its accuracy."""
+    """Message that a knob was turned, or (REVERTED) the best network restored: `after` is then its accuracy."""
 
     seconds: float
     name: str
@@ -87,11 +87,11 @@ class Turned:
 
 @dataclass(frozen=True)
 class Kept:
-    """The run is on the disk, or why it is not.
+    """Message that the run has been saved, or why it has not.
 
     Attributes:
         test: the accuracy on the test images, once it is finished.
-        epoch: after which epoch the network was best that is kept and was measured; None if it is the last one.
+        epoch: the epoch after which the kept and measured network was best; None if it is the last one.
 
     """
 
@@ -103,12 +103,12 @@ class Kept:
 
 @dataclass(frozen=True)
 class GoBack:
-    """Let the network be what it was when it read the images held out best."""
+    """Command to restore the network that read the images held out best."""
 
 
 @dataclass(frozen=True)
 class Finish:
-    """Take no more steps: keep the run, measure it, and end."""
+    """Command to take no more steps: save the run, measure it, and end."""
 
 
 Message = DigitsBegun | DigitPoint | Score | Confusion | Turned | Kept | Refused
@@ -118,15 +118,15 @@ Command = Change | Save | Finish | GoBack
 def live_digits(
     config: DigitConfig, seed: int = 0, *, keep: Path | None = None, resume: Path | None = None, data: Any = None
 ) -> Generator[list[Message], Command | None, None]:
-    """Train to the last epoch; every turn is a learning step, and yields what there is to tell.
+    """Train to the last epoch; every turn is a learning step, and yields its messages.
 
     The steps are those of `ai.digits.training.run_digits`. A turn that is sent a `Change` turns a live knob, a `Save`
     writes the run to one more folder, without a step, and a `Finish` ends it early. The run keeps itself in `keep`
-    now and then, when it is over and when it is closed. With `resume`, it goes on from what was kept there, with the
-    settings of that. Raises what `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when the
-    numbers run away.
+    now and then, when it is over and when it is closed. With `resume`, it goes on from the run kept there, with its
+    settings. Raises what `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when training
+    diverges.
     """
-    early = yield []  # unpacking the images takes a while: let it be known that there is somebody
+    early = yield []  # unpacking the images takes a while: show the caller first that the run is alive
     training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
     run = _LiveDigits(training, keep)
     command = (yield [DigitsBegun(training.config, training.seed, training.step, training.steps)]) or early
@@ -139,7 +139,7 @@ def live_digits(
 
 
 class _HeldOut:
-    """The images held out, read by the network as it was when this was begun, a slice at a time."""
+    """Validation on the images held out, a slice at a time, of the network as it was at the start."""
 
     def __init__(self, training: DigitTraining, classifier: DigitClassifier | None = None) -> None:
         self._classifier = classifier or training.current()
@@ -148,7 +148,7 @@ class _HeldOut:
         self._at = 0
 
     def go_on(self) -> bool:
-        """Read a slice; whether that was the last."""
+        """Read a slice; return whether that was the last."""
         part = self._images[self._at : self._at + _SLICE]
         self._read.append(self._classifier.predict(part).argmax(axis=1))
         self._at += _SLICE
@@ -160,7 +160,7 @@ class _HeldOut:
         return self._classifier.network.values
 
     def told(self, at: float) -> tuple[Score, Confusion]:
-        """Return what there is to say of it, of a network that had learnt for so many seconds."""
+        """Return score and confusion matrix of the network, which had learnt for so many seconds."""
         labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
         table = np.zeros((DIGITS, DIGITS), np.int64)
         np.add.at(table, (labels, read), 1)
@@ -174,7 +174,7 @@ class _HeldOut:
 
 
 class _LiveDigits:
-    """A DigitTraining, what has not been told of it yet, and where it is kept."""
+    """Live digit training: a DigitTraining, what it has not reported yet, and its folder."""
 
     def __init__(self, training: DigitTraining, keep: Path | None) -> None:
         self.training, self._folder = training, keep
@@ -188,7 +188,7 @@ class _LiveDigits:
         self._learning = self._looking = 0.0  # seconds
 
     def advance(self) -> list[Message]:
-        """Take one step; return what there is to tell of it."""
+        """Take one step; return its messages."""
         training, told = self.training, list[Message]()
         began = training.clock()
         progress = training.advance()
@@ -235,7 +235,7 @@ class _LiveDigits:
         return [Turned(self.training.seconds, REVERTED, accuracy)]
 
     def finish(self, command: Command | None) -> Generator[list[Message], Command | None, None]:
-        """Read all that is held out once more, measure the test images, and keep what came of it.
+        """Read all images held out once more, measure the test images, and save the run.
 
         What is asked for meanwhile is done as well.
         """
@@ -247,14 +247,14 @@ class _LiveDigits:
             command = yield self.carry_out(command)
 
     def _last_words(self) -> Iterator[list[Message]]:
-        yield self._keep()  # measuring takes a while, and who is impatient is to lose nothing
+        yield self._keep()  # measuring takes a while, and a user who does not wait must lose nothing
         if len(self.training.held_images):
             reading = _HeldOut(self.training)
             while not reading.go_on():
                 yield []
             score, misread = reading.told(self.training.seconds)
             yield [score, misread]
-            if self.training.best_epoch is not None:  # what is kept is another network: that one's slips are shown
+            if self.training.best_epoch is not None:  # another network is kept: its misread images are shown
                 reading = _HeldOut(self.training, self.training.best_classifier())
                 while not reading.go_on():
                     yield []
@@ -262,12 +262,12 @@ class _LiveDigits:
         yield self._keep(final=True)
 
     def end(self) -> None:
-        """Keep what has not been kept."""
+        """Save what has not been saved."""
         if self._folder and self._kept != self.training.step:
             self._keep()
 
     def _look(self) -> list[Message]:
-        """Read some of what is held out."""
+        """Read some of the images held out; return the messages if that completes them."""
         if not len(self.training.held_images):
             return []
         self._reading = self._reading or _HeldOut(self.training)

@@ -1,4 +1,4 @@
-"""Teaching a network to read digits, as a generator like `ai.training.loop.run`, and its measurement."""
+"""Training of a digit network, as a generator like `ai.training.loop.run`, and its evaluation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SPLIT_SEED: Final = 28  # which images are held out does not depend on the run
 
 @dataclass
 class DigitProgress:
-    """How a run stands after one learning step."""
+    """Progress of a run after one learning step."""
 
     epoch: float  # how often every image has been seen
     step: int
@@ -37,14 +37,14 @@ class DigitProgress:
 
 @dataclass
 class DigitTraining:
-    """A run: everything that changes as it goes on. `advance` takes one step of it."""
+    """Digit training run: all state that changes as it goes on. `advance` takes one step of it."""
 
     config: DigitConfig
     seed: int = 0
     data: tuple[Images, Labels] | None = None  # training images and labels; None for MNIST's
     clock: Callable[[], float] = time.monotonic
     step: int = 0
-    seconds: float = 0.0  # spent, as whoever runs it counts them
+    seconds: float = 0.0  # spent, as the caller counts them
     best: float | None = None
     best_values: Array | None = None
     history: list[dict[str, float]] = field(default_factory=list)  # an entry for each epoch
@@ -66,12 +66,12 @@ class DigitTraining:
 
     @property
     def steps_per_epoch(self) -> int:
-        """Batches that every image is seen once in; the last may be smaller."""
+        """Number of batches in an epoch, which sees every image once; the last may be smaller."""
         return math.ceil(len(self.images) / self.config.batch_size)
 
     @property
     def steps(self) -> int:
-        """How long the run is."""
+        """Number of learning steps in the whole run."""
         return self.config.epochs * self.steps_per_epoch
 
     @property
@@ -81,7 +81,7 @@ class DigitTraining:
 
     @property
     def learning_rate(self) -> float:
-        """Rises in a straight line, then falls along half a cosine (Loshchilov & Hutter 2017)."""
+        """Learning rate: it rises in a straight line, then falls along half a cosine (Loshchilov & Hutter 2017)."""
         config, warm = self.config, self.config.warm_up * self.steps_per_epoch
         rise = min(1.0, (self.step + 1) / warm) if warm else 1.0
         share = min(1.0, self.step / self.steps)
@@ -113,7 +113,7 @@ class DigitTraining:
         accuracy = float((outputs.argmax(axis=1) == labels).mean())
         loss = network.correct(outputs, targets, self.optimizer)
         self.step += 1
-        # Young averages follow faster: the first weights are nothing to remember.
+        # A young average follows faster, so that it soon forgets the initial weights.
         keep = min(config.averaging, self.step / (self.step + 10))
         if keep:
             self.average += (1 - keep) * (network.values - self.average)
@@ -156,19 +156,19 @@ class DigitTraining:
 
     @property
     def best_epoch(self) -> int | None:
-        """After which epoch the network was best; None if that is the one there is now, or none was measured."""
+        """Epoch after which the network was best; None if that is the current one, or none was measured."""
         if self.best_values is None or np.array_equal(self.best_values, self.average):
             return None
         return next((int(each["epoch"]) for each in reversed(self.history) if each.get("held_out") == self.best), None)
 
     def go_back(self, values: Array) -> None:
-        """Let the network and its average have those values again, (parameters,); the optimizer starts afresh."""
+        """Restore the network and its average to the parameters `values` (parameters,); reset the optimizer."""
         self.classifier.network.values = values
         self.average[...] = values
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
 
     def rewind(self) -> None:
-        """Let the network be the best one so far, if there is one: what ran away is nothing to go on from."""
+        """Restore the best network so far, if there is one: training cannot go on from a diverged one."""
         if self.best_values is not None:
             self.go_back(self.best_values)
 
