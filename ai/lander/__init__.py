@@ -1,4 +1,4 @@
-"""The lunar lander: its craft, ground and conditions, what counts and what it is paid for, and pilots that fly it."""
+"""Lunar lander: its craft, ground, conditions, rules, rewards and environment, and pilots that fly it."""
 
 from ai.lander.environment import Cause, LanderEnv, Limits, Outcome
 from ai.lander.ground import Ground, Pad

@@ -1,4 +1,4 @@
-"""What can make a flight harder than those that networks are trained on: wind, a small tank, failures, a moving pad."""
+"""Flight conditions harder than those of training: wind, a small tank, engine failures, a moving pad."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ai.common.environment import Bools, Doubles
 
 @dataclass(frozen=True)
 class Conditions:
-    """All of it follows from the time since a flight began; the defaults change nothing, bit for bit."""
+    """Conditions as functions of the time since a flight began; the defaults change nothing, bit for bit."""
 
     wind: float = 0.0  # N to the right
-    gust: float = 0.0  # N, how far the wind swings to both sides of that
+    gust: float = 0.0  # N, amplitude of the gusts around that
     gust_period: float = 5.0  # seconds
     tank: float = math.inf  # fuel there is, in seconds of main engine
     outage: tuple[float, float] = (math.inf, math.inf)  # seconds from and to which the main engine is dead
@@ -50,7 +50,7 @@ class Conditions:
         return push
 
     def impulse(self, time: Doubles) -> Doubles:
-        """What the wind has given until times (n,) in seconds, to the right in N s: the integral of `push`."""
+        """Impulse of the wind until times (n,) in seconds, to the right in N s: the integral of `push`."""
         rate = 2 * np.pi / self.gust_period
         given: Doubles = self.wind * time + self.gust / rate * (1 - np.cos(rate * time))
         return given
@@ -62,7 +62,7 @@ class Conditions:
         return works
 
     def shift(self, time: Doubles) -> tuple[Doubles, Doubles]:
-        """How far the pad is to the right of its place, in metres, and its velocity, each (n,)."""
+        """Displacement of the pad to the right of its place, in metres, and its velocity in m/s, each (n,)."""
         rate = 2 * np.pi / self.swing_period
         return self.swing * np.sin(rate * time), self.swing * rate * np.cos(rate * time)
 

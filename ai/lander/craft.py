@@ -1,4 +1,4 @@
-"""The craft and its worlds: thrust, motion, and what can be read of them, before anybody judges a flight."""
+"""Craft and its worlds: thrust, motion and readings of them, without any judgement of a flight."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Craft:
 
     @property
     def gravity(self) -> float:
-        """Metres a second squared; can be changed at any time, for all landers."""
+        """Gravity in m/s²; can be changed at any time, for all landers."""
         return -float(self.world.gravity[1])
 
     @gravity.setter
@@ -86,17 +86,17 @@ class Craft:
 
     @property
     def pad_shift(self) -> Doubles:
-        """How far the pads have moved to the right of their places, metres, (n,)."""
+        """Displacement of the pads to the right of their places, metres, (n,)."""
         return self.conditions.shift(self.time)[0]
 
     @property
     def pad_velocity(self) -> Doubles:
-        """Metres a second to the right, (n,)."""
+        """Velocity of the pads to the right, m/s, (n,)."""
         return self.conditions.shift(self.time)[1]
 
     @property
     def fired(self) -> Ints:
-        """The actions (n,) as far as there is fuel and the engines work."""
+        """Actions (n,) that take effect: those for which there is fuel and the engines work."""
         if not self.conditions.fails:
             return self.actions
         main = (self.actions >= 3) & self.conditions.main_works(self.time)
@@ -104,7 +104,7 @@ class Craft:
 
     @property
     def pad_width(self) -> Doubles:
-        """Metres, of the target pad, (n,)."""
+        """Width of the target pad, metres, (n,)."""
         return self.ground.widths[self.target]
 
     @property
@@ -142,7 +142,7 @@ class Craft:
         return self.velocity - np.stack([self.pad_velocity, np.zeros(self.num_envs)], axis=1)
 
     def _move_pads(self) -> None:
-        """Put the pads where they are by now, moving as they do, so that what stands on them is carried along."""
+        """Set position and velocity of moving pads for the current time, so that they carry what stands on them."""
         state, bodies = self.world.state, self._pad_bodies
         shift, velocity = self.conditions.shift(self.time)
         state.pose[:, bodies, 0] = self.ground.middles[:, 0] + shift[:, None]
@@ -150,7 +150,7 @@ class Craft:
         self.world.detector.broad.forget_boxes()
 
     def _move(self, flying: Bools, touching: bool = True) -> None:
-        """Push and move, without `touching` through whatever is in the way."""
+        """Apply thrust and wind, and step the worlds; without `touching`, nothing collides."""
         state, body = self.world.state, self.lander.index
         actions = self.fired
         up, aside = self._up[actions], self._aside[actions]

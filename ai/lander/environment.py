@@ -1,4 +1,4 @@
-"""The lunar lander: its rules on the engine, for any number of landers at once.
+"""Lunar lander environment: its rules on the physics engine, for any number of landers at once.
 
 Actions are `3 * main + steer`; `steer` is 0 for none, 1 for left, 2 for right. Observations are
 [rel_x, rel_y, vx, vy, sin θ, cos θ, ω, left contact, right contact], relative to standing on the middle of
@@ -48,12 +48,12 @@ __all__ = [
 
 _COUNTERS: Final = ("outcome", "cause", "actions", "contacts", "impact", "steps", "main_steps", "side_steps",
                     "touched", "_still", "_feet_steps")  # fmt: skip
-# No network has been farther from a pad in training; where there are several, one more so seems to be that far.
+# Metres sideways beyond which networks were never trained: with several pads, farther ones are shown at this.
 _FAR: Final = 16.0
 
 
 class LanderEnv(Craft):
-    """`num_envs` landers, each in a world of its own, flown together.
+    """Vectorised lunar lander environment: `num_envs` landers, each in a world of its own, stepped together.
 
     `spawn` names a distribution of `ai.lander.spawns` or is a Curriculum, then followed by this environment's own
     landings. `seed` is an int, a Generator or None; slot k draws from its own stream, so that a flight does
@@ -171,7 +171,7 @@ class LanderEnv(Craft):
         )
 
     def fly(self, actions: Any) -> None:
-        """Fly one decision as `step` does, where nobody asks what it pays; raises as that does."""
+        """Fly one decision as `step` does, without computing rewards; raises as that does."""
         self._take(actions)
         for _ in range(self.frame_skip):
             flying = self.outcome == Outcome.FLYING
@@ -179,10 +179,10 @@ class LanderEnv(Craft):
                 self._fly(flying)
 
     def glide(self, actions: Ints) -> Floats:
-        """Fly one decision in every slot as if there were nothing to touch; return what is sensed, (n, 9).
+        """Fly one decision in every slot without collisions; return the observations, (n, 9).
 
-        For looking ahead: the same as `step`, bit for bit, as long as nothing touches, but nothing is judged or
-        paid, and `actions` (n,) are not looked over.
+        For looking ahead: the same as `step`, bit for bit, as long as nothing touches, but without outcomes and
+        rewards, and `actions` (n,) are not checked.
         """
         self.actions = actions
         flying = self.outcome == Outcome.FLYING
@@ -191,7 +191,7 @@ class LanderEnv(Craft):
         return self.observe()
 
     def observe(self, pad: Any = None) -> Floats:
-        """What every lander senses now of its target, or of another `pad`, one number or (n,): (n, 9)."""
+        """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
         pad = self.target if pad is None else np.asarray(pad)
         state, body = self.world.state, self.lander.index
         sensed = np.empty((self.num_envs, NUM_FEATURES))
@@ -208,11 +208,11 @@ class LanderEnv(Craft):
         return sensed.astype(np.float32)
 
     def observe_pads(self) -> Floats:
-        """What every lander senses of each pad, (n, pads, 9)."""
+        """Return every lander's observation of each pad, (n, pads, 9)."""
         return np.stack([self.observe(pad) for pad in range(len(self.ground.pads))], axis=1)
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything a flight depends on but its random streams, to be put back by `restore`."""
+        """Return everything a flight depends on but its random streams, to be put back by `restore`."""
         state = self.world.state
         arrays = {name: getattr(self, name).copy() for name in (*_COUNTERS, "target")}
         bodies = {field.name: getattr(state, field.name).copy() for field in fields(state)}
@@ -239,7 +239,7 @@ class LanderEnv(Craft):
         )
 
     def _take(self, actions: Any) -> None:
-        """Let these actions be flown from now on, if they are such."""
+        """Set the actions to fly from now on; raises as `step` does."""
         actions = np.asarray(actions)
         if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
             raise ValueError(f"actions must be {self.num_envs} whole numbers, not {actions.dtype} {actions.shape}")

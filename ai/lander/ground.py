@@ -1,4 +1,4 @@
-"""The ground: a plain, hills on it, and one pad or several to land on."""
+"""Ground: a plain, hills on it, and one pad or several to land on."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SLOPE: Final = 1.2  # metres that its flank is wide for every metre of height
 
 @dataclass(frozen=True)
 class Pad:
-    """Where one may land; what it scores is multiplied by `factor`."""
+    """Landing pad; the score of a landing on it is multiplied by `factor`."""
 
     x: float  # metres, of its middle
     top: float
@@ -32,12 +32,12 @@ class Pad:
 
     @property
     def left(self) -> float:
-        """Metres."""
+        """Left edge, metres."""
         return self.x - self.width / 2
 
     @property
     def right(self) -> float:
-        """Metres."""
+        """Right edge, metres."""
         return self.x + self.width / 2
 
 
@@ -76,7 +76,7 @@ class Ground:
 
     @cached_property
     def widths(self) -> Doubles:
-        """Metres, (pads,)."""
+        """Width of every pad, metres, (pads,)."""
         return np.array([pad.width for pad in self.pads])
 
     def height(self, x: Doubles | float) -> Doubles:
@@ -105,7 +105,7 @@ class Ground:
 
     @cached_property
     def _land(self) -> list[Polygon]:
-        """Shapes of the plain, a deep box, and its hills around that's middle: they take longer to find than to use."""
+        """Shapes of the plain, a deep box, and of its hills, from that box's middle; cached, as slow to make."""
         hills = [Polygon(np.array(hill) - (0.0, self._depth)) for hill in self.hills]
         return [Polygon.box(*_PLAIN), *hills]
 
@@ -137,7 +137,7 @@ def hilly(rng: np.random.Generator, pads: Sequence[tuple[float, int]] = PADS) ->
 
 
 def _knoll(pad: Pad, base: float) -> Hill:
-    """Return what lifts a pad off the plain: flat under it, with flanks on both sides."""
+    """Return the knoll that lifts a pad off the plain: flat under it, with flanks on both sides."""
     top = pad.top - _LIP
     foot = _SLOPE * (top - base)
     return ((pad.left - _RIM - foot, base), (pad.left - _RIM, top), (pad.right + _RIM, top),

@@ -18,17 +18,17 @@ _PAD: Final = Pad(0.0, PARAMS.pad_top, PARAMS.pad_width)
 
 @dataclass(frozen=True)
 class Mission:
-    """One start, where and under what it is flown, and what earns a medal there.
+    """Mission: one start, the world and conditions it is flown in, and what earns a medal there.
 
     Attributes:
         start: x, y, vx, vy, angle, spin; metres from the middle of the world and above its zero, m/s, rad, rad/s.
         gold, silver: fuel in seconds of main engine and time in seconds that a landing may take at most, to a tenth,
             as they are printed; any other landing by the pilot's own hands earns bronze.
         world: where it is: moon, mars or earth.
-        night: whether nothing is seen but what shines.
+        night: whether only lights are seen.
         landed: how many of 20 starts near this one the network that comes with the game lands, as
             `benchmarks.missions` measures it.
-        rules: one more than before whenever what is flown there has changed: flights under others count no more.
+        rules: version of the mission, raised whenever it changes: flights under another version no longer count.
 
     """
 
@@ -51,7 +51,7 @@ class Mission:
         return self.landed > _OFTEN
 
     def begin(self, num_envs: int = 1, frame_skip: int = 1) -> LanderEnv:
-        """Return landers that are about to begin, all from the one start."""
+        """Return landers ready to fly, all from the mission's start."""
         env = LanderEnv(num_envs, 0, frame_skip=frame_skip, params=self.params, ground=Ground((self.pad,)),
                         limits=self.limits, conditions=self.conditions)  # fmt: skip
         env.reset()
@@ -76,7 +76,7 @@ _STRONG_LEGS: Final = replace(LIMITS, touch_speed=3.0, slide_speed=3.0)
 
 
 def _on(gravity: float, thrust: float) -> LanderParams:
-    """The craft on another world, with an engine that is made for it."""
+    """Return the craft on another world, with an engine that is made for it."""
     return replace(PARAMS, gravity=gravity, main_thrust=thrust)
 
 

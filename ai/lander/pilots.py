@@ -13,17 +13,17 @@ COAST: Final = 0
 
 
 class Pilot(Protocol):
-    """Whoever chooses actions, for one lander or for many at once.
+    """Protocol of a pilot, which chooses actions for one lander or for many at once.
 
     Row k of a call is always the same slot, ended or not: a pilot may remember what it did in each.
     """
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now, for whom it matters."""
+        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now, for pilots that use them."""
 
 
 class ScriptedPilot:
-    """A hand-written controller: lean towards the pad, spend height for speed no faster than can be braked.
+    """Hand-written controller: it leans towards the pad, and falls no faster than it can brake.
 
     It senses what the network senses, and nothing more.
     """
@@ -100,7 +100,7 @@ class SensorPilot:
 
 
 class NoPilot:
-    """Hands off."""
+    """Pilot that never fires an engine."""
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
         """Actions (n,) for observations (n, 9)."""

@@ -1,4 +1,4 @@
-"""What the lander is paid for: a table of named parts, each a function of what one decision changed.
+"""Rewards of the lander: a table of named parts, each a function of what one decision changed.
 
 Distance, speed and alignment are differences Φ' - Φ of a potential, so in points a flight is paid for its two
 ends alone, and no loop earns anything. An agent that discounts sees a little more: Ng, Harada and Russell 1999
@@ -21,7 +21,7 @@ from ai.common.environment import Bools, Doubles, Ints
 
 @dataclass(frozen=True)
 class RewardWeights:
-    """How much each part pays."""
+    """Weight of each part of the reward, in points."""
 
     distance: float = 0.5  # per 0.1 m nearer to standing on the middle of the pad
     speed: float = 0.05  # per 0.1 m/s slower
@@ -29,14 +29,14 @@ class RewardWeights:
     tilt: float = -0.05  # per physics step tilted by more than 0.6 rad: 0.2 for a decision of four
     feet: float = 1.0  # per physics step with both feet down, thirty of them at the most
     engine: float = -0.02  # per physics step in which an engine fires
-    switch: float = 0.0  # per engine that goes on or off at a decision: jets that flicker are no joy to watch
+    switch: float = 0.0  # per engine that goes on or off at a decision: jets that flicker are unpleasant to watch
     time: float = -0.2  # per physics step: hovering must not pay
     terminal: float = 120.0  # for a landing; as much is lost by a crash or by leaving the area
 
 
 @dataclass
 class Situation:
-    """What the potentials depend on, each (n,)."""
+    """State of the landers that the potentials depend on, each (n,)."""
 
     distance: Doubles  # metres from standing on the middle of the pad
     offset: Doubles  # metres sideways from it
@@ -46,7 +46,7 @@ class Situation:
 
 @dataclass
 class Change:
-    """One decision: the situations around it, and what was counted in its physics steps, each (n,)."""
+    """Change made by one decision: the situations before and after, and counts of its physics steps, each (n,)."""
 
     before: Situation
     after: Situation

@@ -1,4 +1,4 @@
-"""What the lander is made of, what it may do and senses, and what counts as a landing or a crash."""
+"""Rules of the lander: its craft, actions and observations, and what counts as a landing or a crash."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MIRROR_ACTIONS: Final = np.array([0, 2, 1, 3, 5, 4])
 
 
 class Outcome(IntEnum):
-    """How a flight stands."""
+    """Outcome of a flight, so far or at its end."""
 
     FLYING = 0
     LANDED = 1
@@ -33,7 +33,7 @@ class Outcome(IntEnum):
 
 
 class Cause(IntEnum):
-    """What made a flight a crash."""
+    """Cause of a crash."""
 
     NONE = 0
     HULL = 1  # something other than a foot touched
@@ -45,7 +45,7 @@ class Cause(IntEnum):
 
 @dataclass(frozen=True)
 class Limits:
-    """What a touchdown may be, and what a landing must be."""
+    """Limits that a touchdown must keep, and that a landing must reach."""
 
     touch_speed: float = 2.0  # m/s into the surface
     slide_speed: float = 2.0  # m/s along it
@@ -59,7 +59,7 @@ class Limits:
     time: float = 25.0  # seconds
 
     def stricter(self, share: float) -> Limits:
-        """The same limits, but for touches only `share` as hard: who learns under them keeps a margin."""
+        """Return the limits with those of touches times `share`: an agent that learns under them keeps a margin."""
         return replace(
             self,
             touch_speed=share * self.touch_speed,
@@ -104,6 +104,6 @@ def tenths(seconds: float) -> float:
 
 
 def engines_switched(held: Ints, actions: Ints) -> Ints:
-    """How many engines, of main and jets, go on or off between two actions, each (n,)."""
+    """Return how many engines, of main and jets, go on or off between two actions, each (n,)."""
     switched: Ints = ((held >= 3) != (actions >= 3)) * 1 + ((held % 3) != (actions % 3))
     return switched

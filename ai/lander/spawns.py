@@ -1,4 +1,4 @@
-"""Where flights begin: named distributions, and the curriculum that moves from one to the next.
+"""Spawns: named distributions of starts, and the curriculum that moves from one to the next.
 
 A spawn is drawn as x, y, vx, vy, angle, spin: metres from the middle of the pad, metres above the ground
 line's zero, m/s, radians, rad/s.
@@ -41,7 +41,7 @@ def _at(height: float) -> Spawn:
 
 
 def _graded(rng: np.random.Generator) -> Doubles:
-    """Anything between an easy start above the pad and a fully random one."""
+    """Draw any start between an easy one above the pad and a fully random one."""
     difficulty = rng.random()
     middle = _EASY + difficulty * (_MIDDLE - _EASY)
     reach = _EASY_REACH + difficulty * (_REACH - _EASY_REACH)
@@ -49,7 +49,7 @@ def _graded(rng: np.random.Generator) -> Doubles:
 
 
 def _practice(rng: np.random.Generator) -> Doubles:
-    """What an agent trains on: a quarter close to the pad and past its edges, a quarter graded, half random.
+    """Draw a start for training: a quarter close to the pad and past its edges, a quarter graded, half random.
 
     Without the close starts, random play never once touches the pad, and nothing is learned.
     """
@@ -60,7 +60,7 @@ def _practice(rng: np.random.Generator) -> Doubles:
 
 
 def _thorough(rng: np.random.Generator) -> Doubles:
-    """Practice for a long run: half of the flights begin a little beyond what will be asked."""
+    """Draw a start for a long run of training: half of the flights begin a little beyond what is tested."""
     kind = rng.random()
     if kind < 0.2:
         return SPAWNS["near"](rng)
@@ -83,7 +83,7 @@ SPAWNS: Final[dict[str, Spawn]] = {
 
 @dataclass(frozen=True)
 class Curriculum:
-    """Which spawn holds from how many landings on; the thresholds rise from 0."""
+    """Curriculum: the spawn to use from each number of landings on; the thresholds rise from 0."""
 
     stages: tuple[tuple[int, str], ...] = ((0, "fixed"), (100, "higher"), (200, "highest"), (300, "random"))
 

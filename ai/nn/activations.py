@@ -29,7 +29,7 @@ class Activation:
     slope: Callable[[Array, Array, Array], object]
     name: str | None = None
     options: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}), hash=False)
-    initialisation: str = "glorot"  # how weights that feed this activation had better start
+    initialisation: str = "glorot"  # suitable initialisation of the weights that feed this activation
 
     @classmethod
     def of(cls, function: Function, derivative: Function | None = None) -> Self:

@@ -1,4 +1,4 @@
-"""How large a network may be: a small file must not be able to ask for more than a machine has.
+"""Limits on the size of a network: a small file must not be able to ask for more than a machine has.
 
 An agent of that many parameters, two networks with gradients and an optimizer, takes 430 MB to load.
 """
@@ -39,5 +39,5 @@ def _outputs(layer: Layer) -> int:
 
 
 def _places(layer: Layer) -> int:
-    """How often each parameter is used for one example: a convolution's once in every window."""
+    """Return how often each parameter is used for one example: a convolution's once in every window."""
     return math.prod(layer.outputs[:2]) if isinstance(layer.outputs, tuple) else 1

@@ -35,7 +35,7 @@ class Correlation:
         self._copy(min((kernel, 1) if stride == 1 else (kernel,), key=self._cost))
 
     def _copy(self, columns: int) -> None:
-        """Settle how many columns of each window are copied: `kernel` or 1."""
+        """Set how many columns of each window are copied: `kernel` or 1."""
         self.columns, self.shifts = columns, self.kernel // columns
         self.rows = columns * self.kernel * self.channels  # of the matrix
         self.products = self.shifts * self.filters

@@ -1,4 +1,4 @@
-"""Dropout: a network that cannot lean on any one value."""
+"""Dropout: regularisation that keeps a network from relying on any one value."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ class DropoutLayer(HalvedLayer):
         self.rng = self.rng or np.random.default_rng(0)
         if self.output.shape != input_data.shape or self.output.dtype != input_data.dtype:
             self.factors, self.output, self.error = (np.empty_like(input_data) for _ in range(3))
-        # Drawn in the order that images have in memory; what is small does not mind.
+        # Drawn in the order that images have in memory; for small arrays the order does not matter.
         drawn = self.rng.random(input_data.shape[::-1], np.float32).T
         np.multiply(drawn >= self.rate, 1 / (1 - self.rate), out=self.factors, casting="same_kind")
         return np.multiply(input_data, self.factors, out=self.output)

@@ -1,4 +1,4 @@
-"""Reading files that anybody may have written, within bounds; and writing text files whole or not at all.
+"""Bounded reading of untrusted files, and writing of files whole or not at all.
 
 Nothing that a file claims costs memory or time before it is checked: a reader opens ordinary files only, so that a
 pipe cannot let it wait; looks at the size first; and compares the header of every array with what is expected before
@@ -265,7 +265,7 @@ def write_bytes(path: Path, content: bytes, *, flush: bool = True, new: bool = F
     """Write a file whole or not at all, by way of another beside it; with `flush`, wait until it is on the disk.
 
     Folders are made if need be. With `new`, a file that is there is never replaced: FileExistsError. Raises OSError
-    if the disk does not take it; an older file is then still whole.
+    if it cannot be written; an older file is then still whole.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = beside(path, ".part")

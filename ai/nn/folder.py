@@ -1,4 +1,4 @@
-"""Folders that are replaced whole or not at all, so that an interrupted save loses nothing.
+"""Atomic folders, replaced whole or not at all, so that an interrupted save loses nothing.
 
 Only what is ours is ever replaced: a folder whose `config.json` says of which kind it is, and that holds nothing but
 what belongs into one of that kind.
@@ -20,14 +20,14 @@ from ai.nn.lock import take_folder
 CONFIG = "config.json"  # what every model's folder holds
 OLD: Final = ".old"  # the end of the name of a folder that was moved aside for a new one
 NEW: Final = ".new"  # and of one that is not finished
-STALE: Final = 3600.0  # seconds after which nobody will finish it any more
+STALE: Final = 3600.0  # seconds after which it counts as abandoned
 _DESKTOP: Final = (".DS_Store", "Thumbs.db", "desktop.ini")  # what systems leave wherever a folder was looked at
 _TRIES: Final = 5
 
 
 @dataclass(frozen=True)
 class Kind:
-    """What a folder of ours is and may hold.
+    """Kind of a model's folder: its format, and what it may hold.
 
     Attributes:
         format: what its `config.json` says it is.
@@ -41,7 +41,7 @@ class Kind:
     folders: Mapping[str, "Kind"] = field(default_factory=dict)
 
     def stranger(self, folder: Path) -> str:
-        """Say what in a folder does not belong into one of this kind; empty if all of it does."""
+        """Return a few words on what in a folder does not belong into one of this kind; empty if all of it does."""
         try:
             said = read_json(folder / CONFIG)
         except (OSError, ValueError):
@@ -75,7 +75,7 @@ def atomic_folder(target: str | Path, kind: Kind = NETWORK) -> Iterator[Path]:
         yield new
         for path in [*new.rglob("*"), new]:
             _synchronise(path)
-        _check(target, kind)  # what came to lie there meanwhile is not ours either
+        _check(target, kind)  # something else may have been put there meanwhile
         _swap(new, target)
         _synchronise(target.parent)
     except BaseException:
@@ -94,9 +94,9 @@ def check_folder(target: str | Path, kind: Kind = NETWORK) -> None:
 
 @contextmanager
 def claimed_folder(target: str | Path, kind: Kind) -> Iterator[None]:
-    """Let nobody else train into a folder while the block lasts, game or command.
+    """Lock a folder against training by other processes, game or command, while the block lasts.
 
-    Raises, before there is anything to write, BlockingIOError if somebody does, and the OSError that `atomic_folder`
+    Raises, before there is anything to write, BlockingIOError if one does, and the OSError that `atomic_folder`
     would begin with.
     """
     with take_folder(target):
@@ -139,7 +139,7 @@ def _begin(target: str | Path, kind: Kind) -> tuple[Path, Path]:
         with suppress(OSError):
             if time.time() - left.stat().st_mtime > STALE:
                 shutil.rmtree(left)
-            elif left.name == f".{path.name}{NEW}":  # as all were called once; nobody fills an empty one any more
+            elif left.name == f".{path.name}{NEW}":  # as all were called once; an empty one is abandoned
                 left.rmdir()
     new = beside(path, NEW)
     new.mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""Looking into a network: what each stage computes, how the stages are linked, and which units have died."""
+"""Inspection of a network: activations of each stage, weights between the stages, and dead units."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CUT: Final = 0.999  # of the longest allowed: so long is one that was cut
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """What leads from one stage of units to the next.
+    """Weights, biases and gradient between one stage of units and the next.
 
     Of a dueling layer, these are the effective weights, from the units before it straight to the Q-values.
     """
@@ -46,7 +46,7 @@ def traces(network: NeuralNetwork, observation: npt.ArrayLike) -> list[Array]:
 
 
 def links(network: NeuralNetwork) -> list[Link]:
-    """Return what links each of the stages of `traces` to the next; views of the network where that is possible."""
+    """Return the link from each of the stages of `traces` to the next; views of the network where possible."""
     network.values  # noqa: B018 - packs the parameters, which makes their gradients views of the flat vector
     found = []
     for layer in network.layers:
@@ -80,7 +80,7 @@ def dead_units(network: NeuralNetwork, observations: npt.ArrayLike) -> float:
 
 
 class NetworkHealth:
-    """What is wrong inside a network that learns, from a look at it now and then.
+    """Health of a network that learns, sampled now and then: dead units and clipped gradients.
 
     Attributes:
         dead_share: share of rectified units that answered none of the latest observations; None before there were
@@ -99,7 +99,7 @@ class NetworkHealth:
         return float(np.mean(self._cut)) if len(self._cut) == _LENGTHS else None
 
     def look(self, network: NeuralNetwork, observation: Array, gradient_clip: float) -> None:
-        """Look at a network with the gradients of its latest step, and at an observation (inputs,) it answers."""
+        """Sample a network with the gradients of its latest step, and an observation (inputs,) that it is given."""
         self._cut.append(bool(np.linalg.norm(network.gradients) >= _CUT * gradient_clip))
         self._observations.append(observation)
         if len(self._observations) == _WITNESSES:
@@ -108,5 +108,5 @@ class NetworkHealth:
 
 
 def _links(layer: Layer) -> bool:
-    """Say whether a layer links units with units: a convolution links images."""
+    """Return whether a layer links units with units: a convolution links images."""
     return isinstance(layer, FullyConnectedLayer) and not isinstance(layer.inputs, tuple)

@@ -1,4 +1,4 @@
-"""Layers. Each turns a batch into another on the way forward, and an error into another on the way back.
+"""Layers: each maps inputs to outputs on the forward pass, and output errors to input errors on the backward pass.
 
 An *error* is the derivative of the cost with respect to what it stands for: one number per element.
 """
@@ -21,7 +21,7 @@ ImageShape = tuple[int, int, int]  # height, width, channels
 class Layer(ABC):
     """One step of a network, on arrays of shape (batch, values), or images (batch, height, width, channels).
 
-    A layer of your own has `forward_propagate`, `backward_propagate` and `predict`; if it learns, `shapes` and
+    A custom layer has `forward_propagate`, `backward_propagate` and `predict`; if it learns, `shapes` and
     `initial_value`; if it is to be saved and copied, `settings` and `ai.nn.register_layer`.
 
     What `forward_propagate` and `backward_propagate` return lasts until their next call: they may write into
@@ -40,7 +40,7 @@ class Layer(ABC):
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
-        """What the layer learns, drawn when first asked for: by then its network and neighbours are known."""
+        """Learned parameters, drawn when first asked for: by then the layer's network and neighbours are known."""
         values = {name: np.asarray(self.initial_value(name), self.dtype) for name in self.shapes}
         for name, value in values.items():
             if value.shape != tuple(self.shapes[name]):
@@ -98,7 +98,7 @@ class Layer(ABC):
 
 
 class HalvedLayer(Layer):
-    """A layer with two ways back that can be gone apart, so that nothing is computed that nobody asks for."""
+    """Layer whose backward pass has two separate halves, gradients and input error, so that either can be skipped."""
 
     def backward_propagate(self, output_error: Array) -> Array:
         """Fill the parameters' gradients and return the input error, both of the last forward pass."""

@@ -1,4 +1,4 @@
-"""A file that one process at a time holds; the system lets go of it however that process ends."""
+"""File lock that one process at a time holds; the system releases it however that process ends."""
 
 import errno
 import os
@@ -22,13 +22,13 @@ else:
 
 
 class Lock:
-    """Made by `take`; held until `release`, or until the `with` block that it begins is over."""
+    """Lock made by `take`; held until `release`, or until the `with` block that it begins is over."""
 
     def __init__(self, file: IO[bytes] | None, path: Path | None = None) -> None:
         self._file, self._path = file, path
 
     def release(self) -> None:
-        """Let others take it, and leave no file behind."""
+        """Release the lock, and leave no file behind."""
         if self._file is None:
             return
         file, self._file = self._file, None
@@ -47,7 +47,7 @@ class Lock:
 def take(path: Path) -> Lock | None:
     """Return the lock of a file, which is made if need be; None if another holds it.
 
-    Where files can't be made or locked at all, such as on some network drives, everybody gets it.
+    Where files can't be made or locked at all, such as on some network drives, every caller gets it.
     """
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -63,7 +63,7 @@ def take(path: Path) -> Lock | None:
                 break
             if _is_there(file, path):
                 return Lock(file, path)
-            file.close()  # whoever held it has removed it meanwhile
+            file.close()  # its holder has removed it meanwhile
     return Lock(None)
 
 

@@ -1,4 +1,4 @@
-"""The network: a list of layers, the cost they are to lower, and one flat vector of all they learn."""
+"""Neural network: a list of layers, the cost to minimise, and one flat vector of all parameters."""
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
@@ -21,7 +21,7 @@ IMAGES = 250  # predicted at a time: each takes some 100 KB on its way
 
 
 class NeuralNetwork:
-    """Layers in a row, trained by gradient descent.
+    """Feedforward network: layers in a row, trained by gradient descent.
 
     `function` and `derivative` are a cost: `NeuralNetwork(*CostFunctions.use_mse())`, or a plain pair of your
     own, both of (prediction, target). First weights come from `rng`, by default one seeded with 0: the same
@@ -200,7 +200,7 @@ class NeuralNetwork:
         """Write the network to a folder, whole or not at all (docs/adr/0004-models-are-folders.md).
 
         Raises ValueError if it has functions without a name or parameters that are not finite,
-        FileExistsError if the folder holds something else, OSError if the disk does not take it.
+        FileExistsError if the folder holds something else, OSError if it cannot be written.
         """
         with atomic_folder(folder) as temporary:
             write_network(temporary, self.cost, self.layers, self.dtype)

@@ -13,7 +13,7 @@ from ai.nn.parameter import Array
 
 
 class DivergenceError(FloatingPointError):
-    """Learning has run away: a cost, a gradient or a step is not finite. The parameters are as before the step.
+    """Divergence of training: a cost, a gradient or a step is not finite. The parameters are as before the step.
 
     Attributes:
         step: number of the step of its optimizer, from 1.
@@ -129,7 +129,7 @@ class SGD(Optimizer):
 
 
 class Momentum(Optimizer):
-    """Steps along v = momentum · v + gradient, the heavy ball of Polyak 1964: values -= learning_rate · v."""
+    """Gradient descent with momentum (Polyak 1964): v = momentum · v + gradient; values -= learning_rate · v."""
 
     remembers = ("velocity",)
 

@@ -1,4 +1,4 @@
-"""What a layer learns: named arrays, each with its gradient, and how they start."""
+"""Parameters of layers: named arrays, each with its gradient, and their initialisation."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
