@@ -36,7 +36,7 @@ class TrainingClock:
         self._saved = time.monotonic()
 
     def share(self, training: Training) -> float:
-        """Return how much of its time or decisions a run has used up, from 0 to 1, whichever is more."""
+        """Return the share of its time or decisions that a run has used up, from 0 to 1, whichever is more."""
         elapsed = training.seconds / self.seconds if self.seconds else 0.0
         taken = training.agent.decisions / self.decisions if self.decisions else 0.0
         return min(1.0, max(elapsed, taken))
@@ -59,7 +59,7 @@ class TrainingClock:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """All that is kept of a run, as it was at one moment: may be saved while training goes on."""
+    """Copy of all that is kept of a run, at one moment: it may be saved while training goes on."""
 
     described: dict[str, Any]
     best: DeepQAgent
@@ -67,7 +67,7 @@ class Snapshot:
     history: History | None
 
     def save(self, folder: str | Path) -> None:
-        """Write it, whole or not at all; raises OSError if the disk does not take it."""
+        """Write it, whole or not at all; raises OSError if it cannot be written."""
         with atomic_folder(folder, KIND) as temporary:
             self.best.write(temporary)
             self.last.write(temporary / LAST)
@@ -79,7 +79,7 @@ class Snapshot:
 def snapshot(training: Training, history: History | None = None) -> Snapshot:
     """Copy what is to be kept of a run. One that has not been evaluated yet has its latest network for its best.
 
-    This measures nothing: when it is called, the clock may say, and the clock has no say in which network is best.
+    This measures nothing: the clock may decide when it is called, but never which network is best.
     """
     agent, config = training.agent, training.config
     presets = PRESETS if config.env == LANDER else {"gym": gym_config(config.env)}
@@ -97,10 +97,10 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
 
 
 def save_run(training: Training, folder: str | Path, final: bool = False) -> None:
-    """Keep the best network of a run, and what is needed to go on with it, whole or not at all.
+    """Save the best network of a run, and the state to resume from, whole or not at all.
 
-    `final` lets the network of the last moment stand for election too, and measures the best one on spawns that
-    neither trained nor chose it. Raises OSError if the disk does not take it, and ValueError, with the disk left
+    `final` considers the latest network for the best too, and measures the best one on test spawns, which neither
+    trained nor chose it. Raises OSError if it cannot be written, and ValueError, with the disk left
     as it was, if the numbers of the network are not finite.
     """
     if final:
@@ -113,13 +113,13 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
 
 
 def rewind(training: Training) -> None:
-    """Let the networks be the best ones found so far, if there are any: what ran away is nothing to go on from."""
+    """Restore the best networks found so far, if there are any: training cannot go on from diverged ones."""
     if training.best_values is not None:
         training.agent.go_back(training.best_values, deepcopy(training.best_scale))
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
-    """Go on from what `save_run` kept, with an empty memory; raises ModelFormatError for anything else.
+    """Resume a run that `save_run` saved, with an empty memory; raises ModelFormatError for anything else.
 
     `env` is the environment as the user names it, without which "module:Name" is refused: see `DeepQAgent.load`.
     """
@@ -146,7 +146,7 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         training.seconds = float(number_of(described["seconds"], 0))
-        training.flights.load(described.get("flights", Flights(0).to_json()))  # runs of old say nothing of them
+        training.flights.load(described.get("flights", Flights(0).to_json()))  # older runs do not have them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error

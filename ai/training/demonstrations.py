@@ -1,7 +1,7 @@
-"""Good landings to learn from: a person's own, or a scripted pilot's.
+"""Demonstrations: good landings to learn from, a person's own or a scripted pilot's.
 
 A flight follows from its seed and what was done in each physics step, so that is all that is kept. To learn from
-it, it is flown again, with the rewards of whoever learns.
+it, it is flown again, with the learner's rewards.
 """
 
 from __future__ import annotations
@@ -55,9 +55,9 @@ class Demonstration:
 
 
 def takeover(hands: Sequence[bool]) -> int:
-    """The step in which a person took the stick for the last time, by whether they had it in each step.
+    """Return the step in which a person last took the stick, given whether they had it in each step.
 
-    The number of steps if they did not have it at the end: then there is nothing of theirs to learn from.
+    Returns the number of steps if they did not have it at the end: then there is nothing of theirs to learn from.
     """
     begins = len(hands)
     while begins and hands[begins - 1]:
@@ -122,7 +122,7 @@ def taught(config: Config) -> Config:
 
 
 def write(path: Path, demonstrations: Sequence[Demonstration]) -> None:
-    """Keep the newest demonstrations in a file, whole or not at all. Raises OSError if the disk won't have it."""
+    """Keep the newest demonstrations in a file, whole or not at all. Raises OSError if it cannot be written."""
     kept = [asdict(demonstration) for demonstration in demonstrations[-MOST:]]
     write_text(path, json.dumps({"format": FORMAT, "version": VERSION, "flights": kept}) + "\n")
 
@@ -150,7 +150,7 @@ def read(path: Path) -> list[Demonstration]:
 
 
 def _stream(seed: int) -> np.random.Generator:
-    """What a lander that flies alone from this seed draws its start from."""
+    """Return the random stream from which a lander that flies alone from this seed draws its start."""
     return np.random.default_rng(seed).spawn(1)[0]
 
 

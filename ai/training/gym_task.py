@@ -1,4 +1,4 @@
-"""Environments of Gymnasium as tasks to learn: numbers in, a few actions out. Comes with the extra `gym`."""
+"""Environments of Gymnasium as tasks: vector observations, discrete actions. Comes with the extra `gym`."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def gym_config(env: str) -> Config:
 
 @dataclass(frozen=True)
 class GymScore:
-    """What a number of episodes brought, with no random actions in them."""
+    """Score of a number of episodes without random actions."""
 
     episodes: int
     success: float | None  # share that reached the environment's own threshold; None if it names none
@@ -44,16 +44,16 @@ class GymScore:
     mean_length: float  # decisions
 
     def to_json(self) -> dict[str, float | None]:
-        """Plain values."""
+        """Return the values as JSON can hold them."""
         return asdict(self)
 
     def better_than(self, other: GymScore | None) -> bool:
-        """Whether this earned more."""
+        """Whether the mean return is higher."""
         return other is None or self.mean_return > other.mean_return
 
     @property
     def figure(self) -> str:
-        """The mean return."""
+        """Mean return, as text."""
         return f"{self.mean_return:.1f}"
 
     def __str__(self) -> str:
@@ -61,7 +61,7 @@ class GymScore:
 
 
 class GymEnv:
-    """Several environments side by side, one after the other, under the contract of `ai.common.environment.Env`."""
+    """Vectorised environment (`ai.common.environment.Env`) of several Gymnasium ones, stepped one by one."""
 
     def __init__(
         self, make: Callable[[], gymnasium.Env[Any, Any]], num_envs: int, rng: np.random.Generator,
@@ -119,7 +119,7 @@ class GymEnv:
 
 
 class GymTask:
-    """Learn an environment of Gymnasium, the one that `config.env` names."""
+    """Task of learning the environment of Gymnasium that `config.env` names."""
 
     symmetry: Symmetry | None = None
     action_chances: Floats | None = None
@@ -159,7 +159,7 @@ class GymTask:
         self.config = config
 
     def follow(self, decisions: int, env: Env) -> None:
-        """An environment stays as it is."""
+        """Do nothing: an environment of Gymnasium does not change with experience."""
 
     def _env(self, num_envs: int, rng: np.random.Generator) -> GymEnv:
         return GymEnv(self._make, num_envs, rng, self.threshold, self.config.frame_skip)

@@ -1,4 +1,4 @@
-"""Rules that look at the recent past of a training run and say what is visibly off, each with a remedy to try.
+"""Diagnosis of a training run: rules that find visible faults in its recent past, each with a remedy to try.
 
 A rule is a row of `RULES`: a condition and a remedy. The words that a player reads for it belong to the game. An
 `Adviser` keeps a hint from flickering: it appears once its rule has held for a while, and then stays for a while.
@@ -33,7 +33,7 @@ _FLIGHTS: Final = 1_000  # flights after which a run with few landers should hav
 _FAR_SPAWNS: Final = ("random", "hard", "highest")  # of which none begins near the pad
 _RATES: Final = ("learning_rate", "final_learning_rate")
 # Rates above which no step is sensible, and sane ones, by the optimizer. Modern still learns at 0.03, not at 0.1;
-# classic's values have run away at 0.1.
+# classic's values have diverged at 0.1.
 _TOO_HIGH: Final = {"adam": 0.05, "momentum": 0.01, "sgd": 0.05}
 _SANE: Final = {"adam": (2e-3, 3e-4), "momentum": (1e-4, 1e-4), "sgd": (1e-3, 1e-3)}
 _TARGET_STEPS: Final = 8_000  # learning steps after which a target should be nearly where the network is
@@ -43,7 +43,7 @@ _PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say ho
 
 @dataclass(frozen=True)
 class Hint:
-    """What is off, by the name of its rule.
+    """Hint at a fault, by the name of its rule.
 
     Attributes:
         remedy: values to try, by the name of a knob: a field of Config, or "weights.time" for a part of the reward.
@@ -57,7 +57,7 @@ class Hint:
 
 
 class Recent:
-    """A run's curves as the rules see them, with a few questions that several of them ask."""
+    """Recent curves of a run, with the questions about them that several rules ask."""
 
     def __init__(
         self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
@@ -75,14 +75,14 @@ class Recent:
         return self.last("decisions", 1) >= _ENOUGH or self.last("episodes", 1) >= _FLIGHTS
 
     def gained(self, name: str, share: float = 0.3) -> float:
-        """How much a column rose from the first to the second half of the last share of the run."""
+        """Return how much a column rose from the first to the second half of the last share of the run."""
         decisions = self.history["decisions"]
         first, middle = np.searchsorted(decisions, decisions[-1] * np.array([1.0 - share, 1.0 - share / 2]))
         values = self.history[name]
         return _mean(values[middle:]) - _mean(values[first:middle])
 
     def by_hundreds(self) -> Doubles:
-        """The share that landed of each hundred flights of this stage, one after the other: none counts twice."""
+        """Return the share that landed of each successive hundred flights of this stage: none counts twice."""
         history = self.history
         here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success"])
         episodes, success = history["episodes"][here], history["success"][here]
@@ -93,14 +93,14 @@ class Recent:
         return shares
 
     def best(self) -> float:
-        """The largest share that landed, in this stage, over so many flights that it is not chance."""
+        """Return the largest share that landed, in this stage, over so many flights that it is not chance."""
         shares = self.by_hundreds()
         if len(shares) < _COLLAPSE:
             return 0.0
         return float(np.lib.stride_tricks.sliding_window_view(shares, _COLLAPSE).min(axis=1).max())
 
     def damaged_at(self) -> int | None:
-        """When steps began that were far too long, in decisions; None if there were none since it last went back."""
+        """Return when steps that were far too long began, in decisions; None if none since it last went back."""
         config, began = self.config, None
         changes = [each for each in self.history.alterations if each.name in (*_RATES, REVERTED)]
         since = self.history["decisions"][-1]
@@ -115,13 +115,13 @@ class Recent:
         return began
 
     def best_moment(self) -> int | None:
-        """How many decisions the run had taken at its best checkpoint; None without any."""
+        """Return how many decisions the run had taken at its best checkpoint; None without any."""
         checkpoints = self.history.checkpoints
         return max(checkpoints, key=lambda each: each.success).decisions if checkpoints else None
 
 
 class Rule(NamedTuple):
-    """One thing that can be off; `back_to` is the moment to go back to, in decisions."""
+    """Rule for one fault; `back_to` is the moment to go back to, in decisions."""
 
     name: str
     holds: Callable[[Recent], bool]
@@ -137,14 +137,14 @@ def _rate_too_high(config: Config, decisions: int) -> bool:
 
 
 def _damaged(run: Recent) -> bool:
-    """Steps were far too long, are not any more, and have left a network that shows it."""
+    """Whether steps were far too long at some time, and the network still shows the damage."""
     if run.damaged_at() is None or run.last("landed") > 0.5:
         return False
     return any(sign(run) for sign in (_loss_explodes, _q_runs_away, _dead_units, _collapsed, _crashes, _hovers))
 
 
 def _loss_explodes(run: Recent) -> bool:
-    """Ten times what it was, or beyond all numbers; NaN is not known."""
+    """Whether the loss is ten times what it was, or infinite; NaN means that it is not known."""
     if np.isinf(run.history["loss"][-1]):
         return True
     before = _median(run.history["loss"][-208:-8])
@@ -152,7 +152,7 @@ def _loss_explodes(run: Recent) -> bool:
 
 
 def _q_runs_away(run: Recent) -> bool:
-    """Beyond twice what a flight could earn, or lose, at all."""
+    """Whether the mean Q-value is beyond twice what a flight could earn or lose."""
     if np.isinf(run.history["mean_q"][-1]):
         return True
     least, most = returns(run.config)
@@ -160,22 +160,22 @@ def _q_runs_away(run: Recent) -> bool:
 
 
 def _target_stands(run: Recent) -> bool:
-    """The targets, and where the target flies the flights too, are those of long ago."""
+    """Whether the target network lags far behind, and with it the targets, and the flights where it flies them."""
     return run.config.target_every / run.config.target_rate > _TARGET_STEPS
 
 
 def _short_sight(run: Recent) -> bool:
-    """What comes a second later, fifteen decisions, counts for little."""
+    """Whether the discount makes a reward a second later, after fifteen decisions, count for little."""
     return run.is_late() and run.config.discount < 0.96 and run.last("landed") < 0.6
 
 
 def _no_guide(run: Recent) -> bool:
-    """Nothing that is paid says on the way whether it comes closer."""
+    """Whether no part of the reward tells a lander on its way that it comes closer."""
     return run.is_late() and run.last("landed") < 0.6 and not any(getattr(run.config.weights, part) for part in _PARTS)
 
 
 def _dead_units(run: Recent) -> bool:
-    """More than half of the units give 0 whatever they are shown: then nothing can change them any more."""
+    """Whether more than half of the units give 0 for every input: then they can no longer learn."""
     return run.config.activation == "relu" and (run.dead_share or 0.0) > 0.5
 
 
@@ -198,13 +198,13 @@ def _plateau(run: Recent) -> bool:
 
 
 def _overfed(run: Recent) -> bool:
-    """Each memory is learned from some hundred times: `classic` does so 64 times, `modern` 8 times."""
+    """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
     return config.updates * config.batch_size > 500 * config.num_envs
 
 
 def _clipped(run: Recent) -> bool:
-    """Most gradients are shortened to one length: then how wrong an estimate is no longer counts."""
+    """Whether most gradients are clipped to one length: then the size of an error no longer counts."""
     return (run.clipped_share or 0.0) > 0.6
 
 
@@ -334,7 +334,7 @@ RULES: Final = (
 
 
 class Adviser:
-    """Chooses the one hint that is shown. Times are seconds of training, as the history counts them."""
+    """Adviser that chooses the one hint to show. Times are seconds of training, as the history counts them."""
 
     def __init__(self, config: Config) -> None:
         self.config = config
@@ -357,7 +357,7 @@ class Adviser:
     ) -> Hint | None:
         """Return what to show now, if anything; call it as often as there is news.
 
-        Where somebody has counted them, `dead_share` is the share of hidden units that never come alive, and
+        Where known, `dead_share` is the share of hidden units that never come alive, and
         `clipped_share` that of the gradients which were cut short.
         """
         self.config = config

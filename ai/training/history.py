@@ -1,4 +1,4 @@
-"""What is told of a training run as it goes on, and kept of it: points of its curves, checkpoints, turned knobs."""
+"""History of a training run: points of its curves, checkpoints, turned knobs and validations."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ _MOST_COLUMNS: Final = 1000
 
 @dataclass(frozen=True)
 class Point:
-    """How a run stood after one decision. Rates, shares and parts are of the last hundred flights.
+    """Point of a run's curves after one decision. Rates, shares and parts are of the last hundred flights.
 
-    What is not known is NaN: before the first flight has ended, and before the first learning step, which after a
+    Unknown values are NaN: before the first flight has ended, and before the first learning step, which after a
     resumption waits for new memories.
     """
 
-    may_thin: ClassVar = True  # of those that nobody has fetched, every other may be dropped
+    may_thin: ClassVar = True  # of those not fetched yet, every other may be dropped
 
     seconds: float  # of training, pauses left out
     decisions: float
@@ -63,7 +63,7 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """The network that flew at one moment of a run; `ai.training.session.agent_of` makes an agent of it."""
+    """Network that flew at one moment of a run; `ai.training.session.agent_of` makes an agent of it."""
 
     seconds: float
     decisions: int
@@ -74,10 +74,10 @@ class Checkpoint:
 
 @dataclass(frozen=True)
 class Alteration:
-    """A knob that was turned during the run.
+    """Change of a knob during the run.
 
-    `amends` says that it takes the place of the last alteration of that name: what a drag passes through acts only
-    for a moment, and where it ends is what counts.
+    `amends` says that it replaces the last alteration of that name: the values that a drag passes through act only
+    for a moment, and only the last one counts.
     """
 
     decisions: int
@@ -89,7 +89,7 @@ class Alteration:
 
 @dataclass(frozen=True)
 class Validation:
-    """What the network did on its own, in flights that neither train it nor will judge it."""
+    """Validation of the network without exploration, in flights that are used neither to train nor to test it."""
 
     decisions: int
     success: float
@@ -103,13 +103,13 @@ _COLUMN: Final = {name: column for column, name in enumerate((*_NUMBERS, *PARTS)
 
 
 class History:
-    """What charts show of a run. Memory is bounded: when full, every other point goes, evenly along the run.
+    """History of a run, as charts show it. Memory is bounded: when full, every other point is dropped.
 
     `history["success"]` is a column of the points, (n,); `history.parts` (n, len(PARTS)). Both are views: they
     are as the run was when asked for, until the next `append`.
 
     Attributes:
-        reward_scale: what a point of reward is in the unit of `history["mean_q"]`, which is the network's own.
+        reward_scale: size of one point of reward in the unit of `history["mean_q"]`, which is the network's own.
 
     """
 
@@ -133,7 +133,7 @@ class History:
 
     @property
     def parts(self) -> Doubles:
-        """What each part of the reward has paid per flight, (n, len(PARTS))."""
+        """Points that each part of the reward has paid per flight, (n, len(PARTS))."""
         return self.points[:, -len(PARTS) :]
 
     def __getitem__(self, name: str) -> Doubles:
@@ -141,7 +141,7 @@ class History:
         return self.points[:, _COLUMN[name]]
 
     def append(self, entry: Entry) -> None:
-        """Take note of whatever a run tells."""
+        """Record an entry of any kind."""
         match entry:
             case Point():
                 self._append_point(entry)
@@ -168,7 +168,7 @@ class History:
             last = next(each for each in reversed(self.alterations) if each.name == entry.name)
             self.alterations.remove(last)
             entry = replace(entry, before=last.before, amends=False)
-        if entry.before != entry.after:  # otherwise it is as if nobody had touched it
+        if entry.before != entry.after:  # otherwise the knob is back where it was
             self.alterations.append(entry)
 
     def _append_checkpoint(self, checkpoint: Checkpoint) -> None:
@@ -198,7 +198,7 @@ class History:
         return twin
 
     def write(self, folder: Path) -> None:
-        """Write the history into a run's folder; raises OSError if the disk does not take it."""
+        """Write the history into a run's folder; raises OSError if it cannot be written."""
         described = {
             "version": _VERSION, "columns": list(_COLUMN), "reward_scale": self.reward_scale,
             "stride": self._stride, "told": self._told,
@@ -310,5 +310,5 @@ def _above_zero(scale: Any) -> float:
 
 
 def _written(alteration: Alteration) -> dict[str, Any]:
-    """Return what a file holds of it; that it amends another one only matters on its way."""
+    """Return an alteration as a file holds it: `amends` only matters before it is in a history."""
     return {name: value for name, value in asdict(alteration).items() if name != "amends"}

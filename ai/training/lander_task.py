@@ -32,7 +32,7 @@ LANDER_SYMMETRY: Final = Symmetry(MIRROR_SIGNS, MIRROR_FEATURES, MIRROR_ACTIONS)
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What became of a number of flights with no random actions in them."""
+    """Evaluation of a pilot over a number of flights without random actions."""
 
     episodes: int
     success: float  # shares of the flights
@@ -45,16 +45,16 @@ class Evaluation:
     switches: float  # times a second that an engine goes on or off, of all flights
 
     def to_json(self) -> dict[str, float | None]:
-        """Plain values."""
+        """Return the values as JSON can hold them."""
         return asdict(self)
 
     def better_than(self, other: Evaluation | None) -> bool:
-        """Whether it earned more, where every flight that did not land counts as a thousand points less."""
+        """Whether the mean return is higher, where each flight that did not land counts a thousand points less."""
         return other is None or self.mean_return + 1000 * self.success > other.mean_return + 1000 * other.success
 
     @property
     def figure(self) -> str:
-        """The share that landed."""
+        """Share that landed, as text."""
         return f"{self.success:.1%}"
 
     def __str__(self) -> str:
@@ -76,7 +76,7 @@ def evaluate(pilot: Pilot, episodes: int, seed: int, spawn: str = "random", fram
 def trial(
     pilot: Pilot, episodes: int, seed: int, spawn: str = "random", frame_skip: int = 4
 ) -> Generator[None, None, Evaluation]:
-    """Do what `evaluate` does one decision at a time, for whoever has other things to do in between."""
+    """Evaluate as `evaluate` does, one decision at a time, so that the caller can do other work in between."""
     env = LanderEnv(episodes, seed, spawn, frame_skip)
     observation = env.reset()
     returns: Doubles = np.zeros(episodes)
@@ -102,7 +102,7 @@ def trial(
 
 
 class LanderTask:
-    """Learn to land."""
+    """Task of learning to land."""
 
     num_features, num_actions = NUM_FEATURES, NUM_ACTIONS
     evaluate_every, validation_episodes, test_episodes = 100_000, 500, 1000
@@ -126,7 +126,7 @@ class LanderTask:
             env.weights = config.weights
 
     def follow(self, decisions: int, env: Env) -> None:
-        """Tighten the limits of a touch, from the real ones to as careful as is asked for."""
+        """Tighten the limits of a touch with experience, from the real ones to `config.care` of them."""
         if isinstance(env, LanderEnv):
             env.limits = LIMITS.stricter(care(self.config, decisions))
 

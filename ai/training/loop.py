@@ -1,4 +1,4 @@
-"""Training as a generator, evaluation, and the rule of the best checkpoint."""
+"""Training loop as a generator, with evaluation and the choice of the best checkpoint."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = [
 
 @dataclass
 class Progress:
-    """How a run stands after one decision of all landers, or whatever else learns."""
+    """Progress of a run after one decision in every environment."""
 
     decisions: int  # of single landers
     steps: int  # of their physics: a decision is several
@@ -49,7 +49,7 @@ class Progress:
 
 @dataclass
 class Training:
-    """A run of the lander, or of another task: everything that changes as it goes on."""
+    """Training run of the lander, or of another task: all state that changes as it goes on."""
 
     config: Config
     seed: int = 0
@@ -61,7 +61,7 @@ class Training:
     best: Score | None = None
     best_values: Floats | None = None
     best_scale: RunningScale | None = None
-    seconds: float = 0.0  # spent, as whoever runs it counts them
+    seconds: float = 0.0  # spent, as the caller counts them
     clock: Callable[[], float] = time.monotonic
     witness: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
 

@@ -1,4 +1,4 @@
-"""What a live run tells, and what it can be told. All of it can be pickled."""
+"""Messages of a live run, and commands to it. All of them can be pickled."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ai.training.history import Alteration, Checkpoint, Point, Validation
 
 @dataclass(frozen=True)
 class Begun:
-    """The first word of a run: what it is made with, which for a resumed run is what it was begun with."""
+    """First message of a run: its settings; of a resumed run, those it was begun with."""
 
     config: Config
     seed: int
@@ -26,7 +26,7 @@ class Begun:
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """All landers after one decision, before those whose flight has ended begin a new one."""
+    """Poses and outcomes of all landers after one decision, before ended flights begin anew."""
 
     newest_only: ClassVar = True
 
@@ -40,7 +40,7 @@ class Sight:
 
 @dataclass(frozen=True, eq=False)
 class Insight:
-    """The network that learns, from within. A few times a second."""
+    """Parameters and gradients of the network that learns, sent a few times a second."""
 
     newest_only: ClassVar = True
 
@@ -52,7 +52,7 @@ class Insight:
 
 @dataclass(frozen=True)
 class Change:
-    """Turn a live knob, by its field's name in Config; "weights.time" is one part of the reward's weights."""
+    """Command to turn a live knob, by its field's name in Config; "weights.time" is one of the reward's weights."""
 
     name: str
     value: Any
@@ -60,28 +60,28 @@ class Change:
 
 @dataclass(frozen=True)
 class Save:
-    """Save the run, as it is now, to a folder."""
+    """Command to save the run, as it is now, to a folder."""
 
     folder: Path
 
 
 @dataclass(frozen=True)
 class Revert:
-    """Let the networks be again what they were at a checkpoint of the history; time does not go back."""
+    """Command to restore the networks from a checkpoint of the history; time does not go back."""
 
     decisions: int
 
 
 @dataclass(frozen=True)
 class Teach:
-    """Learn from the demonstrations in a file as well, as far as this run has not done so yet."""
+    """Command to learn from the demonstrations in a file as well, as far as this run has not done so yet."""
 
     path: Path
 
 
 @dataclass(frozen=True)
 class Saved:
-    """What became of a save; no problem means that it is on the disk, whole."""
+    """Result of a save; no problem means that it is on the disk, whole."""
 
     folder: Path
     problem: str = ""
@@ -89,7 +89,7 @@ class Saved:
 
 @dataclass(frozen=True)
 class Refused:
-    """A command that could not be carried out, and why. Nothing has changed."""
+    """Refusal of a command that could not be carried out, and why. Nothing has changed."""
 
     command: Change | Revert | Teach
     problem: str

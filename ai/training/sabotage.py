@@ -1,7 +1,7 @@
-"""Named ways to take one part away from a configuration, so that a run shows what the part is there for.
+"""Ablations: named ways to take one part away from a configuration, so that a run shows what it is for.
 
-What is seen follows from the base: the words that go with these names were measured on one preset, with seeds 0
-and 1, in 25 CPU seconds for each run.
+The effect depends on the base configuration: the words that go with these names were measured on one preset, with
+seeds 0 and 1, in 25 CPU seconds for each run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ MEASURED: Final = "modern"  # the preset
 _TERMINAL_ALONE: Final = {name: 0.0 for name in vars(RewardWeights()) if name != "terminal"}
 _SMALLEST_MEMORY: Final = 100
 
-# What each changes, given the configuration it is done to.
+# Settings that each changes, given the base configuration.
 SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
     "no_target": lambda _: {"target_every": 1, "target_rate": 1.0},
     "no_replay": lambda c: {"replay_size": max(_SMALLEST_MEMORY, c.batch_size), "replay_prune": 1},

@@ -1,4 +1,4 @@
-"""A lander training that can be looked into and steered while it goes on."""
+"""Live lander training, which can be inspected and steered while it goes on."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ def live(
     resume: Path | None = None,
     clock: Callable[[], float] = time.monotonic,
 ) -> Generator[tuple[Message, ...], Command | None, None]:
-    """Train landers without end; every turn is one decision of all landers, and yields what there is to tell.
+    """Train landers without end; every turn is one decision of all landers, and yields its messages.
 
     The first turn only says how the run begins. A turn that is sent a command carries that out, at once and
     without a decision, and yields the answer. The run saves itself to `keep` now and then and when it is closed.
     With `resume`, it goes on from a saved run, with the settings, seed and history of that. `clock` counts seconds.
 
     Raises ModelFormatError if there is nothing to resume from, ValueError for settings that are not a lander's, and
-    FloatingPointError, which names the learning step and the likely cause, when the numbers run away.
+    FloatingPointError, which names the learning step and the likely cause, when training diverges.
     """
     if resume is None:
         run = _LiveRun(Training(config, seed), History(), keep, clock)
@@ -107,7 +107,7 @@ def turned(config: Config, name: str, value: Any) -> Config:
 
 
 class _Trial:
-    """The validation flights of a network as it is now, a few decisions at a time."""
+    """Validation flights of a network as it is at the start, a few decisions at a time."""
 
     def __init__(self, training: Training) -> None:
         assert training.validation_episodes is not None
@@ -117,7 +117,7 @@ class _Trial:
                               training.config.frame_skip)  # fmt: skip
 
     def go_on(self, decisions: int | None = None) -> bool:
-        """Take so many decisions, or all that are left; whether it is done."""
+        """Take so many decisions, or all that are left; return whether the trial is done."""
         if self.score is None:  # flights that are over would have no score a second time
             try:
                 for _ in range(decisions) if decisions else repeat(None):
@@ -128,7 +128,7 @@ class _Trial:
 
 
 class _LiveRun:
-    """A Training, what has been told of it, and where it is kept."""
+    """Live run: a Training, its history, its messages, and the folder it is saved to."""
 
     def __init__(self, training: Training, history: History, keep: Path | None, clock: Callable[[], float]) -> None:
         if not isinstance(training.env, LanderEnv):
@@ -168,7 +168,7 @@ class _LiveRun:
         return self._flush()
 
     def advance(self) -> tuple[Message, ...]:
-        """Let every lander take one decision; return what there is to tell of it."""
+        """Let every lander take one decision; return the messages about it."""
         training = self.training
         began, before = training.clock(), training.agent.decisions
         progress = training.advance()
@@ -190,7 +190,7 @@ class _LiveRun:
         return self._flush()
 
     def carry_out(self, command: Command) -> tuple[Message, ...]:
-        """Do what is asked, without a decision; return the answer."""
+        """Carry out a command, without a decision; return the answer."""
         match command:
             case Change():
                 self._change(command)
@@ -204,11 +204,11 @@ class _LiveRun:
         return self._flush()
 
     def rewind(self) -> None:
-        """Let the networks be what they were at the last checkpoint, when numbers have run away since."""
+        """Restore the networks from the last checkpoint, when training has diverged since."""
         self._go_back(self.history.checkpoints[-1])
 
     def end(self) -> None:
-        """Keep what has not been kept, and wait until it is on the disk."""
+        """Save what has not been saved, and wait until it is on the disk."""
         if self._folder is not None and self._kept != self.training.agent.decisions:
             self._save(self._folder)
         self._writer.shutdown()
@@ -239,7 +239,7 @@ class _LiveRun:
         )  # fmt: skip
 
     def _look(self) -> tuple[Insight, InForce]:
-        """What is told a few times a second, and whenever a command has changed it."""
+        """Return what is sent a few times a second, and whenever a command has changed it."""
         training = self.training
         return self._insight(), in_force(training.config, training.agent.decisions, training.episodes)
 

@@ -1,4 +1,4 @@
-"""What the last hundred episodes of a training came to."""
+"""Statistics of the last hundred episodes of a training run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is
 
 
 class Flights:
-    """Adds up every slot's episode, and remembers the last hundred that ended."""
+    """Episode statistics: sums over every slot's current episode, and the last hundred that ended."""
 
     def __init__(self, num_envs: int) -> None:
         self.earned: Doubles = np.zeros(num_envs)  # in each slot's episode so far
@@ -29,7 +29,7 @@ class Flights:
 
     @property
     def known(self) -> bool:
-        """Whether any has ended."""
+        """Whether any episode has ended."""
         return bool(self._outcomes)
 
     @property
@@ -56,7 +56,7 @@ class Flights:
         self._sum_up()
 
     def to_json(self) -> dict[str, list[Any]]:
-        """Return what the last hundred came to, for a file: a run that goes on goes on counting from them."""
+        """Return the last hundred episodes' results for a file, so that a resumed run goes on counting from them."""
         return {"outcomes": [*self._outcomes], "returns": [*self._returns], "parts": [*self._parts]}
 
     def load(self, told: Mapping[str, Any]) -> None:

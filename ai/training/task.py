@@ -1,4 +1,4 @@
-"""What training must know of whatever is to be learnt: the lander, or any other environment."""
+"""Task protocol: what training must know of an environment to learn, the lander or any other."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ TEST_SEED = 2_000_003  # episodes that have no say in anything, to measure a fin
 
 
 class Score(Protocol):
-    """How well a pilot did over a number of episodes with no random actions in them."""
+    """Score of a pilot over a number of episodes without random actions."""
 
     @property
     def episodes(self) -> int:
-        """How many there were."""
+        """Number of episodes."""
 
     @property
     def success(self) -> float | None:
-        """Share that ended well; None where nobody has said what that is."""
+        """Share that ended well; None where the environment does not define that."""
 
     @property
     def mean_return(self) -> float:
@@ -33,10 +33,10 @@ class Score(Protocol):
 
     @property
     def figure(self) -> str:
-        """The one figure that matters, in a few letters."""
+        """Most important figure of the score, as a short text."""
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values."""
+        """Return the values as JSON can hold them."""
 
     def better_than(self, other: Any) -> bool:
         """Whether this beats another score of its kind, or None."""
@@ -45,7 +45,7 @@ class Score(Protocol):
 
 
 class Task(Protocol):
-    """An environment as an agent is to learn it. Made from a Config."""
+    """Environment as an agent is to learn it. Made from a Config."""
 
     num_features: int
     num_actions: int

@@ -1,4 +1,4 @@
-"""The tasks there are, by the name of their environment."""
+"""Choice of the task by the name of its environment."""
 
 from __future__ import annotations
 
