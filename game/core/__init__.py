@@ -1,1 +1,1 @@
-"""What needs no window: clock, settings, texts, files and worker processes, and what a scene may ask for."""
+"""Parts that need no window: clock, settings, texts, files, worker processes, and the interface of a scene."""

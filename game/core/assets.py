@@ -1,4 +1,4 @@
-"""Where the shipped data lies: beside the packages, in a checkout and in an installed wheel alike."""
+"""Paths of the shipped data, which lies beside the packages both in a checkout and in an installed wheel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Turns the frames' uneven time into even steps, and those into steps at another pace."""
+"""Fixed-step clock: turns uneven frame times into even steps, and those into steps at another pace."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ STEP: Final = 1 / 60
 
 
 class FixedStep:
-    """Counts the steps of 1/60 s that are due, and how far the next one has come.
+    """Fixed-timestep accumulator: counts the steps of 1/60 s that are due, and the fraction of the next one.
 
     A long frame is caught up with at most `limit` steps; the rest of it is forgotten, so that a slow
     machine runs slowly instead of falling ever further behind.
@@ -20,11 +20,11 @@ class FixedStep:
 
     @property
     def alpha(self) -> float:
-        """Fraction, 0 to 1, of the next step that has passed."""
+        """Fraction of the next step that has passed, 0 to 1; for interpolation when drawing."""
         return min(self._remainder / STEP, 1.0)
 
     def advance(self, seconds: float) -> int:
-        """Let time pass and return how many steps are due."""
+        """Add the time that has passed, in seconds, and return the number of steps that are due."""
         self._remainder = min(self._remainder + max(seconds, 0.0), self.limit * STEP)
         # A hair of tolerance: sixty frames of 1/60 s are sixty steps, whatever the rounding.
         steps = int(self._remainder / STEP + 1e-9)
@@ -33,10 +33,10 @@ class FixedStep:
 
 
 class Tempo:
-    """A scene's own time: how many of its steps are due in an update of 1/60 s.
+    """Time scale of a scene: how many of its steps are due in an update of 1/60 s.
 
     Attributes:
-        rate: steps to an update; may be a fraction.
+        rate: steps per update; may be a fraction.
 
     """
 
@@ -46,20 +46,20 @@ class Tempo:
 
     @property
     def now(self) -> float:
-        """Steps to an update at this moment."""
+        """Steps per update at this moment."""
         return self.rate
 
     def begin(self) -> None:
-        """Forget what has passed of the next step."""
+        """Reset the fraction of the next step that has passed."""
         self._due = 0.0
 
     def steps(self) -> int:
-        """Let an update pass, and return how many steps are due in it."""
+        """Count one update, and return the number of steps due in it."""
         self._due = self.now + (self._due if self.now % 1 else 0.0)  # whole steps leave nothing over
         steps = int(self._due)
         self._due -= steps
         return steps
 
     def between(self, alpha: float) -> float:
-        """How far to draw from the last step but one to the last, where `alpha` of an update has passed."""
+        """Interpolation between the last two steps, 0 to 1, once the fraction `alpha` of an update has passed."""
         return min(1.0, self._due + alpha * self.now)

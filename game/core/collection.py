@@ -1,4 +1,4 @@
-"""A folder of named folders, which a player's networks are kept in: named, thrown away, brought back, copied."""
+"""Collection of named folders, such as a player's networks: rename, delete, restore, import and export them."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ from ai.nn.folder import NEW, STALE, aside_for, moved_aside, recover_folder
 from ai.nn.lock import Lock, lock_of, take
 from game.core import texts
 
-UNSAVED: Final = ".training"  # where a run that has no name yet keeps itself
+UNSAVED: Final = ".training"  # folder of a run that has no name yet
 TRASH: Final = ".trash"
 LONGEST_NAME: Final = 40
-_DEEPEST: Final = 8  # folders within folders of a network, its fixes included
+_DEEPEST: Final = 8  # depth of folders within a network's folder, its fixes included
 _MOST_FILES: Final = 5_000
 _MOST_BYTES: Final = 500_000_000
-_GAMES: Final = 16  # that may train at the same time
-_STAMP: Final = re.compile(r"[0-9]{1,30} ")  # what begins the name of something that was thrown away
+_GAMES: Final = 16  # games that may train at the same time
+_STAMP: Final = re.compile(r"[0-9]{1,30} ")  # prefix of the name of a deleted folder
 _DEVICES: Final = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in "123456789¹²³"}
 
 
 class LibraryError(Exception):
-    """What could not be done, and why, in a sentence for the player."""
+    """Failed operation on a collection; its message is a sentence for the player."""
 
 
 def fitting(text: str) -> str:
-    """Keep what may stand in a name."""
+    """Remove from a text the characters that no name may contain."""
     return "".join(letter for letter in unicodedata.normalize("NFC", text) if letter.isalnum() or letter in " -_.")
 
 
 def name_problem(text: str) -> str:
-    """Say why a text is no name for a folder on every system, in a sentence; empty if it is one."""
+    """Return a sentence why a text is not a valid folder name on every system; empty if it is valid."""
     if not text.strip():
         return texts.NAME_EMPTY
     if len(text) > LONGEST_NAME:
@@ -55,14 +55,14 @@ def name_problem(text: str) -> str:
 
 
 def is_valid_name(text: str) -> bool:
-    """Whether a folder can be called so."""
+    """Whether a text is a valid folder name on every system."""
     return not name_problem(text)
 
 
 def claims(folder: Path, parts: Iterable[str]) -> bool:
-    """Whether something looks like one of ours: it has one of these parts, or it cannot be looked into.
+    """Whether a folder looks like an item of the collection: it has one of the parts, or it cannot be read.
 
-    What cannot be looked into, such as a link that leads nowhere, is listed as well, so that it is told of.
+    A folder that cannot be read, such as a broken link, counts too, so that it is listed with its problem.
     """
     if folder.name.startswith("."):
         return False
@@ -73,7 +73,7 @@ def claims(folder: Path, parts: Iterable[str]) -> bool:
 
 
 def there(path: Path) -> bool:
-    """Whether something lies there; OSError where that cannot be told, which `Path.exists` takes for no."""
+    """Whether a path exists; raises OSError where that is unknown, for which `Path.exists` returns False."""
     try:
         path.stat()
     except (FileNotFoundError, NotADirectoryError, ValueError):
@@ -82,34 +82,34 @@ def there(path: Path) -> bool:
 
 
 def leads_nowhere(path: Path) -> bool:
-    """Whether it is a link to what is not there; OSError for a link to itself."""
+    """Whether a path is a broken link; raises OSError for a link to itself."""
     return path.is_symlink() and not there(path)
 
 
 def exports_dir() -> Path:
-    """Return where a player finds what is exported: among their documents."""
+    """Return the folder for exports, within the player's documents."""
     return Path(platformdirs.user_documents_dir()) / texts.GAME
 
 
 def free_path(folder: Path, name: str, suffix: str = "") -> Path:
-    """Return where something new of that name goes: with a number behind it, if the name is taken."""
+    """Return a free path in `folder` for a name, with a number appended if the name is taken."""
     path, number = folder / f"{name}{suffix}", 1
-    while os.path.lexists(path):  # which, unlike Path.exists, raises nothing where it may not look
+    while os.path.lexists(path):  # unlike Path.exists, raises nothing without permission to look
         number += 1
         path = folder / f"{name} {number}{suffix}"
     return path
 
 
 class Collection:
-    """What lies in `folder`. Whatever cannot be done raises LibraryError and changes nothing.
+    """Named items in `folder`, each a folder. A method that fails raises LibraryError and changes nothing.
 
     Args:
-        folder: of the folders; need not exist.
-        parts: names of files or folders; what has one of them is one of ours, whole or not.
-        most_thrown: how many of those that were thrown away can be brought back: the latest.
+        folder: the folder that holds the items; need not exist.
+        parts: names of files or folders; a folder with any of them is an item, complete or not.
+        most_thrown: how many deleted items can be restored: the latest ones.
 
     Attributes:
-        unsaved: where what has no name yet keeps itself; a second game's has a number behind it.
+        unsaved: folder of the item that has no name yet; a second game's has a number appended.
 
     """
 
@@ -119,7 +119,7 @@ class Collection:
         self._lock: Lock | None = None
 
     def free_name(self, suggestion: str) -> str:
-        """Return the suggestion as a valid name that nothing has yet, with a number behind it if need be."""
+        """Return the suggestion as a valid, unused name, with a number appended if needed."""
         base = " ".join(fitting(suggestion).split())[:LONGEST_NAME].strip(" .")
         if name_problem(base):
             base = texts.RUN_UNNAMED
@@ -130,7 +130,7 @@ class Collection:
         return name
 
     def new_folder(self, name: str) -> Path:
-        """Return where something new of that name goes; LibraryError if it cannot be called so."""
+        """Return the path for a new item; raises LibraryError for an invalid or used name."""
         if problem := name_problem(name):
             raise LibraryError(problem)
         if holder := self.holder(name):
@@ -138,20 +138,20 @@ class Collection:
         return self.folder / unicodedata.normalize("NFC", name)
 
     def existing(self, name: str) -> Path:
-        """Return where it lies; a name must not lead out of it, whatever it is."""
+        """Return the path of an item; raises LibraryError if there is none, or if its name leads out of the folder."""
         folder = self.folder / name
         if name.startswith(".") or Path(name).name != name or not (folder.is_dir() or folder.is_symlink()):
             raise LibraryError(texts.GONE.format(name=name))
         return folder
 
     def holder(self, name: str) -> str:
-        """Return what already lies there under a name that some systems take for the same; empty if nothing does."""
+        """Return the existing name that some systems take for the same as this one; empty if there is none."""
         with suppress(OSError):
             return next((path.name for path in self.folder.iterdir() if _same(path.name) == _same(name)), "")
         return ""
 
     def rename(self, old: str, new: str) -> Path:
-        """Give something another name, which nothing else has; return where it is."""
+        """Rename an item to an unused name; return its path."""
         source = self.existing(old)
         target = self.folder / unicodedata.normalize("NFC", new)
         if not (is_valid_name(new) and self.holder(new) == old):  # a change of case alone is no clash
@@ -161,16 +161,16 @@ class Collection:
         return target
 
     def name(self, folder: Path, name: str) -> Path:
-        """Give a folder that has none yet a name; return where it is."""
+        """Move a folder without a name into the collection under `name`; return its path."""
         target = self.new_folder(name)
         with told(texts.LIBRARY_NOT_KEPT, name):
             folder.rename(target)
         return target
 
     def export(self, name: str, folder: Path | None = None) -> Path:
-        """Copy something into a folder, `exports_dir` if none is named, and return where the copy is.
+        """Copy an item into a folder, by default `exports_dir`; return the path of the copy.
 
-        Nothing that lies there is touched: a copy whose name is taken gets a number.
+        Nothing is overwritten: a copy whose name is taken gets a number.
         """
         source = self.existing(name)
         folder = folder or exports_dir()
@@ -181,19 +181,19 @@ class Collection:
         return target
 
     def import_folder(self, path: Path) -> Path:
-        """Copy a folder from anywhere, under its own name or one near it; return where the copy is."""
+        """Copy a folder into the collection, numbered if its name is taken; return the path of the copy."""
         target = self.folder / self.free_name(path.name)
         with told(texts.LIBRARY_NOT_IMPORTED, path.name):
             self.folder.mkdir(parents=True, exist_ok=True)
             _copy(path, target)
         return target
 
-    # What has no name yet, and what a game that ended too early left behind
+    # Items without a name, and those left behind by a game that ended too early
 
     def hold(self) -> None:
-        """Let no other game use `unsaved` until `release`.
+        """Lock an `unsaved` folder against other games until `release`.
 
-        Of the places that no other game holds, it is the first where something was left behind, or else the first.
+        Of the folders that no other game holds, take the first in which an item was left behind, or else the first.
         """
         self.release()
         places = [self.folder / f"{UNSAVED} {number}".removesuffix(" 1") for number in range(1, _GAMES + 1)]
@@ -206,23 +206,23 @@ class Collection:
                 self._lock.release()
 
     def release(self) -> None:
-        """Leave `unsaved` to whoever comes next."""
+        """Unlock `unsaved` for other games."""
         if self._lock:
             self._lock.release()
             self._lock = None
 
     @property
     def left_behind(self) -> bool:
-        """Whether something of ours lies in `unsaved`. Not to be asked while it is written to, for it repairs that."""
+        """Whether an item lies in `unsaved`. Do not ask while it is being written, because this repairs it."""
         recover_folder(self.unsaved)
         with suppress(OSError):
             return any(there(self.unsaved / part) for part in self.parts)
         return False
 
-    # What was thrown away
+    # Deleted items
 
     def throw_away(self, folder: Path, name: str) -> None:
-        """Put a folder, or a file, aside, from where it can be had back by that name; very old ones are deleted."""
+        """Delete a folder or a file so that it can be restored by that name; very old ones are erased for good."""
         trash = self.folder / TRASH
         with told(texts.NOT_DELETED, name):
             trash.mkdir(exist_ok=True)
@@ -234,17 +234,17 @@ class Collection:
 
     @property
     def last_deleted(self) -> str:
-        """What `undo_delete` would bring back; empty for nothing."""
+        """Name of the item that `undo_delete` would restore; empty if there is none."""
         thrown = self._thrown()
         return thrown[-1].name.partition(" ")[2] if thrown else ""
 
     @property
     def deleted(self) -> set[str]:
-        """The names of all that could be brought back."""
+        """Names of all deleted items that can be restored."""
         return {path.name.partition(" ")[2] for path in self._thrown()}
 
     def bring_back(self, name: str) -> Path:
-        """Bring back what was thrown away under that name, where nothing else has it."""
+        """Restore the item deleted under that name, if the name is free; return its path."""
         thrown = [path for path in self._thrown() if path.name.partition(" ")[2] == name]
         if not thrown:
             raise LibraryError(texts.GONE.format(name=name))
@@ -254,7 +254,7 @@ class Collection:
             return thrown[-1].rename(self.folder / name)
 
     def undo_delete(self) -> Path | None:
-        """Bring back what was thrown away last, under another name if its own is taken; None if nothing was."""
+        """Restore the item deleted last, under another name if its own is taken; None if there is none."""
         name = self.last_deleted
         if not name:
             return None
@@ -264,9 +264,9 @@ class Collection:
             return self._thrown()[-1].rename(self.folder / name)
 
     def recover(self) -> None:
-        """Put back what was being replaced when that was interrupted, and clear away what was never finished.
+        """Undo interrupted replacements, and remove unfinished copies.
 
-        Raises OSError if the folder can't be looked into; what is wrong with one thing in it concerns no other.
+        Raises OSError if the folder can't be read; a problem with one item does not affect the others.
         """
         for path in list(self.folder.iterdir()):
             with suppress(OSError):
@@ -279,7 +279,7 @@ class Collection:
             shutil.rmtree(path, ignore_errors=True)
 
     def _thrown(self) -> list[Path]:
-        """Return what was thrown away, the latest last: a name is when, and what it was called."""
+        """Return the paths of deleted items, the latest last: each is named by its time of deletion and its name."""
         with suppress(OSError):
             dated = [path for path in (self.folder / TRASH).iterdir() if _STAMP.match(path.name)]
             return sorted(dated, key=_stamp)
@@ -288,7 +288,7 @@ class Collection:
 
 @contextmanager
 def told(sentence: str, name: str) -> Iterator[None]:
-    """Turn what the system says into a sentence for the player."""
+    """Turn an OSError into a LibraryError with a sentence for the player; a context manager."""
     try:
         yield
     except OSError as error:
@@ -296,14 +296,14 @@ def told(sentence: str, name: str) -> Iterator[None]:
 
 
 def reason(error: OSError) -> str:
-    """Say in a few words what went wrong; a copy of many files names the first that failed."""
+    """Return in a few words what went wrong; a copy of many files names the first that failed."""
     if isinstance(error, shutil.Error) and error.args and isinstance(error.args[0], list):
         return str(error.args[0][0][-1])
     return error.strerror or str(error)
 
 
 def _stamp(thrown: Path) -> int:
-    """Return when something was thrown away, in nanoseconds, or a little later: none has the number of another."""
+    """Return the number of a deleted item: its time of deletion in nanoseconds, or slightly later to be unique."""
     return int(thrown.name.split(" ")[0])
 
 
@@ -312,9 +312,9 @@ def _was_used(place: Path) -> bool:
 
 
 def _check_plain(folder: Path) -> None:
-    """Raise LibraryError unless a folder holds plain files alone, and no more of them than a network can have.
+    """Raise LibraryError unless a folder holds only plain files, and no more than a network can have.
 
-    A link may lead out of it, or round in circles; a pipe never ends; and whatever is copied, the window waits for.
+    A link may lead outside or in a circle, and a pipe never ends; the window waits while files are copied.
     """
     folders, files, size = [(folder, 0)], 0, 0
     while folders:
@@ -337,7 +337,7 @@ def _same(name: str) -> str:
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Copy a folder whole or not at all; LibraryError if it holds what no network has."""
+    """Copy a folder whole or not at all; raises LibraryError if it holds files that no network has."""
     _check_plain(source)
     partial = beside(target, NEW)
     try:

@@ -1,4 +1,4 @@
-"""A lock that is held for a moment, to change a file that another game may be changing."""
+"""File lock, held for a moment while a file is changed that another running game may change too."""
 
 import time
 from collections.abc import Iterator
@@ -10,9 +10,9 @@ from ai.nn.lock import take
 
 @contextmanager
 def held(path: Path, seconds: float = 1.0) -> Iterator[None]:
-    """Hold the lock of a file for a moment, to read another file and write it anew.
+    """Hold the lock of a file while it is read and rewritten; a context manager.
 
-    After so many seconds of waiting it goes on without: then one of two changes may be lost, but the game goes on.
+    Waits at most `seconds`, then goes on without the lock: one of two changes may be lost, but the game is not blocked.
     """
     end = time.monotonic() + seconds
     while not (lock := take(path)) and time.monotonic() < end:

@@ -1,4 +1,4 @@
-"""The pace of a flight: as the player wishes it, and slower for a moment; in whole physics steps as ever."""
+"""Pace of a flight: the time scale the player chose, and moments of slow motion, in whole physics steps."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import Final
 
 from game.core.clock import Tempo
 
-_SLOW: Final = 0.35  # of time's pace, in slow motion
-_HELD: Final = 40  # updates of 1/60 s
-_BACK: Final = 22  # updates in which it comes back
+_SLOW: Final = 0.35  # time scale in slow motion, as a share of the pace
+_HELD: Final = 40  # updates of 1/60 s at full slow motion
+_BACK: Final = 22  # updates in which the pace returns to normal
 
 
 class Pace(Tempo):
-    """A tempo with slow motion. Nothing is left out: a step is only waited for."""
+    """Time scale with slow motion. No step is left out; steps only come later."""
 
     def __init__(self, rate: float = 1.0) -> None:
         super().__init__(rate)
@@ -20,19 +20,19 @@ class Pace(Tempo):
 
     @property
     def slow(self) -> bool:
-        """Whether it is slow motion now."""
+        """Whether slow motion is on."""
         return self._left > 0
 
     @property
     def now(self) -> float:
-        """Steps to an update at this moment."""
+        """Steps per update at this moment."""
         if not self.slow:
             return self.rate
         gone = 1 - min(self._left, _BACK) / _BACK
         return self.rate * (_SLOW + (1 - _SLOW) * gone * gone * (3 - 2 * gone))
 
     def begin(self) -> None:
-        """Forget what has passed of the next step, and slow motion."""
+        """Reset the fraction of the next step, and end slow motion."""
         super().begin()
         self.hurry()
 
@@ -41,11 +41,11 @@ class Pace(Tempo):
         self._left = _HELD + _BACK
 
     def hurry(self) -> None:
-        """Be done with it."""
+        """End slow motion at once."""
         self._left = 0
 
     def steps(self) -> int:
-        """Let an update pass, and return how many steps are due in it."""
+        """Count one update, and return the number of steps due in it."""
         steps = super().steps()
         self._left -= self.slow
         return steps

@@ -1,4 +1,4 @@
-"""What a scene is, and what it may ask to happen next."""
+"""Interface of a scene, and the transitions it may return."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 
 class Scene(Protocol):
-    """One screen. It returns what is to happen next and never reaches for the stack itself."""
+    """One screen of the game. It returns transitions and never changes the scene stack itself."""
 
     def enter(self, context: Context) -> None:
-        """Become the top of the stack, for the first time or again after a pop."""
+        """Become the top scene, for the first time or again after a pop."""
 
     def exit(self) -> None:
-        """Stop being the top; release what is held."""
+        """Stop being the top scene; release held keys."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Take one window event, its position already in points."""
@@ -34,17 +34,17 @@ class Scene(Protocol):
 
 @runtime_checkable
 class Lasting(Protocol):
-    """A scene that holds more than memory, such as a process, and gives it back when it is left for good."""
+    """Scene that holds a resource, such as a process, and releases it when it is left for good."""
 
     def close(self) -> None:
-        """Give back what is held; `exit` has been called before."""
+        """Release the resources; called after `exit`."""
 
 
 @dataclass(frozen=True)
 class Route:
-    """A scene by its name in `game.scenes.ROUTES`, and what it is made with.
+    """Name of a scene in `game.scenes.ROUTES`, with the arguments to make it.
 
-    Scenes name each other so instead of importing each other: none is loaded before it is shown.
+    Scenes use routes instead of importing each other, so a scene's module is loaded only when it is shown.
     """
 
     name: str

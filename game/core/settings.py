@@ -1,4 +1,4 @@
-"""What the player chose, kept in one small file that survives crashes, full disks and bad edits."""
+"""The player's settings, in one small file that survives crashes, full disks and bad edits."""
 
 from __future__ import annotations
 
@@ -16,50 +16,50 @@ from game.core.lock import held
 FILE_NAME: Final = "settings.json"
 DAMAGED_NAME: Final = "settings.damaged.json"
 _LARGEST: Final = 1_000_000  # bytes
-# What shares of its gravity, and of time's own pace, a flight can be given.
+# Limits of the player's factors for gravity and for the pace of time.
 GRAVITY_SHARES: Final = (0.6, 1.4)
 PACES: Final = (0.5, 1.0)
 
 
 @dataclass
 class Settings:
-    """The player's choices. A new one is one more line with its default."""
+    """The player's settings. To add one, add a field with its default."""
 
     full_screen: bool = False
     reduced_motion: bool = False
     colour_safe: bool = False
     show_hints: bool = True
     text_size: str = "normal"  # a name of game.drawing.tokens.TEXT_SIZES
-    effects_volume: float = 0.9  # every number is a share, 0 to 1 unless limits say otherwise
+    effects_volume: float = 0.9  # every number is a share; 0 to 1 unless `limits` says otherwise
     interface_volume: float = 0.7
     ambience_volume: float = 0.7
-    altitude_volume: float = 0.0  # of the tone that lets one hear height and speed; 0 is off
-    model: str = ""  # the network last chosen to fly; empty for the game's own
-    assist: float = 0.0  # how much the co-pilot helps a person who flies
-    copilot: str = "tolerance"  # and when, a Mode of ai.copilot.copilot
-    three_pads: bool = False  # among hills, instead of one on a plain
-    hands: str = "own"  # what the keys pass through, of game.flight.handicap
-    check_flights: bool = False  # every fifth flight without help
+    altitude_volume: float = 0.0  # volume of the tone that makes height and speed audible; 0 is off
+    model: str = ""  # name of the network last chosen to fly; empty for the shipped default
+    assist: float = 0.0  # assist level of the co-pilot
+    copilot: str = "tolerance"  # mode of the co-pilot, a Mode of ai.copilot.copilot
+    three_pads: bool = False  # three pads among hills, instead of one on a plain
+    hands: str = "own"  # handicap of the hands, a name of game.flight.handicap.HANDS
+    check_flights: bool = False  # check flights: every fifth flight is flown without help
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether a panel says what the co-pilot thinks
-    gravity: float = field(default=1.0, metadata={"limits": GRAVITY_SHARES})  # share of it in free flights
-    pace: float = field(default=1.0, metadata={"limits": PACES})  # how fast time passes in a flight
-    keys: dict[str, Any] = field(default_factory=dict)  # what was changed, as game.input.bindings writes it
-    buttons: dict[str, Any] = field(default_factory=dict)  # of the pads
-    tutored: bool = False  # whether the first flight is offered no more: it was flown, or left out
-    first_flown: bool = False  # whether it was flown to its landing
-    unknown: dict[str, Any] = field(default_factory=dict)  # written by a newer version; kept as it is
-    unread: bool = field(default=False, compare=False)  # whether there is a file that could not be read; not kept
+    gravity: float = field(default=1.0, metadata={"limits": GRAVITY_SHARES})  # share of normal gravity in free flights
+    pace: float = field(default=1.0, metadata={"limits": PACES})  # time scale of a flight
+    keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them
+    buttons: dict[str, Any] = field(default_factory=dict)  # the same for gamepads
+    tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
+    first_flown: bool = False  # whether the tutorial flight was flown to its landing
+    unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged
+    unread: bool = field(default=False, compare=False)  # whether the file exists but could not be read; not saved
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what the file holds."""
+        """Return the values as the file holds them."""
         values = asdict(self)
         del values["unread"]
         return {**values.pop("unknown"), **values}
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> Settings:
-        """Take every value of the right kind; the others keep their defaults."""
+        """Make settings from a file's values; values of the wrong type or range are replaced by their defaults."""
         settings = cls()
         known = {each.name: each.metadata.get("limits", (0.0, 1.0)) for each in fields(cls)}
         del known["unknown"], known["unread"]
@@ -71,19 +71,19 @@ class Settings:
 
 
 def changes(values: dict[str, Any], since: dict[str, Any]) -> dict[str, Any]:
-    """Return those of some settings that are not what they were."""
+    """Return those values that differ from `since`."""
     return {name: value for name, value in values.items() if name not in since or since[name] != value}
 
 
 def _fits(value: object, default: object, limits: tuple[float, float]) -> bool:
-    """Whether a value is of its default's type; a number must be within limits as well, which NaN is not."""
+    """Whether a value has its default's type and, if a number, lies within the limits; NaN does not."""
     return type(value) is type(default) and (not isinstance(value, float) or limits[0] <= value <= limits[1])
 
 
 class SettingsFile:
-    """The settings file in a folder of the player's.
+    """The settings file in the player's folder.
 
-    Neither `load` nor `save` raises: each returns whether all went well, and `problem` says what did not.
+    Neither `load` nor `save` raises. `save` returns whether the file was written; `problem` says what went wrong.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -91,7 +91,7 @@ class SettingsFile:
         self.problem = ""
 
     def load(self) -> Settings:
-        """Read the settings. A damaged file is kept aside under another name, never overwritten."""
+        """Read the settings. A damaged file is put aside under another name, never overwritten."""
         try:
             return Settings.from_dict(self._read())
         except FileNotFoundError:
@@ -104,7 +104,7 @@ class SettingsFile:
             return Settings(unread=True)
 
     def _read(self) -> dict[str, Any]:
-        """Return what the file holds; raises OSError or ValueError."""
+        """Return the values in the file; raises OSError or ValueError."""
         values = parse_json(read_text(self.path, _LARGEST))
         if not isinstance(values, dict):
             raise ValueError("not a table of settings")
@@ -113,8 +113,8 @@ class SettingsFile:
     def save(self, settings: Settings, since: dict[str, Any] | None = None) -> bool:
         """Write the settings whole or not at all; a file that could not be read is put aside first.
 
-        Given what they were, as `Settings.to_dict` has it, only what has changed `since` is written over the file:
-        another game may have changed the rest meanwhile.
+        Given earlier values `since`, from `Settings.to_dict`, only those changed after them are written over the file:
+        another game may have changed the others meanwhile.
         """
         values = settings.to_dict()
         try:
@@ -131,7 +131,7 @@ class SettingsFile:
         return True
 
     def _there(self) -> dict[str, Any]:
-        """Return what the file holds; nothing if that makes no sense."""
+        """Return the values in the file; an empty dict if it cannot be read."""
         with suppress(OSError, ValueError):
             return self._read()
         return {}

@@ -1,4 +1,4 @@
-"""Writes the settings in a thread of its own: to wait for a disk takes frames."""
+"""Background writer of the settings: a thread of its own, because waiting for the disk would drop frames."""
 
 from __future__ import annotations
 
@@ -15,44 +15,44 @@ _log = logging.getLogger("tranquility")
 
 
 class SettingsWriter:
-    """Keeps a file as the settings are. Each change is on its way to the disk at once, and there after `close`.
+    """Thread that writes each change of the settings to their file at once; after `close` all changes are on disk.
 
-    Only what was changed here is written, so that two games on one folder leave each other's choices alone.
+    Only the values changed here are written, so that two games on one folder do not overwrite each other's choices.
 
     Args:
-        file: to write.
-        settings: as they were read from it.
+        file: the file to write.
+        settings: the settings as read from that file.
 
     """
 
     def __init__(self, file: SettingsFile, settings: Settings) -> None:
         self._file = file
-        self._since = settings.to_dict()  # as they were written last
-        self._unread = settings.unread  # until what could not be read is put aside
+        self._since = settings.to_dict()  # the values last written
+        self._unread = settings.unread  # True until an unreadable file has been put aside
         self._problems: SimpleQueue[str] = SimpleQueue()
         self._wanted: SimpleQueue[Settings | Event | None] = SimpleQueue()
         self._thread: Thread | None = None
 
     def save(self, settings: Settings) -> None:
-        """Have the settings written as they are now. Never waits."""
+        """Queue the present settings for writing. Never waits."""
         self._tell(copy.deepcopy(settings))
 
     def problem(self) -> str:
-        """Return why the last writing failed, once; empty if it did not."""
+        """Return why the last write failed, once only; empty if it succeeded."""
         found = ""
         while not self._problems.empty():
             found = self._problems.get_nowait()
         return found
 
     def wait(self) -> None:
-        """Wait until all that was changed is on the disk, or has failed to get there."""
+        """Wait until every queued change has been written or has failed."""
         if self._thread:
             done = Event()
             self._tell(done)
             done.wait()
 
     def close(self, settings: Settings) -> None:
-        """Write the settings for the last time, and wait until that is done and the thread has ended."""
+        """Write the settings one last time, and wait for the thread to end."""
         self.save(settings)
         self._tell(None)
         if self._thread:
@@ -72,7 +72,7 @@ class SettingsWriter:
                 continue
             try:
                 self._write(wanted)
-            except Exception as error:  # whoever waits must not wait for ever
+            except Exception as error:  # the thread must live on, or `wait` never returns
                 _log.exception("writing the settings")
                 self._problems.put(texts.SETTINGS_NOT_SAVED.format(reason=error))
 

@@ -1,4 +1,4 @@
-"""Runs a generator, a training above all, in a process of its own. The window never waits for it."""
+"""Worker process: runs a generator, such as a training, in a child process. The window never waits for it."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from game.core import texts
 from game.core.worker_process import CREDIT, Bundle, Function, serve
 
 PATIENCE: Final = 30.0  # seconds without an answer after which a process counts as hung
-STOP_SECONDS: Final = 3.0  # to come to an end when asked
-_LONGEST_FRAME: Final = 0.25  # what counts of the time between two polls: the rest, the window itself was away
-_LONGEST_BUNDLE: Final = 1 << 29  # bytes; no process that is in its right mind tells more at once
+STOP_SECONDS: Final = 3.0  # seconds to end after a request to stop
+_LONGEST_FRAME: Final = 0.25  # seconds counted between two polls at most: for longer, the window itself was stalled
+_LONGEST_BUNDLE: Final = 1 << 29  # bytes; only a faulty process sends more at once
 _log = logging.getLogger("tranquility")
 
 
 class State(Enum):
-    """How a worker stands."""
+    """State of a worker."""
 
     STARTING = auto()
     RUNNING = auto()
     PAUSED = auto()
-    ENDED = auto()  # the generator has finished, or was stopped
+    ENDED = auto()  # the generator finished or was stopped
     FAILED = auto()  # `problem` says why
 
 
@@ -52,9 +52,9 @@ class Worker:
         self.patience = PATIENCE
         self.clock: Callable[[], float] = time.monotonic
         self._paused = self._heard = self._lost = False
-        self._wanted = CREDIT  # bundles asked for and not yet come; the process knows of the first
+        self._wanted = CREDIT  # bundles requested but not yet received; the process starts with the first request
         self._over: State | None = None
-        self._deadline: float | None = None  # for it to have ended by itself
+        self._deadline: float | None = None  # deadline for it to end by itself
         self._silence = 0.0
         self._polled = self.clock()
         self._inbox: SimpleQueue[Bundle | Exception | None] = SimpleQueue()
@@ -68,7 +68,7 @@ class Worker:
             Thread(target=_write, args=(connection, self._orders), daemon=True),
         )
         self._release = weakref.finalize(self, _end, self._process, connection, self._orders, threads)
-        # The exit of multiprocessing would wait for a child that is stopped in its tracks: this one comes before it.
+        # Runs before multiprocessing's own exit handler, which would wait for ever for a suspended child.
         atexit.register(self._release)
         try:
             self._process.start()
@@ -83,7 +83,7 @@ class Worker:
 
     @property
     def state(self) -> State:
-        """How it stands now, as far as `poll` has heard."""
+        """State as of the last `poll`."""
         if self._over is not None:
             return self._over
         if not self._heard:
@@ -92,11 +92,11 @@ class Worker:
 
     @property
     def gone(self) -> bool:
-        """Whether it is over and nothing is left of its process; `poll` sees to it."""
+        """Whether the worker has ended and its process is cleaned up, which `poll` does."""
         return not self._release.alive
 
     def poll(self) -> list[Any]:
-        """Return all messages that have come since; call it once a frame. Never waits."""
+        """Return all messages received since the last call; call it once a frame. Never waits."""
         told: list[Any] = []
         while not self._inbox.empty():
             told += self._hear(self._inbox.get_nowait())
@@ -112,12 +112,12 @@ class Worker:
         return told
 
     def pause(self) -> None:
-        """Take no more turns, and no time of the processor."""
+        """Pause the generator; a paused worker uses no processor time."""
         self._paused = True
         self._order("pause")
 
     def resume(self) -> None:
-        """Go on."""
+        """Resume the generator after a pause."""
         self._paused = False
         self._order("resume")
 
@@ -127,21 +127,21 @@ class Worker:
             self._order("step")
 
     def set_pace(self, per_second: float | None) -> None:
-        """Take so many turns a second at the most; with None, as many as there is time for."""
+        """Limit the generator to `per_second` turns a second; None for no limit."""
         self._order("pace", per_second)
 
     def send(self, command: Any) -> None:
-        """Send a command into the generator; the answer comes with `poll`."""
+        """Send a command into the generator; its answer arrives with `poll`."""
         self._order("command", command)
 
     def stop(self) -> None:
-        """Ask it to end, and let `poll` end it if it does not within a few seconds."""
+        """Ask the worker to end; `poll` ends its process if it does not within a few seconds."""
         if self._over is None and self._deadline is None:
             self._order("stop")
             self._deadline = self.clock() + STOP_SECONDS
 
     def close(self, grace: float = 0.5) -> None:
-        """End it for certain, after waiting so many seconds for it to end by itself. For leaving."""
+        """End the process for certain, after waiting at most `grace` seconds for it to end by itself."""
         if self._over is None:
             self._order("stop")
             self._over = State.ENDED
@@ -159,7 +159,7 @@ class Worker:
             self._orders.put(pickle.dumps((name, value)))
 
     def _hear(self, told: Bundle | Exception | None) -> list[Any]:
-        """Take in one thing the process said; None is the end of the line."""
+        """Handle one bundle, or a reading error, from the process; None means that the connection has closed."""
         if isinstance(told, Bundle):
             self._wanted, self._heard, self._silence = self._wanted - 1, True, 0.0
             if told.ended and self._over is None:
@@ -178,7 +178,7 @@ class Worker:
         return []
 
     def _look_after(self, now: float) -> None:
-        """Notice a process that died, hangs, or was asked to stop and does not."""
+        """Detect a process that died, hangs, or does not stop after a request."""
         if self._lost and not self._process.is_alive():
             if self._deadline is not None:
                 self._finish()
@@ -194,11 +194,11 @@ class Worker:
         self._over, self.problem = State.FAILED, problem
 
     def _finish(self, grace: float = 0.0) -> None:
-        """Count it as ended; its process has so many seconds to be gone."""
+        """Mark the worker as ended; its process has `grace` seconds to exit."""
         self._over, self._deadline = State.ENDED, self.clock() + grace
 
     def _clear_up(self, now: float) -> None:
-        """Get rid of what is left, without waiting for any of it."""
+        """Release the process, its threads and its connection, without waiting."""
         if not self._release.alive:
             return
         if not self._process.is_alive():
@@ -212,7 +212,7 @@ class Worker:
 
 
 def _read(connection: Connection, inbox: SimpleQueue[Bundle | Exception | None]) -> None:
-    """Receive in a thread: half a message from a process that was stopped in the middle of it would block."""
+    """Receive in a thread: half a message from a process suspended in the middle of it would block the window."""
     try:
         while True:
             inbox.put(_understood(connection.recv_bytes(_LONGEST_BUNDLE)))
@@ -223,24 +223,24 @@ def _read(connection: Connection, inbox: SimpleQueue[Bundle | Exception | None])
 def _understood(message: bytes) -> Bundle | Exception:
     try:
         bundle = pickle.loads(message)
-    except Exception as error:  # from bytes that make no sense, anything can come
+    except Exception as error:  # corrupt bytes can raise any exception
         return error
     return bundle if isinstance(bundle, Bundle) else TypeError(f"{type(bundle).__name__}")
 
 
 def _write(connection: Connection, orders: SimpleQueue[bytes | None]) -> None:
-    """Send in a thread: a process that does not read must not hold up the window."""
+    """Send in a thread: a process that does not read must not block the window."""
     try:
         for order in iter(orders.get, None):
             connection.send_bytes(order)
     except OSError:
-        pass  # the reader notices as well, and says so
+        pass  # the reader notices as well, and reports it
 
 
 def _end(
     process: BaseProcess, connection: Connection, orders: SimpleQueue[bytes | None], threads: Iterable[Thread]
 ) -> None:
-    """Leave nothing behind: no process, no thread, no open end."""
+    """End the process and the threads, and close the connection."""
     if process.pid is not None:
         if process.is_alive():
             process.kill()

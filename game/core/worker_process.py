@@ -1,6 +1,6 @@
-"""What runs in a worker's own process: it pulls a generator, and hands over what that tells when it is asked.
+"""Child-process side of a worker: runs the generator, and sends its messages on request.
 
-Nothing here may import pygame or NumPy: the child's settings come before both.
+This module must not import pygame or NumPy: the child process is configured before either is loaded.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import Any, Final
 
-HEARTBEAT: Final = 1.0  # seconds after which it answers even if there is nothing to tell
-GRACE: Final = 3.0  # seconds to come to an end in, once the window has gone
-CREDIT: Final = 2  # bundles wanted ahead: with one, every other turn would pass while the request is under way
-MOST_WAITING: Final = 2000  # messages, before some of those that may be thinned are dropped
+HEARTBEAT: Final = 1.0  # seconds after which it answers even without messages
+GRACE: Final = 3.0  # seconds to end in once the window has closed
+CREDIT: Final = 2  # bundles requested ahead: with one, every other turn would pass while the request is under way
+MOST_WAITING: Final = 2000  # waiting messages above which some of those with `may_thin` are dropped
 MOST_AT_ONCE: Final = 250
 _NICENESS: Final = 5  # the window goes first
-_LONGEST: Final = 300  # letters of a problem: a file can say anything, at any length
+_LONGEST: Final = 300  # characters of a problem: an error's text can have any length
 
 Order = tuple[str, Any]
 Turns = Generator[Iterable[Any], Any, None]
@@ -34,7 +34,7 @@ Function = Callable[..., Turns]
 
 @dataclass
 class Bundle:
-    """What a worker's process tells at once. Without `problem`, one that has ended has ended well."""
+    """Messages that a worker's process sends at once. An end without `problem` is a success."""
 
     messages: list[Any] = field(default_factory=list)
     ended: bool = False
@@ -43,10 +43,10 @@ class Bundle:
 
 
 class Waiting:
-    """Messages that nobody has fetched yet.
+    """Queue of messages not yet fetched.
 
-    Of a class with `newest_only`, the latest alone is kept. Of those with `may_thin`, every other one goes when
-    too many wait. All others stay, in their order.
+    Of a class with `newest_only`, only the latest is kept. Of those with `may_thin`, every other one is dropped when
+    too many wait. All others stay, in order.
     """
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ class Waiting:
         return bool(self._queue or self._newest)
 
     def add(self, messages: Iterable[Any]) -> None:
-        """Let messages wait."""
+        """Append messages to the queue."""
         for message in messages:
             if getattr(message, "newest_only", False):
                 self._newest[type(message)] = message
@@ -70,7 +70,7 @@ class Waiting:
             self._limit = max(MOST_WAITING, 2 * len(self._queue))
 
     def take(self, most: int | None = None) -> list[Any]:
-        """Hand over so many of the queue and all that is newest, which then wait no longer."""
+        """Remove and return up to `most` messages of the queue, and all `newest_only` ones."""
         taken = [*self._queue[:most], *self._newest.values()]
         self._queue = [] if most is None else self._queue[most:]
         self._newest = {}
@@ -78,7 +78,7 @@ class Waiting:
 
 
 def serve(connection: Connection, payload: bytes) -> None:
-    """Run the pickled (function, args, kwargs), whose turns are told through `connection`, until its end."""
+    """Run the pickled (function, args, kwargs) to its end, and send its messages through `connection`."""
     _settle()
     service = _Service(connection)
     signal.signal(signal.SIGTERM, lambda *_: service.terminate())
@@ -92,17 +92,17 @@ def serve(connection: Connection, payload: bytes) -> None:
         bundle.problem, bundle.trace = _in_words(error), traceback.format_exc()
     if service.terminated:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        os.kill(os.getpid(), signal.SIGTERM)  # so that the window hears how it ended
+        os.kill(os.getpid(), signal.SIGTERM)  # so that the window learns how it ended
     with suppress(OSError):
         try:
             bundle.messages = service.waiting.take()
             connection.send(bundle)
-        except Exception as error:  # among the messages is one that cannot be sent
+        except Exception as error:  # one of the messages cannot be pickled
             connection.send(Bundle([], True, bundle.problem or _in_words(error), bundle.trace))
 
 
 def _settle() -> None:
-    """Be a good neighbour to the window: one core, below its priority, ended by it and not by Ctrl-C."""
+    """Configure the process to spare the window: one core, lower priority, and Ctrl-C ignored."""
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ[f"{library}_NUM_THREADS"] = "1"
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -112,36 +112,36 @@ def _settle() -> None:
 
 def _in_words(error: Exception) -> str:
     said = " ".join(str(error)[:_LONGEST].split())
-    if isinstance(error, OSError) and error.strerror:  # without its number, which helps nobody
+    if isinstance(error, OSError) and error.strerror:  # without the error number, which does not help a player
         said = f"{error.strerror}: {error.filename}" if error.filename else error.strerror
-    # These say in their own words what a person can do something about; of others the kind is needed as well.
+    # Messages of these errors are clear to a person; others need the name of the exception as well.
     if said and isinstance(error, ArithmeticError | ValueError | OSError | MemoryError | ImportError):
         return said
     return f"{type(error).__name__}: {said}".removesuffix(": ")
 
 
 class _Service:
-    """Turns a generator at the pace that is asked for, and answers between turns."""
+    """Loop that advances a generator at the requested pace, and answers the window between turns."""
 
     def __init__(self, connection: Connection) -> None:
         self.waiting = Waiting()
         self._connection = connection
         self._orders: SimpleQueue[Order] = SimpleQueue()
         self.terminated = self._stopped = self._paused = False
-        self._steps = 0  # to be taken in spite of the pause
-        self._period = 0.0  # seconds from turn to turn
-        self._due = 0.0  # when the next turn is
-        self._wanted = CREDIT  # bundles that the window has asked for
-        self._since = time.monotonic()  # when it last asked, or was told something
+        self._steps = 0  # single turns requested during a pause
+        self._period = 0.0  # seconds between turns
+        self._due = 0.0  # time of the next turn
+        self._wanted = CREDIT  # bundles the window has requested
+        self._since = time.monotonic()  # time of the window's last request, or of the last bundle sent
         Thread(target=_listen, args=(connection, self._orders), daemon=True).start()
 
     def terminate(self) -> None:
-        """End as when the window asks for it, so that a run keeps itself; called from within a signal's handler."""
+        """End as on a request of the window, so that a run saves itself; called from a signal handler."""
         self.terminated = True
         self._orders.put(("stop", None))
 
     def run(self, turns: Turns) -> None:
-        """Turn until the generator or the window ends it."""
+        """Advance the generator until it or the window ends the run."""
         try:
             self.waiting.add(next(turns))  # a generator takes commands from its second turn on
             while not self._stopped:
@@ -170,7 +170,7 @@ class _Service:
             self._connection.send(Bundle(self.waiting.take(MOST_AT_ONCE)))
 
     def _follow_orders(self, turns: Turns) -> None:
-        """Do all that has been ordered; with nothing else to do, wait for an order."""
+        """Carry out all pending orders of the window; wait for one until the next turn is due."""
         patience = self._seconds_to_turn(time.monotonic())
         if self._wanted and self.waiting:
             patience = 0.0
@@ -203,7 +203,7 @@ class _Service:
 
 
 def _listen(connection: Connection, orders: SimpleQueue[Order]) -> None:
-    """Pass on what the window orders. When it has gone, see to it that this process does not outlive it."""
+    """Receive the window's orders in a thread. Once the window has closed, make sure that this process ends too."""
     while True:
         try:
             orders.put(connection.recv())

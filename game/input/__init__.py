@@ -1,1 +1,1 @@
-"""Keys, gamepads and the mouse, turned into what a pilot holds and what a player commands."""
+"""Input devices: keyboard, gamepads and mouse, mapped to held flight controls and to commands."""

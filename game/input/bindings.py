@@ -1,4 +1,4 @@
-"""Which keys and buttons mean what, as the game comes and as the player changes it.
+"""Key and button bindings: the defaults, and the player's changes.
 
 Enter, Escape and the arrows, and a pad's A, B, Start and D-pad, keep what they mean in menus whatever is changed:
 nobody can lock themselves out.
@@ -15,7 +15,7 @@ import pygame
 
 
 class Command(Enum):
-    """One press, whatever device it came from."""
+    """Command given by one press, on any device."""
 
     CONFIRM = auto()
     BACK = auto()
@@ -35,11 +35,11 @@ class Command(Enum):
     MODE = auto()
     FULLSCREEN = auto()
     SCREENSHOT = auto()
-    UNPLUGGED = auto()  # no press: the pad in use was pulled out
+    UNPLUGGED = auto()  # not a press: the gamepad in use was unplugged
 
 
 class Held(Enum):
-    """What a pilot holds down."""
+    """Flight control that a pilot holds down."""
 
     MAIN = auto()
     LEFT = auto()
@@ -56,7 +56,7 @@ TRIGGERS: Final = {
     pygame.CONTROLLER_AXIS_TRIGGERRIGHT: TRIGGER_RIGHT,
 }
 
-# What always holds.
+# Fixed bindings.
 FIXED_KEYS: Final[Table] = {
     Command.CONFIRM: (pygame.K_RETURN, pygame.K_KP_ENTER),
     Command.BACK: (pygame.K_BACKSPACE, pygame.K_AC_BACK),
@@ -75,7 +75,7 @@ FIXED_BUTTONS: Final[Table] = {
     Command.LEFT: (pygame.CONTROLLER_BUTTON_DPAD_LEFT,),
     Command.RIGHT: (pygame.CONTROLLER_BUTTON_DPAD_RIGHT,),
 }
-# What the player can change, in the order in which it is listed. A key of an engine may be one of the menus' as well:
+# Default bindings the player can change, in the order of the list. An engine may share a key with the menus:
 # Up thrusts in flight and moves in a menu.
 KEYS: Final[Table] = {
     Held.MAIN: (pygame.K_UP, pygame.K_SPACE, pygame.K_w),
@@ -111,14 +111,14 @@ BUTTONS: Final[Table] = {
     Command.FULLSCREEN: (),
     Command.SCREENSHOT: (),
 }
-# Letters that move in menus as long as they mean nothing else.
+# Letters that move in menus unless they are bound to something else.
 _SPARE_KEYS: Final[Mapping[int, Command]] = {
     pygame.K_w: Command.UP,
     pygame.K_s: Command.DOWN,
     pygame.K_a: Command.LEFT,
     pygame.K_d: Command.RIGHT,
 }
-# Keys that screens, lists and text lines have a use of their own for, and those that only go with others.
+# Keys that screens, lists and text lines use themselves, and modifier keys.
 _TAKEN_KEYS: Final = frozenset({
     pygame.K_SPACE, pygame.K_TAB, pygame.K_DELETE, pygame.K_HOME, pygame.K_END, pygame.K_F2, pygame.K_z,
     *range(pygame.K_0, pygame.K_9 + 1), *range(pygame.K_KP1, pygame.K_KP0 + 1),
@@ -132,20 +132,20 @@ _ENGINE_BUTTONS: Final = frozenset({
 
 
 def _named(prefix: str) -> dict[str, int]:
-    """Return codes by the names that pygame has for them, for the settings file."""
+    """Return pygame's codes with this prefix by their names, for the settings file."""
     return {name.removeprefix(prefix).lower(): code for name, code in vars(pygame).items() if name.startswith(prefix)}
 
 
 @dataclass(frozen=True)
 class Device:
-    """What is special to keyboards, or to pads.
+    """Bindings and rules of one kind of device, keyboards or gamepads.
 
     Attributes:
-        standard: what the game comes with, of all that can be changed.
-        fixed: what always holds.
-        spare: what a key means in menus as long as nothing else wants it.
-        taken: keys that no command may have.
-        engines: keys that an engine may have, although menus or screens have a use for them.
+        standard: default bindings that can be changed.
+        fixed: bindings that cannot be changed.
+        spare: meaning of a key in menus while it is bound to nothing else.
+        taken: keys that no command may be bound to.
+        engines: keys that an engine may have although menus or screens use them.
         names: codes by name.
 
     """
@@ -166,11 +166,11 @@ PAD: Final = Device(
 
 
 class Bindings:
-    """What keys, or buttons, mean: what the player has changed, over what the game comes with.
+    """Bindings of one device: the player's changes over the defaults.
 
     Attributes:
-        device: keyboard or pad.
-        table: every meaning that can be changed, with its keys; the first is the one to name.
+        device: the keyboard or gamepad rules.
+        table: keys of every meaning that can be changed; the first key is the one that is named.
 
     """
 
@@ -184,28 +184,28 @@ class Bindings:
         return self.device.fixed.get(meaning, ()) + self.table.get(meaning, ())
 
     def command(self, code: int) -> Command | None:
-        """Return what a press means."""
+        """Return the command a key gives, if any."""
         return self._commands.get(code)
 
     def may(self, meaning: Meaning, code: int) -> bool:
-        """Whether a key can be given that meaning at all."""
+        """Whether a key may be bound to that meaning."""
         device = self.device
         if code in device.standard[meaning] or (isinstance(meaning, Held) and code in device.engines):
             return True
         return code not in device.taken and not any(code in codes for codes in device.fixed.values())
 
     def bereft(self, meaning: Meaning, code: int) -> Meaning | None:
-        """Return what would be left without any key if this one meant `meaning`; None if nothing would."""
+        """Return the meaning that would lose its last key if `code` were bound to `meaning`; None if there is none."""
         owner = self._owner(meaning, code)
         if owner is None or owner in self.device.fixed or self._left(owner, meaning, code):
             return None
         return owner
 
     def bind(self, meaning: Meaning, code: int) -> Meaning | None:
-        """Let a key mean this, and nothing else that can be changed. Returns what has lost it, if anything has.
+        """Bind a key to a meaning, and unbind it from any other; return the meaning that lost it, if any.
 
-        What has lost its only key gets those that are given up here, as far as it may have them. Raises ValueError
-        where it may have none of them: nothing is ever left without a key.
+        A meaning that loses its only key gets the keys that `meaning` gives up, as far as allowed. Raises ValueError
+        if none of them is allowed: no meaning is ever left without a key.
         """
         if (poor := self.bereft(meaning, code)) is not None:
             raise ValueError(f"{poor.name} would be left without any key")
@@ -217,7 +217,7 @@ class Bindings:
         return loser
 
     def _owner(self, meaning: Meaning, code: int) -> Meaning | None:
-        """Return what else has that key, of all that can be changed."""
+        """Return the other changeable meaning that has that key, if any."""
         return next((other for other, codes in self.table.items() if code in codes and other is not meaning), None)
 
     def _left(self, loser: Meaning, meaning: Meaning, code: int) -> tuple[int, ...]:
@@ -226,9 +226,9 @@ class Bindings:
         return left or tuple(each for each in self.table[meaning] if each != code and self.may(loser, each))
 
     def reset(self, meaning: Meaning | None = None) -> None:
-        """Give one meaning, or all of them, back what the game comes with.
+        """Restore the defaults of one meaning, or of all.
 
-        Others let go of those keys; what would be left without any gets its own back, too.
+        Other meanings lose those keys; one that would be left without any gets its defaults back, too.
         """
         if meaning is None:
             self.table = dict(self.device.standard)
@@ -237,7 +237,7 @@ class Bindings:
         self._index()
 
     def _restore(self, meanings: list[Meaning]) -> None:
-        """Reset meanings, and whatever is left without a key by that: at most once each, for their own keys differ."""
+        """Reset meanings, and each one left without a key by that; at most once each, since their defaults differ."""
         for meaning in meanings:
             own = self.device.standard[meaning]
             for other, codes in self.table.items():
@@ -247,11 +247,11 @@ class Bindings:
             self.table[meaning] = own
 
     def _lacks(self, meaning: Meaning) -> bool:
-        """Whether something that comes with a key is left without any."""
+        """Whether a meaning with a default key has no key left."""
         return bool(self.device.standard[meaning]) and not self.codes(meaning)
 
     def to_dict(self) -> dict[str, list[str]]:
-        """Return what differs from what the game comes with, in words for the settings file."""
+        """Return the changes from the defaults, as names for the settings file."""
         names = {code: name for name, code in self.device.names.items()}
         return {
             meaning.name.lower(): [names.get(code, f"#{code}") for code in codes]
@@ -260,7 +260,7 @@ class Bindings:
         }
 
     def follow(self, saved: Mapping[str, Any]) -> None:
-        """Take what `to_dict` returned; what makes no sense is passed over, and the first owner of a key keeps it."""
+        """Apply what `to_dict` returned; invalid entries are ignored, and the first owner of a key keeps it."""
         self.table, taken = dict(self.device.standard), set[int]()
         changed = [meaning for meaning in self.table if isinstance(saved.get(meaning.name.lower()), list)]
         for meaning in changed:
@@ -281,7 +281,7 @@ class Bindings:
         return self.device.names.get(word)
 
     def _index(self) -> None:
-        """Look up by key: what is fixed comes before what was chosen, and that before a spare letter."""
+        """Rebuild the lookup by key: fixed bindings come first, then chosen ones, then spare letters."""
         self._commands = dict(self.device.spare)
         for table in (self.table, self.device.fixed):
             for meaning, codes in table.items():

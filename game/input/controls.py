@@ -1,4 +1,4 @@
-"""Keys and gamepads, turned into what a pilot holds and what a player commands."""
+"""Keyboard and gamepad controls: held flight controls, and commands."""
 
 from __future__ import annotations
 
@@ -32,40 +32,40 @@ STICK_PUSHED: Final = 20000
 STICK_RELEASED: Final = 12000
 TRIGGER_PRESSED: Final = 8000
 TRIGGER_RELEASED: Final = 5000
-# Signs of what a stick does, beside the buttons.
+# Signs of stick movements, in addition to the buttons.
 _STICK_SIGNS: Final[dict[Meaning, int]] = {
     Held.LEFT: signs.TURN,
     Held.RIGHT: signs.TURN,
     Command.SLOWER: signs.STICK_LEFT,
     Command.FASTER: signs.STICK_RIGHT,
 }
-# Keys of the keypad that write something.
+# Keypad keys that type a character.
 _KEYPAD: Final = frozenset({code for name, code in KEYBOARD.names.items() if name[:2] == "kp"} - {pygame.K_KP_ENTER})
 _KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
 _STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
 
 
 class KeyName(str):
-    """The name of a key, or the sign of a button, that a click of the mouse takes for a press of the key.
+    """Name of a key, or sign of a button, that acts as a press of it when clicked.
 
     Attributes:
-        press: the event that the click becomes.
+        press: the event that a click is turned into.
 
     """
 
     press: pygame.event.Event
 
     def __new__(cls, text: str, key: int, command: Command | None = None) -> KeyName:
-        """Name a key by a text."""
+        """Make the name from a text."""
         name = super().__new__(cls, text)
         name.press = pygame.Event(pygame.KEYDOWN, key=key, mod=0, unicode="", command=command)
         return name
 
 
 def translate(event: pygame.event.Event) -> Command | None:
-    """Return the command an event means, if any, as `Controls.process` has marked it.
+    """Return the command of an event, if any, as marked by `Controls.process`.
 
-    An event that no `Controls` has seen means what it does in the game as it comes.
+    An event that no `Controls` has processed has its default meaning.
     """
     if hasattr(event, "command"):
         command: Command | None = event.command
@@ -74,7 +74,7 @@ def translate(event: pygame.event.Event) -> Command | None:
 
 
 def presses_main(event: pygame.event.Event) -> bool:
-    """Tell whether a key presses the main engine, which in a menu confirms as well; Space always does."""
+    """Whether a key fires the main engine, and so confirms in a menu; Space always does."""
     return event.type == pygame.KEYDOWN and (
         event.key == pygame.K_SPACE or event.key in getattr(event, "main_keys", KEYBOARD.standard[Held.MAIN])
     )
@@ -89,7 +89,7 @@ def _command(event: pygame.event.Event, keys: Bindings, buttons: Bindings) -> Co
 
 
 def _types(event: pygame.event.Event) -> bool:
-    """Tell whether a press writes a letter: SDL numbers such keys by what they write, and others beyond all letters."""
+    """Whether a press types a letter: SDL numbers such keys by their character, and others above all characters."""
     if event.type != pygame.KEYDOWN:
         return False
     held = getattr(event, "mod", 0) & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META)
@@ -101,19 +101,19 @@ class _Pad:
     buttons: set[int] = field(default_factory=set)
     axes: dict[int, int] = field(default_factory=dict)
     pushed: set[Command] = field(default_factory=set)
-    device: Any = None  # SDL closes a pad that nobody holds on to
+    device: Any = None  # SDL closes a gamepad without references
     family: signs.Family = "xbox"
 
 
 class Controls:
-    """What is held down at the moment, on the keyboard and on every pad together.
+    """Combined state of the keyboard and all gamepads.
 
     Attributes:
-        keys, buttons: what the keyboard's keys and the pads' buttons mean.
-        mouse_in_use: whether the mouse was touched last; no ring is drawn around what is in focus then.
-        listening: whether the next press is to be bound, and commands nothing.
-        spelling: whether letters are typed into a line: a key that types one commands nothing.
-        pad_name: what the pad plugged in last calls itself; empty if it was pulled out again at once.
+        keys, buttons: bindings of the keyboard and of the gamepads.
+        mouse_in_use: whether the mouse was used last; then no ring is drawn around the focused widget.
+        listening: whether the next press is to be bound; it gives no command.
+        spelling: whether text is being entered: a key that types a character gives no command.
+        pad_name: reported name of the gamepad plugged in last; empty if it was unplugged at once.
 
     """
 
@@ -121,28 +121,28 @@ class Controls:
         self.keys, self.buttons = Bindings(KEYBOARD), Bindings(PAD)
         self._keys: set[int] = set()
         self._pads: dict[int, _Pad] = {}
-        self._used: int | None = None  # the pad touched last, while a pad is in use
+        self._used: int | None = None  # the gamepad used last, while a gamepad is in use
         self.mouse_in_use = self.listening = self.spelling = False
         self.pad_name = ""
 
     @property
     def pad_in_use(self) -> bool:
-        """Whether a pad was touched last, rather than the keyboard; hints show its buttons then."""
+        """Whether a gamepad was used last, rather than the keyboard; then hints show its buttons."""
         return self._used is not None
 
     @property
     def pads(self) -> int:
-        """How many pads there are."""
+        """Number of gamepads connected."""
         return len(self._pads)
 
     @property
     def main(self) -> bool:
-        """Whether the main engine is asked for."""
+        """Whether the main engine's control is held."""
         return self._held(Held.MAIN)
 
     @property
     def steer(self) -> int:
-        """0 for none (or both at once), 1 for left, 2 for right."""
+        """Steering: 0 for none or both, 1 for left, 2 for right."""
         left, right = self._held(Held.LEFT), self._held(Held.RIGHT)
         return 0 if left == right else (1 if left else 2)
 
@@ -154,9 +154,9 @@ class Controls:
     # Names
 
     def word(self, meaning: Meaning) -> str:
-        """Name the key for a meaning, or show the button while a pad is in use; the key, if no button has it.
+        """Return the name of a meaning's key, or the sign of its button if it has one and a gamepad is in use.
 
-        A command's name is a KeyName. While the mouse is in use, what flies is shown as its buttons.
+        A command's name is a KeyName. While the mouse is in use, flight controls are shown as mouse buttons.
         """
         if isinstance(meaning, Held) and self.mouse_in_use:
             return self.pad_sign(signs.MOUSE_LEFT if meaning is Held.MAIN else signs.MOUSE_RIGHT)
@@ -168,33 +168,33 @@ class Controls:
 
     @staticmethod
     def key(code: int) -> str:
-        """Name a key that means the same always, as a KeyName."""
+        """Return the name of a fixed key, as a KeyName."""
         return KeyName(key_name(code), code)
 
     @property
     def arrows(self) -> str:
-        """What moves the focus."""
+        """Name of the keys that move the focus."""
         return self.pad_sign(signs.CROSS) if self.pad_in_use else texts.ARROWS
 
     @property
     def arrows_aside(self) -> str:
-        """What moves a slider."""
+        """Name of the keys that move a slider."""
         return self.pad_sign(signs.CROSS) if self.pad_in_use else texts.ARROWS_ASIDE
 
     def key_names(self, meaning: Meaning) -> list[str]:
-        """Name every key of a meaning, as written on the keyboard."""
-        if meaning is Command.BACK:  # in a form, what pauses goes back; its own keys are less known
+        """Return the name of every key of a meaning, as written on the keyboard."""
+        if meaning is Command.BACK:  # in a form, the pause keys go back too; the keys of Back itself are less familiar
             meaning = Command.PAUSE
         return [key_name(code) for code in self.keys.codes(meaning)]
 
     def pad_signs(self, meaning: Meaning) -> list[str]:
-        """Show every button and stick of a meaning, as the pad in use, or the one plugged in last, has them."""
+        """Return the signs of a meaning's buttons and sticks, for the gamepad in use or the one plugged in last."""
         stick = [_STICK_SIGNS[meaning]] if meaning in _STICK_SIGNS else []
         signs = dict.fromkeys([*stick, *self.buttons.codes(meaning)])
         return [self.pad_sign(number) for number in signs]
 
     def pad_sign(self, number: int) -> str:
-        """Show a button by its number, or one of the further signs of `game.input.signs`."""
+        """Return the sign of a button by its number, or one of the further signs of `game.input.signs`."""
         pads = [*self._pads.values()]
         pad = self._pads.get(-1 if self._used is None else self._used) or (pads[-1] if pads else _Pad())
         return signs.sign(pad.family, number)
@@ -202,12 +202,12 @@ class Controls:
     # Events
 
     def follow(self, settings: Settings) -> None:
-        """Take what the player has changed."""
+        """Apply the player's bindings."""
         self.keys.follow(settings.keys)
         self.buttons.follow(settings.buttons)
 
     def release_all(self) -> None:
-        """Let go of everything: the window no longer hears what is released."""
+        """Release every control, because the window will not receive the release events."""
         self._keys.clear()
         for pad in self._pads.values():
             pad.buttons.clear()
@@ -215,7 +215,7 @@ class Controls:
             pad.pushed.clear()
 
     def process(self, event: pygame.event.Event) -> None:
-        """Follow one event, and mark it with the `command` it means."""
+        """Process one event, and mark it with its `command`."""
         match event.type:
             case pygame.KEYDOWN:
                 self._keys.add(event.key)
@@ -270,7 +270,7 @@ class Controls:
             device = controller.Controller(device_index)
             instance = device.as_joystick().get_instance_id()
         except pygame.error:
-            return  # pulled out again before its turn came
+            return  # unplugged again before this event was processed
         self.pad_name = device.name or ""
         pad = self._pads.setdefault(instance, _Pad())
         pad.device, pad.family = device, signs.family_of(self.pad_name)
@@ -298,7 +298,7 @@ class Controls:
                 pad.pushed.discard(command)
 
     def _pull(self, event: pygame.event.Event, pad: _Pad, trigger: int) -> None:
-        """Take a trigger for a button."""
+        """Treat a trigger's axis as a button."""
         if event.value > TRIGGER_PRESSED and trigger not in pad.buttons:
             pad.buttons.add(trigger)
             event.command, event.trigger = None if self.listening else self.buttons.command(trigger), trigger
@@ -308,7 +308,7 @@ class Controls:
 
 
 def key_name(code: int) -> str:
-    """Name a key as it is written on it."""
+    """Return the label of a key."""
     name = _KEY_NAMES.get(code)
     if name is None:
         return chr(code).upper() if 32 < code < 0x10000 and chr(code).isprintable() else f"#{code}"
@@ -316,5 +316,5 @@ def key_name(code: int) -> str:
 
 
 def names(words: Iterable[str]) -> str:
-    """Write several keys, or signs, in a row."""
+    """Join the names of several keys, or signs."""
     return "   ".join(words)

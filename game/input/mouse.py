@@ -1,4 +1,4 @@
-"""Flying with the mouse alone: the left button fires, the right one turns the craft towards the pointer."""
+"""Mouse flight controls: the left button fires the main engine, the right one turns towards the pointer."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _BUTTONS: Final = (_FIRE, _TURN)
 
 
 class MouseStick:
-    """What the mouse's buttons hold down."""
+    """Flight controls held by the mouse buttons."""
 
     def __init__(self) -> None:
         self._down: set[int] = set()
@@ -19,11 +19,11 @@ class MouseStick:
 
     @property
     def holds(self) -> bool:
-        """Whether anything is held down."""
+        """Whether a mouse button is held down."""
         return bool(self._down)
 
     def take(self, event: pygame.event.Event) -> None:
-        """Follow one event, its position in points."""
+        """Process one event, its position in points."""
         if event.type == pygame.MOUSEBUTTONDOWN and event.button in _BUTTONS:
             self._down.add(event.button)
             self._x = event.pos[0]
@@ -35,10 +35,10 @@ class MouseStick:
             self.release()
 
     def release(self) -> None:
-        """Let go: what happens to the buttons will not be heard."""
+        """Release both buttons, because their release will not be reported."""
         self._down.clear()
 
     def action(self, craft: float) -> int:
-        """Return the lander's action, 3 · main + steer, for a craft that is drawn so far across, in points."""
+        """Return the lander's action, 3 · main + steer, for a craft drawn at the x coordinate `craft`, in points."""
         steer = (1 if self._x < craft else 2) if _TURN in self._down else 0
         return 3 * (_FIRE in self._down) + steer

@@ -1,4 +1,4 @@
-"""Signs of a pad's buttons and of a mouse: which character of a private script stands for which button.
+"""Signs of gamepad and mouse buttons: one private-use character for each.
 
 Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence.
 `game.drawing.glyphs` draws them.
@@ -18,7 +18,7 @@ TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT = 40, 41, 42, 43, 
 FIRST: Final = 0xE000
 FAMILY: Final = 0x100
 
-# What surrounds a sign, and what stands in it: letters, or the name of a drawing.
+# A sign's outline, and its content: letters, or the name of a mark.
 _XBOX: Final[dict[int, tuple[str, str]]] = {
     pygame.CONTROLLER_BUTTON_A: ("round", "A"),
     pygame.CONTROLLER_BUTTON_B: ("round", "B"),
@@ -73,7 +73,7 @@ _FAMILY_WORDS: Final[dict[Family, tuple[str, ...]]] = {
 
 
 def family_of(name: str) -> Family:
-    """Return whose signs a pad has, by the name it gives itself; letters as on an Xbox's for all that are not known."""
+    """Return the family of signs for a gamepad, from the name it reports; Xbox letters for an unknown one."""
     name = name.lower()
     if "xbox" in name:
         return "xbox"
@@ -81,5 +81,5 @@ def family_of(name: str) -> Family:
 
 
 def sign(family: Family, button: int) -> str:
-    """Return the character that shows a pad's button, or one of the further signs above."""
+    """Return the character for a gamepad button, or for one of the further signs above."""
     return chr(FIRST + FAMILIES.index(family) * FAMILY + button)
