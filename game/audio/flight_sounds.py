@@ -1,4 +1,4 @@
-"""What a flight sounds like: fire that follows the thrust, touches, warnings, and the height as a note."""
+"""Sounds of a flight: engines that follow the thrust, touches, warnings, and the altitude tone."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ _ENDS: Final = {
     Outcome.OUT_OF_BOUNDS: "lost",
     Outcome.TIMED_OUT: "lost",
 }
-_HARD_BRAKING: Final = 0.8  # share of the greatest deceleration from which on a fall is worth a warning
-_REACTION: Final = 0.4  # seconds until a warned pilot brakes
+_HARD_BRAKING: Final = 0.8  # share of the greatest deceleration above which a fall is warned of
+_REACTION: Final = 0.4  # reaction time of a warned pilot in seconds
 _WARN_TILT_BELOW: Final = 6.0  # metres
 _WARN_EVERY: Final = 40  # steps
 # The altitude tone has a note for every half metre near the ground, and for every metre above.
 HEIGHTS: Final = np.array([*np.arange(0.0, 4.0, 0.5), *np.arange(4.0, 4.0 + RUNGS - 8)])
-_STICKS: Final = 0.12  # metres beyond a note's bounds before the next is struck: who hovers there is left in peace
+_STICKS: Final = 0.12  # metres of hysteresis around a note's bounds, so that hovering there does not repeat notes
 _STRUCK_AGAIN: Final = 90  # steps
-_PAD_ASIDE: Final = 12.0  # metres to the pad at which its side can't be heard more clearly
+_PAD_ASIDE: Final = 12.0  # metres to the pad at which the sound is panned fully to its side
 
 
 class FlightSound:
-    """Listens to one lander of an environment; `follow` once in every step.
+    """Sounds of one lander of an environment; call `follow` once in every step.
 
     Args:
-        sound: what plays.
-        env: the landers.
-        pace: that of what is seen: a crash in slow motion is heard so.
-        warns: whether it warns of what would be a crash.
+        sound: the mixer.
+        env: the landers' environment.
+        pace: pace of the picture; a crash in slow motion sounds slow as well.
+        warns: whether to warn of a likely crash.
 
     """
 
@@ -48,7 +48,7 @@ class FlightSound:
         self._rest = self._turn = 0
 
     def follow(self, thrust: Doubles, slot: int = 0) -> None:
-        """Sound as a lander does now; `thrust` (3,) is its main engine's, left-hand and right-hand jet's, 0 to 1."""
+        """Play a lander's sounds of this step; `thrust` (3,) is main engine, left-hand and right-hand jet, 0 to 1."""
         env = self._env
         if slot != self._slot or env.time[slot] < self._time:
             self._begin(slot)
@@ -66,7 +66,7 @@ class FlightSound:
                 self._warn()
 
     def _begin(self, slot: int) -> None:
-        """Turn to a lander as it is: what happened to it before was not heard here."""
+        """Start to follow another lander or flight, without sounds for what happened to it before."""
         env = self._env
         self._slot, self._time = slot, float(env.time[slot])
         self._outcome = Outcome(int(env.outcome[slot]))
@@ -75,7 +75,7 @@ class FlightSound:
         self._rung, self._since_note = -1, 0
 
     def _touch(self) -> None:
-        """A blow for every foot that comes down, as hard as it did; and contact light, once."""
+        """Play a thud for every foot that touches, as loud as its speed; and the contact note, once."""
         env, slot = self._env, self._slot
         down = env.contacts[slot]
         if (down & ~self._down).any() and env.outcome[slot] != Outcome.CRASHED:
@@ -86,7 +86,7 @@ class FlightSound:
         self._down, self._fall = down.copy(), -float(env.velocity[slot, 1])
 
     def _warn(self) -> None:
-        """Warn of what would be a crash soon; of two things, in turns."""
+        """Warn of a likely crash, by speed or by tilt; alternate if both apply."""
         env, slot = self._env, self._slot
         warnings = []
         if self._falls_too_fast():
@@ -99,7 +99,7 @@ class FlightSound:
             self._rest, self._turn = _WARN_EVERY, self._turn + 1
 
     def _falls_too_fast(self) -> bool:
-        """Whether hardly less than full thrust, from now on, would bring it down as slowly as it must be."""
+        """Whether only nearly full thrust, after the reaction time, would still slow the lander to a safe touchdown."""
         env, slot = self._env, self._slot
         descent = -float(env.velocity[slot, 1])
         if descent <= env.limits.touch_speed:
@@ -109,7 +109,7 @@ class FlightSound:
         return descent**2 - env.limits.touch_speed**2 > 2 * max(left, 0.0) * _HARD_BRAKING * braking
 
     def _sound_height(self) -> None:
-        """Strike a note for each step of height that is passed, so that their pace is the speed, on the pad's side."""
+        """Play a note for each step of height passed, panned to the pad's side; their rate tells the speed."""
         env, slot = self._env, self._slot
         height = float(env.altitude[slot])
         aside = float(env.pad[slot, 0] - env.position[slot, 0])

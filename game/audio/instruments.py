@@ -1,6 +1,6 @@
-"""The sounds themselves: each a function that makes it, where it belongs in the mix, and how loud it is there.
+"""Instruments: for every sound of the game, the function that makes it, its mixing group and its level.
 
-All notes are of one key, the open fifths of D, so that what sounds together agrees. Levels are peaks at full
+All notes are of one key, the open fifths of D, so that sounds played together agree. Levels are peaks at full
 volume; the loudest moment of a flight, all of it at once, still stays below full scale.
 """
 
@@ -21,19 +21,19 @@ GROUPS: Final = ("effects", "interface", "ambience", "altitude")
 _D4: Final = 293.66  # Hz
 _SCALE: Final = (0, 2, 3, 5, 7, 9, 10)  # the Dorian mode, in semitones
 RUNGS: Final = 26  # notes of the altitude tone
-_BEDS: Final = 6.0  # seconds of a loop of noise, long enough not to be heard going round
+_BEDS: Final = 6.0  # seconds of a noise loop, long enough that its repetition is not heard
 _PAD: Final = 24.0
 
 
 @dataclass(frozen=True)
 class Instrument:
-    """How one sound is made and mixed.
+    """Recipe of one sound: how it is made and mixed.
 
     Attributes:
         make: returns the sound, mono or stereo, at any level.
-        group: whose volume it follows, one of GROUPS.
+        group: the volume group, one of GROUPS.
         level: its peak, in dB below full scale.
-        loops: whether it goes round.
+        loops: whether it repeats without a seam.
 
     """
 
@@ -43,18 +43,18 @@ class Instrument:
     loops: bool = False
 
     def render(self, key: str) -> NDArray[np.int16]:
-        """Return the sound as the mixer takes it, (n, 2); the same one every time for a key."""
+        """Return the sound as 16-bit stereo (n, 2) for the mixer; the same every time for the same key."""
         signal = self.make(np.random.default_rng(list(key.encode())))
         return synth.pcm(synth.at_peak(signal, self.level))
 
 
 def note(semitones: float) -> float:
-    """Return the frequency of a note so many semitones above the D over middle C."""
+    """Return the frequency in Hz of the note `semitones` above the D over middle C."""
     return _D4 * float(2 ** (semitones / 12))
 
 
 def rung(number: int) -> float:
-    """Return the frequency of a note of the altitude tone: a scale that climbs from the E under middle C."""
+    """Return the frequency in Hz of a note of the altitude tone: a scale upwards from the E under middle C."""
     octave, degree = divmod(number + 1, len(_SCALE))
     return note(12 * (octave - 1) + _SCALE[degree])
 
@@ -63,7 +63,7 @@ def rung(number: int) -> float:
 
 
 def _engine(rng: np.random.Generator) -> Signal:
-    """Rumble in the middle, a breath of roar to both sides; a slow flutter keeps it alive."""
+    """Main engine: a rumble in the middle and a faint roar to both sides, with a slow flutter."""
     flutter = 1 + 0.16 * synth.noise(rng, _BEDS, band_pass(2.5, 9, 2))
     rumble = synth.noise(rng, _BEDS, lambda f: high_pass(36)(f) * low_pass(105, 1.5)(f))
     roar = [synth.noise(rng, _BEDS, lambda f: high_pass(90)(f) * low_pass(340, 1.25)(f)) for _ in range(2)]
@@ -71,7 +71,7 @@ def _engine(rng: np.random.Generator) -> Signal:
 
 
 def _jet(rng: np.random.Generator, pan: float) -> Signal:
-    """Cold gas: a hiss without an edge, from the side it comes out of."""
+    """Cold-gas jet: a soft hiss from the side of the jet."""
     shimmer = 1 + 0.10 * synth.noise(rng, _BEDS, band_pass(5, 20, 2))
     hiss = synth.noise(rng, _BEDS, lambda f: high_pass(700, 1.5)(f) * low_pass(2300, 1.25)(f))
     return synth.place(shimmer * hiss, pan)
@@ -81,7 +81,7 @@ def _jet(rng: np.random.Generator, pan: float) -> Signal:
 
 
 def _thud(rng: np.random.Generator) -> Signal:
-    """Feet on the pad: a soft low blow, and the struts' brief answer."""
+    """Touch of a foot: a soft, low thud, and a short ring of the struts."""
     blow = sine(glide(112, 52, 0.5, 0.05), 0.5) * strike(0.5, 0.003, 0.42)
     dust = synth.noise(rng, 0.5, low_pass(420, 1)) * strike(0.5, 0.004, 0.30)
     struts = partials(311, ((1, 1, 0.16), (1.47, 0.7, 0.12), (2.63, 0.4, 0.08)), 0.5) * edges(0.5, 0.002, 0.02)
@@ -89,34 +89,34 @@ def _thud(rng: np.random.Generator) -> Signal:
 
 
 def _bell(rng: np.random.Generator) -> Signal:
-    """Contact light: one clear, high note."""
+    """First contact: one clear, high note."""
     rows = ((1, 1, 1.3), (2.0, 0.35, 0.8), (2.76, 0.16, 0.5), (5.4, 0.04, 0.2))
     return synth.room(rng, partials(note(19), rows, 1.4) * edges(1.4, 0.004, 0.05), 1.2, 0.35)
 
 
 def _landed(rng: np.random.Generator) -> Signal:
-    """A chord that opens upward, one mallet after another."""
+    """Landing: a rising chord, struck note by note."""
     struck = [synth.late(_mallet(semitones, 2.0), 0.14 * i) for i, semitones in enumerate((-12, -5, 2, 7, 14))]
     return synth.room(rng, together(*struck), 2.0, 0.45)
 
 
 def _lost(rng: np.random.Generator) -> Signal:
-    """Out of sight or out of time: two notes that sink."""
+    """Flight lost, out of the area or out of time: two falling notes."""
     return synth.room(rng, together(_mallet(-5, 1.2), synth.late(_mallet(-12, 1.6), 0.24)), 1.6, 0.4)
 
 
 def _crash(rng: np.random.Generator) -> Signal:
-    """What breaks, in a large room."""
+    """Crash: a blast in a large room."""
     return synth.room(rng, _blast(rng), 2.2, 0.4)
 
 
 def _slow_crash(rng: np.random.Generator) -> Signal:
-    """The same in slow motion, and so deeper at first; half as slow as the picture, to be heard on any loudspeaker."""
+    """Crash in slow motion, deeper at first; slowed half as much as the picture, to be audible on any loudspeaker."""
     return synth.room(rng, synth.slowed(_blast(rng), 0.55, 0.65, 0.4), 2.2, 0.4)
 
 
 def _blast(rng: np.random.Generator) -> Signal:
-    """A blast that darkens as it dies, a blow below it, and fragments that come down one by one."""
+    """Blast: noise that grows duller as it fades, a low thud, and fragments that fall one by one."""
     bands = ((low_pass(160, 1), 1.0, 2.0), (band_pass(120, 900, 1), 0.5, 0.9), (band_pass(700, 3200, 1), 0.16, 0.3))
     blast = sum(gain * synth.noise(rng, 2.4, shape) * strike(2.4, 0.004, dies) for shape, gain, dies in bands)
     blow = sine(glide(84, 31, 1.2, 0.12), 1.2) * strike(1.2, 0.004, 1.1)
@@ -129,19 +129,19 @@ def _blast(rng: np.random.Generator) -> Signal:
             synth.place(synth.late(0.16 * quieter * fragment, float(delay)), float(rng.uniform(-0.7, 0.7)))
         )
     body = together(synth.place(np.asarray(blast), 0.0), synth.place(1.7 * blow, 0.0), *fragments)
-    return np.tanh(body)  # a little overdriven: dense, not sharp
+    return np.tanh(body)  # slight overdrive: dense, not sharp
 
 
 # Warnings
 
 
 def _too_fast(_: np.random.Generator) -> Signal:
-    """Two short notes that fall, as the craft does."""
+    """Warning of a fall that is too fast: two short, falling notes."""
     return together(_beep(14, 0.10), synth.late(_beep(9, 0.13), 0.12))
 
 
 def _too_tilted(_: np.random.Generator) -> Signal:
-    """One lower note that leans from side to side."""
+    """Warning of a tilt that is too great: one lower note that moves from side to side."""
     time = synth.clock(0.5)
     sway = np.sin(2 * np.pi * 6 * time)
     tone = sine(note(2) * 2 ** (0.7 * sway / 12), 0.5)
@@ -151,7 +151,7 @@ def _too_tilted(_: np.random.Generator) -> Signal:
 
 
 def _ping(_: np.random.Generator, number: int) -> Signal:
-    """One rung of the altitude tone; low notes carry overtones, for small loudspeakers."""
+    """Note of the altitude tone; low notes have overtones, for small loudspeakers."""
     frequency = rung(number)
     warm = min(1.0, 330 / frequency)
     rows = ((1, 1, 0.26), (2, 0.5 * warm, 0.20), (3, 0.3 * warm, 0.16))
@@ -162,13 +162,13 @@ def _ping(_: np.random.Generator, number: int) -> Signal:
 
 
 def _tick(_: np.random.Generator, semitones: float, seconds: float) -> Signal:
-    """A touch of wood: the shortest note there is."""
+    """Click of the interface: a very short, wooden note."""
     wood = partials(note(semitones), ((1, 1, 1.6 * seconds), (2.4, 0.22, 0.7 * seconds)), seconds)
     return wood * edges(seconds, 0.002, 0.012)
 
 
 def _steps(rng: np.random.Generator, notes: tuple[float, float]) -> Signal:
-    """Two soft notes, up or down."""
+    """Interface sound of two soft notes, up or down."""
     first, second = (partials(note(n), ((1, 1, 0.30), (2, 0.18, 0.16)), 0.26) * edges(0.26, 0.003, 0.03) for n in notes)
     return synth.room(rng, together(first, synth.late(second, 0.07)), 0.5, 0.2)
 
@@ -177,7 +177,7 @@ def _steps(rng: np.random.Generator, notes: tuple[float, float]) -> Signal:
 
 
 def _pad(rng: np.random.Generator) -> Signal:
-    """Open fifths over D, every note a choir that breathes at a pace of its own."""
+    """Ambient pad: open fifths over D; every note is a choir that swells at its own pace."""
     harmonics = [number**-1.7 for number in range(1, 7)]
 
     def side() -> Signal:
@@ -203,11 +203,11 @@ def _beep(semitones: float, seconds: float) -> Signal:
 
 
 def altitude_key(number: int) -> str:
-    """Return the key of a rung of the altitude tone."""
+    """Return the key of a note of the altitude tone."""
     return f"altitude_{number}"
 
 
-# In the order in which they are made: what is heard first comes first.
+# In the order in which they are synthesised: sounds needed early come first.
 INSTRUMENTS: Final[dict[str, Instrument]] = {
     "move": Instrument(partial(_tick, semitones=26, seconds=0.035), "interface", -19),
     "choose": Instrument(partial(_steps, notes=(14, 21)), "interface", -17),
@@ -227,6 +227,6 @@ INSTRUMENTS: Final[dict[str, Instrument]] = {
     "slow_crash": Instrument(_slow_crash, "effects", -6),
     "landed": Instrument(_landed, "effects", -12),
     "lost": Instrument(_lost, "effects", -15),
-    # The ear hears low notes less well.
+    # Low notes are louder because the ear is less sensitive to them.
     **{altitude_key(n): Instrument(partial(_ping, number=n), "altitude", -15 - 8 * n / RUNGS) for n in range(RUNGS)},
 }

@@ -1,4 +1,4 @@
-"""The game's one mixer: it plays what `game.audio` makes, and stays silent where nothing can be heard."""
+"""Mixer of the game: plays the instruments of `game.audio`, and stays silent without a sound device."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from game.audio.instruments import GROUPS, INSTRUMENTS, Instrument
 from game.audio.synth import RATE, pan_gains
 from game.core.settings import Settings
 
-_BUFFER: Final = 512  # samples that the device takes at a time: a sound is heard 12 ms late
-_VOICES: Final = 16  # short sounds at a time
-_APART: Final = 3  # steps within which the same sound asked for again is the one that has just begun
-_EASE: Final = 0.3  # share of the way to its volume that a loop goes in a step
-_SWELL: Final = 0.015  # the same for ambience that comes in; it goes more quickly
+_BUFFER: Final = 512  # samples per buffer of the device: 12 ms of latency
+_VOICES: Final = 16  # short sounds playing at once
+_APART: Final = 3  # steps within which the same sound is not started again
+_EASE: Final = 0.3  # share of the difference to its volume that a loop makes up in a step
+_SWELL: Final = 0.015  # the same for ambience fading in; it fades out more quickly
 _GO: Final = 0.12
 _SILENT: Final = 0.002
 _FADE: Final = 120  # milliseconds
@@ -30,7 +30,7 @@ _Method = TypeVar("_Method", bound=Callable[..., None])
 
 
 def _while_open(method: _Method) -> _Method:
-    """Do it only while there is a device; one that fails meanwhile is let go, and the game goes on in silence."""
+    """Decorate a method to run only while there is a device; release one that fails, and go on in silence."""
 
     @wraps(method)
     def attempt(self: Sound, *args: object, **kwargs: object) -> None:
@@ -46,13 +46,13 @@ def _while_open(method: _Method) -> _Method:
 
 
 class Sound:
-    """Plays sounds by their keys in `instruments`; silent until it is opened, and without a device.
+    """Mixer that plays sounds by their keys in `instruments`; silent until it is opened, and without a device.
 
-    The sounds themselves are made in a thread of their own; one that is not ready yet is not heard.
+    The sounds are synthesised in a thread of their own; one that is not ready yet is not played.
 
     Attributes:
-        ready: whether there is a device.
-        problem: why there is none.
+        ready: whether a device is open.
+        problem: why no device is open; empty if one is.
 
     """
 
@@ -72,7 +72,7 @@ class Sound:
         self._closing = threading.Event()
 
     def open(self) -> bool:
-        """Take the sound device, and begin to make the sounds. False without a device; that is no error."""
+        """Open the sound device and start synthesis. Return False without a device, which is no error."""
         self._wanted = True
         try:
             pygame.mixer.init(RATE, -16, 2, _BUFFER, allowedchanges=0)
@@ -88,7 +88,7 @@ class Sound:
         return True
 
     def close(self) -> None:
-        """Fall silent for good."""
+        """Stop synthesis and all sounds, and release the device."""
         self._wanted = False
         self._closing.set()
         if self._studio is not None:
@@ -97,11 +97,11 @@ class Sound:
             self._let_go()
 
     def follow(self, settings: Settings) -> None:
-        """Take the volumes from the settings. The ear counts in ratios: half way up is a quarter of the sway."""
+        """Take the volumes from the settings, squared: loudness is heard in ratios, so half way up is a quarter gain."""
         self._volumes = {group: getattr(settings, f"{group}_volume") ** 2 for group in GROUPS}
 
     def handle_event(self, event: pygame.event.Event) -> None:
-        """Be silent while the window is not in use; follow devices that come and go."""
+        """Mute while the window has no focus; follow devices that are plugged in or removed."""
         match event.type:
             case pygame.WINDOWFOCUSLOST | pygame.WINDOWMINIMIZED:
                 self._mute()
@@ -111,28 +111,28 @@ class Sound:
                     self.open()
             case pygame.AUDIODEVICEREMOVED if self.ready and not event.iscapture:
                 self._let_go()
-                self.open()  # on another device, if there is one
+                self.open()  # on another device, if any
 
     @_while_open
     def play(self, key: str, volume: float = 1.0, pan: float = 0.0) -> None:
-        """Play a short sound once, from -1 on the left to 1 on the right."""
+        """Play a short sound once; `volume` is 0 to 1, `pan` from -1, left, to 1, right."""
         gain = volume * self._volumes[self._instruments[key].group]
         since = self._step - self._begun.get(key, -_APART)
         sound = self._sound(key)
         if self._muted or gain < _SILENT or since < _APART or sound is None:
             return
-        channel = sound.play()  # on none of those reserved for loops
+        channel = sound.play()  # never one of the channels reserved for loops
         if channel is not None:
             channel.set_volume(*np.minimum(gain * pan_gains(pan), 1.0).tolist())
             self._begun[key] = self._step
 
     def loop(self, key: str, volume: float) -> None:
-        """Keep a sound going at that volume, 0 to 1, in this step; one not asked for again dies away."""
+        """Keep a loop playing at this volume, 0 to 1, in this step; a loop not requested again fades out."""
         self._asked[key] = max(volume, self._asked.get(key, 0.0))
 
     @_while_open
     def update(self) -> None:
-        """Let 1/60 s pass."""
+        """Advance the fades by 1/60 s."""
         self._step += 1
         asked, self._asked = self._asked, {}
         for number, key in enumerate(self._loops):
@@ -144,7 +144,7 @@ class Sound:
             self._keep_going(number, key)
 
     def _keep_going(self, number: int, key: str) -> None:
-        """Let a loop sound at its level, on a channel of its own."""
+        """Play a loop at its level, on a channel of its own."""
         gain = self._levels[key] * self._volumes[self._instruments[key].group]
         channel, sound = pygame.mixer.Channel(number), self._sound(key)
         if sound is None:
@@ -157,13 +157,13 @@ class Sound:
                 channel.play(sound, loops=-1)
 
     def _sound(self, key: str) -> pygame.mixer.Sound | None:
-        """Return a sound for the mixer, once it has been made."""
+        """Return a sound for the mixer; None until it has been synthesised."""
         if key not in self._sounds and key in self._waves:
             self._sounds[key] = pygame.mixer.Sound(buffer=self._waves[key].tobytes())
         return self._sounds.get(key)
 
     def _synthesise(self) -> None:
-        """Make one sound after another, in the thread; one that fails is not heard."""
+        """Synthesise one sound after another, in the thread; one that fails is left out."""
         for key, instrument in self._instruments.items():
             if self._closing.is_set():
                 return
@@ -182,7 +182,7 @@ class Sound:
             pygame.mixer.Channel(number).fadeout(_FADE)
 
     def _let_go(self) -> None:
-        """Leave the device; what was made is kept for the next one."""
+        """Release the device; the synthesised sounds are kept for the next one."""
         self.ready = False
         self._sounds.clear()
         self._levels = dict.fromkeys(self._loops, 0.0)

@@ -1,8 +1,8 @@
-"""Sound as arrays: oscillators, noise, envelopes, a room.
+"""Sound synthesis with arrays: oscillators, filters, noise, envelopes and reverberation.
 
 A signal holds floats between -1 and 1, RATE of them a second: mono (n,), or stereo (n, 2) with the left side
-first. A loop has no seam because it is made of periods alone: noise and pads are drawn as spectra, whose inverse
-transform goes round by nature.
+first. A loop has no seam because it holds whole periods only: noise and pads are made as spectra, whose inverse
+Fourier transform is periodic.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 Signal = NDArray[np.float64]
 Spectrum = NDArray[np.complex128]
-Gain = Callable[[Signal], Signal]  # of frequencies in Hz, all above zero
+Gain = Callable[[Signal], Signal]  # gain as a function of frequencies in Hz, all above zero
 
 RATE: Final = 44_100
-_ROOM_BRIGHTNESS: Final = 2600.0  # Hz, from which on walls swallow more than they give back
-_PRE_DELAY: Final = 0.012  # seconds until the first wall answers
+_ROOM_BRIGHTNESS: Final = 2600.0  # Hz, above which walls absorb more than they reflect
+_PRE_DELAY: Final = 0.012  # seconds until the first reflection
 
 
 def clock(seconds: float) -> Signal:
@@ -28,12 +28,12 @@ def clock(seconds: float) -> Signal:
 
 
 def decibels(gain: float) -> float:
-    """Return a gain in dB; of nothing, minus infinity."""
+    """Return a gain in dB; minus infinity for 0."""
     return float(20 * np.log10(gain)) if gain > 0 else -np.inf
 
 
 def gain_of(level: float) -> float:
-    """Return what a level in dB multiplies by."""
+    """Return the gain, a factor, of a level in dB."""
     return float(10 ** (level / 20))
 
 
@@ -47,12 +47,12 @@ def sine(frequency: float | Signal, seconds: float) -> Signal:
 
 
 def glide(start: float, end: float, seconds: float, halving: float) -> Signal:
-    """Return frequencies that go from one to another, half of what is left every `halving` seconds."""
+    """Return frequencies in Hz that approach `end` from `start`; the difference halves every `halving` seconds."""
     return np.asarray(end + (start - end) * 0.5 ** (clock(seconds) / halving))
 
 
 def partials(frequency: float, rows: Sequence[tuple[float, float, float]], seconds: float) -> Signal:
-    """Return the sum of sines that die away: rows of ratio to the frequency, amplitude, seconds to a thousandth."""
+    """Return a sum of decaying sines: rows of ratio to the frequency, amplitude, seconds until a thousandth."""
     time = clock(seconds)
     rung = [gain * sine(ratio * frequency, seconds) * 0.001 ** (time / dies) for ratio, gain, dies in rows]
     return np.asarray(np.sum(rung, axis=0))
@@ -80,7 +80,7 @@ def band_pass(low: float, high: float, order: float = 2) -> Gain:
 
 
 def noise(rng: np.random.Generator, seconds: float, gain: Gain) -> Signal:
-    """Return noise of that spectrum, root mean square 1, that goes round without a seam."""
+    """Return a seamless loop of noise, filtered by `gain`, root mean square 1."""
     count = round(seconds * RATE)
     spectrum = np.zeros(count // 2 + 1, np.complex128)
     frequency: Signal = np.fft.rfftfreq(count, 1 / RATE)[1:].astype(np.float64)
@@ -101,7 +101,7 @@ def choir(
         frequency: of the note, in Hz.
         amplitudes: of its harmonics, from the first on.
         cents: standard deviation of the tuning.
-        top: what lies above is left out; it need not be reached.
+        top: highest frequency, in Hz; the harmonics may end below it.
 
     """
     spectrum = np.zeros(round(seconds * top) + 1, np.complex128)
@@ -115,7 +115,7 @@ def choir(
 
 
 def breathe(spectrum: Spectrum, turns: int, depth: float, phase: float) -> Spectrum:
-    """Let a loop swell and fade so many times: amplitude modulation by 1 + depth cos(2π turns t + phase)."""
+    """Modulate a loop's amplitude by 1 + depth cos(2π turns t + phase): it swells and fades `turns` times."""
     side = 0.5 * depth * np.exp(1j * phase)
     swelling = spectrum.copy()
     swelling[turns:] += side * spectrum[:-turns]
@@ -124,7 +124,7 @@ def breathe(spectrum: Spectrum, turns: int, depth: float, phase: float) -> Spect
 
 
 def looped(spectrum: Spectrum, seconds: float) -> Signal:
-    """Return the loop that has a spectrum, which may end early, root mean square 1."""
+    """Return the loop with a given spectrum, root mean square 1; frequencies beyond the spectrum's end are 0."""
     return unit(_loop(spectrum, round(seconds * RATE)))
 
 
@@ -136,25 +136,25 @@ def _loop(spectrum: Spectrum, count: int) -> Signal:
 
 
 def strike(seconds: float, attack: float, dies: float) -> Signal:
-    """Return an envelope that rises over `attack` seconds and falls to a thousandth in `dies`; it ends at zero."""
+    """Return an envelope that rises in `attack` seconds and decays to a thousandth in `dies`; it ends at zero."""
     time = clock(seconds)
     return np.asarray(0.001 ** (time / dies) * edges(seconds, attack, min(0.25 * seconds, 0.02)))
 
 
 def edges(seconds: float, rise: float, fall: float) -> Signal:
-    """Return an envelope of 1 with rounded ends of zero, half a cosine each: a sound cut with it does not click."""
+    """Return an envelope of 1 with half-cosine fades to 0 at both ends, so that a cut sound does not click."""
     time = clock(seconds)
     ends = np.minimum(time / rise, (time[-1] - time) / fall)
     return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.clip(ends, 0.0, 1.0)))
 
 
 def late(signal: Signal, delay: float) -> Signal:
-    """Return a signal that begins so many seconds later."""
+    """Return a signal delayed by `delay` seconds."""
     return np.concatenate([np.zeros((round(delay * RATE), *signal.shape[1:])), signal])
 
 
 def slowed(signal: Signal, rate: float, held: float, back: float) -> Signal:
-    """Play a signal (n,) or (n, 2) at a lower rate for `held` seconds, and at its own again `back` seconds later."""
+    """Return a signal (n,) or (n, 2) played at `rate` for `held` seconds, then back at full speed within `back`."""
     longest = clock(len(signal) / RATE / rate)
     pace = np.interp(longest, (held, held + back), (rate, 1.0))
     place = np.cumsum(pace)
@@ -177,7 +177,7 @@ def together(*signals: Signal) -> Signal:
 
 
 def place(signal: Signal, pan: float) -> Signal:
-    """Return a mono signal in stereo, from -1 on the left to 1 on the right, equally loud everywhere."""
+    """Return a mono signal panned to stereo, from -1, left, to 1, right, with equal power everywhere."""
     return np.asarray(signal[:, None] * pan_gains(pan))
 
 
@@ -188,10 +188,10 @@ def pan_gains(pan: float) -> Signal:
 
 
 def room(rng: np.random.Generator, signal: Signal, seconds: float, wet: float) -> Signal:
-    """Return a signal, mono or stereo, in a room whose echo of it dies away in so many seconds; stereo.
+    """Return a mono or stereo signal with the reverberation of a room that decays in `seconds`; stereo.
 
-    The echo is noise that decays exponentially, another for each ear, as in J. A. Moorer, "About this
-    reverberation business", Computer Music Journal 3 (1979); `wet` is its energy beside the signal's own.
+    The impulse response is exponentially decaying noise, different for each ear, as in J. A. Moorer, "About this
+    reverberation business", Computer Music Journal 3 (1979); `wet` is its energy relative to the signal's own.
     """
     dry = place(signal, 0.0) if signal.ndim == 1 else signal
     count = len(dry) + round((seconds + _PRE_DELAY) * RATE)
@@ -204,7 +204,7 @@ def room(rng: np.random.Generator, signal: Signal, seconds: float, wet: float) -
 
 
 def _fast_length(count: int) -> int:
-    """Return a length, not shorter, whose transform is fast: a power of two, or 3 or 5 times one."""
+    """Return the next length with a fast Fourier transform: a power of two, or 3 or 5 times one."""
     power = 1 << (count - 1).bit_length()
     return next(size for size in (5 * power // 8, 3 * power // 4, power) if size >= count)
 
@@ -225,13 +225,13 @@ def at_peak(signal: Signal, level: float) -> Signal:
 
 
 def pcm(signal: Signal) -> NDArray[np.int16]:
-    """Return a signal as a mixer takes it: stereo, 16 bits, (n, 2).
+    """Return a signal as 16-bit stereo samples (n, 2) for a mixer.
 
     Raises:
-        ValueError: a sample lies beyond full scale, or is no number.
+        ValueError: a sample lies beyond full scale, or is NaN.
 
     """
-    if not np.abs(signal).max(initial=0.0) <= 1:  # NaN too is not
+    if not np.abs(signal).max(initial=0.0) <= 1:  # written so that NaN fails too
         raise ValueError("a signal lies beyond full scale")
     stereo = place(signal, 0.0) if signal.ndim == 1 else signal
     return np.ascontiguousarray(np.round(32_767 * stereo).astype(np.int16))

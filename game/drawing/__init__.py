@@ -1,1 +1,1 @@
-"""The canvas and what is drawn on it: type, colours, shapes, signs, and pictures that are painted once."""
+"""Drawing: the canvas, and type, colours, shapes, signs and cached pictures to draw on it."""

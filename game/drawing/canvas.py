@@ -16,30 +16,30 @@ from game.drawing import shapes, typeface
 from game.drawing.tokens import FAINT, INK, NIGHT0, PALETTE, PANEL, PANEL_ALPHA, TEXT, VIEW_SIZE, Colour, Palette
 from game.drawing.typeface import Weight
 
-_MOST_WORDS: Final = 256  # that are remembered of a page
-_FAINT_WORDS: Final = 0.4  # the alpha from which on they are worth it
-_AROUND: Final = 4.0  # points around words that are to be as quiet
+_MOST_WORDS: Final = 256  # text boxes noted in a frame, at most
+_FAINT_WORDS: Final = 0.4  # alpha below which text is not noted
+_AROUND: Final = 4.0  # points of margin around noted text
 
-_PARTS: Final = re.compile(r"\d|\D+")  # digits one by one, and what is between them
+_PARTS: Final = re.compile(r"\d|\D+")  # single digits, and the text between them
 
 Point = tuple[float, float]
 Align = Literal["left", "centre", "right"]
 
 
 class Canvas:
-    """A view of 1280 × 720 points, as large as fits into the window, in the middle of it.
+    """Drawing surface of 1280 × 720 points, as large as fits into the window, centred in it.
 
-    Positions and lengths are points unless a name says pixels. Nothing is scaled after it was drawn:
-    drawing at another window size draws anew, and shapes and strings are cached per size.
+    Positions and lengths are points unless a name says pixels. Nothing is scaled after drawing:
+    another window size is drawn anew, and shapes and strings are cached per size.
 
     Attributes:
         surface: the view, in the window's pixels; what lies outside it is clipped.
         scale: pixels per point.
         size: the view's width and height in pixels.
-        palette: the colours for good and warn that the player chose.
-        links: where a click means a press of a key, in points, and of which: as it was drawn last.
-        pointer: where the mouse is, in points; None while it is not in use.
-        words: where words, widgets and panels were put on the last page, and a little around them, in pixels.
+        palette: the player's colours for within and beyond limits.
+        links: boxes, in points, where a click counts as a press of a key, each with the event; of the last frame.
+        pointer: position of the mouse in points; None while it is not in use.
+        words: boxes of words, widgets and panels of the last frame with a margin, in pixels.
 
     """
 
@@ -49,7 +49,7 @@ class Canvas:
         self.links: list[tuple[pygame.FRect, pygame.event.Event]] = []
         self.pointer: Point | None = None
         self.words: list[pygame.Rect] = []
-        self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # on this page
+        self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # boxes noted in this frame
         self.attach(window)
 
     def attach(self, window: pygame.Surface) -> None:
@@ -71,34 +71,34 @@ class Canvas:
         return round(points * self.scale)
 
     def rect(self, x: float, y: float, width: float, height: float) -> pygame.Rect:
-        """Return the pixels of a rectangle; neighbours in points stay neighbours in pixels."""
+        """Return a rectangle in pixels; rectangles adjacent in points stay adjacent in pixels."""
         left, top = self.px(x), self.px(y)
         return pygame.Rect(left, top, self.px(x + width) - left, self.px(y + height) - top)
 
     def sheet(self, width: float, height: float) -> Canvas:
-        """Return a canvas of that size on a transparent surface of its own, to be drawn once and blitted often.
+        """Return a canvas of that size on its own transparent surface, to be drawn once and copied often.
 
-        Glows and translucent lines need something below them, and do not come out on it.
+        Glows and translucent lines need a background, and do not show on it.
         """
         sheet = copy(self)
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet.offset = (0, 0)
-        sheet.links = []  # nothing is clicked on a sheet
+        sheet.links = []  # a sheet takes no clicks
         sheet._covered = deque(maxlen=0)
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
 
     def lay(self, sheet: Canvas, x: float, y: float) -> None:
-        """Put a sheet down with its top left corner there."""
+        """Copy a sheet onto the canvas, with its top left corner at (x, y) in points."""
         self.cover(self.surface.blit(sheet.surface, (self.px(x), self.px(y))))
 
     def cover(self, area: pygame.Rect) -> None:
-        """Note that something to be read is there, in pixels."""
+        """Note an area in pixels that holds something to read, for stars and notes to avoid."""
         self._covered.append(area)
 
     @contextmanager
     def unnoted(self) -> Iterator[None]:
-        """Draw without noting what is there to be read."""
+        """Draw without noting areas that hold something to read; a context manager."""
         covered = self._covered
         self._covered = deque(maxlen=0)
         try:
@@ -107,32 +107,32 @@ class Canvas:
             self._covered = covered
 
     def turn_page(self) -> None:
-        """Begin a new frame: no link is left, and skies keep their stars from where the last one had words."""
+        """Begin a new frame: clear the links, and move the noted areas to `words`."""
         around = 2 * self.px(_AROUND)
         self.links.clear()
         self.words = [box.inflate(around, around) for box in self._covered]
         self._covered.clear()
 
     def to_points(self, window_position: Point) -> Point:
-        """Turn a position in the window's pixels, such as the mouse's, into points."""
+        """Convert a position from the window's pixels, such as the mouse's, to points."""
         x, y = window_position
         return (x - self.offset[0]) / self.scale, (y - self.offset[1]) / self.scale
 
     def in_window(self, rect: pygame.typing.RectLike) -> pygame.Rect:
-        """Turn a rectangle in points into one in the window's pixels."""
+        """Convert a rectangle from points to the window's pixels."""
         box = pygame.FRect(rect)
         return self.rect(box.x, box.y, box.width, box.height).move(self.offset)
 
     # The mouse
 
     def link(self, rect: pygame.typing.RectLike, press: pygame.event.Event) -> bool:
-        """Let a click on this place be a press of a key; return whether the mouse is there."""
+        """Make a click in a box count as a press of a key; return whether the mouse is over the box."""
         box = pygame.FRect(rect)
         self.links.append((box, press))
         return self.pointer is not None and box.collidepoint(self.pointer)
 
     def linked(self, point: Point) -> pygame.event.Event | None:
-        """Return the press that a click there means, if any: of what was drawn last."""
+        """Return the press that a click at a point stands for, if any, according to the last frame."""
         return next((press for box, press in reversed(self.links) if box.collidepoint(point)), None)
 
     # Text
@@ -174,11 +174,11 @@ class Canvas:
     def text_width(
         self, string: str, *, size: float = TEXT, weight: Weight = "regular", tabular: bool = False
     ) -> float:
-        """Width in points that `text` with the same arguments would take."""
+        """Return the width in points of `text` with the same arguments."""
         return self._width(string, self._pixels(string, size, weight, tabular), weight, tabular) / self.scale
 
     def _pixels(self, string: str, size: float, weight: Weight, tabular: bool, room: float = math.inf) -> float:
-        """Return the size in pixels at which a text is written."""
+        """Return the size in pixels at which a text is rendered."""
         pixels = round(typeface.grown(size) * self.scale, 2)
         if room < math.inf and pixels > size * self.scale:
             too_wide = self._width(string, pixels, weight, tabular) / max(room * self.scale, 1.0)
@@ -217,7 +217,7 @@ class Canvas:
     # Shapes
 
     def line(self, a: Point, b: Point, colour: Colour, width: float = 1.0, alpha: float = 1.0) -> None:
-        """Draw an anti-aliased line; upright and level ones are sharp."""
+        """Draw an anti-aliased line; vertical and horizontal ones are sharp."""
         thickness = max(1, self.px(width))
         start, end = (a[0] * self.scale, a[1] * self.scale), (b[0] * self.scale, b[1] * self.scale)
         if a[0] == b[0] or a[1] == b[1]:
@@ -253,11 +253,11 @@ class Canvas:
         self._blit(sheet, (left, top), alpha)
 
     def dot(self, centre: Point, radius: float, colour: Colour, alpha: float = 1.0) -> None:
-        """Draw a filled anti-aliased circle, placed to a quarter of a pixel."""
+        """Draw a filled anti-aliased circle, positioned to a quarter of a pixel."""
         self._shape("circle", centre, radius, colour, alpha)
 
     def marker(self, shape: shapes.Shape, centre: Point, size: float, colour: Colour, alpha: float = 1.0) -> None:
-        """Draw a small sign, `size` points across, so that meaning never hangs on colour alone."""
+        """Draw a small shape, `size` points across, so that meaning never depends on colour alone."""
         self._shape(shape, centre, size / 2, colour, alpha)
 
     def _shape(self, shape: shapes.Shape, centre: Point, radius: float, colour: Colour, alpha: float) -> None:
@@ -276,7 +276,7 @@ class Canvas:
         track: Colour = FAINT,
         track_alpha: float = 0.6,
     ) -> None:
-        """Draw a thin rounded track and the part of it, 0 to 1, that is filled."""
+        """Draw a thin rounded track, filled to a fraction from 0 to 1."""
         box = pygame.FRect(rect)
         filled = box.width * min(max(fraction, 0.0), 1.0)
         self.pill((box.x, box.y, box.width, box.height), track, track_alpha)
@@ -284,7 +284,7 @@ class Canvas:
             self.pill((box.x, box.y, max(filled, box.height), box.height), colour)
 
     def pill(self, rect: pygame.typing.RectLike, colour: Colour, alpha: float = 1.0) -> None:
-        """Fill a rectangle whose shorter side is round."""
+        """Fill a rectangle whose shorter sides are round."""
         box = pygame.FRect(rect)
         self.rounded(box, min(box.width, box.height) / 2, colour, alpha)
 
@@ -311,7 +311,7 @@ class Canvas:
         self._blit(edge, area.topleft, alpha)
 
     def panel(self, rect: pygame.typing.RectLike, alpha: float = PANEL_ALPHA) -> None:
-        """Draw the one translucent box there is."""
+        """Draw a translucent panel; all panels of the game look like this."""
         self.rounded(rect, 8, PANEL, alpha)
         if alpha > _FAINT_WORDS:
             self.cover(self.rect(*pygame.FRect(rect)))

@@ -1,4 +1,4 @@
-"""Sentences with figures in them that change: the words are set as words, the figures keep their width."""
+"""Sentences with changing figures: digits have a fixed width, so that the rest does not move."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _FIGURES: Final = re.compile(r"([0-9][0-9.]*)")
 def write_figures(
     canvas: Canvas, text: str, position: Point, *, size: float, colour: Colour = MUTE, centred: bool = False
 ) -> tuple[float, float]:
-    """Write a sentence on one baseline and return where it starts and ends, in points."""
+    """Write a sentence on one baseline; return its left and right end, in points."""
     runs = [(run, bool(_FIGURES.fullmatch(run))) for run in _FIGURES.split(text) if run]
     widths = [canvas.text_width(run, size=size, tabular=tabular) for run, tabular in runs]
     start = x = position[0] - (sum(widths) / 2 if centred else 0.0)

@@ -1,4 +1,4 @@
-"""Signs for a pad's buttons, a mouse's, and missions: letters of a script of our own that every text can contain.
+"""Glyphs for gamepad buttons, mouse buttons and missions: private-use characters that any text can contain.
 
 Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence, and is
 measured, drawn and kept like any other letter.
@@ -19,7 +19,7 @@ from game.input.signs import FAMILIES, FAMILY, FIRST, SIGNS
 _LAST: Final = FIRST + len(FAMILIES) * FAMILY + len(ICONS) - 1
 SIGN: Final = re.compile(f"([{chr(FIRST)}-{chr(_LAST)}])")
 
-# Lengths, in sizes of the type: half a sign's height, the middle of it above the baseline, the room beside it.
+# Lengths, as multiples of the type size: half a sign's height, its middle above the baseline, the room beside it.
 _RADIUS: Final = 0.66
 _MIDDLE: Final = 0.36
 _BESIDE: Final = 0.07
@@ -34,7 +34,7 @@ def icon(name: str) -> str:
 
 
 def sign_width(character: str, size: float) -> float:
-    """How far a sign reaches, with the room beside it, at a size of type in pixels."""
+    """Return a sign's width in pixels, with the room beside it, at a type size in pixels."""
     return size * ((_WIDE if _sign(character)[0] == "wide" else 2 * _RADIUS) + 2 * _BESIDE)
 
 
@@ -46,7 +46,7 @@ def draw_sign(
     colour: Colour,
     write: Callable[[str, float], pygame.Surface],
 ) -> None:
-    """Draw a sign from a point of the baseline on; `write` gives letters of a size, as a surface."""
+    """Draw a sign with its left end at a point of the baseline; `write` renders letters of a size to a surface."""
     frame, mark = _sign(character)
     width = sign_width(character, size)
     middle = pygame.Vector2(start[0] + width / 2, start[1] - _MIDDLE * size)
@@ -88,7 +88,7 @@ def _sign(character: str) -> tuple[str, str]:
 def _draw_mouse(
     surface: pygame.Surface, middle: pygame.Vector2, radius: float, colour: Colour, stroke: int, button: str
 ) -> None:
-    """Draw a mouse, with the button that is meant filled."""
+    """Draw a mouse with one button filled."""
     box = pygame.Rect(0, 0, round(1.4 * radius), round(2 * radius))
     box.center = round(middle.x), round(middle.y)
     round_ = round(0.6 * radius)
@@ -106,7 +106,7 @@ _ARMS: Final = {"up": -90, "down": 90, "left": 180, "right": 0}
 def _draw_cross(
     surface: pygame.Surface, middle: pygame.Vector2, radius: float, colour: Colour, stroke: int, arm: str
 ) -> None:
-    """Draw a D-pad, with the arm that is meant filled."""
+    """Draw a D-pad with one arm filled."""
     half, reach = 0.34 * radius, 0.98 * radius
     corner = [(half, half), (reach, half), (reach, -half), (half, -half)]
     outline = [pygame.Vector2(x, y).rotate(-90 * turn) for turn in range(4) for x, y in corner[:3]]

@@ -1,4 +1,4 @@
-"""The window's icon, drawn here like everything else: a lander over the moon's edge."""
+"""Icon of the window, drawn by code: a lander over the moon's edge."""
 
 from __future__ import annotations
 

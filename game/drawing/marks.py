@@ -1,4 +1,4 @@
-"""Marks of straight and round strokes: what stands in a pad's buttons, and icons of the missions."""
+"""Marks made of lines and arcs: the contents of gamepad signs, and the icons of missions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Mark = Callable[[pygame.Surface, pygame.Vector2, float, Colour, int], object]
 
 
 def lines(*strokes: Sequence[tuple[float, float]]) -> Mark:
-    """Return a mark of strokes from point to point, in half widths from its middle, with round ends and corners."""
+    """Return a mark of polylines with round ends and corners; points are in half widths from its middle."""
 
     def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
         for points in strokes:
@@ -30,7 +30,7 @@ def lines(*strokes: Sequence[tuple[float, float]]) -> Mark:
 
 
 def outline(*corners: tuple[float, float], filled: bool = False) -> Mark:
-    """Return a mark with these corners."""
+    """Return a polygon, filled or not, as a mark."""
 
     def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
         points = [middle + half * pygame.Vector2(corner) for corner in corners]
@@ -40,7 +40,7 @@ def outline(*corners: tuple[float, float], filled: bool = False) -> Mark:
 
 
 def both(*marks: Mark) -> Mark:
-    """Return a mark that is all of these."""
+    """Return the union of several marks."""
 
     def draw(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
         for mark in marks:
@@ -50,18 +50,18 @@ def both(*marks: Mark) -> Mark:
 
 
 def ring(surface: pygame.Surface, middle: pygame.Vector2, half: float, colour: Colour, stroke: int) -> None:
-    """Draw a circle, a mark of its own."""
+    """Draw a circle; itself a mark."""
     pygame.draw.circle(surface, colour, middle, half, stroke)
 
 
 def arrow(degrees: float, away: float = 0.0) -> Mark:
-    """Return a filled arrow head that points there, 0 being up, that far from the middle."""
+    """Return a filled arrow head that points to an angle, 0 being up, `away` from the middle in half widths."""
     corners = [pygame.Vector2(x, y - away).rotate(degrees) for x, y in ((-0.8, 0.5), (0.8, 0.5), (0.0, -0.6))]
     return outline(*((corner.x, corner.y) for corner in corners), filled=True)
 
 
 def arc(start: float, end: float, radius: float = 1.0, x: float = 0.0, y: float = 0.0) -> Mark:
-    """Return a part of a circle around a point, from one angle to another in degrees, 0 being right, 90 up."""
+    """Return an arc of a circle around (x, y), between two angles in degrees, 0 being right, 90 up."""
     angles = [math.radians(start + (end - start) * step / 24) for step in range(25)]
     points = [(x + radius * math.cos(angle), y - radius * math.sin(angle)) for angle in angles]
     return lines(points)

@@ -1,4 +1,4 @@
-"""From arrays of light to surfaces, and the noise that landscapes are made of.
+"""Painting with arrays: conversion to surfaces, and fractal noise for landscapes.
 
 Pictures are arrays of float32, rows first: colour (height, width, 3) in 0 to 255, cover (height, width) in
 0 to 1.
@@ -21,13 +21,13 @@ _GRAIN_SIDE: Final = 256
 
 
 def mix(a: Colour, b: Colour, share: float) -> Colour:
-    """Return the colour that is `share` of the way from a to b."""
+    """Return the linear mix of two colours; `share` 0 is a, 1 is b."""
     red, green, blue = (round(u + (v - u) * share) for u, v in zip(a, b, strict=True))
     return red, green, blue
 
 
 def ramp(rows: int, stops: list[tuple[float, Colour]]) -> Picture:
-    """Return a column of colours (rows, 3) that runs through stops at 0 to 1."""
+    """Return a column of colours (rows, 3), interpolated between stops at positions 0 to 1."""
     at = np.linspace(0, 1, rows, dtype=np.float32)
     places = [place for place, _ in stops]
     return np.stack([np.interp(at, places, [c[k] for _, c in stops]) for k in range(3)], 1).astype(np.float32)
@@ -43,13 +43,13 @@ def shine(picture: Picture, light: Picture, colour: Sequence[float] | Picture) -
 
 
 def bell(length: int, centre: float, width: float) -> Picture:
-    """Return a Gaussian hump over `length` pixels, centre and width in pixels."""
+    """Return a Gaussian bell (length,), with centre and width in pixels."""
     hump: Picture = np.exp(-(((np.arange(length, dtype=np.float32) - centre) / width) ** 2))
     return hump
 
 
 def opaque(colour: Picture, rng: np.random.Generator) -> pygame.Surface:
-    """Return a surface without transparency. Grain hides the steps of dark, slow gradients."""
+    """Return a surface without transparency, dithered with noise against banding in dark gradients."""
     height, width = colour.shape[:2]
     surface = pygame.Surface((width, height), depth=32)
     pixels = pygame.surfarray.pixels3d(surface)
@@ -59,7 +59,7 @@ def opaque(colour: Picture, rng: np.random.Generator) -> pygame.Surface:
 
 
 def layer(colour: Picture, cover: Picture, rng: np.random.Generator) -> pygame.Surface:
-    """Return a surface with transparency, stored so that clear and solid runs cost next to nothing."""
+    """Return a surface with transparency, run-length encoded so that clear and solid runs cost almost nothing."""
     height, width = colour.shape[:2]
     surface = pygame.Surface((width, height), pygame.SRCALPHA)
     pixels = pygame.surfarray.pixels3d(surface)
@@ -73,12 +73,12 @@ def layer(colour: Picture, cover: Picture, rng: np.random.Generator) -> pygame.S
 
 
 def light(colour: Picture) -> pygame.Surface:
-    """Return a surface that is meant to be added; black adds nothing."""
+    """Return a surface for additive blending; black adds nothing."""
     return pygame.surfarray.make_surface(np.clip(colour, 0, 255).astype(np.uint8).swapaxes(0, 1))
 
 
 def profile(length: int, rng: np.random.Generator, cells: float, octaves: int = 5, gain: float = 0.5) -> Picture:
-    """Return smooth fractal noise in about -1 to 1 along a line; `cells` humps in the coarsest octave."""
+    """Return smooth fractal noise (length,) in about -1 to 1; `cells` is the number of humps in the coarsest octave."""
     at = np.linspace(0, 1, length, dtype=np.float32)
     total = np.zeros(length, np.float32)
     weight = 1.0
@@ -95,7 +95,7 @@ def clouds(
     octaves: int = 4,
     gain: float = 0.5,
 ) -> Picture:
-    """Return smooth fractal noise in about -1 to 1 over (rows, columns); `cells` in each direction."""
+    """Return smooth fractal noise (rows, columns) in about -1 to 1; `cells` counts humps down and across."""
     total = np.zeros(shape, np.float32)
     weight = 1.0
     down, across = cells
@@ -109,7 +109,7 @@ def clouds(
 
 
 def _weights(at: Picture) -> Picture:
-    """Return the share (points, knots) that each knot of a quadratic B-spline has at each point."""
+    """Return the weight (points, knots) of each knot of a quadratic B-spline at each point."""
     left = np.floor(at).astype(np.intp)
     t = at - left
     weights = np.zeros((len(at), int(at.max()) + 3), np.float32)

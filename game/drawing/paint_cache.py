@@ -1,4 +1,4 @@
-"""What changes seldom is painted once and then only copied."""
+"""Cache of painted pictures that change seldom."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from game.drawing.canvas import Canvas
 
 
 class Kept:
-    """Pictures, such as the words of a panel, that are painted anew only when what they show has changed.
+    """Paint cache: pictures, such as the text of a panel, repainted only when their contents change.
 
-    The last `most` are kept, to be found again by what they show.
+    The last `most` pictures are kept, by their contents.
     """
 
     def __init__(self, most: int = 1) -> None:
@@ -23,7 +23,7 @@ class Kept:
     def draw(
         self, canvas: Canvas, box: pygame.typing.RectLike, shows: Hashable, paint: Callable[[Canvas], None]
     ) -> None:
-        """Draw what `paint` paints, with the corner of `box` as its origin; `shows` is all that it depends on."""
+        """Draw a picture with its origin at the corner of `box`; call `paint` only for a new `shows`, its contents."""
         x, y, width, height = pygame.FRect(box)
         key = (canvas.size, canvas.palette, typeface.growth(), width, height, shows)
         painted = self._painted.get(key)

@@ -1,4 +1,4 @@
-"""Sentences on as many lines as they take."""
+"""Word wrap: sentences on as many lines as they need."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Final
 
 from game.drawing.canvas import Canvas
 
-_LONGEST: Final = 4000  # letters: more than a screen has room for
+_LONGEST: Final = 4000  # characters: more than fit on a screen
 
 
 def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:

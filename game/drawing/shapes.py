@@ -1,4 +1,4 @@
-"""Small anti-aliased shapes, drawn large once, scaled down and kept."""
+"""Small anti-aliased shapes, drawn large once, scaled down and cached."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _STROKES: Final[dict[str, list[list[tuple[float, float]]]]] = {
 
 @lru_cache(maxsize=2048)
 def shape(name: Shape, radius: float, colour: Colour, quarters: tuple[int, int] = (0, 0)) -> pygame.Surface:
-    """Return a shape of that radius in pixels, its middle `quarters` of a pixel past the middle one."""
+    """Return a shape of a radius in pixels, shifted by `quarters` of a pixel in x and y."""
     half = math.ceil(radius) + 2
     side = 2 * half
     sheet = _sheet((side * _FACTOR, side * _FACTOR), colour)
@@ -61,7 +61,7 @@ def _stroke(sheet: pygame.Surface, colour: Colour, strokes: list[list[tuple[floa
 
 @lru_cache(maxsize=512)
 def rounded(size: tuple[int, int], radius: float, colour: Colour, width: int = 0) -> pygame.Surface:
-    """Return a rectangle with round corners: filled, or with an edge `width` pixels wide."""
+    """Return a rectangle with round corners: filled, or as an outline `width` pixels wide."""
     reach = math.ceil(max(radius, width)) + 1  # pixels from an end, beyond which nothing changes
     small = _rounded((min(size[0], 2 * reach), min(size[1], 2 * reach)), radius, colour, width)
     if small.get_size() == size:
@@ -80,7 +80,7 @@ def _rounded(size: tuple[int, int], radius: float, colour: Colour, width: int) -
 
 
 def _stretched(length: int, wanted: int) -> npt.NDArray[np.intp]:
-    """Return which pixel of a row each of a longer one is like: its ends stay, its middle is drawn out."""
+    """Return for each pixel of a longer row the pixel to copy: the ends stay, the middle is stretched."""
     places = np.arange(wanted)
     return np.where(
         places < wanted / 2, np.minimum(places, (length - 1) // 2), np.maximum(places - wanted + length, length // 2)
@@ -89,7 +89,7 @@ def _stretched(length: int, wanted: int) -> npt.NDArray[np.intp]:
 
 @lru_cache(maxsize=256)
 def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
-    """Return a filled rectangle, to be blended with an alpha."""
+    """Return a filled rectangle for alpha blending."""
     surface = pygame.Surface(size)
     surface.fill(colour)
     return surface
@@ -97,8 +97,8 @@ def plain(size: tuple[int, int], colour: Colour) -> pygame.Surface:
 
 @lru_cache(maxsize=256)
 def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
-    """Return light that fades out towards the radius, to be added; `level` is in 1/32."""
-    # A large one is so smooth that a small one, scaled up, does; an explosion needs a new one every few frames.
+    """Return a radial glow for additive blending, in pixels; `level` is its strength in 1/32."""
+    # A large glow is smooth enough to scale up from a small one; an explosion needs a new one every few frames.
     half = radius if radius < _LARGE_GLOW else radius // 4
     axis = np.arange(-half, half + 1) / max(half, 1)
     distance = np.minimum(np.hypot(axis[:, None], axis[None, :]), 1.0)
@@ -108,7 +108,7 @@ def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
 
 
 def forget() -> None:
-    """Drop every shape: the window's size has changed."""
+    """Clear the cache of shapes, after a change of the window's size."""
     for cache in (shape, rounded, _rounded, plain, glow):
         cache.cache_clear()
 

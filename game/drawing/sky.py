@@ -1,4 +1,4 @@
-"""The ground of screens that show no world: night above, a last ember below, stars where no words are."""
+"""Background of screens without a world: a night sky with a glow at the bottom, and stars away from the words."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from game.drawing.tokens import DUSK, EMBER, NIGHT0, NIGHT1, VIEW_SIZE
 
 
 class NightSky:
-    """A still sky, painted anew only when the window's size changes, or words come or go where a star is."""
+    """Still night sky, repainted only when the window's size changes, or when words appear or vanish over a star."""
 
     def __init__(self, rng: np.random.Generator, ember: float = 1.0, stars: int = 260) -> None:
         self._places = rng.random((stars, 2)) * VIEW_SIZE
@@ -22,7 +22,7 @@ class NightSky:
         self._ember = ember
         self._painted: pygame.Surface | None = None
         self._shown: list[int] = []
-        self._words: list[pygame.Rect] = []  # that these stars keep away from
+        self._words: list[pygame.Rect] = []  # that the painted stars avoid
 
     def draw(self, canvas: Canvas, time: float = 0.0) -> None:  # noqa: ARG002
         """Draw the sky over the whole view. It does not change with time."""
@@ -50,7 +50,7 @@ class NightSky:
 
 @lru_cache(maxsize=4)
 def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
-    """Return a sky without stars, to be shared by the screens that have the same one."""
+    """Return a sky without stars, cached for all screens with the same one."""
     width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
     across = np.linspace(0, 1, width, dtype=np.float32)[:, None, None]
     down = np.linspace(0, 1, height, dtype=np.float32)[None, :, None]
@@ -66,7 +66,7 @@ def _paint_night(size: tuple[int, int], ember: float) -> pygame.Surface:
 
 
 def beside(places: Doubles, boxes: Sequence[pygame.Rect]) -> Bools:
-    """Return which of the places (n, 2) are in none of the boxes."""
+    """Return a mask (n,) of the places (n, 2) that lie in none of the boxes."""
     edges = np.array([(box.left, box.top, box.right, box.bottom) for box in boxes]).reshape(-1, 4)
     past, beyond = places[:, None] >= edges[:, :2], places[:, None] >= edges[:, 2:]
     outside: Bools = ~np.logical_and.reduce(past & ~beyond, axis=2)

@@ -1,4 +1,4 @@
-"""The look, in one place: colour, type and space for the world, the widgets and the charts alike.
+"""Design tokens: colours, type sizes and spacing for the world, the widgets and the charts.
 
 Amber is the person, blue is the network, everywhere. Lengths are points: 1280 x 720 of them fill the view
 at any window size; `game.drawing.canvas.Canvas` turns them into pixels.
@@ -23,7 +23,7 @@ INK: Final[Colour] = (232, 236, 244)
 MUTE: Final[Colour] = (138, 149, 173)
 HUMAN: Final[Colour] = (255, 196, 112)
 NET: Final[Colour] = (112, 200, 255)
-# None, bronze, silver, gold; told by their words and by how many lamps are lit as well.
+# None, bronze, silver, gold; also told apart by words and by the number of lit lamps.
 MEDALS: Final[tuple[Colour, ...]] = (MUTE, (205, 140, 96), (196, 206, 224), (255, 208, 110))
 
 FIGURE: Final = 34.0
@@ -32,8 +32,8 @@ TEXT: Final = 15.0
 SMALL: Final = 12.5
 LABEL: Final = 11.5
 
-# How much larger small text is made for those who want it, by the setting's words. Between these two sizes less and
-# less is added: what is large can be read as it is, and has no room to grow.
+# Factors by which small text is enlarged, by the setting's name. Between the two sizes of GROWS the factor
+# falls to 1: large text can be read as it is, and has no room to grow.
 TEXT_SIZES: Final = {"normal": 1.0, "large": 1.12, "largest": 1.25}
 GROWS: Final = (15.0, 34.0)
 
@@ -43,7 +43,7 @@ MARGIN: Final = 64
 
 @dataclass(frozen=True)
 class Palette:
-    """Colours for within and beyond limits; always with a shape or a mark as well."""
+    """Colours for values within and beyond limits; always used together with a shape or a mark."""
 
     good: Colour
     warn: Colour

@@ -1,7 +1,7 @@
-"""Manrope at any size: strings become surfaces, once.
+"""Text rendering in Manrope at any size, with a cache of rendered strings.
 
 Text is drawn large and scaled down, so sizes need not be whole pixels and letters keep their spacing;
-hinted small sizes do neither. A pad's buttons are letters as well: see `game.drawing.glyphs`.
+hinted small sizes do neither. Signs of buttons are characters as well: see `game.drawing.glyphs`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _FILES: Final[dict[Weight, str]] = {
     "medium": "ManropeMedium",
     "semibold": "ManropeSemiBold",
 }
-_LONGEST: Final = 1000  # letters of a text; no line on any screen has more
+_LONGEST: Final = 1000  # characters of a text; no line on any screen has more
 # Pixels of a text before it is scaled down; a whole line of the largest screen takes half of it. From some 100,000
 # on, SDL's scaling writes past the end of its memory.
 _WIDEST: Final = 32_768
@@ -35,7 +35,7 @@ _COVERAGE: Final = np.round(255 * (np.arange(256) / 255) ** 0.82).astype(np.uint
 
 
 class _Growth:
-    """How much larger small text is than it was laid out for."""
+    """Factor by which small text is enlarged, as the player chose."""
 
     factor = 1.0
 
@@ -50,32 +50,32 @@ def _font(pixels: float, weight: Weight) -> pygame.font.Font:
 
 
 def grow(factor: float) -> None:
-    """Make all text larger from now on, the small most of all; what is large enough stays as it is."""
+    """Enlarge text from now on by `factor`; small text most, and large text not at all."""
     if factor != _Growth.factor:
         _Growth.factor = factor
         forget()
 
 
 def growth() -> float:
-    """Return what `grow` was told last."""
+    """Return the present factor, set by `grow`."""
     return _Growth.factor
 
 
 @lru_cache(maxsize=64)
 def grown(size: float) -> float:
-    """Return the size at which a text of this size is written."""
+    """Return the enlarged size of a text of this size, both in points."""
     small, large = GROWS
     return size + (_Growth.factor - 1) * min(size, small) * min(max((large - size) / (large - small), 0.0), 1.0)
 
 
 def width(string: str, size: float, weight: Weight) -> float:
-    """How far a string of this size reaches, both in points: to lay out what is to be written."""
+    """Return the width of a string of this size, both in points, for layout."""
     return reach(string, grown(size), weight)
 
 
 @lru_cache(maxsize=2048)
 def reach(string: str, pixels: float, weight: Weight) -> float:
-    """How far the string reaches as it is written, in pixels and their fractions."""
+    """Return the width of a string as rendered, in pixels and fractions."""
     string = _writable(string)
     font, factor = _font(pixels, weight), _oversampling(pixels)
     if not SIGN.search(string):
@@ -87,20 +87,20 @@ def reach(string: str, pixels: float, weight: Weight) -> float:
 
 @lru_cache(maxsize=64)
 def extent(pixels: float, weight: Weight) -> tuple[float, float]:
-    """How far the line reaches above and below the baseline, in pixels."""
+    """Return the ascent and the descent of a line, in pixels."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
     return font.get_ascent() / factor, -font.get_descent() / factor
 
 
 @lru_cache(maxsize=64)
 def digit_width(pixels: float, weight: Weight) -> float:
-    """Width of the widest digit, which every tabular digit is given."""
+    """Return the width of the widest digit, in pixels, which every tabular digit is given."""
     return max(reach(digit, pixels, weight) for digit in "0123456789")
 
 
 @lru_cache(maxsize=1024)
 def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[pygame.Surface, int]:
-    """Return the string's surface and the row of its baseline in it; what no screen has room for is left out."""
+    """Return the string's surface and the row of its baseline; text wider than any screen is cut off."""
     string = _cut(_writable(string), pixels, weight)
     font, factor = _font(pixels, weight), _oversampling(pixels)
     large = _write(string, pixels, weight, colour) if SIGN.search(string) else font.render(string, True, colour)
@@ -119,7 +119,7 @@ def render(string: str, pixels: float, weight: Weight, colour: Colour) -> tuple[
 
 
 def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame.Surface:
-    """Return a string with signs in it, before it is scaled down."""
+    """Return the surface of a string with signs, before it is scaled down."""
     font, factor = _font(pixels, weight), _oversampling(pixels)
     surface = pygame.Surface((-(-reach(string, pixels, weight) * factor // 1), font.get_height()), pygame.SRCALPHA)
     surface.fill((*colour, 0))
@@ -138,12 +138,12 @@ def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame
 
 
 def _writable(string: str) -> str:
-    """Put question marks where no font has anything: the name of a file can be any bytes, and any number of them."""
+    """Replace characters that no font has by question marks; a file's name can hold any bytes, at any length."""
     return string[:_LONGEST].replace("\0", "?").encode(errors="replace").decode()
 
 
 def _cut(string: str, pixels: float, weight: Weight) -> str:
-    """Leave out the end of a string that is wider than any screen."""
+    """Cut off the end of a string that is wider than any screen."""
     most = _WIDEST / _oversampling(pixels)
     if reach(string, pixels, weight) <= most:
         return string
@@ -151,6 +151,6 @@ def _cut(string: str, pixels: float, weight: Weight) -> str:
 
 
 def forget() -> None:
-    """Drop every rendered string: the window's size has changed."""
+    """Clear the cache of rendered strings, after a change of the window's size."""
     for cache in (_font, grown, reach, extent, digit_width, render):
         cache.cache_clear()
