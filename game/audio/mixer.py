@@ -97,7 +97,7 @@ class Sound:
             self._let_go()
 
     def follow(self, settings: Settings) -> None:
-        """Take the volumes from the settings, squared: loudness is heard in ratios, so half way up is a quarter gain."""
+        """Take the volumes from the settings, squared: loudness is heard in ratios, so half way up is a gain of 1/4."""
         self._volumes = {group: getattr(settings, f"{group}_volume") ** 2 for group in GROUPS}
 
     def handle_event(self, event: pygame.event.Event) -> None:

@@ -1,7 +1,7 @@
-"""A live line chart: smoothed lines over raw points, several runs, a cursor and a marker.
+"""Live line chart: smoothed lines over raw points, several runs, a cursor and a marker.
 
-It is drawn onto a sheet that is kept until its numbers, its limits or the window change; only what follows the
-mouse is drawn every frame.
+It is drawn onto a sheet that is kept until its numbers, its limits or the window change; only the marker and the
+cursor are drawn every frame.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NIGHT0, SM
 
 __all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
 
-Painted = tuple[Canvas, list[Numbers]]  # a sheet, and each run's height in every column of it
+Painted = tuple[Canvas, list[Numbers]]  # a sheet, and each run's value in every pixel column
 
-_HEADER: Final = 24.0  # from the top of the box to the highest line
-_FOOT: Final = 18.0  # from the lowest line to the bottom of the box
-_GUTTER: Final = 34.0  # for the lines' numbers, on the right
-_APART: Final = 8.0  # between what a chart shows and its latest number
-_MARGIN: Final = 6.0  # of the sheet around the box
+_HEADER: Final = 24.0  # points from the top of the box to the highest grid line
+_FOOT: Final = 18.0  # points from the lowest grid line to the bottom of the box
+_GUTTER: Final = 34.0  # points for the grid lines' numbers, on the right
+_APART: Final = 8.0  # points between the label and the latest number
+_MARGIN: Final = 6.0  # points of the sheet around the box
 _AXES: Final = mix(FAINT, MUTE, 0.55)
 _AXES_SIZE: Final = LABEL - 1.5
-_REST: Final = 6  # sixtieths of a second between two drawings of new numbers
+_REST: Final = 6  # steps of 1/60 s between two drawings of new numbers
 _EASE: Final = 0.2
-_REACH: Final = 5.0  # points from a tick within which it tells what it stands for
+_REACH: Final = 5.0  # points from a tick within which its caption shows
 _TICK_SPACING: Final = 4.0
-_SLACK: Final = 0.02  # of the x axis: so far from its ends a run is still told of
+_SLACK: Final = 0.02  # share of the x axis by which the cursor may lie beyond a run's end
 
 
 class Chart:
-    """One chart in a box of points.
+    """Line chart in a box, in points.
 
-    `read` writes a value, `read_x` a place on the x axis. `limits` fixes the vertical axis; otherwise it
-    follows the numbers, and a few that have exploded are cut off and marked by an arrow. On a `log` axis, what is
-    not positive makes a gap. `empty` is said while there is nothing to show.
+    `read` formats a value, `read_x` a position on the x axis. `limits` fixes the vertical axis; otherwise it
+    follows the numbers, and a few that have exploded are cut off and marked by an arrow. On a `log` axis, values that
+    are not positive make a gap. `empty` is the text while there is nothing to show.
     """
 
     def __init__(
@@ -66,43 +66,43 @@ class Chart:
         self._make_grid = plotting.decades if log else plotting.grid
         self._log, self._read = log, read
         self.fixed = limits
-        self.redraws = 0  # how often the sheet was drawn
+        self.redraws = 0  # number of times the sheet was drawn
         self._runs: list[Run] = []
         self._ticks: tuple[Tick, ...] = ()
         self._x_range: Limits = (0.0, 1.0)
-        self._told: tuple[float, ...] = ()  # the ends of the x axis: both, or one if it is a single place
+        self._told: tuple[float, ...] = ()  # both ends of the x axis, or one if they are the same
         self._lines = self._make_grid(*(limits or (0.0, 1.0)))
         self._shown = self._goal
         self._cursor: float | None = None
         self._pointed = False
         self._marker: tuple[float, str] | None = None
-        self._painted: Painted | None = None  # until the numbers, or the window, are others
+        self._painted: Painted | None = None  # until the numbers or the window change
         self._stale = True
         self._rested = 0
 
     @property
     def plot(self) -> pygame.FRect:
-        """The box of the curves, in points."""
+        """Box of the curves, in points."""
         box = self.box
         return pygame.FRect(box.x, box.y + _HEADER, box.width - _GUTTER, box.height - _HEADER - _FOOT)
 
     @property
     def limits(self) -> Limits:
-        """The lowest and the highest value of the vertical axis, where it is going."""
+        """Lowest and highest value of the vertical axis once its easing ends."""
         return self._goal
 
     def read(self, height: float) -> str:
-        """Write the value at a height of the vertical axis."""
+        """Format the value at a height of the vertical axis, which for a `log` axis is a logarithm."""
         return self._read(self._value(height))
 
     @property
     def _goal(self) -> Limits:
         return self.fixed or (float(self._lines[0]), float(self._lines[-1]))
 
-    # What is shown
+    # Data
 
     def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = ()) -> None:
-        """Show these runs, the current one first; the same numbers again cost nothing. Call it when new ones came."""
+        """Show these runs, the current one first. Call it when new numbers arrive; unchanged ones cost nothing."""
         runs = [Run(each, log=self._log) for each in series]
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
         span = (start, end) if end > start else (start, start + 1.0)
@@ -131,19 +131,19 @@ class Chart:
             self._lines = plotting.steady_grid(span, self._lines, self._make_grid)
 
     def mark(self, x: float | None, caption: str = "") -> None:
-        """Let an upright line stand at x, with a dot on the current run's curve and a caption; None for none."""
+        """Put the marker at x: a vertical line with a caption and a dot on the current run's curve; None removes it."""
         self._marker = None if x is None else (x, caption)
 
     def hover(self, point: Point | None) -> None:
-        """Let the cursor follow the mouse, a point of the canvas; None for none."""
+        """Move the cursor to the mouse, a point of the canvas; None removes it."""
         self.point_to(None if point is None else self.x_at(point), pointed=True)
 
     def point_to(self, x: float | None, *, pointed: bool = False) -> None:
-        """Put the cursor at x. Only where it is `pointed` at by the mouse, a read-out says what is there."""
+        """Put the cursor at x; None removes it. A tooltip shows the values only in the chart `pointed` at by the mouse."""
         self._cursor, self._pointed = x, pointed and x is not None
 
     def x_at(self, point: Point) -> float | None:
-        """Return the x under a point of the canvas, or None outside the chart."""
+        """Return the x value under a point of the canvas, or None outside the chart."""
         plot = self.plot
         if not plot.inflate(2 * _MARGIN, 0).collidepoint(point) and not self._on_foot(point):
             return None
@@ -155,7 +155,7 @@ class Chart:
         return plot.x <= point[0] <= plot.right and plot.bottom <= point[1] <= self.box.bottom
 
     def place(self, x: float, y: float) -> Point:
-        """Return the point of the canvas for x and a value, no further out than the chart's edges."""
+        """Return the point of the canvas for x and a value, clipped to the plot."""
         plot, (start, end), (low, high) = self.plot, self._x_range, self._shown
         across = min(max((x - start) / (end - start), 0.0), 1.0)
         up = min(max((y - low) / (high - low), 0.0), 1.0)
@@ -165,12 +165,12 @@ class Chart:
 
     @property
     def waiting(self) -> int:
-        """For how many steps there has been something new to draw; 0 if there is nothing, or it is too soon."""
+        """Steps since the last drawing, if there is something new to draw; 0 if there is nothing, or it is too soon."""
         moving = self._shown != self._goal
         return self._rested if moving or (self._stale and self._rested >= _REST) else 0
 
     def update(self, at_once: bool = False, *, turn: bool = True) -> None:
-        """Let 1/60 s pass: limits ease, or jump `at_once`. On its `turn`, new numbers are drawn next."""
+        """Advance by 1/60 s: ease the limits, or jump `at_once`. On its `turn`, the next frame draws new numbers."""
         self._rested += 1
         if self._shown != self._goal:
             self._shown = self._goal if at_once else _eased(self._shown, self._goal)
@@ -179,10 +179,10 @@ class Chart:
             self.renew()
 
     def renew(self) -> None:
-        """Have the sheet drawn anew in the next frame."""
+        """Mark the sheet to be redrawn in the next frame."""
         self._painted, self._stale, self._rested = None, False, 0
 
-    # The picture
+    # Drawing
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the chart, and the marker and the cursor over it."""
@@ -256,7 +256,7 @@ class Chart:
                 last = x
 
     def _value_at(self, x: float) -> float | None:
-        """Return the height of the current run's curve at x."""
+        """Return the value of the current run's curve at x."""
         traces = self._painted[1] if self._painted else []
         if not traces:
             return None
@@ -297,14 +297,14 @@ class Chart:
             draw_tooltip(canvas, (across, plot.top), self.box, [self.read_x(x), *([tick.text] if tick else [])], rows)
 
     def _tick_at(self, across: float) -> Tick | None:
-        """Return the tick nearest to a place on the canvas, if one is near; a turned knob before a checkpoint."""
+        """Return the tick nearest to x on the canvas, if one is near; a turned knob goes before a checkpoint."""
         away = {tick: abs(self.place(tick.x, 0.0)[0] - across) for tick in self._ticks}
         near = [tick for tick in self._ticks if away[tick] <= _REACH]
         return min(near, key=lambda tick: (tick.kind != "knob", away[tick]), default=None)
 
 
 def _eased(shown: Limits, goal: Limits) -> Limits:
-    """Return limits a step nearer to the goal; at once if they are near, or worlds away."""
+    """Return limits one step nearer to the goal, or the goal itself if it is very near or very far."""
     wide, far = goal[1] - goal[0], max(abs(goal[0] - shown[0]), abs(goal[1] - shown[1]))
     if far < 0.004 * wide or far > 20 * wide:
         return goal

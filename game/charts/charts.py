@@ -1,4 +1,4 @@
-"""Charts over one x axis, which take turns at being drawn anew, so that no frame draws more than one."""
+"""Group of charts with a common x axis, redrawn in turns so that no frame redraws more than one."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from game.drawing.canvas import Canvas, Point
 
 
 class Charts:
-    """Charts over one x axis, which share the cursor and the marker and take turns at being drawn anew."""
+    """Charts with a common x axis, cursor and marker, redrawn in turns."""
 
     def __init__(self, charts: Sequence[Chart]) -> None:
         self.charts = tuple(charts)
 
     def hover(self, point: Point | None) -> float | None:
-        """Let the cursors follow the mouse; the chart under it tells its values. Returns the x there."""
+        """Move the cursors to the mouse, with a tooltip in the chart under it; return the x value there."""
         x = self.x_at(point) if point else None
         for chart in self.charts:
             chart.point_to(x, pointed=point is not None and chart.x_at(point) is not None)
         return x
 
     def follow(self, event: pygame.event.Event) -> None:
-        """Follow the mouse, or what stands in for it: an event, its position in points."""
+        """Follow an event of the mouse or of a virtual pointer, its position in points."""
         if event.type == pygame.MOUSEMOTION:
             self.hover(event.pos)
 
     @property
     def box(self) -> pygame.Rect:
-        """Where they are, all together."""
+        """Bounding box of all charts, in points."""
         first, *others = (pygame.Rect(chart.box) for chart in self.charts)
         return first.unionall(others)
 
     def x_at(self, point: Point) -> float | None:
-        """Return the x under a point of the canvas, or None outside all charts."""
+        """Return the x value under a point of the canvas, or None outside all charts."""
         return next((x for chart in self.charts if (x := chart.x_at(point)) is not None), None)
 
     def mark(self, x: float | None, caption: str = "") -> None:
@@ -44,7 +44,7 @@ class Charts:
             chart.mark(x, caption if number == 0 else "")
 
     def update(self, at_once: bool = False, *, turn: bool = True) -> None:
-        """Let 1/60 s pass; on its `turn`, the chart that has waited longest is drawn anew in the next frame."""
+        """Advance by 1/60 s; on its `turn`, the chart that has waited longest is redrawn in the next frame."""
         for chart in self.charts:
             chart.update(at_once, turn=False)
         if not turn:
@@ -54,6 +54,6 @@ class Charts:
             patient.renew()
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw all charts; the one with the read-out last, so that nothing lies over it."""
+        """Draw all charts, the one with the tooltip last so that nothing covers it."""
         for chart in sorted(self.charts, key=lambda chart: chart._pointed):
             chart.draw(canvas)

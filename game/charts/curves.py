@@ -1,4 +1,4 @@
-"""The curve of a run, painted onto a chart's sheet: a smoothed line over raw points, with marks where it leaves."""
+"""Drawing of a run's curve on a chart's sheet: a smoothed line over raw points, with arrows for values outside."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from game.drawing.shapes import Shape
 from game.drawing.tokens import Colour
 
 _LINE_WIDTH: Final = 1.6
-_SPECK: Final = 0.55  # radius of a raw point
+_SPECK: Final = 0.55  # radius of a raw point, in points
 _SPECK_ALPHA: Final = 0.5
-_SMOOTHING: Final = 0.022  # of the width, to either side
-_ROOM: Final = 0.15  # of the vertical axis: values further out count as so far out, lest they drag the line along
-_BEYOND: Final = 0.01  # of the vertical axis: what lies further out is marked
+_SMOOTHING: Final = 0.022  # smoothing radius, as a share of the width
+_ROOM: Final = 0.15  # share of the vertical axis: values are clipped this far outside, so as not to distort the line
+_BEYOND: Final = 0.01  # share of the vertical axis: values further outside get an arrow
 _ARROWS_APART: Final = 14.0
-_BLEED: Final = 3.0  # so far a line may reach out of the plot
+_BLEED: Final = 3.0  # points that a line may reach out of the plot
 
 
 class Axes(NamedTuple):
-    """What a plot spans: along x, upright as shown now, and upright where that is easing to."""
+    """Ranges of a plot's axes: of x, of the vertical axis as shown now, and the goal that it eases to."""
 
     x_range: Limits
     shown: Limits
     goal: Limits
 
     def across(self, x: Numbers, columns: int) -> Numbers:
-        """Return the places of x among the columns of pixels."""
+        """Return the pixel columns of x, as fractions."""
         start, end = self.x_range
         places: Numbers = (x - start) / (end - start) * (columns - 1)
         return places
 
 
 def trace_run(run: Run, axes: Axes, columns: int) -> Numbers:
-    """Return the value of a run's line in each column of pixels, NaN where there is none."""
+    """Return the value of a run's smoothed line in each pixel column (columns,), NaN for no line."""
     low, high = axes.goal
     room = _ROOM * (high - low)
     kept = np.where(np.isfinite(run.y), np.clip(run.y, low - room, high + room), np.nan)
@@ -48,7 +48,7 @@ def trace_run(run: Run, axes: Axes, columns: int) -> Numbers:
 
 
 def paint_run(sheet: Canvas, area: pygame.Rect, run: Run, values: Numbers, axes: Axes) -> None:
-    """Paint a run into an area of pixels of the sheet; `values` is its `trace_run`."""
+    """Draw a run into an area of the sheet, in pixels; `values` is its `trace_run`."""
     colour, scale, bleed = run.series.colour, sheet.scale, sheet.px(_BLEED)
     low, high = axes.shown
     size = (area.width, area.height + 2 * bleed)
@@ -74,7 +74,7 @@ def paint_run(sheet: Canvas, area: pygame.Rect, run: Run, values: Numbers, axes:
 
 
 def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: Run, axes: Axes) -> None:
-    """Mark where values lie beyond the chart, also a single one that is lost in the smoothed line."""
+    """Draw arrows for values beyond the chart, also for a single one that smoothing hides."""
     (low, high), (start, end) = axes.goal, axes.x_range
     slack = _BEYOND * (high - low)
     shown = (run.x >= start) & (run.x <= end)
@@ -91,7 +91,7 @@ def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: Run, axes: Axes) -> Non
 def _cover(
     surface: pygame.Surface, corner: tuple[int, int], colour: Colour, cover: Numbers, alpha: float = 1.0
 ) -> None:
-    """Lay a colour over a surface, as far as `cover` (rows, columns) says."""
+    """Blend a colour onto a surface with the coverage (rows, columns)."""
     rows, columns = cover.shape
     layer = pygame.Surface((columns, rows), pygame.SRCALPHA)
     layer.fill((*colour, 0))

@@ -1,4 +1,4 @@
-"""The numbers behind a chart: limits, ticks, thinning, smoothing, and how much of each pixel a line covers.
+"""Numerics of a chart: limits, grid lines, thinning, smoothing and anti-aliased rasterisation.
 
 All arrays; no surfaces. Columns and rows are pixels of the plot, counted from its top left pixel's middle.
 """
@@ -16,11 +16,11 @@ Numbers = npt.NDArray[np.floating[Any]]
 Bools = npt.NDArray[np.bool_]
 Limits = tuple[float, float]
 
-_WILD: Final = 300.0  # a range so many times wider than the middle half of its values is cut
-_KEPT: Final = 10.0  # middle halves that stay on either side of it then
+_WILD: Final = 300.0  # a range this many times wider than the interquartile range is cut
+_KEPT: Final = 10.0  # interquartile ranges that are kept on either side then
 _STEPS: Final = (1.0, 2.0, 2.5, 5.0, 10.0)
-_STEEP: Final = 3.0  # rows in a column: from here on a line grows no thicker, or else it would end in spikes
-_FAR: Final = -1e6  # a row that nobody sees
+_STEEP: Final = 3.0  # slope in rows per column above which a line grows no thicker, or it would end in spikes
+_FAR: Final = -1e6  # a row outside the plot
 _ROUNDING: Final = 1e-9
 _THOUSANDS: Final = ((1e6, "M"), (1e3, "k"))
 
@@ -47,7 +47,7 @@ def _in_thousands(value: float, digits: int) -> str:
 
 
 def round_number(value: float) -> str:
-    """Write a round number, such as a grid line's, as short as can be."""
+    """Write a round number, such as a grid line's, as briefly as possible."""
     if abs(value) >= 1e9 or 0 < abs(value) < 1e-4:
         return compact(value).replace(".0e", "e")
     for unit, letter in _THOUSANDS:
@@ -57,9 +57,9 @@ def round_number(value: float) -> str:
 
 
 def robust_range(values: Numbers) -> Limits | None:
-    """Return the least and the greatest of the finite values, or None if there are none.
+    """Return the range of the finite values without extreme outliers, or None if there are no values.
 
-    If a few have exploded, so that all others would lie in one line, the range ends before these.
+    If a few values have exploded, so that all others would look like one flat line, the range leaves these out.
     """
     finite = values[np.isfinite(values)]
     if not len(finite):
@@ -73,7 +73,7 @@ def robust_range(values: Numbers) -> Limits | None:
 
 
 def grid(low: float, high: float, most: int = 4) -> Numbers:
-    """Return round numbers at even steps that enclose low to high: the grid lines, two to `most` of them."""
+    """Return two to `most` grid lines: evenly spaced round numbers that enclose low to high."""
     low, high = max(low, -1e300), min(high, 1e300)
     if high / 2 - low / 2 <= 1e-9 * max(abs(low), abs(high)):
         pad = max(abs(low), abs(high)) / 10 or 1.0
@@ -88,7 +88,7 @@ def grid(low: float, high: float, most: int = 4) -> Numbers:
 
 
 def decades(low: float, high: float) -> Numbers:
-    """Return the logarithms of round numbers that enclose low to high, themselves logarithms, and of tens between."""
+    """Return the grid lines of a logarithmic axis, as logarithms: round numbers around low to high, tens between."""
     low, high = max(low, -300.0), min(max(high, low + 1e-9), 300.0)
     first = max(step for step in _round_logarithms(low) if step <= low + _ROUNDING)
     last = min(step for step in _round_logarithms(high) if step >= high - _ROUNDING)
@@ -97,12 +97,12 @@ def decades(low: float, high: float) -> Numbers:
 
 
 def _round_logarithms(near: float) -> Numbers:
-    """Return the logarithms of 1, 2, 5 and 10 times the power of ten below."""
+    """Return the logarithms of 1, 2, 5 and 10 times the power of ten below `near`, itself a logarithm."""
     return math.floor(near + _ROUNDING) + np.log10((1.0, 2.0, 5.0, 10.0))
 
 
 def steady_grid(span: Limits, before: Numbers | None, make: Callable[[float, float], Numbers] = grid) -> Numbers:
-    """Return grid lines for a range: the ones from before while they hold it and do not leave it small."""
+    """Return grid lines for a range; keep the previous ones while the range fits and fills them well."""
     lines = make(*span)
     if before is None or span[0] < before[0] or span[1] > before[-1]:
         return lines
@@ -110,7 +110,7 @@ def steady_grid(span: Limits, before: Numbers | None, make: Callable[[float, flo
 
 
 def thinned(x: Numbers, y: Numbers, x_range: Limits, count: int) -> npt.NDArray[np.intp]:
-    """Return which points to keep, at most about `count`: of each few neighbours the lowest and the highest."""
+    """Return the indices of about `count` points at most: the lowest and the highest of each group of neighbours."""
     kept = np.flatnonzero(np.isfinite(y) & (x >= x_range[0]) & (x <= x_range[1]))
     if len(kept) <= count:
         return kept
@@ -153,7 +153,7 @@ def trace(x: Numbers, y: Numbers, x_range: Limits, columns: int, radius: int) ->
 
 
 def _local_line(count: Numbers, total: Numbers, radius: int) -> Numbers:
-    """Fit a line around each column, near ones weighing most; return its height there. Empty: anything."""
+    """Return the local linear fit at each column, near columns weighing most; undefined for columns without data."""
     away = np.arange(-radius, radius + 1, dtype=float)
     weight = (1 - (away / (radius + 1)) ** 2) ** 2
     if not radius:
@@ -167,16 +167,16 @@ def _local_line(count: Numbers, total: Numbers, radius: int) -> Numbers:
 
 
 def stroke(heights: Numbers, rows: int, width: float, dash: Sequence[float] = ()) -> tuple[int, Numbers]:
-    """Return how far a line covers each pixel, (height, columns) in 0 to 1, and the row at which that begins.
+    """Return the first row of a line, and its coverage of each pixel from there, (height, columns) in 0 to 1.
 
-    `heights` (columns,) are rows, NaN where there is no line; `width` and `dash` (on, off, ...) are pixels.
-    What lies outside of 0 to `rows` is cut off.
+    `heights` (columns,) are rows, NaN for no line; `width` and `dash` (on, off, ...) are in pixels.
+    Rows outside 0 to `rows` are cut off.
     """
     known = np.isfinite(heights)
     if not known.any():
         return 0, np.zeros((0, len(heights)), np.float32)
     middle = np.where(known, heights, _FAR).astype(np.float32)
-    between = (middle[1:] + middle[:-1]) / 2  # a line leaves a column half way to its neighbour
+    between = (middle[1:] + middle[:-1]) / 2  # a line leaves a column halfway to its neighbour
     joined = known[1:] & known[:-1]
     left, right = middle.copy(), middle.copy()
     np.copyto(left[1:], between, where=joined)
@@ -184,7 +184,7 @@ def stroke(heights: Numbers, rows: int, width: float, dash: Sequence[float] = ()
     low, high = np.minimum(np.minimum(left, right), middle), np.maximum(np.maximum(left, right), middle)
     rise = high - low
     slope = np.minimum(rise, _STEEP)
-    thick = width * np.sqrt(1 + slope**2)  # measured upright, a steep line is a thick one
+    thick = width * np.sqrt(1 + slope**2)  # measured vertically, a steep line is thicker
     ramp = np.maximum(slope, 1.0)
     most = np.minimum(thick / ramp, 1.0) * (_dashes(middle, dash) if dash else 1.0)
     reach = (np.maximum(rise, 1.0) + thick) / 2
@@ -199,7 +199,7 @@ def stroke(heights: Numbers, rows: int, width: float, dash: Sequence[float] = ()
 
 
 def _dashes(heights: Numbers, dash: Sequence[float]) -> Numbers:
-    """Return how far each column is within a dash, going along the line."""
+    """Return how far each column lies within a dash, 0 to 1, measured along the line."""
     lengths = np.ones(len(heights))
     lengths[1:] = np.sqrt(1 + np.minimum((heights[1:] - heights[:-1]) ** 2, 1e4))
     along = np.cumsum(lengths) % sum(dash)
@@ -213,7 +213,7 @@ def _dashes(heights: Numbers, dash: Sequence[float]) -> Numbers:
 
 
 def specks(columns: Numbers, heights: Numbers, size: tuple[int, int], radius: float) -> Numbers:
-    """Return how far dots cover each pixel, (rows, columns) in 0 to 1; `size` is columns, rows."""
+    """Return the coverage of each pixel by dots, (rows, columns) in 0 to 1; `size` is (columns, rows)."""
     reach = math.ceil(radius + 0.5)
     near = np.arange(-reach, reach + 1)
     across, down = (each.ravel() for each in np.meshgrid(near, near))
@@ -225,7 +225,7 @@ def specks(columns: Numbers, heights: Numbers, size: tuple[int, int], radius: fl
 
 
 def alone(values: Numbers) -> list[int]:
-    """Return the places of finite values whose neighbours are not: no line runs through them."""
+    """Return the indices of finite values without finite neighbours, through which no line runs."""
     known = np.isfinite(values)
     lonely = known.copy()
     lonely[1:] &= ~known[:-1]
@@ -235,7 +235,7 @@ def alone(values: Numbers) -> list[int]:
 
 
 def starts(flags: Bools, at: Numbers, spacing: float) -> list[float]:
-    """Return the places `at` which stretches of True begin, but for those less than `spacing` after another."""
+    """Return the positions `at` which runs of True begin, leaving out those less than `spacing` after another."""
     kept: list[float] = []
     begins = flags.copy()
     begins[1:] &= ~flags[:-1]

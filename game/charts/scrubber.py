@@ -1,4 +1,4 @@
-"""A widget over charts that share an axis: the mouse or the arrows move a marker along it."""
+"""Scrubber: a widget over charts with a common x axis, along which the mouse or the arrows move a marker."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from game.ui.widget import OnPress, PointsManager, Widget
 
 
 class Scrubber(Widget):
-    """Lies over the first row of charts. `on_move` gets a place on the axis, a float, or a step, the int -1 or 1."""
+    """Scrubber over the first row of charts. `on_move` gets an x, a float, or a step, the int -1 or 1."""
 
     def __init__(
         self, manager: PointsManager, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress
@@ -22,21 +22,21 @@ class Scrubber(Widget):
         self._charts, self._on_move, self._on_press = charts, on_move, on_press
 
     def press(self) -> Transition | None:
-        """Do it; the mouse only moves the marker."""
+        """Call `on_press`, except for a mouse, which only moves the marker."""
         return self._on_press() if self.ringed else None
 
     def shift(self, direction: int) -> bool:
-        """Go one step along."""
+        """Move the marker one step."""
         self._on_move(direction)
         return True
 
     def drag(self, x: float) -> None:
-        """Follow the mouse."""
+        """Move the marker to the mouse."""
         place = self._charts.x_at((x, self.box.centery))
         if place is not None:
             self._on_move(float(place))
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw nothing but the ring of the focus."""
+        """Draw the focus ring only."""
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(12, 8), 8, INK, 1, 0.4 * self.warmth)

@@ -1,4 +1,4 @@
-"""What a chart shows: the curves of runs, and moments worth a mark."""
+"""Data of a chart: the curves of runs, and ticks for special moments."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from game.charts.tooltip import draw_swatch
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import MUTE, NET, SMALL, Colour
 
-# Blue is the run of now; the others differ from it, and from each other, in dashes, and in colour for eyes of
+# Blue is the current run; the others differ from it and from each other in dashes, and in colour, for eyes of
 # every kind.
 RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = (
     (NET, ()),
@@ -27,13 +27,13 @@ RUN_STYLES: Final[tuple[tuple[Colour, tuple[float, ...]], ...]] = (
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """One run's curve.
+    """Curve of one run.
 
     Attributes:
-        x: (n,) rising; where one is not finite, the point is left out.
-        y: (n,) values; one that is not finite makes a gap.
+        x: (n,) rising; points with a value that is not finite are left out.
+        y: (n,) values; a value that is not finite makes a gap.
         dash: on, off, ... in points; empty for a solid line, which also shows its raw points.
-        smooth: whether the line is smoothed; not for what has no noise.
+        smooth: whether the line is smoothed; not for data without noise.
 
     """
 
@@ -47,7 +47,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Tick:
-    """A moment worth a mark below the chart: a checkpoint, or a knob that was turned."""
+    """Mark below the chart for a moment: a checkpoint, or a knob that was turned."""
 
     x: float
     text: str
@@ -55,9 +55,9 @@ class Tick:
 
 
 class Run:
-    """A series with its numbers copied: whatever becomes of the arrays, the chart shows these.
+    """Series with its own copy of the numbers, so that later changes of the arrays do not matter.
 
-    For a `log` axis, `y` is the logarithm to base 10, NaN where there is none.
+    For a `log` axis, `y` is the logarithm to base 10, and NaN for values that are not positive.
     """
 
     def __init__(self, series: Series, *, log: bool = False) -> None:
@@ -71,7 +71,7 @@ class Run:
         self.y: Numbers = np.log10(np.where(y > 0, y, np.nan)) if log else y
 
     def same(self, other: Run) -> bool:
-        """Say whether the other would be drawn alike."""
+        """Whether another run would be drawn the same."""
         same_x = self.look == other.look and np.array_equal(self.x, other.x)
         return same_x and np.array_equal(self.y, other.y, equal_nan=True)
 
@@ -80,7 +80,7 @@ class Run:
         return np.flatnonzero(np.isfinite(self.y))
 
     def nearest(self, x: float, slack: float) -> tuple[float, float] | None:
-        """Return the finite point nearest to x, unless the run ends more than `slack` before it or begins after."""
+        """Return the finite point nearest to x; None if x lies more than `slack` outside the run."""
         finite = self._finite
         if not len(finite):
             return None
@@ -98,7 +98,7 @@ class Run:
 
 
 def draw_legend(canvas: Canvas, series: Sequence[Series], position: Point) -> float:
-    """Name runs side by side on one baseline, each with a piece of its line; return where they end."""
+    """Draw the names of runs on one baseline, each with a piece of its line; return the right end in points."""
     x, y = position
     for each in series:
         draw_swatch(canvas, (x, y - 4), each.colour, each.dash)

@@ -1,4 +1,4 @@
-"""A small panel beside what the mouse points at: some lines, then rows of a word and a figure."""
+"""Tooltip: a small panel beside the mouse with some lines, then rows of a word and a figure."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from game.drawing.tokens import INK, LABEL, LINE, MUTE, NIGHT0, SMALL, Colour
 
 _ROW: Final = 15.0
 _PADDING: Final = 10.0
-_GAP: Final = 12.0  # from the point to the panel
-_BETWEEN: Final = 14.0  # words and figures
+_GAP: Final = 12.0  # points from the mouse to the panel
+_BETWEEN: Final = 14.0  # points between words and figures
 _SWATCH: Final = 20.0
 _AFTER_SWATCH: Final = 7.0
 
 
 @dataclass(frozen=True)
 class Row:
-    """A word and its figure; with `dash`, also a piece of the line that they belong to."""
+    """Row of a tooltip: a word and its figure; with `dash`, also a piece of the line they belong to."""
 
     word: str
     figure: str
@@ -32,7 +32,7 @@ class Row:
 def draw_tooltip(
     canvas: Canvas, point: Point, within: pygame.typing.RectLike, lines: Sequence[str], rows: Sequence[Row] = ()
 ) -> pygame.FRect:
-    """Draw the panel to the right of a point, or to its left, inside a box; return where it is."""
+    """Draw the panel to the right of a point, or to its left, inside a box; return its box."""
     bounds = pygame.FRect(within)
     indent = _SWATCH + _AFTER_SWATCH if any(row.dash is not None for row in rows) else 0.0
     words = max((canvas.text_width(row.word, size=LABEL) for row in rows), default=0.0)
@@ -60,7 +60,7 @@ def draw_tooltip(
 
 
 def draw_swatch(canvas: Canvas, start: Point, colour: Colour, dash: Sequence[float], length: float = _SWATCH) -> None:
-    """Draw a short level piece of a line; `dash` is on, off, ... in points, or nothing for a solid one."""
+    """Draw a short horizontal piece of a line; `dash` is on, off, ... in points, or empty for a solid one."""
     x, y = start
     pattern = list(dash) or [length, 0.0]
     at = 0.0

@@ -1,4 +1,4 @@
-"""What every scene is given when it enters."""
+"""Context: the shared services that every scene gets when it enters."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from game.input.controls import Controls
 
 
 def _ignore(text: str) -> None:
-    """Stand in for `note` until there is a window to show it."""
+    """Replace `note` until there is a window to show it."""
 
 
 @dataclass
 class Context:
-    """The game's shared things: folders, chance, settings, controls, sound.
+    """Shared services of the game: folders, random numbers, settings, controls and sound.
 
     Attributes:
         user_dir: the player's own folder; it may not exist yet and may not be writable.
         models_dir: the shipped networks.
         assets_dir: the shipped data.
-        rng: the source of every random choice.
+        rng: random generator for every random choice.
         note: shows a short message near the top of the window for a few seconds.
-        apply_settings: makes the window and the sound follow the settings, and saves them.
-        in_window: turns a rectangle in points into the window's pixels.
+        apply_settings: applies the settings to the window and the sound, and saves them.
+        in_window: converts a rectangle from points to the window's pixels.
 
     """
 
@@ -47,5 +47,5 @@ class Context:
 
     @property
     def settings_file(self) -> SettingsFile:
-        """The file the settings are kept in."""
+        """The player's settings file."""
         return SettingsFile(self.user_dir)

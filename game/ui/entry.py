@@ -1,7 +1,7 @@
-"""One line of text to type into: a suggestion stands in it, and a pad's A takes that as it is.
+"""Text entry of one line: it begins with a suggestion, which a gamepad's A accepts unchanged.
 
-pygame_gui's own text line lays itself out in its own type and pixels, and knows no pad: this one is a `Widget`
-like the others. Letters come as TEXTINPUT events, so that any keyboard layout and any script will do.
+pygame_gui's own text line uses its own type and pixels, and has no gamepad support: this one is a `Widget`
+like the others. Letters arrive as TEXTINPUT events, so that any keyboard layout and any script works.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from game.ui.widget import PointsManager, Widget
 
 Fits = Callable[[str], str]
 _PASTE: Final = pygame.KMOD_CTRL | pygame.KMOD_META
-_REPEAT_AFTER: Final = 24  # steps that a key waits before it repeats, and between repeats
+_REPEAT_AFTER: Final = 24  # steps before a held key repeats, and between repeats
 _REPEAT_EVERY: Final = 3
 
 
 def printable(text: str) -> str:
-    """Keep what can be shown on one line."""
+    """Remove characters that cannot be shown on one line."""
     return "".join(letter for letter in text if letter.isprintable())
 
 
 def digits(text: str) -> str:
-    """Keep the digits from 0 to 9."""
+    """Remove all but the digits 0 to 9."""
     return "".join(letter for letter in text if letter in "0123456789")
 
 
 class Line:
-    """A text with a caret in it, and the keys that change it.
+    """Editable line of text with a caret, and its editing keys.
 
     Attributes:
-        caret: before which letter it stands.
-        selected: whether all of the text is selected: the next letter takes its place.
+        caret: index of the letter after the caret.
+        selected: whether the whole text is selected, so that the next letter replaces it.
 
     """
 
@@ -49,14 +49,14 @@ class Line:
         self.set(text)
 
     def set(self, text: str) -> None:
-        """Take another text, all of it selected."""
+        """Replace the text, and select all of it."""
         self.text = self._fits(text)[: self._limit]
         self.caret = len(self.text)
         self.selected = bool(self.text)
         self._key = 0
 
     def insert(self, text: str) -> None:
-        """Write at the caret what fits there."""
+        """Insert as much of a text at the caret as is allowed."""
         if self.selected:
             self._clear()
         text = self._fits(text)[: self._limit - len(self.text)]
@@ -64,11 +64,11 @@ class Line:
         self.caret += len(text)
 
     def place(self, caret: int) -> None:
-        """Put the caret somewhere; nothing is selected any more."""
+        """Move the caret, and clear the selection."""
         self.caret, self.selected = min(max(caret, 0), len(self.text)), False
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Obey a letter or an editing key; false for any other event."""
+        """Handle a letter or an editing key; false for any other event."""
         if event.type == pygame.TEXTINPUT:
             self.insert(event.text)
             return True
@@ -87,7 +87,7 @@ class Line:
         return known
 
     def update(self) -> None:
-        """Let 1/60 s pass: a key that is held repeats."""
+        """Advance by 1/60 s: repeat a held key."""
         if not self._key:
             return
         self._held_steps += 1
@@ -121,10 +121,10 @@ class Line:
 
 
 class Entry(Widget):
-    """A `Line` under a label. Enter or a pad's A begins to type and then accepts; Escape leaves it as it was.
+    """Text entry: a `Line` under a label. Enter or a gamepad's A starts typing, then accepts; Escape cancels.
 
-    Up, down and Tab leave it with what has been typed. `on_accept` is given the text, without blanks around it
-    and never empty; `on_cancel` is called when it is left unchanged.
+    Up, down and Tab leave it and accept the text. `on_accept` is given the text, stripped
+    and never empty; `on_cancel` is called when typing is cancelled.
     """
 
     spells = True
@@ -150,7 +150,7 @@ class Entry(Widget):
 
     @property
     def text(self) -> str:
-        """What stands in it."""
+        """The text in the entry."""
         return self.line.text
 
     @text.setter
@@ -158,14 +158,14 @@ class Entry(Widget):
         self.line.set(text)
 
     def begin(self) -> None:
-        """Begin to type."""
+        """Start typing."""
         if not self.typing:
             self.typing = self._fresh = True
             self._before = self.line.text
             self.line.set(self.line.text)
 
     def press(self) -> Transition | None:
-        """Begin to type, or accept what is there."""
+        """Start typing, or accept the text."""
         if not self.typing:
             self.begin()
             return None
@@ -175,11 +175,11 @@ class Entry(Widget):
         return self._on_accept(self.line.text.strip())
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Type; whatever is not a way out stays here."""
+        """Handle every event while typing, except those that leave the entry."""
         if not self.typing:
             return False
         if event.type == pygame.TEXTINPUT and self._fresh:
-            return True  # the letter of the very key that began it
+            return True  # the letter of the key that started typing
         if self.line.take(event):
             return True
         if event.type == pygame.KEYDOWN and event.key in (pygame.K_RETURN, pygame.K_KP_ENTER):
@@ -212,7 +212,7 @@ class Entry(Widget):
         self.outcome = self._on_cancel()
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Begin to type where the mouse is pressed."""
+        """Start typing at the letter that is clicked."""
         if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1 or not self.hover_point(*event.pos):
             return False
         if self.typing:
@@ -222,18 +222,18 @@ class Entry(Widget):
 
     @property
     def start(self) -> tuple[float, float]:
-        """Where the text begins, on its baseline."""
+        """Left end of the text on its baseline, in points."""
         return self.box.left, self.box.bottom - 9
 
     def _letter(self, x: float) -> int:
-        """Before which letter a click at x puts the caret."""
+        """Return the caret's index for a click at x."""
         text = self.line.text
         first = first_shown(text, self.line.caret, self._size, self.box.width)
         lefts = [typeface.width(text[first:end], self._size, "regular") for end in range(first, len(text) + 1)]
         return first + min(range(len(lefts)), key=lambda number: abs(self.start[0] + lefts[number] - x))
 
     def ease(self, at_once: bool) -> None:
-        """Let a held key repeat, and stop once the focus is elsewhere."""
+        """Repeat a held key, and stop typing once the focus is elsewhere."""
         super().ease(at_once)
         self._fresh = False
         self.typing = self.typing and self.focused
@@ -241,7 +241,7 @@ class Entry(Widget):
             self.line.update()
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the label, the text and the line it stands on."""
+        """Draw the label, the text and the line under it."""
         box = self.box
         canvas.text(self.label, (box.left, box.top - 6), size=LABEL, weight="medium", colour=MUTE)
         draw_line(canvas, self.line, self.start, box.width, self._size, typing=self.typing)
@@ -255,7 +255,7 @@ class Entry(Widget):
 def draw_line(
     canvas: Canvas, line: Line, start: tuple[float, float], room: float, size: float, *, typing: bool
 ) -> None:
-    """Write a line of text on a baseline, with its caret or its selection while it is being typed."""
+    """Draw a line of text on a baseline, with its caret or its selection while `typing`."""
     x, baseline = start
     first = first_shown(line.text, line.caret, size, room)
     shown = line.text[first:]
@@ -271,7 +271,7 @@ def draw_line(
 
 
 def first_shown(text: str, caret: int, size: float, room: float) -> int:
-    """Return from which letter on a text is shown, so that the caret is in sight."""
+    """Return the index of the first letter to show, so that the caret is visible."""
     first = 0
     while first < caret and typeface.width(text[first:caret], size, "regular") > room:
         first += 1

@@ -1,4 +1,4 @@
-"""Which widget an arrow key leads to."""
+"""Focus navigation with the arrow keys."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ RIGHT: Direction = (1, 0)
 
 
 def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) -> int:
-    """Return the index of the nearest box in a direction; up and down go round at the ends.
+    """Return the index of the nearest box in a direction; up and down wrap around.
 
-    A step aside counts double, so that a column is followed to its end before another is entered; left and right
-    leave a row only where it ends.
+    A sideways distance counts double, so that a column is followed to its end before another is entered; left and right
+    leave a row only at its end.
     """
     here = boxes[current]
 

@@ -1,4 +1,4 @@
-"""A screen's widgets with one of them in focus, for mouse, keyboard and gamepad alike."""
+"""Form: the widgets of a screen and their focus, for mouse, keyboard and gamepad alike."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _REPEAT_EVERY: Final = 4
 
 
 class Form:
-    """Widgets are made with `form.manager` and added in the order in which Tab visits them.
+    """Widgets of a screen, one of them in focus; made with `form.manager` and added in the order of Tab.
 
     A scene passes on `handle_event` and `update` and returns what they return; what a widget's callback
     returns comes out of one of the two. `on_back` answers Escape, or the pad's B. A scene that has commands of
     its own looks at `typing` before it takes an event, or at `used` after it has passed the event on.
 
     Attributes:
-        used: whether the last event meant something to a widget, or moved the focus.
+        used: whether a widget used the last event, or it moved the focus.
 
     """
 
@@ -49,24 +49,24 @@ class Form:
 
     @property
     def typing(self) -> bool:
-        """Whether letters are being typed into a widget: every key and button is the form's, then."""
+        """Whether the focused widget takes every key and button, as a text line does."""
         return self.focused is not None and self.focused.typing
 
     @property
     def change_hint(self) -> tuple[str, str]:
-        """What changes the widget in focus: the arrows where there is nothing to press."""
+        """Hint for changing the focused widget: the arrows if it cannot be pressed."""
         by_arrows = self.focused is not None and self.focused.by_arrows
         key = self.controls.arrows_aside if by_arrows else self.controls.word(Command.CONFIRM)
         return key, texts.HINT_CHANGE
 
     @property
     def hints(self) -> list[tuple[str, str]]:
-        """What can be done with a widget that takes every key for itself; none without one."""
+        """Hints of a focused widget that takes every key; empty for any other."""
         return self.focused.hints(self.controls) if self.focused and self.typing else []
 
     @property
     def controls(self) -> Controls:
-        """What is held, and which device is in use."""
+        """The controls: what is held, and the device in use."""
         return self._context.controls
 
     @property
@@ -80,7 +80,7 @@ class Form:
         return widget
 
     def replace(self, old: Sequence[Widget], new: Sequence[Widget]) -> None:
-        """Put widgets in the place of some neighbours; the focus stays where it can, or near."""
+        """Replace some adjacent widgets by others; the focus stays where it was, or near it."""
         focused = self.focused
         place = self.widgets.index(old[0]) if old else len(self.widgets)
         for widget in old:
@@ -101,7 +101,7 @@ class Form:
         """Take one event; the mouse's are in points."""
         before, self._pressed = (self.focused, _reading(self.focused)), False
         outcome = self._take(event)
-        if outcome is None:  # another scene has a sound of its own
+        if outcome is None:  # the change to another scene has its own sound
             self._sound(*before)
         self._tell_spelling()
         return outcome
@@ -136,7 +136,7 @@ class Form:
         return None
 
     def update(self) -> Transition | None:
-        """Let 1/60 s pass: hovering, easing, and a direction held down."""
+        """Advance by 1/60 s: hovering, easing, and the repeat of a held direction."""
         self.manager.update(1 / 60)
         self._repeat()
         self._show_focus()
@@ -151,7 +151,7 @@ class Form:
             widget.paint(canvas)
 
     def _handle_mouse(self, event: pygame.event.Event) -> Transition | None:
-        moves = event.type == pygame.MOUSEMOTION and self.typing  # who types is not to lose the place to a nudge
+        moves = event.type == pygame.MOUSEMOTION and self.typing  # a nudge of the mouse must not end typing
         for index, widget in enumerate(self.widgets):
             if widget.hover_point(*event.pos) and not moves and not any(other.held for other in self.widgets):
                 self._index = index
@@ -179,9 +179,9 @@ class Form:
             self._sound(widget, reading)
 
     def _sound(self, focused: Widget | None, reading: object) -> None:
-        """Let what came of an event be heard, given which widget was in focus before, and what it showed."""
+        """Play the sound of an event's effect, given the focused widget and its value before the event."""
         if self.focused is not focused:
-            if not self.controls.mouse_in_use:  # which goes over widgets on its way to others
+            if not self.controls.mouse_in_use:  # the mouse passes over widgets on its way
                 self._context.sound.play("move")
         elif _reading(focused) != reading:
             self._context.sound.play("adjust")
@@ -189,7 +189,7 @@ class Form:
             self._context.sound.play("choose")
 
     def _tell_spelling(self) -> None:
-        """Let letters be letters while one of the widgets takes them, whatever else their keys are bound to."""
+        """Tell the controls whether a widget takes letters, so that typing gives no commands."""
         self.controls.spelling = self.typing and self.focused is not None and self.focused.spells
 
     def _show_focus(self) -> None:
@@ -199,12 +199,12 @@ class Form:
 
 
 def _reading(widget: Widget | None) -> object:
-    """Return what a widget is set to, if it can be set."""
+    """Return the value, or the index, of a widget; None if it has neither."""
     return getattr(widget, "value", getattr(widget, "index", None))
 
 
 def _outcome(widget: Widget) -> Transition | None:
-    """Return what a widget's callback has returned meanwhile, once."""
+    """Return the transition a widget's callback has returned, and clear it."""
     outcome, widget.outcome = widget.outcome, None
     return outcome
 

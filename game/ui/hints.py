@@ -1,4 +1,4 @@
-"""Which key does what, in one quiet line."""
+"""Key hints: a line that tells which key does what."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MUTE, SMALL
 from game.input.controls import Controls, Held, KeyName
 
-_GAPS: Final = 8.0, 24.0  # from a key to its meaning, from there to the next key
-_LINE: Final = 18.0  # how far above its baseline a hint can be clicked
+_GAPS: Final = 8.0, 24.0  # points from a key to its meaning, and from there to the next key
+_LINE: Final = 18.0  # points above its baseline in which a hint can be clicked
 
 
 def draw_hints(
@@ -24,14 +24,14 @@ def draw_hints(
     size: float = SMALL,
     room: float = math.inf,
 ) -> None:
-    """Write pairs of a key and its meaning on one baseline, starting (or ending) at the position, in that room.
+    """Draw pairs of a key and its meaning on one baseline, starting or ending at a position, within `room` points.
 
-    A click on one is a press of its key: what is told can be done with the mouse as well.
+    A click on a hint is a press of its key, so that the mouse can do all that the hints say.
     """
     pairs = list(hints)
     x, y = position
     if room < math.inf:
-        gaps = len(pairs) * _GAPS[0] + (len(pairs) - 1) * _GAPS[1]  # which do not shrink
+        gaps = len(pairs) * _GAPS[0] + (len(pairs) - 1) * _GAPS[1]  # gaps do not shrink
         size *= min(1.0, (room - gaps) / max(hints_width(canvas, pairs, size) - gaps, 1.0))
     widths = [_width(canvas, pair, size) for pair in pairs]
     if from_right:
@@ -46,7 +46,7 @@ def draw_hints(
 
 
 def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = SMALL) -> float:
-    """Return how wide `draw_hints` will be."""
+    """Return the width of `draw_hints`, in points."""
     return sum(_width(canvas, pair, size) for pair in hints) + (len(hints) - 1) * _GAPS[1]
 
 
@@ -56,7 +56,7 @@ def _width(canvas: Canvas, pair: tuple[str, str], size: float) -> float:
 
 
 def flight_hints(controls: Controls) -> list[tuple[str, str]]:
-    """Return what flies, on the device in use; one word for both turns where one stick or button does both."""
+    """Return the hints of the flight controls for the device in use; one for both turns if one control does both."""
     left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
     turn = texts.TURN_TO_MOUSE if controls.mouse_in_use else texts.TURN
     turns = [(left, turn)] if left == right else [(left, texts.TURN_LEFT), (right, texts.TURN_RIGHT)]

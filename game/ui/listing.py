@@ -1,4 +1,4 @@
-"""Rows to choose from, more of them than there is room for."""
+"""Scrolling list of rows to choose from."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
 from game.ui.widget import PointsManager, Widget, mix
 
-Row = tuple[str, ...]  # what it is called, and a few words for each column
+Row = tuple[str, ...]  # its name, then the text of each further column
 _BAR: Final = 3.0
-_GAP: Final = 12.0  # between a row's words and the scroll bar
+_GAP: Final = 12.0  # points between a row's text and the scroll bar
 
 
 class Listing(Widget):
-    """Rows one below the other, one of them chosen; the wheel, the arrows and Page Up and Down scroll.
+    """List of rows, one of them chosen; the wheel, the arrows and Page Up and Down scroll.
 
-    `on_choose` hears of each row that becomes the chosen one, by its number; `on_press` of Enter, a pad's A or a
-    second click on it. At either end, the arrows lead on to the next widget. `columns` says how far from the right
-    end each cell after the first ends.
+    `on_choose` is called with the number of each newly chosen row; `on_press` on Enter, a gamepad's A or a
+    second click on it. At either end, the arrows lead to the next widget. `columns` gives the distance from the right
+    end to the right end of each cell after the first, in points.
     """
 
     def __init__(
@@ -49,27 +49,27 @@ class Listing(Widget):
         self.set_rows(rows, index)
 
     def set_rows(self, rows: Sequence[Row], index: int = 0) -> None:
-        """Take other rows; nobody is told of the row that is chosen then."""
+        """Replace the rows, without calling `on_choose`."""
         self.rows = list(rows)
         self.index = min(max(index, 0), max(0, len(self.rows) - 1))
         self._show_chosen()
 
     @property
     def room(self) -> int:
-        """How many rows there is room for."""
+        """Number of rows that fit."""
         return max(1, int(self.box.height // self._pitch))
 
     def baseline(self, row: int) -> float:
-        """Where the words of a row stand, in points."""
+        """Return the y of a row's baseline, in points."""
         return self.box.top + (row - self.first + 0.62) * self._pitch
 
     @property
     def right(self) -> float:
-        """Where the rows end: before the scroll bar, if there is one."""
+        """Right end of the rows, before the scroll bar if there is one, in points."""
         return self.box.right - (_BAR + _GAP if len(self.rows) > self.room else 0.0)
 
     def choose(self, index: int) -> None:
-        """Choose a row, and bring it into sight."""
+        """Choose a row, and scroll it into view."""
         index = min(max(index, 0), len(self.rows) - 1)
         if self.rows and index != self.index:
             self.index = index
@@ -81,7 +81,7 @@ class Listing(Widget):
         return self._on_press(self.index) if self.rows else None
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Move the choice, as long as there are rows ahead."""
+        """Move the choice; false at either end, so that the focus moves on."""
         steps = {Command.UP: -1, Command.DOWN: 1, Command.PREVIOUS: -self.room, Command.NEXT: self.room}
         if event.type == pygame.KEYDOWN and event.key in (pygame.K_HOME, pygame.K_END):
             self.choose(0 if event.key == pygame.K_HOME else len(self.rows) - 1)
@@ -94,12 +94,12 @@ class Listing(Widget):
         return self.index != before or abs(step) > 1
 
     def scroll(self, rows: int) -> bool:
-        """Turn the wheel: the choice stays where it is."""
+        """Scroll by rows without changing the choice."""
         self._look(self.first - rows)
         return len(self.rows) > self.room
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Choose the row that is clicked; one that was the chosen one already is opened."""
+        """Choose the row that is clicked, or open it if it was chosen already."""
         row = self._row_at(event.pos) if event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) else None
         if row is None or event.button != 1:
             return False
@@ -123,7 +123,7 @@ class Listing(Widget):
         self.first = min(max(first, 0), max(0, len(self.rows) - self.room))
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the rows in sight, and where in the list they are."""
+        """Draw the visible rows, and the scroll bar."""
         super().paint(canvas)
         box = self.box
         if not self.rows:
@@ -159,7 +159,7 @@ class Listing(Widget):
 
 
 def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
-    """Return a text, or as much of it as there is room for and three dots."""
+    """Return a text, cut to the room in points with an ellipsis if necessary."""
     if canvas.text_width(text, size=size) <= room:
         return text
     lengths = range(len(text))

@@ -1,4 +1,4 @@
-"""Short messages over any screen, where they hide nothing that is to be read or pressed."""
+"""Notes: short messages over any screen, placed where they hide nothing to read or press."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
 _LONGEST: Final = 150
 _HEIGHT: Final = 32
-_TOPS: Final = (68, 640, 104, 24, 600, 140, 560, 176, 520, 212, 480, 248, 440)  # where it may stand, the best first
-_SHIFTS: Final = (0, -200, 200)  # and how far beside the middle, if there is no place in it
+_TOPS: Final = (68, 640, 104, 24, 600, 140, 560, 176, 520, 212, 480, 248, 440)  # where its top may be, the best first
+_SHIFTS: Final = (0, -200, 200)  # horizontal shift, if there is no room in the middle
 _VIEW: Final = pygame.FRect(0, 0, *VIEW_SIZE)
 _PLACES: Final = tuple((VIEW_SIZE[0] / 2 + shift, top) for shift, top in product(_SHIFTS, _TOPS))
-_COVER: Final = 0.96  # it comes over whatever is there
+_COVER: Final = 0.96  # opacity of the panel, over any background
 
 
 class Notes:
-    """One message at a time, gone after five seconds."""
+    """Note that shows one message at a time, for five seconds."""
 
     def __init__(self) -> None:
         self._text = ""
@@ -31,12 +31,12 @@ class Notes:
 
     def show(self, text: str) -> None:
         """Show a message in place of the last one."""
-        if len(text) > _LONGEST:  # the end of a path or a reason says the most
+        if len(text) > _LONGEST:  # the end of a path or a reason matters most
             text = text[: _LONGEST // 3] + " … " + text[-_LONGEST * 2 // 3 :]
         self._text, self._left, self._place = text, _STEPS_SHOWN, _PLACES[0]
 
     def update(self, canvas: Canvas) -> None:
-        """Let 1/60 s pass; move to where it hides the least of the words, widgets and panels of the last picture."""
+        """Advance by 1/60 s; move to where the note hides least of the last frame's words, widgets and panels."""
         self._left = max(0, self._left - 1)
         if not self._left:
             return
@@ -53,7 +53,7 @@ class Notes:
         return box.clamp(_VIEW) if width < _VIEW.w else box
 
     def _covers(self, canvas: Canvas, at: tuple[float, float]) -> int:
-        """Return how many pixels of what is to be read it would hide there."""
+        """Return the number of pixels of noted words, widgets and panels that a note at a place would hide."""
         place = canvas.rect(*self._box_at(canvas, at))
         return sum(place.clip(area).w * place.clip(area).h for area in canvas.words)
 
@@ -63,7 +63,7 @@ class Notes:
             return
         alpha = min(1.0, self._left / _STEPS_FADING)
         box = self._box(canvas)
-        with canvas.unnoted():  # it gives way to the page, not to itself
+        with canvas.unnoted():  # the note avoids the page, not itself
             canvas.panel(box, _COVER * alpha)
             canvas.outline(box, 8, FAINT, alpha=alpha)
             middle = (box.centerx, box.top + 20)

@@ -1,4 +1,4 @@
-"""A choice of a few words in a row, out of more than there is room for."""
+"""Choice in a row of words that can also be made from a full list."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from game.ui.widget import OnPress, PointsManager
 from game.ui.widgets import Choice
 from game.ui.words import WordRow
 
-_GAP: Final = 20.0  # between the row and the word that opens the list
+_GAP: Final = 20.0  # points between the row and the word that opens the list
 
 
 class Pick(Choice):
-    """A choice that can also be made from a list: Enter, a pad's A or a click on `all_word` calls `on_open`.
+    """Choice that can also be made from a list: Enter, a gamepad's A or a click on `all_word` calls `on_open`.
 
-    The word stands at the right end, where not all options fit into the row.
+    The word is shown at the right end if not all options fit into the row.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class Pick(Choice):
         return self._on_open() if x is None or x >= self._open_left - 4 else super().press()
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the options, and the word that opens the list if there are more than are seen."""
+        """Draw the options, and the word that opens the list if not all options fit."""
         super().paint(canvas)
         if len(self.row.pages) > 1:
             baseline = self.box.centery + 0.36 * self._size

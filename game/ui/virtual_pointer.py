@@ -1,4 +1,4 @@
-"""A mouse for those without one: taken in hand over a part of the screen, it is moved by arrows or a stick."""
+"""Virtual mouse pointer, moved by the arrow keys or a gamepad's stick within a part of the screen."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from game.drawing.tokens import HUMAN, NIGHT0
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui.widget import PointsManager, Widget
 
-_DEAD: Final = 0.2  # of a stick's way, where it rests
+_DEAD: Final = 0.2  # dead zone of a stick, as a share of its range
 _WAYS: Final = {Command.LEFT: (-1, 0), Command.RIGHT: (1, 0), Command.UP: (0, -1), Command.DOWN: (0, 1)}
 _STICK: Final = (pygame.CONTROLLER_AXIS_LEFTX, pygame.CONTROLLER_AXIS_LEFTY)
 _EDGE: Final = 2.0
@@ -21,18 +21,18 @@ _NOWHERE: Final = (-1.0, -1.0)
 
 
 class Pointer(Widget):
-    """Enter or a pad's A takes it in hand, and held down is the mouse's button; Escape or B lays it aside.
+    """Virtual pointer: Enter or a gamepad's A activates it, and then is its mouse button; Escape or B ends it.
 
-    What it does, `tell` hears as a mouse's events in points, so that nothing else need know of it. Laid aside, it
+    `tell` receives its actions as mouse events in points, so that no other code need know of it. While inactive, it
     points outside the screen.
 
     Args:
-        manager: the form's.
-        box: where it can go, in points.
-        tell: takes the events.
-        hold: what holding it down does, in words; empty if nothing.
-        leave: what to lay it aside is called.
-        pace: points that it moves in a step of 1/60 s.
+        manager: the form's manager.
+        box: the area it can reach, in points.
+        tell: receives the events.
+        hold: hint for holding the button down; empty if that does nothing.
+        leave: hint for ending it.
+        pace: speed in points per step of 1/60 s.
 
     """
 
@@ -51,25 +51,25 @@ class Pointer(Widget):
         self.place = pygame.Vector2(self.box.center)
         self._arrows: dict[int, Command] = {}
         self._stick = [0.0, 0.0]
-        self._pressed_by: int | None = None  # the key or button that holds it down
+        self._pressed_by: int | None = None  # the key or gamepad button that holds the mouse button down
 
     def press(self) -> None:
-        """Take it in hand; the mouse needs none."""
+        """Activate the pointer, unless a real mouse is in use."""
         self.typing = self.ringed
         if self.typing:
             self._tell(pygame.MOUSEMOTION)
 
     def process_event(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
-        """Leave it to what lies below: who has a mouse points with that."""
+        """Ignore real mouse events, which are for the widgets below."""
         return False
 
     def hints(self, controls: Controls) -> list[tuple[str, str]]:
-        """Return what can be done with it, in hand."""
+        """Return the hints for the active pointer."""
         hold = [(str(controls.word(Command.CONFIRM)), self._hold)] if self._hold else []
         return [(controls.arrows, texts.HINT_MOVE), *hold, (controls.word(Command.BACK), self._leave)]
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Move, press, or lay it aside."""
+        """Move, press or end the active pointer; false if it is inactive."""
         if not self.typing:
             return False
         code = getattr(event, "key", getattr(event, "button", None))
@@ -82,7 +82,7 @@ class Pointer(Widget):
             share = event.value / 32767
             self._stick[_STICK.index(event.axis)] = share if abs(share) > _DEAD else 0.0
             return True
-        if event.type == pygame.WINDOWFOCUSLOST:  # what is let go of now will not be heard
+        if event.type == pygame.WINDOWFOCUSLOST:  # releases will not be reported now
             self._lay_aside()
             return False
         return self._obey(event, code)
@@ -103,7 +103,7 @@ class Pointer(Widget):
         return True
 
     def ease(self, at_once: bool) -> None:
-        """Go on in the direction that is held."""
+        """Move on in the direction that is held."""
         super().ease(at_once)
         if self.typing and not self.focused:
             self._lay_aside()
@@ -138,11 +138,11 @@ class Pointer(Widget):
         self._hear(pygame.Event(kind, pos=(self.place.x, self.place.y), button=1, rel=(0, 0), buttons=(0, 0, 0)))
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the ring of the focus, and its point while it is in hand."""
+        """Draw the focus ring, and the pointer while it is active."""
         super().paint(canvas)
         if self.typing:
             x, y = self.place
-            canvas.dot((x, y), 9, NIGHT0, 0.6)  # it has to be seen on ink, too
+            canvas.dot((x, y), 9, NIGHT0, 0.6)  # visible on bright ink, too
             canvas.marker("ring", (x, y), 14, HUMAN)
             for across, down in _WAYS.values():
                 canvas.line((x + 9 * across, y + 9 * down), (x + 15 * across, y + 15 * down), HUMAN, 1.5)

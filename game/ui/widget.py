@@ -1,6 +1,6 @@
-"""What every widget is: a pygame_gui element laid out in points and drawn by our canvas.
+"""Base class of the widgets: a pygame_gui element laid out in points and drawn on our canvas.
 
-pygame_gui settles which element the mouse meets; a `Form` adds the keyboard and the gamepad. A widget
+pygame_gui decides which element the mouse hits; a `Form` adds the keyboard and the gamepad. A widget
 draws itself in the window's own pixels, so nothing is laid out again when the window changes.
 """
 
@@ -21,50 +21,50 @@ from game.drawing.tokens import INK, MUTE, VIEW_SIZE, Colour
 from game.input.controls import Controls
 
 OnPress = Callable[[], Transition | None]
-EASE: Final = 0.22  # of the way that is left, in every sixtieth of a second
+EASE: Final = 0.22  # share of the remaining difference, per sixtieth of a second
 
 
 class PointsManager(UIManager):
-    """pygame_gui's manager, living in points: it is told where the mouse is instead of asking the window."""
+    """pygame_gui's manager in points: it takes the mouse's position from events instead of asking the window."""
 
     _theme: UIAppearanceTheme | None = None
 
     def __init__(self) -> None:
         super().__init__(VIEW_SIZE, enable_live_theme_updates=False)
-        set_default_manager(None)  # the first one would be held on to for good, and with it its screen
+        set_default_manager(None)  # pygame_gui would keep the first manager, and with it a whole screen, in memory
         self.mouse_position = (-1, -1)
 
     def create_new_theme(self, theme_path: Any = None) -> UIAppearanceTheme:
-        """Return a theme that all share: nothing is drawn by it, and to read it takes half of a frame."""
+        """Return one theme for all managers: nothing is drawn with it, and reading it takes half of a frame."""
         if PointsManager._theme is None:
             PointsManager._theme = super().create_new_theme(theme_path)
         return PointsManager._theme
 
     def process_events(self, event: pygame.event.Event) -> bool:
-        """Give a mouse event, in points, to the elements."""
+        """Pass a mouse event, its position in points, to the elements."""
         if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             self.mouse_position = (int(event.pos[0]), int(event.pos[1]))
         return bool(super().process_events(event))
 
     def calculate_scaled_mouse_position(self, position: tuple[float, float]) -> tuple[int, int]:
-        """Return a position in points as it is."""
+        """Return the position unchanged, because it is in points already."""
         return int(position[0]), int(position[1])
 
     def _update_mouse_position(self) -> None:
-        """Keep what the last event said."""
+        """Keep the position of the last event."""
 
 
 class Widget(UIElement):
-    """What all widgets share: a box, a label, being pressed, being in focus.
+    """Base widget with a box, a label, a press and the focus.
 
     Attributes:
         focused: whether the form's focus is here.
-        typing: whether letters are for this widget alone, and no commands.
-        by_arrows: whether left and right alone change it, and to press it does nothing.
-        spells: whether it is letters that are typed into it.
-        warmth: 0 to 1, follows `focused` gently.
-        help: a sentence about it, for a screen that shows one for what is in focus.
-        ringed: whether a ring is drawn around the widget in focus; not while a mouse is in use.
+        typing: whether this widget takes every key and button, so that none gives a command.
+        by_arrows: whether only left and right change it, and a press does nothing.
+        spells: whether text is typed into it.
+        warmth: 0 to 1, follows `focused` smoothly.
+        help: a sentence about it, for screens that explain the focused widget.
+        ringed: whether the focus ring is drawn; not while a mouse is in use.
 
     """
 
@@ -79,11 +79,11 @@ class Widget(UIElement):
 
     @property
     def box(self) -> pygame.Rect:
-        """Where it is, in points."""
+        """The widget's box, in points."""
         return pygame.Rect(self.rect)
 
     def press(self) -> Transition | None:
-        """Do what the widget is for."""
+        """Activate the widget."""
         return None
 
     def shift(self, direction: int) -> bool:  # noqa: ARG002
@@ -94,19 +94,19 @@ class Widget(UIElement):
         """Follow the mouse while its button is held."""
 
     def take(self, event: pygame.event.Event) -> bool:  # noqa: ARG002
-        """Take a key or a pad's button before the form does, being in focus; false leaves it to the form."""
+        """Handle a key or gamepad button before the form does, while in focus; false leaves it to the form."""
         return False
 
     def hints(self, controls: Controls) -> list[tuple[str, str]]:  # noqa: ARG002
-        """Return what else can be done with it while it is `typing`: keys, and what they do."""
+        """Return the hints while it is `typing`: pairs of a key and its meaning."""
         return []
 
     def scroll(self, rows: int) -> bool:  # noqa: ARG002
-        """Follow the mouse's wheel, positive towards the beginning; false if there is nothing to scroll."""
+        """Scroll by the mouse's wheel, positive towards the beginning; false if it cannot scroll."""
         return False
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Be pressed by the mouse: down and up again on the widget."""
+        """Handle a mouse event: a click, down and up on the widget, presses it."""
         if event.type == pygame.MOUSEMOTION and self.held:
             self.drag(event.pos[0])
             return True
@@ -122,7 +122,7 @@ class Widget(UIElement):
         return False
 
     def ease(self, at_once: bool) -> None:
-        """Let 1/60 s pass."""
+        """Advance the animation by 1/60 s, or finish it `at_once`."""
         target = float(self.focused)
         self.warmth = target if at_once else self.warmth + (target - self.warmth) * EASE
 
@@ -133,12 +133,12 @@ class Widget(UIElement):
             canvas.outline(self.box.inflate(24, 8), 8, INK, 1, 0.4 * self.warmth)
 
     def tint(self) -> Colour:
-        """Return the label's colour: muted, and ink as it comes into focus."""
+        """Return the label's colour: muted, or ink when in focus."""
         return mix(MUTE, INK, self.warmth)
 
 
 def mix(a: Colour, b: Colour, fraction: float) -> Colour:
-    """Return the colour that lies between two; in steps, so that few are ever rendered."""
+    """Return a mix of two colours, in steps so that few texts need to be rendered."""
     part = round(8 * min(max(fraction, 0.0), 1.0)) / 8
     red, green, blue = (round(x + (y - x) * part) for x, y in zip(a, b, strict=True))
     return red, green, blue

@@ -1,4 +1,4 @@
-"""Words, toggles, sliders and choices."""
+"""Basic widgets: words, toggles, sliders and choices."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
 from game.ui.words import GAP as CHOICE_GAP
 from game.ui.words import WordRow
 
-_SWITCH: Final = 46  # what a switch takes of the box it is in
+_SWITCH: Final = 46  # points that a switch takes of its box
 
 
 class Word(Widget):
-    """A button that is a word; a short line under it shows the focus."""
+    """Text button; a short line under the word shows the focus."""
 
     def __init__(
         self,
@@ -37,15 +37,15 @@ class Word(Widget):
 
     @property
     def baseline(self) -> float:
-        """Where the word stands."""
+        """The y of the word's baseline, in points."""
         return self.box.centery + 0.36 * self._size
 
     def press(self) -> Transition | None:
-        """Do it."""
+        """Call the button's action."""
         return self._on_press()
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the word, and the line under it as far as it has grown."""
+        """Draw the word, and the growing line under it."""
         left, baseline = self.box.left, self.baseline
         box = canvas.text(self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint(),
                           room=self.box.width)  # fmt: skip
@@ -56,7 +56,7 @@ class Word(Widget):
 
 
 class Toggle(Widget):
-    """On or off: a label on the left, a switch at the right end of the box."""
+    """On-off switch: a label on the left, a switch at the right end of the box."""
 
     def __init__(
         self,
@@ -78,14 +78,14 @@ class Toggle(Widget):
         self._on_change(self.value)
 
     def shift(self, direction: int) -> bool:
-        """Left is off, right is on; what is so already leaves it to the arrow to lead on."""
+        """Switch off with left, on with right; false if it is so already, so that the focus moves on."""
         if self.value == (direction > 0):
             return False
         self.press()
         return True
 
     def ease(self, at_once: bool) -> None:
-        """Let the knob slide."""
+        """Animate the switch's knob."""
         super().ease(at_once)
         target = float(self.value)
         self._slid = target if at_once else self._slid + (target - self._slid) * 1.4 * EASE
@@ -103,7 +103,7 @@ class Toggle(Widget):
 
 
 class Slider(Widget):
-    """A number on a thin track with a round handle; label on the left, figure on the right."""
+    """Slider for a number: a thin track with a round handle, the label on the left, the figure on the right."""
 
     by_arrows = True
 
@@ -131,12 +131,12 @@ class Slider(Widget):
 
     @property
     def fraction(self) -> float:
-        """Where the handle stands on its track, 0 to 1."""
+        """Position of the handle on its track, 0 to 1."""
         low, high, value = map(self._scale, (*self._limits, self.value))
         return min(max((value - low) / (high - low), 0.0), 1.0)
 
     def set(self, value: float) -> None:
-        """Take a value, kept within the limits and on a step."""
+        """Set the value, clipped to the limits and rounded to a step."""
         low, high = self._limits
         if self._step:
             value = low + round((value - low) / self._step) * self._step
@@ -154,7 +154,7 @@ class Slider(Widget):
         return True
 
     def drag(self, x: float) -> None:
-        """Bring the handle to the mouse."""
+        """Move the handle to the mouse."""
         left, right = self._track
         self._set_fraction((x - left) / (right - left))
 
@@ -182,7 +182,7 @@ class Slider(Widget):
 
 
 class Choice(Widget):
-    """One of a few words in a row; a line under the chosen one.
+    """Choice of one word in a row, with a line under the chosen one.
 
     Words that do not fit into the box go on further pages, one of which is shown at a time, between arrows.
     """
@@ -206,7 +206,7 @@ class Choice(Widget):
         self.row = WordRow(options, self.box.left + label_width, self.box.right, size, gap)
 
     def choose(self, index: int) -> None:
-        """Take an option by its number."""
+        """Choose an option by its number."""
         index = min(max(index, 0), len(self.options) - 1)
         if index != self.index:
             self.index = index
@@ -214,18 +214,18 @@ class Choice(Widget):
 
     @property
     def mouse_x(self) -> float | None:
-        """Where in the row the mouse is; None while keys or a pad are in use."""
+        """The mouse's x in points; None while keys or a gamepad are in use."""
         x = float(self.ui_manager.get_mouse_position()[0])
         return None if self.ringed or not self.box.collidepoint(x, self.box.centery) else x
 
     def press(self) -> Transition | None:
-        """Take the option under the mouse; without one, the next."""
+        """Choose the option under the mouse; without a mouse, the next option."""
         x = self.mouse_x
         self.choose((self.index + 1) % len(self.options) if x is None else self.row.at(x, self.index))
         return None
 
     def shift(self, direction: int) -> bool:
-        """Take the option to the left or right; at either end, leave it to the arrow to lead on."""
+        """Choose the option to the left or right; false at either end, so that the focus moves on."""
         before = self.index
         self.choose(self.index + direction)
         return self.index != before
@@ -239,7 +239,7 @@ class Choice(Widget):
 
 
 def draw_switch(canvas: Canvas, rect: tuple[float, float, float, float], slid: float, colour: Colour = NET) -> None:
-    """Draw a switch whose knob has slid from off, 0, to on, 1."""
+    """Draw a switch; `slid` is the position of its knob, from 0, off, to 1, on."""
     left, top, width, height = rect
     canvas.pill(rect, mix(FAINT, colour, slid))
     half = height / 2

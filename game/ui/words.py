@@ -1,4 +1,4 @@
-"""A few words in a row with a line under the chosen one; what does not fit stands on further pages."""
+"""Row of words with a line under the chosen one; words that do not fit go on further pages."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MUTE, NET, Colour
 
-GAP: Final = 24  # between two words
-_ARROW: Final = 24  # room for one on either side
+GAP: Final = 24  # points between two words
+_ARROW: Final = 24  # points for an arrow on either side
 
 
 class WordRow:
-    """Words from `left` to `right`, in points. One page is shown at a time, between arrows.
+    """Row of words from `left` to `right`, in points. One page is shown at a time, between arrows.
 
     Attributes:
-        pages: which words, by number, stand on each page.
-        lefts: where each word begins.
+        pages: the numbers of the words on each page.
+        lefts: the left end of each word, in points.
 
     """
 
@@ -29,7 +29,7 @@ class WordRow:
         self._lay_out()
 
     def _lay_out(self) -> None:
-        """Lay the words out for the size of text that is wanted now."""
+        """Lay out the words again if the size of text has changed."""
         if self._growth == typeface.growth():
             return
         self._growth = typeface.growth()
@@ -48,7 +48,7 @@ class WordRow:
         return next(page for page in self.pages if chosen in page)
 
     def at(self, x: float, chosen: int) -> int:
-        """Return the number of the word at x, or where an arrow there leads to, on the page of the chosen one."""
+        """Return the number of the word at x on the chosen word's page, or of the word that an arrow there leads to."""
         page = self._page(chosen)
         if page.stop < len(self.words) and x > self._right - _ARROW:
             return page.stop
@@ -81,7 +81,7 @@ class WordRow:
 
 
 def _pages(widths: Sequence[float], room: float, gap: float) -> list[range]:
-    """Return which words, by number, stand together on a page; a page has one word at least."""
+    """Return the numbers of the words on each page; a page has at least one word."""
     starts, x = [0], 0.0
     for number, width in enumerate(widths):
         if x and x + width > room:
