@@ -139,7 +139,7 @@ class Chart:
         self.point_to(None if point is None else self.x_at(point), pointed=True)
 
     def point_to(self, x: float | None, *, pointed: bool = False) -> None:
-        """Put the cursor at x; None removes it. A tooltip shows the values only in the chart `pointed` at by the mouse."""
+        """Put the cursor at x; None removes it. A tooltip shows the values only if the mouse has `pointed` here."""
         self._cursor, self._pointed = x, pointed and x is not None
 
     def x_at(self, point: Point) -> float | None:

@@ -1,1 +1,1 @@
-"""A flight as the game runs it: who flies, what counts, its record, its replay, and what is foreseen of it."""
+"""Flights as the game runs them: who flies, what counts, record and replay, logbook, and forecast of the path."""

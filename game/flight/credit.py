@@ -1,4 +1,4 @@
-"""Who has the stick of a flight, who has flown it, what it counts for, and why it does not.
+"""Credit for a flight: who has the stick, who flew, what the flight counts for, and why not.
 
 Header, corner, card, medal and logbook ask this one object, so that no two of them can say different things.
 """
@@ -17,40 +17,40 @@ from game.flight.outcomes import landing_score
 
 
 class Challenge(Protocol):
-    """What a flight is flown as, as far as it decides what counts: see `game.play.challenge`."""
+    """Challenge of a flight, as far as it decides what counts; implemented in `game.play.challenge`."""
 
     @property
     def kept(self) -> bool:
-        """Whether its flights are written down."""
+        """Whether its flights are recorded."""
 
     @property
     def bar(self) -> str:
-        """Why its flights do not count as the person's own, a name of `texts.NOT_COUNTED`; empty if they may."""
+        """Reason why its flights do not count as the person's own, a key of `texts.NOT_COUNTED`; empty if they may."""
 
     @property
     def alone(self) -> bool:
-        """Whether nobody may help, or take the stick."""
+        """Whether the person must fly alone: no help and no handing over."""
 
     def medal(self, flight: Flight) -> int:
-        """What a flight that is over has earned: 3 for gold, 2, 1, and 0 for nothing."""
+        """Return the medal of a flight that is over: 3 for gold, 2, 1, and 0 for none."""
 
 
 class Stick(Enum):
-    """Who has the stick."""
+    """Holder of the stick."""
 
     PERSON = auto()
-    BOTH = auto()  # the person, and a co-pilot who may step in
+    BOTH = auto()  # the person, with a co-pilot that may intervene
     NETWORK = auto()
 
 
 class Credit:
-    """Of one flight; `follow` once after every step of it.
+    """Credit for one flight; call `follow` once after every step.
 
     Args:
         flight: the flight.
-        difficulty: what is eased in it.
-        course: what it is flown as; None for a free flight.
-        hands: what its keys pass through, a name of `game.flight.handicap.HANDS`.
+        difficulty: its changes of gravity and pace.
+        course: its challenge; None for a free flight.
+        hands: handicap of its keys, a name of `game.flight.handicap.HANDS`.
         check: whether it is a check flight.
 
     """
@@ -69,14 +69,14 @@ class Credit:
         self._shared = False
 
     def follow(self) -> None:
-        """Note the step just flown."""
+        """Record whether the step just flown was shared."""
         self._shared |= self._flight.shared
 
     # Who flies
 
     @property
     def stick(self) -> Stick:
-        """Who has the stick now, or had it at the end."""
+        """Present holder of the stick, or the last one after the flight."""
         flight = self._flight
         if flight.hand is Hand.NETWORK:
             return Stick.NETWORK
@@ -84,17 +84,17 @@ class Credit:
 
     @property
     def helped(self) -> bool:
-        """Whether a co-pilot has shared the stick at any time, or is going to with the next step."""
+        """Whether a co-pilot has shared the stick at any time, or will in the next step."""
         return self._shared or (self._flight.shared and not self._flight.over)
 
     @property
     def alone(self) -> bool:
-        """Whether nobody may help: in a check flight, and where a course is flown so."""
+        """Whether the person must fly alone: in a check flight, and in some challenges."""
         return self._check or (self._course is not None and self._course.alone)
 
     @property
     def header(self) -> str:
-        """Say who flies, or, of a flight that is over, who has flown it."""
+        """Text that says who flies or, after the flight, who flew."""
         flight, stick = self._flight, self.stick
         if flight.over:
             return who_flew(flight.share)
@@ -112,7 +112,7 @@ class Credit:
 
     @property
     def bar(self) -> str:
-        """Why it does not count as the person's own, a name of `texts.NOT_COUNTED`; empty as long as it does."""
+        """Reason why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty while it does."""
         flight = self._flight
         if self._course and self._course.bar:
             return self._course.bar
@@ -126,23 +126,23 @@ class Credit:
 
     @property
     def counts(self) -> bool:
-        """Whether it was flown by the person's own hands, as flights are, from start to end."""
+        """Whether the person flew all of it without help, handicap or changed difficulty."""
         return not self.bar
 
     @property
     def notice(self) -> str:
-        """Say why it does not count, and what is eased; empty if it counts, or is nothing that could."""
+        """Text that says why it does not count, and what is changed; empty if it counts, or never could."""
         if self._difficulty.words:
             return self._difficulty.words
         return texts.NOT_COUNTED[self.bar] if self.bar and (self._course is None or self._course.kept) else ""
 
     @property
     def medal(self) -> int:
-        """What a flight that is over has earned: 3 for gold, 2, 1, 0 for none."""
+        """Medal of a flight that is over: 3 for gold, 2, 1, 0 for none."""
         return self._course.medal(self._flight) if self._course and self.counts else 0
 
     def score(self, best: int) -> str:
-        """Say what a flight that is over has come to; `best` is the score to beat, 0 for none."""
+        """Return the text for the score of a flight that is over; `best` is the score to beat, 0 for none."""
         if self._difficulty.practice:
             return self._difficulty.words
         points = landing_score(self._flight.env)
@@ -150,16 +150,16 @@ class Credit:
         return (texts.SCORE_BEST if beaten else texts.SCORE).format(points=points) if points else ""
 
     def reason(self, reason: str) -> str:
-        """Return what a card says below its title: `reason`, or why a landing does not count."""
+        """Return the text below a card's title: `reason`, or why a landing does not count."""
         landed = self._flight.outcome is Outcome.LANDED
         return texts.NOT_COUNTED[self.bar] if landed and self.bar else reason
 
     @property
     def pace(self) -> float:
-        """The slowest pace of time that any of it was flown at."""
+        """Slowest pace of time during the flight."""
         return self._difficulty.slowest
 
 
 def who_flew(share: float) -> str:
-    """Say who has flown a flight, given the person's share of it, 0 to 1."""
+    """Return the text that says who flew, given the person's share of the steps, 0 to 1."""
     return texts.YOU_FLEW if share == 1 else texts.NETWORK_FLEW if share == 0 else texts.BOTH_FLEW

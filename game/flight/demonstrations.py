@@ -1,4 +1,4 @@
-"""The player's own landings as examples for a network: each that is good enough, from where they took the stick."""
+"""Demonstrations for a network: the player's own good landings, from where they took the stick."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from game.flight.flight import Flight, Hand
 from game.flight.outcomes import landing_score
 
 FILE_NAME: Final = "demonstrations.json"
-_LEAST_STEPS: Final = 60  # flown by hand to the end, to be called a takeover
-_LEAST_SCORE: Final = 60  # before the pad's factor
+_LEAST_STEPS: Final = 60  # flown by hand to the end, to count as a takeover
+_LEAST_SCORE: Final = 60  # score before the pad's factor
 
 
 def keep_lesson(flight: Flight, folder: Path) -> bool:
-    """Add a flight that is over to the player's examples; false if it is none.
+    """Add a flight that is over to the player's demonstrations; false if it does not qualify.
 
-    Raises OSError or ValueError if the file can't be read or written; what it holds is then left as it is.
+    Raises OSError or ValueError if the file can't be read or written; it is then left unchanged.
     """
     from ai.training.demonstrations import Demonstration, read, takeover, write
 
@@ -36,7 +36,7 @@ def keep_lesson(flight: Flight, folder: Path) -> bool:
 
 
 def lessons(folder: Path) -> int:
-    """How many examples the player has given; 0 if the file can't be read."""
+    """Return the number of the player's demonstrations; 0 if the file can't be read."""
     from ai.training.demonstrations import read
 
     try:

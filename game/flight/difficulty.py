@@ -1,4 +1,4 @@
-"""What makes a flight easier or harder than flights are: another gravity, another pace of time."""
+"""Difficulty of a flight: changes of gravity and of the pace of time."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from game.flight.flight import Flight
 
 
 class Difficulty:
-    """Heeds the settings while one flight is flown. In a course only the pace can be chosen.
+    """Difficulty of one flight, from the settings. In a mission only the pace can be chosen.
 
     Attributes:
-        slowest: the slowest pace that any of the flight was flown at.
+        slowest: slowest pace so far in the flight.
 
     """
 
@@ -20,24 +20,24 @@ class Difficulty:
         self.slowest = 1.0
 
     def heed(self) -> None:
-        """Let the next step be flown as the player has chosen."""
+        """Apply the player's settings to the next step."""
         if self._free:
             self._flight.set_gravity(self._settings.gravity)
         self.slowest = min(self.slowest, self._settings.pace)
 
     @property
     def practice(self) -> bool:
-        """Whether the flight is not to be counted among the best, or will not be once its next step is flown."""
+        """Whether the flight is not to be ranked, or will not be after its next step."""
         return self.slowest != 1 or bool(self._flight.recording.gravity) or bool(self._eased)
 
     @property
     def words(self) -> str:
-        """What differs now, or did; empty if nothing does."""
+        """Sentence on what differs from normal, now or before; empty if nothing does."""
         return texts.DIAL_JOIN.join([texts.PRACTICE, *self._eased]) if self.practice else ""
 
     @property
     def _eased(self) -> list[str]:
-        """What differs in the next step; once the flight is over, in its last one, and at its slowest."""
+        """Differences in the next step; after the flight, the last step's gravity and the slowest pace."""
         over, recording = self._flight.over, self._flight.recording
         gravity = self._settings.gravity if self._free and not over else recording.gravity_at(len(recording.actions))
         shares = ((texts.PRACTICE_GRAVITY, gravity),

@@ -1,4 +1,4 @@
-"""Flights as the game runs them: the lander's rules, who flies, and poses to draw in between steps."""
+"""Flight: one lander in its environment, its pilots, and poses for drawing between steps."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from game.flight.networks import Flyer, Thinker, decide
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
 
-# A network decides every so many physics steps, in training and here.
+# Physics steps per decision of a network, here as in training.
 DECISION_STEPS: Final = 4
-# Steps that an ended flight of a swarm stays to be seen.
+# Steps that an ended flight of a swarm stays visible.
 REST_STEPS: Final = 75
-_PROFILE_REACH: Final = 30.0  # metres to both sides of which the ground's height is kept
+_PROFILE_REACH: Final = 30.0  # metres to both sides for which the ground's height is cached
 _PROFILE_STEP: Final = 0.02
 
 
 class Hand(Enum):
-    """Who has the stick."""
+    """Holder of the stick."""
 
     HUMAN = "human"
     NETWORK = "network"
 
 
 class Poses:
-    """The last two poses x, y, angle of every lander, to draw in between."""
+    """Last two poses x, y, angle of every lander, for interpolation when drawing."""
 
     def __init__(self, env: LanderEnv) -> None:
         self._env = env
@@ -45,13 +45,13 @@ class Poses:
         self.before = self.now
 
     def take(self, jumped: Bools | None = None) -> None:
-        """Note the pose after a step; the slots of `jumped` began anew and did not move there."""
+        """Store the poses after a step; the slots of `jumped` were reset, and are not interpolated."""
         self.before, self.now = self.now, self._read()
         if jumped is not None and jumped.any():
             self.before = np.where(jumped[:, None], self.now, self.before)
 
     def at(self, alpha: float) -> Doubles:
-        """Poses (n, 3), `alpha` of the way from the last step but one to the last."""
+        """Return poses (n, 3), interpolated between the last two steps by `alpha`, 0 to 1."""
         poses: Doubles = self.before + alpha * (self.now - self.before)
         return poses
 
@@ -61,10 +61,10 @@ class Poses:
 
 @dataclass
 class Recording:
-    """All it takes to fly a flight again, bit for bit: where it began, and what was done in every step.
+    """Recording of a flight for an exact replay: its start, and the action of every step.
 
-    `hands` says who did it: of a shared stick, the person where they got what they asked for. `gravity` lists each
-    change of it: from which step on, and to what share of what it is there.
+    `hands` says who chose each action: with a shared stick, the person if the action is the one they asked for.
+    `gravity` lists its changes: the first step, and the share of normal gravity.
     """
 
     seed: int
@@ -76,28 +76,28 @@ class Recording:
     gravity: list[tuple[int, float]] = field(default_factory=list)
 
     def gravity_at(self, step: int) -> float:
-        """Return the share of gravity under which a step is flown."""
+        """Return the share of normal gravity during a step."""
         return next((share for begin, share in reversed(self.gravity) if begin <= step), 1.0)
 
 
 class Flight:
-    """One lander, flown by a person, by a network, by both in turns, or by both together.
+    """Flight of one lander, by a person, by a network, by both in turns, or by both together.
 
     Args:
-        seed: what the start, the ground and the mishaps of the hands follow from.
-        network: whom to hand over to.
-        spawn: where it begins.
+        seed: random seed of the start, the ground and the handicap.
+        network: the network that can take or share the stick.
+        spawn: kind of start.
         pads: 1 on a plain, or 3 among hills.
-        hands: what the keys pass through, a name of `game.flight.handicap.HANDS`.
-        mission: name of one of `ai.lander.missions.STARTS`, which says where and how it is flown; empty for none.
-        shares: whether a network may share the stick, and not only take it.
+        hands: handicap of the keys, a name of `game.flight.handicap.HANDS`.
+        mission: name of one of `ai.lander.missions.STARTS`, which sets the start and the conditions; empty for none.
+        shares: whether the network may share the stick, and not only take it.
 
     Attributes:
-        copilot: shares the stick while its assist is above 0; None where the network can't weigh actions.
-        decision: the latest one of the co-pilot's; None while it does not share the stick.
-        alone: the latest one of the network that flies alone; None while none does.
-        asked: the action that the hands asked for in the last step.
-        overridden: whether something else was flown than hands on the stick asked for.
+        copilot: shares the stick while its assist is above 0; None if the network has no Q-values.
+        decision: the co-pilot's latest decision; None while it does not share the stick.
+        alone: latest decision of the network while it flies alone; None otherwise.
+        asked: the action that the person asked for in the last step.
+        overridden: whether another action was flown than the one the person asked for.
 
     """
 
@@ -132,7 +132,7 @@ class Flight:
 
     @property
     def outcome(self) -> Outcome:
-        """How the flight stands."""
+        """Outcome of the flight so far."""
         return Outcome(int(self.env.outcome[0]))
 
     @property
@@ -142,21 +142,21 @@ class Flight:
 
     @property
     def flown_by(self) -> Hand:
-        """Whose action the last step was."""
+        """Who chose the action of the last step."""
         return self.recording.hands[-1] if self.recording.hands else self.hand
 
     @property
     def share(self) -> float:
-        """The person's share of the steps flown, 0 to 1."""
+        """Person's share of the steps flown, 0 to 1."""
         return self._yours / len(self.recording.hands) if self.recording.hands else 1.0
 
     @property
     def shared(self) -> bool:
-        """Whether the person has the stick, and the co-pilot a say in it."""
+        """Whether the person shares the stick with the co-pilot."""
         return self.hand is Hand.HUMAN and self.copilot is not None and self.copilot.assist > 0
 
     def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
-        """Go on from a moment of a flight from the same start: as its environment was after so many steps."""
+        """Restore a snapshot `moment` of the environment after `step` steps of a flight from the same start."""
         self.env.restore(moment)
         self.observation = self.env.observe()
         self.recording.actions[:] = source.actions[:step]
@@ -167,11 +167,11 @@ class Flight:
         self.rest()
 
     def set_gravity(self, share: float) -> None:
-        """Let things weigh another share of what they do there, from the next step on."""
+        """Set gravity to a share of the normal one, from the next step on."""
         step, gravity = len(self.recording.actions), self.recording.gravity
         if share == self.recording.gravity_at(step):
             return
-        if gravity and gravity[-1][0] == step:  # changed twice between two steps
+        if gravity and gravity[-1][0] == step:  # changed twice within one step
             gravity.pop()
         if share != self.recording.gravity_at(step):
             gravity.append((step, share))
@@ -181,12 +181,12 @@ class Flight:
         self.env.gravity = share * self.env.params.gravity
 
     def rest(self) -> None:
-        """Be drawn where it is, and not on the way there."""
+        """Stop interpolation, so that the lander is drawn at its present pose."""
         self.poses.take()
         self.poses.take()
 
     def change_network(self, network: Flyer | None) -> None:
-        """Let another network take the stick from here on, or share it; without one, the person has it."""
+        """Set the network that can take or share the stick from now on; with None, the person has the stick."""
         self.network = network
         self._held_for, self.decision, self.alone = 0, None, None
         if network is None:
@@ -198,20 +198,20 @@ class Flight:
             self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)
 
     def help(self, assist: float, mode: str) -> None:
-        """Let the co-pilot help so much, 0 to 1, and in that way, from the next decision on."""
+        """Set the co-pilot's assist, 0 to 1, and its mode, from the next decision on."""
         if self.copilot:
             self.copilot.assist, self.copilot.mode = assist, type(self.copilot.mode)(mode)
 
     def hand_over(self) -> bool:
-        """Give the stick to the other one. False if there is no other, or nothing left to fly."""
+        """Hand the stick over between person and network. False without a network, or after the flight."""
         if self.over or (self.network is None and self.hand is Hand.HUMAN):
             return False
         self.hand = Hand.NETWORK if self.hand is Hand.HUMAN else Hand.HUMAN
-        self._held_for, self.decision, self.alone = 0, None, None  # who takes over decides at once
+        self._held_for, self.decision, self.alone = 0, None, None  # the new pilot decides at once
         return True
 
     def step(self, held: int) -> None:
-        """Fly 1/60 s; `held` is the action that the keys ask for right now."""
+        """Advance by 1/60 s; `held` is the action that the keys ask for."""
         self.overridden = False
         if self.over:
             self.poses.take()
@@ -227,7 +227,7 @@ class Flight:
             self.env.target = self.env.landed_on
 
     def _choose(self, held: int) -> tuple[int, Hand]:
-        """Return what the next step is flown with, and whose action that is."""
+        """Return the action of the next step, and who chose it."""
         if self.hand is Hand.NETWORK:
             self.asked = COAST
             return self._ask_network(), Hand.NETWORK
@@ -250,7 +250,7 @@ class Flight:
         return int(self.alone.action[0])
 
     def _ask_copilot(self) -> int:
-        """Share a decision every few steps, and at once when something else is asked for: no tap is too short."""
+        """Return the co-pilot's action, decided every few steps, and at once on a changed request: no tap is lost."""
         assert self.copilot is not None
         decision = self.decision
         if decision is None or self._held_for == 0 or self.asked != decision.pilot[0]:
@@ -261,26 +261,26 @@ class Flight:
         return int(decision.action[0])
 
     def _aim(self, likely: Doubles | float = 0.0) -> None:
-        """Turn read-outs and network to the pad that is most `likely` (pads,) meant; among equals, to the nearest."""
+        """Aim read-outs and network at the most `likely` (pads,) intended pad; among equals, at the nearest."""
         away = np.abs(self.env.ground.middles[:, 0] - self.env.position[0, 0])
         self.env.target[:] = int((likely - 1e-6 * away).argmax())
 
 
 @lru_cache(maxsize=8)
 def ground_of(seed: int, pads: int) -> Ground:
-    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size there is."""
+    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size."""
     return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
 
 
 class Swarm:
-    """Any number of landers, flown by one network again and again.
+    """Swarm of landers, all flown by one network, each again and again.
 
     Attributes:
-        since_end: steps each flight has been over, 0 while it flies.
-        landed, lost: flights ended so since the start.
-        fresh: slots whose flight began with the last step.
-        decision: the latest one of each slot, which is the one that is flown.
-        decided: how many each slot has taken.
+        since_end: steps since each flight's end, 0 while it flies.
+        landed, lost: numbers of flights that ended so.
+        fresh: mask of the slots whose flight began with the last step.
+        decision: latest decision of each slot, which is being flown.
+        decided: number of decisions of each slot.
 
     """
 
@@ -294,11 +294,11 @@ class Swarm:
         self.fresh: Bools = np.ones(count, dtype=bool)
         self.decision = decide(flyer, self.observation, np.zeros(count, dtype=np.intp))
         self.decided: Ints = np.ones(count, dtype=np.intp)
-        self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; in turns at first
+        self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; staggered at first
         self._step = 0
 
     def step(self) -> Bools:
-        """Fly 1/60 s, and begin anew where a flight has been over for a while. Returns who just ended."""
+        """Advance by 1/60 s, and restart flights that have been over for a while. Return a mask of those just ended."""
         self.fresh = self.since_end >= REST_STEPS
         if self.fresh.any():
             self.observation = self.env.reset(self.fresh)
@@ -319,7 +319,7 @@ class Swarm:
         return ended
 
     def _decide(self, due: Ints) -> None:
-        """Let the flyer decide for the slots that are due, in turns, for frames of equal cost."""
+        """Decide for the slots that are due; these are staggered so that all frames cost the same."""
         if not len(due):
             return
         held = np.where(self.fresh, COAST, self.decision.action)[due]
@@ -329,15 +329,15 @@ class Swarm:
 
 
 def surface_height(env: LanderEnv, x: float) -> float:
-    """Height of what lies under x: a pad's top, a hill, or the plain; to draw by."""
+    """Return the height in metres of the surface at x: a pad, a hill or the plain; for drawing."""
     heights = _profile(env.ground)
-    if env.conditions.moves:  # and nothing else is there: one pad on a plain
+    if env.conditions.moves:  # one pad on a plain
         x -= float(env.pad_shift[0])
     return heights[min(max(round((x + _PROFILE_REACH) / _PROFILE_STEP), 0), len(heights) - 1)]
 
 
 @lru_cache(maxsize=8)
 def _profile(ground: Ground) -> list[float]:
-    """Return the ground's height at even steps, for many look-ups in a frame."""
+    """Return the ground's height at even steps, cached for many look-ups per frame."""
     heights: list[float] = ground.height(np.arange(-_PROFILE_REACH, _PROFILE_REACH, _PROFILE_STEP)).tolist()
     return heights

@@ -1,7 +1,7 @@
-"""A flight as a file: where it began, what was done in each physics step, and what came of it.
+"""File format of a flight: its start, the action of each physics step, and its outcome.
 
-A flight follows from its start and its actions, bit for bit, so that is all that is kept, in text that a person can
-read. Nothing in it can do more than be flown again.
+A flight follows from its start and its actions, bit for bit, so only these are stored, in text that a person can
+read. A file can do no more than be replayed.
 """
 
 from __future__ import annotations
@@ -25,36 +25,36 @@ from game.flight.flight import Hand, Recording
 
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 4
-# The first knew no change of gravity, the second no rules of missions, the third not why a flight does not count.
+# Version 1 had no changes of gravity, 2 no rules of missions, 3 no reason why a flight does not count.
 _READS: Final = (1, 2, 3, 4)
-_LONGEST: Final = 120 * 60  # physics steps of a flight
+_LONGEST: Final = 120 * 60  # physics steps of a flight, at most
 _LARGEST: Final = 1_000_000  # bytes
-_LONGEST_NAME: Final = 255  # letters, as in the name of a file
-_MOST: Final = 32_503_680_000  # of any figure; in seconds the year 3000, up to which every system knows dates
+_LONGEST_NAME: Final = 255  # characters, as in the name of a file
+_MOST: Final = 32_503_680_000  # limit of any figure; as a date the year 3000, the last on some systems
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A line of the logbook. Raises ValueError for what no flight can have come to.
+    """Line of the logbook. Raises ValueError for values that no flight can have.
 
     Attributes:
-        when: the end of the flight, in seconds since 1970.
+        when: time of the flight's end, in seconds since 1970.
         outcome: name of an Outcome.
-        seconds, fuel: how long it took; fuel in seconds of main engine.
-        touchdown: m/s into the surface; 0 where nothing was touched.
-        human: the person's share of it, 0 to 1.
-        alone: whether it was flown by their own hands from start to end, so that it says something of their skill.
-        network: who flew the rest, or might have.
-        pads: how many there were.
+        seconds, fuel: duration; fuel in seconds of main engine.
+        touchdown: speed in m/s into the surface; 0 without a touch.
+        human: the person's share of the steps, 0 to 1.
+        alone: whether the person flew all of it without help, so that it counts for their skill.
+        network: name of the network that flew the rest, or could have.
+        pads: number of landing pads.
         score: points for the landing.
-        gravity: the share of what it is there that was farthest from all of it.
-        pace: how fast time passed at the slowest, as the player chose it; 1 is its own pace.
-        rules: the number of the rules of its mission, as `rules_of` it was then.
-        barred: why it does not count as their own, a name of `texts.NOT_COUNTED`; empty if it does, or was flown
-            before that was written down.
+        gravity: share of normal gravity; the one farthest from 1 during the flight.
+        pace: slowest time scale the player chose during the flight; 1 is normal.
+        rules: version of its mission's rules at the time, from `rules_of`.
+        barred: why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty if it does, or was flown
+            before this field existed.
         course: name of a mission; empty for a free flight.
         medal: 3 for gold, 2, 1, and 0 for none.
-        file: name of what it can be flown again from.
+        file: name of the flight's file, for a replay.
 
     """
 
@@ -93,17 +93,17 @@ class Entry:
 
     @property
     def practice(self) -> bool:
-        """Whether it was made easier, or harder, than flights are: then it is not among the best."""
+        """Whether gravity or pace were changed; such a practice flight is not ranked."""
         return self.gravity != 1 or self.pace != 1
 
     @property
     def outdated(self) -> bool:
-        """Whether its mission is flown under other rules now: then it is not among the best, and its medal is past."""
+        """Whether its mission's rules have changed since; then it is not ranked, and its medal is void."""
         return self.rules != rules_of(self.course)
 
     @property
     def bar(self) -> str:
-        """Why it does not count as the person's own now, a name of `texts.NOT_COUNTED`; empty if it does."""
+        """Reason why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty if it does."""
         if self.outdated:
             return "outdated"
         if self.barred in texts.NOT_COUNTED:
@@ -114,18 +114,18 @@ class Entry:
 
     @property
     def landed(self) -> bool:
-        """Whether it ended well."""
+        """Whether the flight ended in a landing."""
         return self.outcome == Outcome.LANDED.name
 
 
 def rules_of(course: str) -> int:
-    """Return the number of the rules that a course is flown under now."""
+    """Return the present version of a mission's rules."""
     return MISSIONS[course].rules if course in MISSIONS else 0
 
 
 @dataclass(frozen=True)
 class Record:
-    """A flight as its file has it: `end` is the last pose x, y, angle, to see whether it flies as it did."""
+    """Contents of a flight's file; `end` is the last pose x, y, angle, to check a replay against."""
 
     recording: Recording
     entry: Entry
@@ -133,7 +133,7 @@ class Record:
 
 
 def read(path: Path) -> Record:
-    """Read a flight. Raises ValueError, which names the file and what is wrong with it."""
+    """Read a flight's file. Raises ValueError, which names the file and the problem."""
     try:
         return from_text(read_text(path, _LARGEST))
     except FileNotFoundError as error:
@@ -146,15 +146,15 @@ def read(path: Path) -> Record:
 
 
 def write(path: Path, record: Record) -> None:
-    """Write a flight whole or not at all, in place of none that is there; not flushed, which would take frames.
+    """Write a new flight file whole or not at all; without a flush to disk, which would drop frames.
 
-    Raises FileExistsError if the name is taken, and OSError if the disk won't have it.
+    Raises FileExistsError if the name is taken, and OSError if it cannot be written.
     """
     write_text(path, to_text(record), flush=False, new=True)
 
 
 def to_text(record: Record) -> str:
-    """Return what a flight's file holds."""
+    """Return a record as the text of a flight's file."""
     recording = record.recording
     return json.dumps({
         "format": FORMAT, "version": VERSION, "seed": recording.seed, "spawn": recording.spawn,
@@ -165,7 +165,7 @@ def to_text(record: Record) -> str:
 
 
 def from_text(text: str) -> Record:
-    """Read what `to_text` wrote; raises ValueError, KeyError or TypeError for anything else."""
+    """Parse the output of `to_text`; raises ValueError, KeyError or TypeError for anything else."""
     values = parse_json(text)
     if values["format"] != FORMAT or values["version"] not in _READS:
         raise ValueError(texts.FLIGHT_FORMAT.format(format=FORMAT, version=VERSION))
@@ -186,7 +186,7 @@ def from_text(text: str) -> Record:
 
 
 def _changes(values: list[Any]) -> list[tuple[int, float]]:
-    """Read when gravity was changed, and to what; raises ValueError or TypeError."""
+    """Parse the changes of gravity as (step, share); raises ValueError or TypeError."""
     changes = [(int(step), float(share)) for step, share in values]
     low, high = GRAVITY_SHARES
     steps = [step for step, _ in changes]
@@ -196,12 +196,12 @@ def _changes(values: list[Any]) -> list[tuple[int, float]]:
 
 
 def _packed(words: Iterable[Any]) -> str:
-    """Write a row with many repetitions as "word*times word*times"."""
+    """Run-length encode words as "word*times word*times"."""
     return " ".join(f"{word}*{len(list(same))}" for word, same in groupby(words))
 
 
 def _unpacked(text: str) -> list[str]:
-    """Read it; raises ValueError, before it takes much memory, for what is no such row."""
+    """Decode the output of `_packed`; raises ValueError for bad input, before that takes much memory."""
     runs = [run.split("*") for run in text.split()]
     counts = [int(count) for _, count in runs]
     if any(count < 1 for count in counts) or sum(counts) > _LONGEST:

@@ -1,7 +1,7 @@
-"""Where a flight goes from here, by itself and with a network, worked out a little in every frame.
+"""Forecast of a flight's path, without thrust and with a network, computed a little in every frame.
 
-Both ways are flown by the physics of the flight itself. What touching the ground does is left out, for they end
-there: to look for contacts takes most of a step.
+Both paths use the physics of the flight itself, but without contacts with the ground, where they end: finding
+contacts takes most of the time of a step.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from engine.integrate import integrate_velocity
 from game.flight.flight import DECISION_STEPS, surface_height
 from game.flight.networks import Flyer
 
-# Metres above the ground at which to stop: the touchdown itself is another matter.
+# Metres above the ground at which to stop: the touchdown itself is not predicted.
 _CLEAR: Final = 0.3
-_DECISIONS: Final = 2  # of the way with a network, in a frame
-_STRIDE: Final = 10  # physics steps between places of the way by itself, taken at once
-_STRIDES: Final = 12  # in a frame: a path is whole after a few
+_DECISIONS: Final = 2  # decisions of the network per frame
+_STRIDE: Final = 10  # physics steps between positions of the path without thrust, computed at once
+_STRIDES: Final = 12  # positions per frame, so that a path is complete after a few
 _SECONDS: Final = 9.0
 
 
 class Drift:
-    """Where a flight goes if nobody touches anything.
+    """Predicted path of a flight without thrust.
 
     Attributes:
         path: positions (k, 2), as far as the ground.
@@ -43,7 +43,7 @@ class Drift:
         self._ahead, self._places = drift(env), list[Doubles]()
 
     def follow(self) -> None:
-        """Look a bit further ahead, beginning anew from where the flight is once the ground is reached."""
+        """Extend the path by one frame's share; start again from the flight's position once it reaches the ground."""
         places = list(islice(self._ahead, _STRIDES))
         self._places += places
         if len(places) < _STRIDES:
@@ -52,10 +52,10 @@ class Drift:
 
 
 class Forecast:
-    """Flies ahead of a flight in an environment of its own, and so never disturbs it.
+    """Predicted path of a flight under a network, in a separate environment that does not disturb the flight.
 
     Attributes:
-        path: positions (k, 2) of the latest flight ahead, as far as the ground; empty until there is one.
+        path: positions (k, 2) of the latest prediction, as far as the ground; empty at first.
 
     """
 
@@ -67,7 +67,7 @@ class Forecast:
         self._places: list[Doubles] = []
 
     def follow(self, env: LanderEnv, decisions: int = _DECISIONS) -> None:
-        """Fly some decisions further ahead of `env`, beginning anew from where it is once the ground is reached."""
+        """Predict some decisions further; start again from the state of `env` once the ground is reached."""
         ahead = self._ahead
         for _ in range(decisions):
             if not self._places:
@@ -82,7 +82,7 @@ class Forecast:
         self._leave_behind(env.position[0])
 
     def _arrived(self) -> bool:
-        """Whether the flight ahead is almost down, or has left the world or its time behind."""
+        """Whether the prediction is almost down, or has left the area or run out of time."""
         ahead, limits = self._ahead, self._ahead.limits
         x, y = ahead.position[0].tolist()
         if abs(x) > limits.half_width or y > limits.ceiling or ahead.time[0] > limits.time:
@@ -90,19 +90,19 @@ class Forecast:
         return bool(y < surface_height(ahead, x) + ahead.params.stand + _CLEAR)
 
     def _leave_behind(self, position: Doubles) -> None:
-        """Drop the part of the path that the flight has passed meanwhile."""
+        """Drop the part of the path that the flight has already passed."""
         if len(self.path):
             nearest = int(np.hypot(*(self.path - position).T).argmin())
             self.path = self.path[nearest:]
 
 
 def coast_path(env: LanderEnv) -> Doubles:
-    """Where a lander goes if nobody touches anything: positions (k, 2), every 1/6 s, down to the ground."""
+    """Return a lander's path without thrust: positions (k, 2), every 1/6 s, down to the ground."""
     return _down_to_ground(env.ground, list(drift(env)))
 
 
 def drift(env: LanderEnv) -> Iterator[Doubles]:
-    """Yield where a lander will be from now on if nobody touches anything, (2,) every 1/6 s, as far as the plain."""
+    """Yield a lander's future positions without thrust, (2,) every 1/6 s, down to the plain."""
     world, body, span = env.world, env.lander.index, _STRIDE * DT
     state = replace(
         world.state, velocity=world.state.velocity[:1].copy(), force=np.zeros_like(world.state.force[:1]),
@@ -116,7 +116,7 @@ def drift(env: LanderEnv) -> Iterator[Doubles]:
         if env.conditions.pushes:
             state.force[0, body, 0] = env.conditions.push(np.array(time + (stride + 0.5) * span))
         integrate_velocity(state, world.movers, world.gravity, span)
-        # As far as short steps would go, each at the speed it ends with, while that grows evenly.
+        # Closed form of many short steps at constant acceleration, each moved by the speed at its end.
         place += span / 2 * (before + velocity) + DT / 2 * (velocity - before)
         yield place.copy()
         x, y = place.tolist()
@@ -125,7 +125,7 @@ def drift(env: LanderEnv) -> Iterator[Doubles]:
 
 
 def _down_to_ground(ground: Ground, places: list[Doubles]) -> Doubles:
-    """Return a path (k, 2) as far as where feet would come to the ground."""
+    """Return a path (k, 2), cut where the feet would reach the ground."""
     way = np.array(places)
     clear = way[:, 1] - ground.height(way[:, 0]) - PARAMS.stand
     low = np.flatnonzero(clear[1:] < 0)

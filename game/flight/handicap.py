@@ -1,4 +1,4 @@
-"""Hands to fly with: one's own, or another pilot's, which get the keys late, wrong, or only in part."""
+"""Handicaps: simulated hands that pass on the player's keys late, wrongly, or only in part."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ OWN: Final = "own"
 
 
 class Keys:
-    """A pilot who does what the keys ask for."""
+    """Pilot that flies the action of the keys."""
 
     def __init__(self) -> None:
         self.held = 0
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:  # noqa: ARG002
-        """The action (1,) that the keys ask for."""
+        """Return the action (1,) that the keys ask for."""
         return np.array([self.held])
 
 
 class SteersOnly:
-    """Another pilot without the main engine, which is all that the sensor pilot lacks."""
+    """Sensor pilot: another pilot without the main engine."""
 
     def __init__(self, pilot: Pilot) -> None:
         self.pilot = pilot
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9)."""
+        """Return actions (n,) for observations (n, 9)."""
         return self.pilot.act(observation, held=held) % 3
 
 
@@ -44,9 +44,9 @@ HANDS: Final[dict[str, Callable[[Pilot, np.random.Generator], Pilot]]] = {
 
 
 class Hands:
-    """What hands of that name make of the keys; others than one's own do so anew every `every` steps.
+    """Handicap by name, applied to the keys; any but the player's own hands choose anew every `every` steps.
 
-    The same seed and keys make the same mishaps.
+    The same seed and keys give the same mistakes.
     """
 
     def __init__(self, name: str, seed: int, every: int) -> None:
@@ -56,7 +56,7 @@ class Hands:
         self._step = self._action = 0
 
     def ask(self, held: int, observation: Floats) -> int:
-        """Return what a step is flown with, given what is held down; call once in every step flown by hand."""
+        """Return the action of a step, given the held one; call once in every step flown by hand."""
         self._keys.held = held
         if self._step % self._every == 0:
             self._action = int(self._pilot.act(observation)[0])

@@ -1,6 +1,6 @@
-"""The flights that were flown: a file for each that may be flown again, and a logbook with a line for every one.
+"""Logbook: a line for every flight flown, and a file for each that can be replayed.
 
-Nothing here raises for a bad disk or a damaged file but `read`; `problem` says what went wrong.
+Only `read` raises for a bad disk or a damaged file; otherwise `problem` says what went wrong.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from game.flight.outcomes import landing_score
 
 FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"
-RECENT: Final = 100  # flights whose files are kept whatever they came to
-BEST: Final = 5  # and the best landings of each course
-_LARGEST: Final = 16_000_000  # bytes of the logbook that are read, the last ones: 50,000 flights
-_SLACK: Final = 25  # files too many before they are looked through
-_MOST_THROWN: Final = 50  # files thrown away that can be brought back
-RECENT_OWN: Final = 10  # flights by the person alone that their skill is told by
+RECENT: Final = 100  # latest flights, whose files are kept whatever their outcome
+BEST: Final = 5  # best landings of each mission, whose files are kept too
+_LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
+_SLACK: Final = 25  # surplus files before they are cleared
+_MOST_THROWN: Final = 50  # deleted files that can be restored
+RECENT_OWN: Final = 10  # number of last flights by the person alone that measure their skill
 
 
 def describe(flight: Flight, when: float, **more: Any) -> Entry:
-    """Return the logbook's line of a flight that has ended; `more` is what the flight does not know of itself."""
+    """Return the logbook's line for a flight that has ended; `more` are the fields that the flight does not know."""
     env = flight.env
     return Entry(
         when=round(when, 3),
@@ -51,10 +51,10 @@ def describe(flight: Flight, when: float, **more: Any) -> Entry:
 
 
 class Records:
-    """The flights in a player's folder.
+    """Flight records in a player's folder.
 
     Attributes:
-        problem: why the last call could not do all that it should; empty if it could.
+        problem: why the last call failed, in part or in whole; empty if it did not.
 
     """
 
@@ -65,7 +65,7 @@ class Records:
         self.problem = ""
 
     def keep(self, flight: Flight, when: float, **more: Any) -> Entry:
-        """Write down a flight that has ended; return its line of the logbook, whether or not the disk took it.
+        """Record a flight that has ended; return its line of the logbook, even if it could not be written.
 
         `more` are fields of Entry: alone, network, course, medal.
         """
@@ -82,9 +82,9 @@ class Records:
         return entry
 
     def entries(self) -> list[Entry]:
-        """Return the logbook in the order in which flights were flown, whatever the clock said then.
+        """Return the lines of the logbook in the order of the flights, whatever the clock said.
 
-        Lines that make no sense are counted in `problem` and left alone.
+        Invalid lines are counted in `problem` and left in the file.
         """
         self.problem, found, damaged = "", [], 0
         try:
@@ -104,25 +104,25 @@ class Records:
         return found
 
     def kept(self) -> set[str]:
-        """Return the names of the files there are."""
+        """Return the names of the existing flight files."""
         with suppress(OSError):
             return {path.name for path in self.folder.glob("*.json")}
         return set()
 
     def read(self, name: str) -> Record:
-        """Read a flight. Raises ValueError, which names the file and what is wrong with it."""
+        """Read a flight. Raises ValueError, which names the file and the problem."""
         return flight_file.read(self.folder / name)
 
     def thrown(self) -> set[str]:
-        """Return the names of the files that were thrown away and can be brought back."""
+        """Return the names of the deleted files that can be restored."""
         return self._files.deleted
 
     def throw_away(self, name: str) -> bool:
-        """Put a flight's file aside; the logbook keeps its line. False if that could not be done."""
+        """Delete a flight's file so that it can be restored; the logbook keeps its line. False if that failed."""
         return self._attempt(lambda: self._files.throw_away(self.folder / name, name))
 
     def bring_back(self, name: str) -> bool:
-        """Bring a file back that was thrown away. False if that could not be done."""
+        """Restore a deleted file. False if that failed."""
         return self._attempt(lambda: self._files.bring_back(name))
 
     def _attempt(self, deed: Callable[[], object]) -> bool:
@@ -134,7 +134,7 @@ class Records:
         return not self.problem
 
     def why_gone(self, entry: Entry) -> str:
-        """Say why a flight can't be flown again, in a sentence; empty if its file is there."""
+        """Return a sentence why a flight can't be replayed; empty if its file exists."""
         if entry.file in self.kept():
             return ""
         if entry.file in self.thrown():
@@ -145,7 +145,7 @@ class Records:
         return texts.FLIGHT_TOO_OLD if entry.file in older else texts.FLIGHT_MISSING
 
     def _write(self, record: Record) -> Entry:
-        """Write a flight under a name that nothing else has, not even of another game's; return its line."""
+        """Write a flight's file under an unused name, also with another game running; return its line."""
         moment = f"{datetime.fromtimestamp(record.entry.when):%Y-%m-%d %H.%M.%S.%f}"[:-3]
         while True:
             path = free_path(self.folder, moment, ".json")
@@ -155,7 +155,7 @@ class Records:
                 return entry
 
     def _append(self, entry: Entry) -> None:
-        """Add a line; one that a killed game has left unfinished must not swallow it."""
+        """Append a line, on a new line even if a killed game left the last one unfinished."""
         with self.logbook.open("a+b") as file:
             unfinished = False
             if file.seek(0, 2):
@@ -164,7 +164,7 @@ class Records:
             file.write(b"\n" * unfinished + json.dumps(asdict(entry)).encode() + b"\n")
 
     def _make_room(self) -> None:
-        """Throw away the files of flights that are neither recent nor among the best."""
+        """Delete the files of flights that are neither recent nor among the best."""
         files = self.kept()
         if len(files) <= RECENT + _SLACK:
             return
@@ -173,18 +173,18 @@ class Records:
         spared = {entry.file for entry in best(entries)}
         flown = [entry.file for entry in entries if entry.file in files]  # not by date: a clock can be set back
         spared |= set(flown[-RECENT:])
-        for name in set(flown) - spared:  # what is in no logbook is not ours to throw
+        for name in set(flown) - spared:  # a file that the logbook does not list is not deleted
             with suppress(OSError):
                 (self.folder / name).unlink()
 
 
-# What the logbook adds up to
+# Summaries of the logbook
 
 
 def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
-    """Return the best landings of each course by the person alone that can be flown again, at most so many of each.
+    """Return up to `most` best landings of each mission by the person alone that can be replayed.
 
-    Those under other rules are apart, as another course.
+    Landings under other rules are ranked separately, like another mission.
     """
 
     def course(entry: Entry) -> tuple[str, int, int]:
@@ -196,13 +196,13 @@ def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
 
 
 def rank(entry: Entry) -> tuple[float, ...]:
-    """What the better of two landings has less of: in a mission by fuel and time, in a free flight by points."""
+    """Return the sort key of a landing, lower is better: fuel and time in a mission, points in a free flight."""
     return (-entry.medal, entry.fuel, entry.seconds) if entry.course else (-entry.score, entry.fuel)
 
 
 @dataclass(frozen=True)
 class Totals:
-    """What all flights come to; `streak` is the longest row of landings by the person alone."""
+    """Totals of all flights; `streak` is the longest row of landings by the person alone."""
 
     flights: int = 0
     landings: int = 0
@@ -212,7 +212,7 @@ class Totals:
 
 
 def totals(entries: Sequence[Entry]) -> Totals:
-    """Add the logbook up."""
+    """Return the totals of the logbook."""
     streak = longest = 0
     for entry in entries:
         if entry.alone:
@@ -228,11 +228,11 @@ def totals(entries: Sequence[Entry]) -> Totals:
 
 
 def skill(entries: Iterable[Entry], window: int = RECENT_OWN) -> list[float]:
-    """Share of landings, 0 to 1, among the last `window` flights by the person alone, after each of them."""
+    """Return the share of landings, 0 to 1, among the last `window` flights by the person alone, after each flight."""
     return shares([entry.landed for entry in entries if entry.alone], window)
 
 
 def shares(landed: Sequence[bool], window: int) -> list[float]:
-    """Share of landings among the last `window` of some flights, after each of them."""
+    """Return the moving average of landings, 0 to 1, over the last `window` flights, after each flight."""
     recent = (landed[max(0, last - window) : last] for last in range(1, len(landed) + 1))
     return [sum(few) / len(few) for few in recent]

@@ -1,4 +1,4 @@
-"""The networks there are to fly with: the shipped ones, the player's own, and a scripted pilot beside them."""
+"""Networks that can fly: the shipped ones, the player's own, and a scripted pilot."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ from game.core.collection import claims
 
 DEFAULT: Final = "modern"
 SCRIPTED: Final = "scripted"
-PLAYERS: Final = "models"  # in the player's folder: the networks of their own
-PARTS: Final = ("config.json", "online", "target")  # a folder without any of them never was a network
+PLAYERS: Final = "models"  # folder of the player's own networks
+PARTS: Final = ("config.json", "online", "target")  # a folder with none of these files is not a network
 _log = logging.getLogger("tranquility")
 
 
 class Flyer(Protocol):
-    """Whatever can choose actions for a batch of landers."""
+    """Policy that chooses actions for a batch of landers."""
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
-        """Actions (n,) for observations (n, 9); `held` (n,) are the actions until now."""
+        """Return actions (n,) for observations (n, 9); `held` (n,) are the previous actions."""
 
 
 @runtime_checkable
 class Thinker(Flyer, Protocol):
-    """A flyer that can say what it thinks of every action, and what it decides by that."""
+    """Flyer that also gives its Q-values and decisions."""
 
     def q_values(self, observation: Floats) -> Floats:
-        """Values (n, 6) for observations (n, 9)."""
+        """Return Q-values (n, 6) for observations (n, 9)."""
 
     def decide(self, observation: Floats, *, held: Ints | None = None) -> Decision:
-        """Do what `act` does, and say by what."""
+        """Return the decisions of `act`, with the values they are based on."""
 
 
 def decide(flyer: Flyer, observation: Floats, held: Ints) -> Decision:
-    """Let a flyer decide for observations (n, 9), `held` (n,) the actions until now; once, to be flown and shown."""
+    """Return a flyer's decisions for observations (n, 9), `held` (n,) the previous actions, to fly and to show."""
     if isinstance(flyer, Thinker):
         return flyer.decide(observation, held=held)
     action = flyer.act(observation, held=held)
@@ -49,7 +49,7 @@ def decide(flyer: Flyer, observation: Floats, held: Ints) -> Decision:
 
 @dataclass(frozen=True)
 class Network:
-    """A network by name. `flyer` is None where it could not be read, and `problem` then says why."""
+    """Network by name. `flyer` is None if it could not be read, and `problem` then says why."""
 
     name: str
     flyer: Flyer | None = None
@@ -57,9 +57,9 @@ class Network:
 
 
 def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
-    """Return every folder that claims to hold a lander's network, by name; the player's own come last.
+    """Return every folder that looks like a lander's network, by name; the player's own come last.
 
-    A player's network of the same name as another one is told apart, not left out.
+    A player's network with the name of a shipped one gets a distinct name, and is not left out.
     """
     found: dict[str, Path] = {}
     for parent in (models_dir / "lander", user_dir / PLAYERS):
@@ -67,7 +67,7 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
             inside = sorted(path for path in parent.iterdir() if claims(path, PARTS))
         except OSError:
             continue
-        # The default one comes first, whatever its letter.
+        # The default network comes first, not in alphabetical order.
         for path in sorted(inside, key=lambda path: path.name != DEFAULT):
             taken = path.name in found or path.name == SCRIPTED
             found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = path
@@ -75,7 +75,7 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
 
 
 def load(name: str, folder: Path) -> Network:
-    """Read one network. Never raises: what is wrong is in the answer."""
+    """Read one network. Never raises: `problem` of the answer says what is wrong."""
     from ai.agent.agent import DeepQAgent
     from ai.nn import ModelFormatError
 
@@ -85,7 +85,7 @@ def load(name: str, folder: Path) -> Network:
         return Network(name, problem=brief(error.problems[0] if error.problems else error))
     except OSError as error:
         return Network(name, problem=brief(error.strerror or error))
-    except Exception as error:  # anything may lie in a player's folder, and none of it may end the game
+    except Exception as error:  # a player's folder can hold anything, and none of it may end the game
         _log.exception("reading %s", folder)
         return Network(name, problem=brief(f"{type(error).__name__}: {error}"))
     if (agent.num_features, agent.num_actions) != (NUM_FEATURES, NUM_ACTIONS):
@@ -97,7 +97,7 @@ def load(name: str, folder: Path) -> Network:
 
 
 def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
-    """Read the network of that name, or the game's own for no name or one that is gone."""
+    """Read the network of that name, or the shipped default if the name is empty or gone."""
     known = folders(models_dir, user_dir)
     for wanted in (name, DEFAULT):
         if wanted in known:
@@ -106,7 +106,7 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
 
 
 class Roster:
-    """All there is to fly with, by name, the scripted pilot last. A network is read when it is first asked for."""
+    """All flyers by name, the scripted pilot last. A network is read on first use."""
 
     def __init__(self, models_dir: Path, user_dir: Path) -> None:
         self._models_dir = models_dir
@@ -116,13 +116,13 @@ class Roster:
         self._read: dict[str, Network] = {}
 
     def __getitem__(self, name: str) -> Network:
-        """Return the network of that name, a damaged one too; KeyError if there is none."""
+        """Return the network of that name, a damaged one too; raises KeyError if there is none."""
         if name not in self._read:
             self._read[name] = self._load(name)
         return self._read[name]
 
     def first_fit(self) -> Network:
-        """Return the first that can fly; the scripted pilot always can."""
+        """Return the first network that can fly; the scripted pilot always can."""
         return next(network for name in self.names if (network := self[name]).flyer)
 
     def _load(self, name: str) -> Network:

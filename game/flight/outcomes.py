@@ -1,4 +1,4 @@
-"""Why a flight ended, in words: quoted from the lander's own limits."""
+"""Outcome of a flight in words, with the lander's own limits."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from game.core import texts
 
 @dataclass(frozen=True)
 class Card:
-    """How a flight ended: good or not, why, its figures as label, value, unit, and what to do better.
+    """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
 
-    Of a shared flight, `stepped_in` is how often the co-pilot did. `medal` is 3 for gold, 2, 1, and 0 for none.
-    `left` is where the card stands.
+    For a shared flight, `stepped_in` is how often the co-pilot intervened. `medal` is 3 for gold, 2, 1, 0 for none.
+    `left` is the card's left edge.
     """
 
     good: bool
@@ -32,7 +32,7 @@ class Card:
 
 @dataclass(frozen=True)
 class Rival:
-    """What became of another one from the same start; a figure it does not have is left out."""
+    """Outcome of a rival from the same start; a figure it does not have is left out."""
 
     name: str
     result: str
@@ -40,7 +40,7 @@ class Rival:
 
 
 def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
-    """Return the card of a flight that has ended; `human` is the person's share of it."""
+    """Return the outcome card of a flight that has ended; `human` is the person's share of the steps, 0 to 1."""
     outcome = Outcome(int(env.outcome[slot]))
     title, reason = texts.OUTCOMES[outcome.name]
     if outcome is Outcome.CRASHED:
@@ -54,7 +54,7 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
 
 
 def _where_left(env: LanderEnv, slot: int) -> str:
-    """Say which edge of the area a lander has crossed; heights are above the pad, as the read-out has them."""
+    """Return which edge of the area a lander has crossed, in words; heights are above the pad, as in the read-out."""
     limits = env.limits
     if env.position[slot, 1] > limits.ceiling:
         height = limits.ceiling - float(env.position[slot, 1] - env.altitude[slot])
@@ -73,7 +73,7 @@ def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str],
 
 
 def landing_score(env: LanderEnv, slot: int = 0) -> int:
-    """Points of a landing, 100 at most times the factor of its pad: fewer for a hard touch and off the middle."""
+    """Return the score of a landing: up to 100 times its pad's factor, less for a hard touch or off the middle."""
     number = int(env.landed_on[slot])
     if number < 0:
         return 0
@@ -84,7 +84,7 @@ def landing_score(env: LanderEnv, slot: int = 0) -> int:
 
 
 def crash_reason(env: LanderEnv, slot: int = 0) -> str:
-    """Name what broke the lander, and by how much."""
+    """Return which limit the lander exceeded, and by how much."""
     cause = Cause(int(env.cause[slot]))
     speed, slide, tilt = env.impact[slot].tolist()
     limits = env.limits
@@ -97,6 +97,6 @@ def crash_reason(env: LanderEnv, slot: int = 0) -> str:
 
 
 def _beyond(value: float, limit: float, places: int = 1) -> tuple[str, str]:
-    """Write a value and the limit that it is beyond, with as many places as tell them apart: two more at most."""
+    """Format a value and the limit it exceeds, with up to two more decimal places to tell them apart."""
     enough = next((n for n in (places, places + 1) if f"{value:.{n}f}" != f"{limit:.{n}f}"), places + 2)
     return f"{value:.{enough}f}", f"{limit:.{enough}f}"

@@ -1,4 +1,4 @@
-"""A flight that is flown again from its record, and can be wound to any moment of it."""
+"""Replay of a recorded flight, which can be moved to any of its steps."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ai.lander.pilots import COAST
 from game.flight.flight import DECISION_STEPS, Flight, Hand, Recording
 from game.flight.flight_file import Record
 
-_EVERY: Final = 20  # steps between moments that can be gone back to at once
-_EXACT: Final = 1e-6  # metres and radians by which a flight may end elsewhere on another processor
+_EVERY: Final = 20  # steps between the snapshots that seeking starts from
+_EXACT: Final = 1e-6  # tolerance of the end pose in metres and radians, for rounding on other processors
 
 
 class Rerun(Flight):
-    """Flies what was recorded, whatever keys are held; after its end, or the recording's, it stays as it is."""
+    """Flight that repeats recorded actions and ignores the keys; it stops at the end of the flight or recording."""
 
     def __init__(self, source: Recording) -> None:
         super().__init__(source.seed, spawn=source.spawn, pads=source.pads, mission=source.mission)
@@ -29,28 +29,28 @@ class Rerun(Flight):
 
     @property
     def flown_by(self) -> Hand:
-        """Whose action the last step was; before the first, whose that will be."""
+        """Who chose the action of the last step; before the first step, that of the first."""
         hands = self._source.hands
         return hands[min(max(self.at - 1, 0), len(hands) - 1)] if hands else self.hand
 
     def _choose(self, held: int) -> tuple[int, Hand]:  # noqa: ARG002
-        """Return what the next step was flown with, and whose action that was."""
+        """Return the recorded action of the next step, and who chose it."""
         if self.at >= len(self._source.actions):
             return COAST, self.flown_by
         self.hand = self._source.hands[self.at]
         self.set_gravity(self._source.gravity_at(self.at))
-        if self.hand is Hand.HUMAN and self.at % DECISION_STEPS == 0:  # as read-outs were turned then
+        if self.hand is Hand.HUMAN and self.at % DECISION_STEPS == 0:  # the read-outs were aimed at a pad then, too
             self._aim()
         return self._source.actions[self.at], self.hand
 
 
 class Tape:
-    """The flight of a record, shown at some moment, while a scout flies ahead and notes the way.
+    """Replay of a record at any step, while a second flight, the scout, runs ahead and notes the path.
 
     Attributes:
-        flight: as it stands at the moment that is shown.
+        flight: the flight at the step that is shown.
         length: physics steps of the whole flight.
-        path: positions (steps + 1, 2) as far as the scout has come.
+        path: positions (steps + 1, 2) up to the scout's step.
 
     """
 
@@ -64,32 +64,32 @@ class Tape:
 
     @property
     def at(self) -> int:
-        """The moment that is shown, in physics steps from the start."""
+        """Physics step that is shown, counted from the start."""
         return self.flight.at
 
     @property
     def reached(self) -> int:
-        """How far it can be wound: so far the scout has come."""
+        """Last step that can be shown, which is the scout's."""
         return self._scout.at
 
     @property
     def path(self) -> Doubles:
-        """Where the flight went, as far as it is known: (steps, 2). It is kept; do not write."""
+        """Path of the flight up to the scout's step, (steps + 1, 2), in metres. Do not write to it."""
         return self._places[: self.reached + 1]
 
     @property
     def touching(self) -> bool:
-        """Whether the scout is on the ground, where a step takes several times as long as in the air."""
+        """Whether the scout touches the ground, where a step takes several times as long as in the air."""
         return bool(self._scout.env.contacts.any())
 
     @property
     def complete(self) -> bool:
-        """Whether the scout has seen all of it."""
+        """Whether the scout has reached the end."""
         return self._scout.over or self.reached >= self.length
 
     @property
     def faithful(self) -> bool:
-        """Whether the flight, as far as it is known, goes as it went: not if the rules have changed since."""
+        """Whether the replay matches the record so far; it does not if the rules have changed since."""
         if not self.complete:
             return True
         entry = self.record.entry
@@ -97,7 +97,7 @@ class Tape:
         return self.reached == self.length and self._scout.outcome.name == entry.outcome and bool(away < _EXACT)
 
     def scout(self, steps: int) -> None:
-        """Look so many steps further ahead."""
+        """Advance the scout by some physics steps."""
         for _ in range(steps):
             if self.complete:
                 return
@@ -107,7 +107,7 @@ class Tape:
                 self._moments.append(self._scout.env.snapshot())
 
     def step(self) -> None:
-        """Show the next moment."""
+        """Show the next step."""
         if self.at >= self.reached:
             self.scout(1)
         if self.at < self.reached:
@@ -116,7 +116,7 @@ class Tape:
             self.flight.rest()
 
     def seek(self, step: int) -> None:
-        """Show another moment, as far as it can be wound."""
+        """Show another step, `reached` at most."""
         step = min(max(step, 0), self.reached)
         mark = min(step // _EVERY, len(self._moments) - 1)
         if not mark * _EVERY <= self.at <= step:
