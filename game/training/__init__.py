@@ -1,1 +1,1 @@
-"""Training runs as the window knows them, the settings chosen for the next, and the networks that were kept."""
+"""Training runs on the window's side, the settings of the next run, and the saved networks."""

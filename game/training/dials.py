@@ -1,4 +1,4 @@
-"""The knobs of a training run, made from what its configuration says of its own fields."""
+"""Knobs of a training run, made from the field descriptions of its configuration."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from ai.lander.rewards import RewardWeights
 from game.core import texts
 
 Kind = Literal["slider", "switch", "words"]
-REWARD: Final = "reward"  # the page of the parts of the reward
+REWARD: Final = "reward"  # the page of the reward weights
 WEIGHTS: Final = "weights"
-_LADDER: Final = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)  # times a power of ten
-_SHARES: Final = (0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)  # of a weight's default
-_COSTS: Final = (0.0, -0.01, -0.02, -0.03, -0.05, -0.1, -0.2, -0.3, -0.5, -1.0)  # for a part that is not paid yet
-_FEW: Final = 32  # whole numbers that a track holds one by one
+_LADDER: Final = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)  # steps of a scale, times a power of ten
+_SHARES: Final = (0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)  # factors of a weight's default
+_COSTS: Final = (0.0, -0.01, -0.02, -0.03, -0.05, -0.1, -0.2, -0.3, -0.5, -1.0)  # for a weight whose default is 0
+_FEW: Final = 32  # whole numbers that a track shows one by one, at most
 _EVEN_STEPS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
-_EVEN: Final = 20  # steps on an even track, at the most
+_EVEN: Final = 20  # steps on an evenly spaced track, at most
 
-Configuration = Any  # `ai.agent.config.Config` or another dataclass of fields described like its own
+Configuration = Any  # `ai.agent.config.Config`, or another dataclass with fields described in the same way
 
 
 @dataclass(frozen=True)
 class Dial:
-    """One knob: a field of the configuration, or one part of its reward weights.
+    """Knob for one field of the configuration, or for one of its reward weights.
 
     Attributes:
         field: the field of the configuration that changes.
-        part: which of the weights, if that field is the weights.
-        page: the group it is shown with.
-        live: whether it may change while a run goes on.
-        stops: the values it stops at, from the left end of its track to the right, or the words' values.
+        part: name of the weight, if the field holds the reward weights.
+        page: group of knobs it is shown in.
+        live: whether it may change during a run.
+        stops: its possible values, from left to right on its track, or those of its words.
 
     """
 
@@ -48,23 +48,23 @@ class Dial:
 
     @property
     def name(self) -> str:
-        """What it is called among other knobs: the field, and the part after a dot."""
+        """Unique name of the knob: the field, and the part after a dot."""
         return f"{self.field}.{self.part}" if self.part else self.field
 
     def read(self, config: Configuration) -> Any:
-        """Return the value it has in a configuration."""
+        """Return the knob's value in a configuration."""
         value = getattr(config, self.field)
         return getattr(value, self.part) if self.part else value
 
     def write(self, config: Configuration, value: Any) -> Configuration:
-        """Return the configuration with another value; raises ValueError for an impossible one."""
+        """Return the configuration with another value; raises ValueError for an invalid one."""
         if self.part:
             value = RewardWeights(**{**asdict(config.weights), self.part: value})
         return config.changed(**{self.field: value})
 
 
 def dials(of: type[Configuration] = Config) -> list[Dial]:
-    """Return every knob there is of a class of configurations, in the order in which it has them."""
+    """Return every knob of a configuration class, in the order of its fields."""
     made = []
     for item in fields(of):
         if item.name == WEIGHTS:
@@ -77,12 +77,12 @@ def dials(of: type[Configuration] = Config) -> list[Dial]:
 
 
 def label(name: str) -> str:
-    """Return what a field is called on the screen."""
+    """Return the label of a field on the screen."""
     return texts.KNOBS.get(name, name.replace("_", " ").capitalize())
 
 
 def figure(value: Any) -> str:
-    """Write a value as the player reads it."""
+    """Format a value for the player."""
     if isinstance(value, bool):
         return texts.KNOB_SWITCH[value]
     if isinstance(value, tuple):
@@ -96,7 +96,7 @@ def figure(value: Any) -> str:
 
 
 def told(changes: Mapping[str, Any]) -> str:
-    """Write what changes as the player reads it, given values by the names of dials."""
+    """Format changes for the player, given values by the names of knobs."""
     return ", ".join(f"{_labels().get(name, name)} {figure(value)}" for name, value in changes.items())
 
 
@@ -119,7 +119,7 @@ def _weight(part: Field[Any], live: bool) -> Dial:
 
 
 def _stops(item: Field[Any]) -> tuple[Any, ...]:
-    """Return the values a field may take on a knob; none if it is not to be turned."""
+    """Return the values that a field's knob can take; empty if the field has no knob."""
     described, default = item.metadata, item.default
     low, high = described["low"], described["high"]
     if stops := described["choices"] or described["offers"]:
@@ -130,7 +130,7 @@ def _stops(item: Field[Any]) -> tuple[Any, ...]:
         return ()
     if item.type == "int":
         return _whole_stops(int(low), int(high))
-    if not described["log"] and low >= 0.8 and high <= 1.0:  # a factor: what matters is how far from 1 it is
+    if not described["log"] and low >= 0.8 and high <= 1.0:  # a factor near 1: its distance from 1 matters
         return tuple(_rounded(1.0 - distance) for distance in reversed(_ladder(1.0 - high, 1.0 - low)))
     if described["log"] or default < low + (high - low) / 10:
         return tuple(_ladder(low, high))
@@ -141,13 +141,13 @@ def _stops(item: Field[Any]) -> tuple[Any, ...]:
 def _whole_stops(low: int, high: int) -> tuple[int, ...]:
     if high - low <= _FEW:
         return tuple(range(low, high + 1))
-    if high & (high - 1) == 0:  # a power of two, and so is all below it
+    if high & (high - 1) == 0:  # if the upper end is a power of two, so are all stops
         return tuple(2**power for power in range((low - 1).bit_length(), high.bit_length()))
     return tuple(sorted({round(stop) for stop in _ladder(low, high)}))
 
 
 def _ladder(low: float, high: float) -> list[float]:
-    """Return 1, 1.5, 2, 3, 5, 7, 10 and so on from low to high, both included; 0 if low is 0."""
+    """Return a logarithmic scale 1, 1.5, 2, 3, 5, 7, 10, ... from low to high, both included; with 0 if low is 0."""
     least = low if low > 0 else high * 1e-4
     steps = (step * 10.0**power for power in range(-8, 9) for step in _LADDER)
     between = (_rounded(step) for step in steps if least * (1 + 1e-9) < step < high * (1 - 1e-9))
@@ -155,9 +155,9 @@ def _ladder(low: float, high: float) -> list[float]:
 
 
 def _rounded(value: float) -> float:
-    return float(f"{value:.6g}") + 0.0  # and no minus before a 0
+    return float(f"{value:.6g}") + 0.0  # without a minus before 0
 
 
 def pages(of: Iterable[Dial]) -> list[str]:
-    """Return the names of the pages, in the order in which their knobs first come."""
+    """Return the names of the pages, in the order of their first knobs."""
     return list(dict.fromkeys(dial.page for dial in of))

@@ -1,4 +1,4 @@
-"""The networks there are to read digits: those that came with the game, and the player's own by the names they gave."""
+"""Digit networks: the shipped ones, and the player's own by name."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from ai.nn.files import read_json
 from game.core import texts
 from game.core.collection import claims
 
-NAMES: Final = ("modern", "classic")  # of the shipped ones
-PATIENCE: Final = 120.0  # seconds for a worker's turn: reading all test images in one takes a busy machine long
-FOLDER: Final = "digits"  # in the player's folder: the shipped networks' fixes, and `RUNS`
+NAMES: Final = ("modern", "classic")  # names of the shipped networks
+PATIENCE: Final = 120.0  # seconds for a worker's turn: reading all test images takes long on a busy machine
+FOLDER: Final = "digits"  # in the player's folder: fixes of the shipped networks, and `RUNS`
 RUNS: Final = "runs"
-FIXES: Final = "fixes"  # in the folder of a network of the player's own
-PARTS: Final = (DIGITS_FILE, NETWORK, TRAINING_FILE)  # a folder with any of them is one, whole or not
+FIXES: Final = "fixes"  # in the folder of a player's own network
+PARTS: Final = (DIGITS_FILE, NETWORK, TRAINING_FILE)  # a folder with any of these is a network, complete or not
 
 
 @dataclass(frozen=True)
 class Shelved:
-    """Where a network is, and where its fixes are: a numbered folder for each."""
+    """Folders of a network and of its fixes, the latter numbered."""
 
     folder: Path
     fixes: Path
 
     def fixed(self) -> list[Path]:
-        """Return the folders of its fixes, the last one last; each stands upon those before."""
+        """Return the folders of its fixes in order; each builds on those before."""
         with suppress(OSError):
             return sorted(
                 (path for path in self.fixes.iterdir() if path.name.isdecimal()), key=lambda path: int(path.name)
@@ -37,12 +37,12 @@ class Shelved:
         return []
 
     def versions(self) -> list[Path]:
-        """Return the folders it can be read from, the one with all fixes first."""
+        """Return the folders of all versions of the network, the one with all fixes first."""
         return [*reversed(self.fixed()), self.folder]
 
     @property
     def said(self) -> str:
-        """What its small file says of how well it reads; empty if that is not known."""
+        """Text on its accuracy, from its small file; empty if unknown."""
         described: dict[str, Any] = {}
         with suppress(OSError, ValueError, TypeError):
             described |= read_json(self.folder / TRAINING_FILE)
@@ -53,14 +53,14 @@ class Shelved:
 
 
 def runs_dir(user_dir: Path) -> Path:
-    """Return where runs are kept."""
+    """Return the folder of the player's runs."""
     return user_dir / FOLDER / RUNS
 
 
 def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
-    """Return all networks by name, damaged ones too; the player's own come last.
+    """Return all digit networks by name, damaged ones too; the player's own come last.
 
-    One that is called as a shipped one is told apart, not left out.
+    A player's network with the name of a shipped one gets a distinct name, and is not left out.
     """
     found = {name: Shelved(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
     with suppress(OSError):
@@ -72,5 +72,5 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
 
 
 def called(name: str) -> str:
-    """Return what a network is called on the screen."""
+    """Return the label of a network on the screen."""
     return texts.DIGITS_NETWORKS.get(name, name)

@@ -1,4 +1,4 @@
-"""A network that learns to read digits, as the window knows it: what its process has told, and what may be asked."""
+"""Digit training run on the window's side: messages from its worker, and requests to it."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from game.core.worker import Worker
 from game.training.digit_models import PARTS, PATIENCE
 from game.training.training_run import EARLIER, Beside, Learner, put_beside
 
-FALLEN: Final = 0.15  # of the images held out, so many fewer than at its best: the way back is offered
+FALLEN: Final = 0.15  # drop of validation accuracy below its best at which a return to the best is offered
 _MOST_POINTS: Final = 4000
 
 
 @dataclass
 class Curves:
-    """What a run has told of how it stands."""
+    """Learning curves of a run."""
 
     points: list[DigitPoint] = field(default_factory=list)
     scores: list[Score] = field(default_factory=list)
@@ -34,16 +34,16 @@ class Curves:
 
     @property
     def fallen(self) -> tuple[float, float] | None:
-        """What it read at its best and what it reads now, if that is far less; since it last went back."""
+        """Best and present accuracy, if the present one is far lower; None otherwise, or right after a return."""
         back = max((turn.seconds for turn in self.turns if turn.name == REVERTED), default=-1.0)
         read = [score.accuracy for score in self.scores if score.seconds > back]
         best = max((score.accuracy for score in self.scores), default=0.0)
         return (best, read[-1]) if read and best - read[-1] > FALLEN else None
 
     def append(self, told: DigitPoint | Score | Turned) -> None:
-        """Take one more; of very many points every other one is forgotten.
+        """Append a message; beyond a limit, every other point is dropped.
 
-        A knob that is turned again a moment later is still being turned: where it ends is what counts.
+        Changes of one knob in quick succession count as one, with the last value.
         """
         if isinstance(told, Score):
             self.scores.append(told)
@@ -60,23 +60,23 @@ class Curves:
 
     @property
     def seconds(self) -> float:
-        """How long the run has learnt."""
+        """Length of the training in seconds."""
         return self.points[-1].seconds if self.points else 0.0
 
 
 class Pupil(Learner):
-    """One run after another, each in a child process of its own; `poll` once a frame.
+    """Digit training runs, one after another, each in its own child process; call `poll` once a frame.
 
-    A run keeps itself in the player's folder under no name, until `save` gives it one.
+    A run saves itself in the player's folder without a name, until `save` names it.
 
     Attributes:
-        config, seed, steps: of the run that goes on, or of the last one; `begun` says that it has told of them.
-        curves, confusion: what has been told of it.
-        test: its accuracy on the test images, once it is finished or was stopped.
-        stopping: whether it was asked to end, and is being measured.
-        kept: where it is, once it has been written.
-        kept_epoch: after which epoch the network that was measured was best, if that is not the last one.
-        earlier: the runs that stand beside it, the latest first.
+        config, seed, steps: those of the current or last run; `begun` is whether it has reported them.
+        curves, confusion: its learning curves and confusion matrix.
+        test: accuracy on the test images, once it has finished or was stopped.
+        stopping: whether it was asked to end, and is being tested.
+        kept: whether there is a saved network.
+        kept_epoch: epoch of the tested network, the best one, if that is not the last.
+        earlier: the runs shown beside it, the latest first.
 
     """
 
@@ -93,32 +93,32 @@ class Pupil(Learner):
         self.kept_epoch: int | None = None
         self.earlier: list[Beside[Curves]] = []
         self.stopping = False
-        self._saving: list[Path] = []  # where it was asked to save itself, and has not answered
+        self._saving: list[Path] = []  # folders it was asked to save to, without an answer yet
 
     @property
     def unsaved(self) -> Path:
-        """Where a run keeps itself until it has a name."""
+        """Folder of a run that has no name yet."""
         return self.collection.unsaved
 
     @property
     def unfinished(self) -> bool:
-        """Whether a run lies there that can go on; no, while another goes on, or has not quite ended."""
+        """Whether `unsaved` holds a run that can be resumed; false while another runs or is ending."""
         if self.alive or (self._worker and not self._worker.gone):  # to look there repairs what it writes
             return False
         return self.collection.left_behind and (self.unsaved / LAST_FILE).exists()
 
     @property
     def kept(self) -> bool:
-        """Whether a network lies there that can be used."""
+        """Whether `unsaved` holds a usable network."""
         return (self.unsaved / CONFIG).exists()
 
     @property
     def nameless(self) -> bool:
-        """Whether there is a run that a new one would take the place of."""
+        """Whether there is an unnamed run that a new one would replace."""
         return self.kept or (self.alive and self.steps > 0)
 
     def described(self) -> tuple[str, float, float | None]:
-        """Return the nameless run's preset, the seconds it has learnt, and the part it reads, as far as is known."""
+        """Return the unnamed run's preset, its training time in seconds, and its accuracy, as far as known."""
         scores = self.curves.scores
         preset, seconds, part = "", self.curves.seconds, scores[-1].accuracy if scores else None
         if self.alive:
@@ -131,9 +131,9 @@ class Pupil(Learner):
         return preset, seconds, part
 
     def begin(self, config: DigitConfig, seed: int, *, resume: bool = False, name: str = "") -> str:
-        """Start a run, or go on with the unfinished one, as soon as the one before has ended.
+        """Start a run, or resume the unfinished one, as soon as the previous one has ended.
 
-        `name` is what its settings are called. Returns what the player should know; of a run that must wait, that
+        `name` is the name of its settings. Returns a note for the player, or ""; for a run that must wait, the note
         comes from `poll`.
         """
         note = ""
@@ -157,12 +157,12 @@ class Pupil(Learner):
         return " ".join(notes)
 
     def go_back(self) -> None:
-        """Let the network be what it was at its best."""
+        """Revert the network to its best checkpoint."""
         if not self.stopping:
             self._send(GoBack())
 
     def stop(self) -> None:
-        """End the run; what it has learnt is kept, and measured. Asked again, it ends without being measured."""
+        """End the run, save its network and test it. A second call ends it without the test."""
         if self.waiting:
             self._launch = None
         elif self.alive and self.steps and not self.stopping:
@@ -173,8 +173,8 @@ class Pupil(Learner):
             self._worker.stop()
 
     def save(self, name: str) -> str:
-        """Give the run a name; returns why that can't be, and later news come from `poll`."""
-        if self.waiting:  # there is nothing of it yet
+        """Name the run; return why that failed, or "". Later notes come from `poll`."""
+        if self.waiting:  # nothing has been saved yet
             return texts.PUPIL_NOTHING
         try:
             if self.alive:
@@ -188,10 +188,10 @@ class Pupil(Learner):
         return ""
 
     def poll(self) -> list[str]:
-        """Take in what the worker has told; returns what the player should know."""
+        """Handle all messages of the worker; return notes for the player."""
         notes: list[str] = []
         for told in self._worker.poll() if self._worker else ():
-            if self.waiting and not isinstance(told, Kept):  # of the run before, only where it is
+            if self.waiting and not isinstance(told, Kept):  # from the previous run, only where it was saved
                 continue
             match told:
                 case DigitPoint() | Score() | Turned():
@@ -213,7 +213,7 @@ class Pupil(Learner):
         return notes
 
     def _hear_of(self, kept: Kept) -> str:
-        """Take in where the run has been written, or why not; returns what the player should know."""
+        """Handle a report on where the run was saved, or why not; return a note for the player, or ""."""
         if kept.folder == self.unsaved and kept.test is not None and not self.waiting:
             self.test, self.kept_epoch = kept.test, kept.epoch
         if kept.folder in self._saving:
@@ -223,7 +223,7 @@ class Pupil(Learner):
         return "" if kept.folder == self.unsaved else texts.PUPIL_SAVED.format(name=kept.folder.name)
 
     def _name_ended(self) -> list[str]:
-        """Give a run its name that ended before it heard of that; returns what the player should know."""
+        """Name a run that ended before it received its name; return notes for the player."""
         notes = []
         while self._saving:
             name = self._saving.pop().name
@@ -231,7 +231,7 @@ class Pupil(Learner):
         return notes
 
     def _put_aside(self) -> str:
-        """Move a nameless run out of the way of a new one, to where the last few can be had back from by hand."""
+        """Move an unnamed run aside, to where it can be restored by hand; return why that failed, or ""."""
         if self.kept:
             try:
                 self.collection.throw_away(self.unsaved, texts.RUN_UNNAMED)
@@ -241,7 +241,7 @@ class Pupil(Learner):
 
 
 def _turned(config: DigitConfig, told: DigitPoint | Score | Turned) -> DigitConfig:
-    """Return the configuration that a run has after what it told."""
+    """Return the configuration of a run after one of its messages."""
     if not isinstance(told, Turned) or told.name == REVERTED:
         return config
     return config.changed(**{told.name: told.after})

@@ -1,4 +1,4 @@
-"""A training run as the window knows it: what its worker has told, and what may be asked of it."""
+"""Lander training run on the window's side: messages from its worker, and requests to it."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from game.core.worker import Worker
 from game.training.library import Library
 from game.training.training_run import EARLIER, Beside, Learner, put_beside
 
-# Decisions of all landers a second: one lasts 1/15 s of their own time. None is as fast as it can.
+# Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
 PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
 
 
 class Student(Learner):
-    """One run after another, each in a child process of its own; `poll` once a frame.
+    """Lander training runs, one after another, each in its own child process; call `poll` once a frame.
 
-    A run keeps itself in the library under no name, until `save` gives it one.
+    A run saves itself in the library without a name, until `save` names it.
 
     Attributes:
-        history: what has been told of the run that goes on, or of the last one.
-        sight, insight, in_force: the latest of their kind; None until a run has told of any.
-        earlier: the runs that stand beside it, the latest first.
+        history: history of the current or last run.
+        sight, insight, in_force: the latest message of each kind; None before the first.
+        earlier: the runs shown beside it, the latest first.
 
     """
 
-    grace = 3.0  # for it keeps itself at the end, which takes longer on a busy machine
+    grace = 3.0  # it saves itself at the end, which takes longer on a busy machine
 
     def __init__(self, library: Library) -> None:
         super().__init__()
@@ -43,19 +43,19 @@ class Student(Learner):
         self.insight: Insight | None = None
         self.in_force: InForce | None = None
         self.earlier: list[Beside[History]] = []
-        self.begun = False  # whether a run has said with what it was begun, since this was last set to False
+        self.begun = False  # whether a run has reported its configuration since this was last set to False
         self.pace = len(PACES) - 1
 
     @property
     def kept(self) -> bool:
-        """Whether there is a run without a name that could be given one."""
+        """Whether there is an unnamed run that `save` could name."""
         return self.alive or self.library.rescued() is not None
 
     def begin(self, config: Config, seed: int, resume: Path | None = None, name: str = "") -> str:
-        """Start a run, or go on with a saved one, as soon as the one before has ended.
+        """Start a run, or resume a saved one, as soon as the previous one has ended.
 
-        `name` is what its settings are called; a run that was saved under a name has that. Returns what the player
-        should know; of a run that must wait, that comes from `poll`.
+        `name` is the name of its settings; a run that was saved under a name keeps that. Returns a note for the
+        player, or ""; for a run that must wait, the note comes from `poll`.
         """
         note = self._put_beside(self.name, self.history) if len(self.history) else ""
         self.history = History()
@@ -74,7 +74,7 @@ class Student(Learner):
             if resume is not None:
                 self.history = History.read(resume)
             if resume != self.library.unsaved:
-                self.library.discard_rescued()  # to where it can still be brought back from
+                self.library.discard_rescued()  # from where it can still be restored
         except (ModelFormatError, LibraryError) as error:
             note = str(error)
         self._worker = Worker(live, config, seed, keep=self.library.unsaved, resume=resume)
@@ -83,26 +83,26 @@ class Student(Learner):
 
     @property
     def lessons(self) -> int:
-        """Of how many demonstrations this run has learnt."""
+        """Number of demonstrations this run has learnt from."""
         return sum(each.after for each in self.history.alterations if each.name == TAUGHT and type(each.after) is int)
 
     def teach(self, demonstrations: Path) -> None:
-        """Let the run learn from a file of demonstrations as well; that is told by `poll`."""
+        """Let the run also learn from a file of demonstrations; `poll` reports it."""
         self._send(Teach(demonstrations))
 
     def set_pace(self, index: int) -> None:
-        """Choose one of the paces."""
+        """Choose one of `PACES` by its index."""
         self.pace = index
         self._ask(lambda worker: worker.set_pace(PACES[index]))
 
     def revert(self, checkpoint: Checkpoint) -> None:
-        """Let the network be what it was."""
+        """Revert the network to a checkpoint."""
         self._send(Revert(checkpoint.decisions))
 
     def save(self, name: str) -> str:
-        """Give the run a name in the library, or raise LibraryError.
+        """Name the run in the library; raises LibraryError if that fails.
 
-        Returns what the player should know; of a run that goes on, that comes from `poll`.
+        Returns a note for the player, or ""; for a run that goes on, the note comes from `poll`.
         """
         if self.alive:
             self._send(Save(self.library.new_folder(name)))
@@ -111,15 +111,15 @@ class Student(Learner):
         return texts.TRAIN_SAVED.format(name=name)
 
     def poll(self) -> list[str]:
-        """Take in what the worker has told; returns what the player should know."""
+        """Handle all messages of the worker; return notes for the player."""
         told = self._worker.poll() if self._worker else ()
-        if self.waiting:  # of the run before, only where it is
+        if self.waiting:  # from the previous run, only where it was saved
             told = [message for message in told if isinstance(message, Saved)]
         notes = [self._hear(message) for message in told]
         return [note for note in [*notes, self._start_waiting()] if note]
 
     def _hear(self, message: Any) -> str:
-        """Take in one thing that the worker has told; returns what the player should know."""
+        """Handle one message of the worker; return a note for the player, or ""."""
         match message:
             case Sight():
                 self.sight = message
@@ -146,7 +146,7 @@ class Student(Learner):
         return ""
 
     def compare(self, name: str, folder: Path) -> str:
-        """Put a saved run's curves beside this one's; returns what the player should know."""
+        """Show a saved run's curves beside this one's; return a note for the player, or ""."""
         try:
             history = History.read(folder)
         except ModelFormatError as error:
@@ -163,5 +163,5 @@ class Student(Learner):
 def _turned(config: Config, name: str, value: Any) -> Config:
     try:
         return turned(config, name, value)
-    except ValueError:  # what the worker took, it took: only the knob's face is at stake
+    except ValueError:  # the worker has accepted the value already: only the display is concerned
         return config

@@ -1,4 +1,4 @@
-"""The networks a player has kept: one folder a run, and what is known of each without reading it."""
+"""Library of the player's saved training runs, one folder each, with a summary that needs no network read."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from game.core import texts
 from game.core.collection import LONGEST_NAME, Collection, LibraryError, claims, leads_nowhere, reason, there, told
 from game.flight.networks import PARTS, PLAYERS
 
-_CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of them is a run, whole or not
-_YEAR_3000: Final = 32_503_680_000.0  # in seconds since 1970; up to then every system knows dates
-_MOST: Final = 10**15  # of any count
+_CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of these is a run, complete or not
+_YEAR_3000: Final = 32_503_680_000.0  # in seconds since 1970; the latest date that every system supports
+_MOST: Final = 10**15  # limit of any count
 _MOST_SEED: Final = 10**LONGEST_NAME
 
 
 @dataclass(frozen=True)
 class SavedRun:
-    """What is known of a run without reading its network.
+    """Summary of a run, known without reading its network.
 
     Attributes:
-        saved: when, in seconds since 1970.
-        preset, changes: the preset its settings are nearest to, and how many of them differ.
-        decisions, seconds: how long it learnt.
-        success: share of validation flights that its best network landed, 0 to 1; None where nobody counted.
-        flyable: whether it may well fly a lander; only reading it will tell.
-        resumable: whether there is something to go on training from.
-        problem: what is wrong with it; empty for a whole one.
+        saved: time of saving, in seconds since 1970.
+        preset, changes: the preset nearest to its settings, and the number of settings that differ.
+        decisions, seconds: length of the training.
+        success: share of validation flights that its best network landed, 0 to 1; None if not measured.
+        flyable: whether it can probably fly a lander; certain only after reading it.
+        resumable: whether its training can be resumed.
+        problem: what is wrong with it; empty for a complete one.
 
     """
 
@@ -51,7 +51,7 @@ class SavedRun:
 
 
 def read_run(folder: Path, name: str = "") -> SavedRun:
-    """Describe a run by its small file alone. Never raises: what is wrong is in the answer."""
+    """Return the summary of a run from its small file. Never raises: `problem` says what is wrong."""
     name = name or folder.name
     file = folder / TRAINING_FILE
     saved = 0.0
@@ -79,8 +79,8 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
 
 
 def _figures(described: dict[str, Any]) -> dict[str, Any]:
-    """Return the figures a run is told by; ValueError, and others, for those that no run can have."""
-    best = described["best"]  # a young run has not been tried yet
+    """Return the figures of a summary; raises ValueError, among others, for figures that no run can have."""
+    best = described["best"]  # a young run has not been validated yet
     success = None if not best or best["success"] is None else float(number_of(best["success"]))
     seed, decisions = count_of(described["seed"], most=_MOST_SEED), count_of(described["decisions"], most=_MOST)
     seconds = float(number_of(described["seconds"], 0))
@@ -93,10 +93,10 @@ def _figures(described: dict[str, Any]) -> dict[str, Any]:
 
 
 class Library(Collection):
-    """The runs in a player's folder. Whatever cannot be done raises LibraryError and changes nothing.
+    """Library of runs in a player's folder. A method that fails raises LibraryError and changes nothing.
 
     Attributes:
-        problem: why `runs` could not look; empty if it could.
+        problem: why `runs` could not read the folder; empty if it could.
 
     """
 
@@ -105,7 +105,7 @@ class Library(Collection):
         self.problem = ""
 
     def runs(self) -> list[SavedRun]:
-        """Describe every run, the latest first, damaged ones too."""
+        """Return the summary of every run, the latest first, damaged ones too."""
         self.problem = ""
         try:
             self.recover()
@@ -118,13 +118,13 @@ class Library(Collection):
         return sorted(found, key=lambda run: (-run.saved, run.name))
 
     def delete(self, name: str) -> None:
-        """Throw a run away; `undo_delete` brings it back."""
+        """Delete a run; `undo_delete` restores it."""
         self.throw_away(self.existing(name), name)
 
     def import_folder(self, path: Path) -> Path:
-        """Copy a run from anywhere into the library, under its own name or one near it; return where the copy is.
+        """Copy a run into the library, numbered if its name is taken; return the path of the copy.
 
-        A file of the run stands for its folder.
+        A file of the run may be given in place of its folder.
         """
         with told(texts.LIBRARY_NOT_IMPORTED, brief(path.name, LONGEST_NAME)):
             folder = path if path.is_dir() else path.parent
@@ -132,24 +132,24 @@ class Library(Collection):
                 raise LibraryError(texts.LIBRARY_NO_RUN.format(name=folder.name))
         return super().import_folder(folder)
 
-    # What was never given a name
+    # The unnamed run
 
     def claim(self) -> SavedRun | None:
-        """Let no other game use `unsaved` until `release`, and describe the run that lies there, if one does."""
+        """Lock `unsaved` against other games until `release`; return the summary of the run in it, if any."""
         self.hold()
         return self.rescued()
 
     def rescued(self) -> SavedRun | None:
-        """Describe the run that was never given a name, called as it might be. Ask before a training begins."""
+        """Return the summary of the unnamed run with a suggested name, if any. Call before a training begins."""
         if not self.left_behind:
             return None
         return read_run(self.unsaved, self.free_name(texts.RUN_RESCUED))
 
     def keep_rescued(self, name: str) -> SavedRun:
-        """Give that run a name."""
+        """Name the unnamed run; return its summary."""
         return read_run(self.name(self.unsaved, name))
 
     def discard_rescued(self) -> None:
-        """Throw that run away, if there is one; `undo_delete` brings it back."""
+        """Delete the unnamed run, if any; `undo_delete` restores it."""
         if rescued := self.rescued():
             self.throw_away(self.unsaved, rescued.name)

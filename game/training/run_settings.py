@@ -1,6 +1,6 @@
-"""What the player has chosen for a training run: what holds, what waits for a new run, and the way back.
+"""Settings of a training run: values in effect, changes that wait for a new run, and undo.
 
-What may change while a run goes on changes at once. What takes a new run waits until it is applied or undone.
+Live settings change at once. A change that needs a new run waits until it is applied or undone.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from game.core import texts
 from game.training.dials import Configuration, Dial, dials, figure, label
 
 SEED: Final = "seed"
-Named = tuple[str, str]  # a preset, and what it was sabotaged by or nothing
+Named = tuple[str, str]  # a preset, and a sabotage or ""
 
 
 @dataclass(frozen=True)
 class Family:
-    """What there is to choose from for one kind of run.
+    """Choices for one kind of run: knobs, presets and sabotages.
 
     Attributes:
         dials: every knob.
         presets: configurations by name.
-        words: what a preset is called, and a sentence about it, by its name.
-        sabotages: the same of what can be taken away from a preset, if anything.
-        idle: says of a configuration which settings change nothing in a new run, each with the one that decides that.
-        seed_page: the page of knobs that the seed stands on.
+        words: label of each preset, and a sentence about it, by its name.
+        sabotages: the same for each part that can be taken away from a preset.
+        idle: returns which settings of a configuration have no effect in a new run, each with the one that causes it.
+        seed_page: the page of knobs that shows the seed.
 
     """
 
@@ -43,12 +43,12 @@ class Family:
     idle: Callable[[Any], Mapping[str, str]] = Knobs.unused
 
     def config_of(self, named: Named) -> Configuration:
-        """Return what a name stands for."""
+        """Return the configuration of a preset or a sabotage."""
         base, sabotage = named
         return sabotaged(self.presets[base], sabotage) if sabotage else self.presets[base]
 
     def nearest(self, config: Configuration) -> Named:
-        """Return the preset, or the sabotage of one, with the fewest fields different; a preset if it is as near."""
+        """Return the preset, or sabotage of one, that differs in the fewest fields; of equals, the preset."""
         every: list[Named] = [(base, sabotage) for sabotage in ("", *self.sabotages) for base in self.presets]
         given = config.to_json()
 
@@ -59,12 +59,12 @@ class Family:
         return min(every, key=distance)
 
     def word(self, named: Named) -> str:
-        """Return what the player reads for it."""
+        """Return the label of a preset or a sabotage."""
         base, sabotage = named
         return self.sabotages[sabotage][0] if sabotage else self.words.get(base, (base.capitalize(), ""))[0]
 
     def sentence(self, named: Named) -> str:
-        """Return what there is to say about it."""
+        """Return the sentence about a preset or a sabotage."""
         base, sabotage = named
         return self.sabotages[sabotage][1] if sabotage else self.words.get(base, ("", ""))[1]
 
@@ -75,20 +75,20 @@ LANDER: Final = Family(
 
 
 class Tuning:
-    """A configuration and a seed in the hands of the player.
+    """Configuration and seed that the player can change.
 
-    `on_change` hears of each knob that holds another value now, by name; `on_restart` is asked for a new run with
-    what was applied.
+    `on_change` is called with the name and value of each setting that changes in effect; `on_restart` with the
+    configuration and seed of a new run, when changes are applied.
 
     Attributes:
-        config: what holds; what waits is not in it.
-        seed: the same of the seed.
-        draft: what the knobs show, with what waits.
-        named: the preset, or the sabotage of one, that this is or began as.
+        config: configuration in effect, without waiting changes.
+        seed: seed in effect.
+        draft: configuration that the knobs show, with waiting changes.
+        named: the preset, or sabotage of one, that the draft is or started from.
         running: whether a run goes on.
-        in_force: what acts in it at this moment, as it told last.
+        in_force: effective values, from the run's latest message.
         problem: why the last value was refused.
-        put_aside: what a preset has taken the place of, until the next change.
+        put_aside: the draft that a preset has replaced, until the next change.
 
     """
 
@@ -109,7 +109,7 @@ class Tuning:
         self.set_config(config, seed)
 
     def set_config(self, config: Configuration, seed: int) -> None:
-        """Hold a configuration that came from elsewhere; nobody is told."""
+        """Set the configuration and the seed, without calling `on_change`."""
         if config != self.draft:
             self.named = self.family.nearest(config)
         self._named_held = self.named
@@ -119,39 +119,39 @@ class Tuning:
         self.put_aside: tuple[Configuration, Named] | None = None
 
     def set_running(self, running: bool) -> None:
-        """A run has begun, or is over: without one, nothing has to wait."""
+        """Set whether a run goes on; without one, no change has to wait."""
         self.running, self.put_aside, self.in_force = running, None, None
         if not running:
             self._hold(self.draft, self.draft_seed)
 
     @property
     def home(self) -> Configuration:
-        """The preset that this began as, whole."""
+        """Configuration of the preset that the draft started from."""
         return self.family.presets[self.named[0]]
 
     @property
     def holds(self) -> Named:
-        """What the run that goes on is called; what waits has no run yet."""
+        """Preset or sabotage of the current run, without waiting changes."""
         return self._named_held if self.waiting else self.named
 
     @property
     def changed(self) -> bool:
-        """Whether what holds is not what its name says."""
+        """Whether the settings in effect differ from their preset or sabotage."""
         return bool((self.config if self.waiting else self.draft) != self.family.config_of(self.holds))
 
     @property
     def waiting(self) -> list[str]:
-        """Which knobs wait for a new run, by name."""
+        """Names of the knobs whose changes wait for a new run."""
         return self._different(self.draft, self.config) + [SEED] * (self.draft_seed != self.seed)
 
     def now(self, name: str) -> float | None:
-        """Return what acts at this moment of a run in place of a knob's value; None if that is the value."""
+        """Return the value in effect at this moment, such as a schedule's; None if it is the knob's own."""
         return self.in_force.values.get(name) if self.in_force and name not in self.in_force.idle else None
 
     def idle(self, name: str) -> str:
-        """Say why a knob changes nothing, and which one does; empty for one that does.
+        """Return a sentence why a knob has no effect, and which knob causes that; empty if it has an effect.
 
-        A live knob is asked about for the run as it is, another one for the new run that it would take.
+        A live knob is judged for the current run, any other for the new run that it would need.
         """
         dial = self.dials[name]
         now = self.in_force.idle if self.in_force and dial.live else self.family.idle(self.draft)
@@ -164,7 +164,7 @@ class Tuning:
         return texts.KNOBS_IDLE_WITHOUT.format(other=label(instead), value=value)
 
     def turn(self, name: str, value: Any) -> None:
-        """Turn a knob; an impossible value changes nothing, and `problem` says why."""
+        """Set a knob; an invalid value changes nothing, and `problem` says why."""
         self.problem, self.put_aside = "", None
         if name == SEED:
             self.draft_seed = value
@@ -181,19 +181,19 @@ class Tuning:
         self._hold(held, self.seed)
 
     def load(self, named: Named) -> None:
-        """Take a preset or a sabotage whole; knobs that were turned can be had back."""
+        """Load a preset or a sabotage; `undo` restores the knobs."""
         aside = (self.draft, self.named) if self.draft != self.family.config_of(self.named) else None
         self.problem = ""
         self._propose(self.family.config_of(named), named)
         self.put_aside = None if self.waiting else aside
 
     def apply(self) -> None:
-        """Ask for a new run with what waits."""
+        """Start a new run with the waiting changes."""
         self.config, self.seed, self._named_held = self.draft, self.draft_seed, self.named
         self._on_restart(self.config, self.seed)
 
     def undo(self) -> None:
-        """Go back to what holds, or to what a preset has taken the place of."""
+        """Revert to the settings in effect, or to those that a preset has replaced."""
         aside, self.put_aside, self.problem = self.put_aside, None, ""
         if aside:
             self._propose(*aside)
@@ -201,13 +201,13 @@ class Tuning:
             self.draft, self.draft_seed, self.named = self.config, self.seed, self._named_held
 
     def _propose(self, config: Configuration, named: Named) -> None:
-        """Take a whole configuration: at once if that can be, or to wait for a new run."""
+        """Set a whole configuration: at once if possible, else to wait for a new run."""
         self.draft, self.named = config, named
         if not self.running or all(self.dials[name].live for name in self._different(config, self.config)):
             self._hold(config, self.seed)
 
     def _hold(self, config: Configuration, seed: int) -> None:
-        """Let these hold from now on, and tell of all that is different."""
+        """Put a configuration and a seed into effect, and call `on_change` for each difference."""
         names = self._different(config, self.config)
         reseeded = seed != self.seed
         self.config, self.seed = config, seed
@@ -223,5 +223,5 @@ class Tuning:
 
 
 def _in_words(problem: str) -> str:
-    """Call the fields in a message what the player calls them."""
+    """Replace the names of fields in a message by their labels."""
     return re.sub(r"\b[a-z_]+\b", lambda found: texts.KNOBS.get(found[0], found[0]), problem)
