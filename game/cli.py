@@ -1,4 +1,4 @@
-"""Commands that open the game on a screen other than the menu."""
+"""Command-line commands that open the game on a screen other than the menu."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from game.core import texts
 
 
 def add_commands(commands: Any) -> None:
-    """Add `physics` to a parser's sub-commands."""
+    """Add the command `physics` to a parser's sub-commands."""
     physics = commands.add_parser("physics", help=texts.CLI_PHYSICS)
     names = list(texts.EXHIBITS)
     physics.add_argument("--exhibit", choices=names, default=names[0], help=texts.CLI_EXHIBIT.format(name=names[0]))
@@ -17,7 +17,7 @@ def add_commands(commands: Any) -> None:
 
 
 def open_physics(arguments: argparse.Namespace) -> int:
-    """Open the window on the gallery; the menu lies behind it."""
+    """Open the window on the physics gallery, with the menu below it."""
     from game.core.scene import Route
     from game.start import play
 

@@ -1,4 +1,4 @@
-"""Opens the game in a window."""
+"""Start of the game in a window."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ _HINTS: Final[dict[str, str]] = {
     "SDL_MOUSE_FOCUS_CLICKTHROUGH": "1",
 }
 if sys.platform == "linux":
-    # The picture is made by the processor. Straight into the window takes it less than 1 ms; by way of a
-    # texture, where drivers draw in software, 6 ms.
+    # Frames are drawn by the processor. Copying one straight to the window takes less than 1 ms; by way of a
+    # texture, with drivers that render in software, 6 ms.
     _HINTS["SDL_FRAMEBUFFER_ACCELERATION"] = "0"
 
 
 def play(folder: Path | None = None, full_screen: bool | None = None, begin: Route | None = None) -> int:
-    """Open the window on the menu and play until it is closed. Returns the exit code.
+    """Open the window on the menu and play until it is closed. Return the exit code.
 
     Args:
-        folder: the player's folder, in place of the system's own choice.
+        folder: the player's folder, in place of the system's default.
         full_screen: overrides the setting.
-        begin: the scene that opens over the menu at once.
+        begin: a scene to open over the menu at once.
 
     """
     tell_sdl()
@@ -59,13 +59,13 @@ def play(folder: Path | None = None, full_screen: bool | None = None, begin: Rou
         context.note(file.problem)
     if begin is not None:
         app.show(begin)
-    # What lives as long as the game need not be looked through again and again: that took 20 ms at a time.
+    # Exclude objects that live as long as the game from garbage collection, which took 20 ms each time.
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
     return app.run()
 
 
 def tell_sdl() -> None:
-    """Set SDL's hints, which are read when pygame is imported; what the player has set goes first."""
+    """Set SDL's hints, which are read when pygame is imported; the player's own environment takes precedence."""
     for name, value in _HINTS.items():
         os.environ.setdefault(name, value)

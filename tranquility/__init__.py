@@ -1,1 +1,1 @@
-"""The one name that an installed Tranquility owns: in a wheel, everything else lies in this folder."""
+"""Top-level package of an installed Tranquility: in a wheel, all other packages lie in this folder."""

@@ -18,8 +18,8 @@ from pathlib import Path
 def limit_threads() -> None:
     """Let linear algebra use one thread; call it before NumPy is imported, or it has no effect.
 
-    The matrices are small: a second thread only gets in the way, of the window most of all. And the sums of a
-    product that two threads share are rounded differently, so the same seed would give another network.
+    The matrices are small: a second thread only takes time from the window. And the sums of a
+    matrix product divided between threads are rounded differently, so the same seed would give another network.
     """
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ[f"{library}_NUM_THREADS"] = "1"
@@ -28,7 +28,7 @@ def limit_threads() -> None:
 def find_own_folders() -> None:
     """Put the folders of this copy first on the path, before anything else that is called `ai` or `game`.
 
-    Only for this process and those it starts: multiprocessing's `spawn` hands the path on.
+    This holds only for this process and its children, to which multiprocessing's `spawn` passes the path.
     """
     own = Path(__file__).resolve().parent
     folder = str(own if (own / "engine").is_dir() else own.parent)
@@ -45,37 +45,37 @@ def main(argv: list[str] | None = None) -> int:
         arguments = _parser().parse_args(argv)
         code = _open_game(arguments) if arguments.run is None else int(arguments.run(arguments))
         if sys.stdout is not None:
-            sys.stdout.flush()  # here, where it can still be said that it failed
+            sys.stdout.flush()  # here, where a failure can still be reported
         return code
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # whoever read has read enough, as `head` does
+    except BrokenPipeError:  # the reader has closed the pipe, as `head` does
         _discard_output()
         return 141
     except OSError as error:
         if error.filename is not None:
-            raise  # the matter of whoever opened that file
+            raise  # another file's error, not the output's
         _discard_output()
         print(f"tranquility: cannot write: {error.strerror or error}", file=sys.stderr)
         return 1
 
 
 def _forgive_terminals() -> None:
-    """Let letters that a terminal does not know come out as question marks, instead of ending the program."""
+    """Print characters outside the terminal's encoding as question marks, instead of raising an error."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
 
 
 def _discard_output() -> None:
-    """Let what is still to be printed go nowhere, so that the interpreter does not stumble over it at its end."""
+    """Redirect remaining output to nowhere, so that the interpreter's final flush does not fail."""
     void = os.open(os.devnull, os.O_WRONLY)
     os.dup2(void, sys.stdout.fileno())
     os.close(void)
 
 
 def _parser() -> argparse.ArgumentParser:
-    from ai.cli.command_line import Parser, folder  # once its folder has been found
+    from ai.cli.command_line import Parser, folder  # imported after `find_own_folders`
 
     parser = Parser(prog="tranquility", description="Land on the moon by hand, by network, or share the stick.")
     parser.set_defaults(run=None)

@@ -1,1 +1,1 @@
-"""A replay saved as a moving picture."""
+"""Export of replays as GIF or MP4."""

@@ -1,6 +1,6 @@
-"""Saving a flight as a moving picture, in a process of its own: the window neither waits for it nor feels it.
+"""Export of a flight as GIF or MP4 in a process of its own, so that the window neither waits nor slows down.
 
-A GIF can always be made; an MP4 needs what the extra `export` brings.
+A GIF can always be made; an MP4 needs the optional dependencies of the extra `export`.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from game.flight.flight_file import Record
 
 
 class Export:
-    """A flight on its way into a file; `poll` once a frame.
+    """Running export of a flight; call `poll` once a frame.
 
     Args:
-        scene: makes the scene that is filmed; a class or function, since another process is to find it.
-        record: the flight.
-        path: of the file to write.
-        colour_safe: whether in the colours for the colour-blind.
+        scene: makes the scene to film; a class or function at module level, so that another process can import it.
+        record: the flight to export.
+        path: the file to write.
+        colour_safe: whether to use the palette for colour-blind viewers.
 
     Attributes:
-        path: of the file, which is there once this is `over` without a `problem`.
-        share: how much of it is drawn, 0 to 1.
+        path: the file, complete once this is `over` without a `problem`.
+        share: progress, 0 to 1.
 
     """
 
@@ -37,22 +37,22 @@ class Export:
         self._worker = Worker(film, scene, record, path, colour_safe)
 
     def poll(self) -> None:
-        """Hear how far it has come."""
+        """Update the progress."""
         for drawn in self._worker.poll():
             self.share = drawn.share
 
     @property
     def over(self) -> bool:
-        """Whether it has come to an end, well or not."""
+        """Whether the export has ended, with or without success."""
         return self._worker.state in (State.ENDED, State.FAILED)
 
     @property
     def problem(self) -> str:
-        """Why there is no file; empty while it goes on, after it was stopped, and if all went well."""
+        """Reason why there is no file; empty during the export, after a cancellation and after success."""
         return self._worker.problem
 
     def close(self) -> None:
-        """Let it be; what was drawn so far is thrown away."""
+        """Cancel the export and delete the unfinished file."""
         self._worker.close(0.0)  # the window may go on: it waits for no goodbye
-        with suppress(OSError, ValueError):  # the process has most often done so itself
+        with suppress(OSError, ValueError):  # usually the process has deleted it already
             unfinished(self.path).unlink()

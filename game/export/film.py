@@ -1,6 +1,6 @@
-"""A flight as a moving picture: its replay without words, drawn off the screen and written frame by frame.
+"""Video export of a flight: its replay without text, drawn off screen and written frame by frame.
 
-It runs in a process of its own, which `game.export.export` looks after.
+It runs in a process of its own, which `game.export.export` controls.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from game.ui.context import Context
 
 Frame = NDArray[np.uint8]  # (height, width, 3)
 
-_AFTER: Final = 120  # updates that are shown after the end: slow motion, fire dies, dust settles
-_LINGER: Final = 60  # steps that the last frame then stays
-_SAMPLE: Final = 40  # steps between the frames whose colours a palette is chosen from
+_AFTER: Final = 120  # updates shown after the end, while fire and dust settle
+_LINGER: Final = 60  # steps that the last frame then stays on screen
+_SAMPLE: Final = 40  # steps between the frames sampled for the palette
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """How much of it is drawn, 0 to 1."""
+    """Progress message: the share of the frames drawn, 0 to 1."""
 
     newest_only = True
 
@@ -41,29 +41,29 @@ class Drawn:
 
 
 class Filmed(Protocol):
-    """A scene that shows a flight, and can show its world without words."""
+    """Scene that shows a flight, and can draw its world without text."""
 
     def enter(self, context: Context) -> None:
-        """Begin."""
+        """Start the scene."""
 
     def update(self) -> object:
-        """Fly one step on."""
+        """Advance the replay by one step."""
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the world alone."""
+        """Draw the world without text."""
 
 
 class _Writer(Protocol):
     def add(self, frame: Frame) -> None:
-        """Add a frame."""
+        """Append a frame (height, width, 3)."""
 
 
 def film(
     make: Callable[[Record], Filmed], record: Record, path: Path, colour_safe: bool = False
 ) -> Generator[list[Drawn], None, None]:
-    """Write the flight as the scene that `make` makes shows it, whole or not at all; a turn for every frame.
+    """Write a flight, drawn by the scene from `make`, to a video file, whole or not at all; yield after each frame.
 
-    The suffix of the path says as what.
+    The suffix of the path selects the kind of file.
 
     Raises:
         OSError: the file can't be written, or the disk is full.
@@ -89,7 +89,7 @@ def film(
 
 
 def frames(scene: Filmed, kind: Kind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
-    """Yield what is seen of a flight at these updates of its replay, which rise; up to its end, one is one step."""
+    """Yield the frames at these rising update numbers of a replay; one update is one step, up to the flight's end."""
     _need_no_screen()
     settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)
     scene.enter(Context(Path(), settings))

@@ -1,6 +1,6 @@
-"""Moving pictures as GIF, written frame by frame: one palette for all of it, and a dither that stands still.
+"""GIF writer, frame by frame: one global palette, and ordered dithering that does not flicker.
 
-Needs Pillow, for the choice of colours and the packing.
+Needs Pillow, for the palette and the compression.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from PIL.GifImagePlugin import getdata
 Frame = NDArray[np.uint8]  # (height, width, 3)
 
 _COLOURS: Final = 255
-_SAME: Final = 255  # the index that lets what is there shine through
-_SPREAD: Final = 5.0  # of 255: how far a colour is pushed about so that what lies between two others is mixed of them
-_SHADES: Final = 64  # levels of each of red, green and blue that the palette tells apart when it is chosen
+_SAME: Final = 255  # palette index of transparent pixels
+_SPREAD: Final = 5.0  # of 255: amplitude of the dithering, which mixes the colours between two of the palette
+_SHADES: Final = 64  # levels of each of red, green and blue when the palette is chosen
 
 
 class GifWriter:
-    """Writes a GIF that repeats for ever; a context, at whose end the file is complete.
+    """Writer of a GIF that repeats for ever; a context manager, at whose exit the file is complete.
 
-    Each frame stores only what has changed since the one before, and the dither is a pattern fixed to the picture
-    (Bayer, 1973), so what stands still neither flickers nor takes room.
+    Each frame stores only the pixels that have changed, and the ordered dithering is fixed to the picture
+    (Bayer, 1973), so still parts neither flicker nor take space.
 
     Args:
-        path: of the file.
+        path: the file to write.
         size: width and height in pixels.
-        sample: frames that have the colours of all.
-        seconds: from frame to frame, stored in hundredths.
+        sample: frames to choose the palette from.
+        seconds: time per frame, stored in hundredths.
 
     Raises:
         OSError: the file can't be written, then or later.
@@ -59,7 +59,7 @@ class GifWriter:
             self._file.write(b";")
 
     def add(self, frame: Frame) -> None:
-        """Add a frame."""
+        """Append a frame (height, width, 3)."""
         indices = self._indices(frame)
         box, patch, more = (0, 0), indices, {}
         if self._shown is not None:
@@ -80,9 +80,9 @@ class GifWriter:
 
 
 def palette_of(sample: Iterable[Frame]) -> Image.Image:
-    """Return a picture with the palette for frames like these.
+    """Return an image with the palette for frames like these.
 
-    A colour counts by the root of how often it is there: a small flame needs its few colours as a sky its many.
+    A colour is weighted by the square root of its count, so that a small flame gets colours beside a large sky.
     """
     counts = np.zeros(_SHADES**3)
     for frame in sample:
@@ -96,7 +96,7 @@ def palette_of(sample: Iterable[Frame]) -> Image.Image:
 
 
 def _bayer(order: int) -> NDArray[np.float64]:
-    """Return the threshold matrix of side 2 ** order, as pushes around 0."""
+    """Return the Bayer threshold matrix of side 2 ** order, centred around 0."""
     matrix = np.zeros((1, 1))
     for _ in range(order):
         matrix = np.block([[4 * matrix, 4 * matrix + 2], [4 * matrix + 3, 4 * matrix + 1]])

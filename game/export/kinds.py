@@ -1,4 +1,4 @@
-"""The kinds of moving picture there are."""
+"""Kinds of video files."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Final
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of moving picture.
+    """Kind of video file.
 
     Attributes:
-        needs: the module without which it can't be made.
+        needs: the module it requires.
         size: width and height in pixels.
-        every: physics steps from frame to frame.
-        still: whether the camera rests, which a picture needs that stores only what changes.
+        every: physics steps per frame.
+        still: whether the camera stands still, for formats that store only changed pixels.
 
     """
 
@@ -27,7 +27,7 @@ class Kind:
 
     @property
     def missing(self) -> bool:
-        """Whether what it needs is not installed."""
+        """Whether the required module is not installed."""
         return find_spec(self.needs) is None
 
 
@@ -35,5 +35,5 @@ KINDS: Final = {".gif": Kind("PIL", (640, 360), 3, True), ".mp4": Kind("av", (12
 
 
 def unfinished(path: Path) -> Path:
-    """Return where a file is written until it is complete."""
+    """Return the path of a file while it is incomplete."""
     return path.with_name(f".{path.name}.part")

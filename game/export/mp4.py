@@ -1,4 +1,4 @@
-"""Moving pictures as MP4, written frame by frame. Needs PyAV, which brings an encoder of its own."""
+"""MP4 writer, frame by frame. Needs PyAV, which includes an encoder."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import numpy as np
 from av.video.reformatter import Colorspace
 from numpy.typing import NDArray
 
-_ENCODERS: Final = ("libx264", "libopenh264", "mpeg4")  # what PyAV has depends on who built it
+_ENCODERS: Final = ("libx264", "libopenh264", "mpeg4")  # the encoders of PyAV depend on its build
 _QUALITY: Final = {"crf": "18", "preset": "fast", "tune": "animation"}
-_BT709: Final = 1  # how the file says that its colours are those of a screen in high definition
+_BT709: Final = 1  # marks the colour space as BT.709, high-definition video
 
 
 class Mp4Writer:
-    """Writes an MP4; a context, at whose end the file is complete.
+    """Writer of an MP4; a context manager, at whose exit the file is complete.
 
     Args:
-        path: of the file.
+        path: the file to write.
         size: width and height in pixels, both even.
-        rate: frames a second.
+        rate: frames per second.
 
     Raises:
         OSError: the file can't be written, then or later.
@@ -36,7 +36,7 @@ class Mp4Writer:
         options = _QUALITY if name == "libx264" else {}
         self._stream = cast(Any, self._container.add_stream(name, rate=rate, options=options))
         self._stream.width, self._stream.height = size
-        self._stream.pix_fmt = "yuv420p"  # what every player takes
+        self._stream.pix_fmt = "yuv420p"  # the pixel format that every player supports
         context = self._stream.codec_context
         context.colorspace = context.color_primaries = context.color_trc = _BT709
         context.color_range = 1
@@ -54,16 +54,16 @@ class Mp4Writer:
             self._container.close()
 
     def add(self, frame: NDArray[np.uint8]) -> None:
-        """Add a frame (height, width, 3)."""
+        """Append a frame (height, width, 3)."""
         picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
         picture = picture.reformat(format="yuv420p", dst_colorspace=Colorspace.ITU709)
         self._container.mux(self._stream.encode(picture))
 
 
 def _encodes(name: str) -> bool:
-    """Whether this build can write so, and not only read."""
+    """Whether this build of PyAV has the encoder, and not only the decoder."""
     try:
         av.Codec(name, "w")
-    except ValueError:  # of which what av raises is a kind
+    except ValueError:  # base class of PyAV's errors
         return False
     return True

@@ -1,1 +1,1 @@
-"""The window, the loop, and the stack of scenes."""
+"""Application shell: the window, the main loop and the scene stack."""

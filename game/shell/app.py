@@ -1,4 +1,4 @@
-"""The window and the loop: events in, steps of 1/60 s, a picture out."""
+"""Application: the window and the main loop of events, fixed steps of 1/60 s, and frames."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ if TYPE_CHECKING:
     from game.ui.context import Context
 
 LOG_NAME: Final = "tranquility.log"
-_SETTLE: Final = 0.1  # seconds: a landscape takes longer to paint than a window edge stays in one place
+_SETTLE: Final = 0.1  # seconds of constant size before a redraw: a landscape takes too long to paint while resizing
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 _log = logging.getLogger("tranquility")
 
 
 class App:
-    """The game in its window. `run` plays it to the end; `tick` is one frame.
+    """Application of the game. `run` plays it to the end; `tick` runs one frame.
 
     Args:
-        context: the shared things; its `note` and `apply_settings` are bound to this window.
-        first: the scene to begin with, the menu if none is given.
-        scene_of: makes the scene that a route names: `game.scenes.scene_of`.
-        now: the clock, in seconds.
-        capped: whether a frame waits for its turn, as on a screen, or runs as fast as it can.
+        context: the shared services; its `note` and `apply_settings` are bound to this window.
+        first: the first scene; by default the menu.
+        scene_of: makes the scene of a route; `game.scenes.scene_of`.
+        now: clock that returns seconds.
+        capped: whether the frame rate is limited to the screen's.
 
     Raises:
         NoDisplayError: no window can be opened.
@@ -65,8 +65,8 @@ class App:
         self._clock = pygame.time.Clock()
         self._steps = FixedStep()
         self._notes = Notes()
-        self._mouse: tuple[tuple[int, int], ...] = ()  # where it was last, in the window and on the desktop
-        self._settled = 0.0  # when the window will have kept its size long enough to be worth a picture
+        self._mouse: tuple[tuple[int, int], ...] = ()  # the mouse's last position, in the window and on the desktop
+        self._settled = 0.0  # time at which the window has kept its size long enough for a redraw
         self.settings_writer = SettingsWriter(context.settings_file, context.settings)
         self.window = GameWindow(context.settings.full_screen)
         self.canvas = Canvas(self.window.surface)
@@ -83,11 +83,11 @@ class App:
         self._last = now()
 
     def show(self, scene: Scene | Route) -> None:
-        """Put a scene over what is shown; one that fails at once is told of like any other."""
+        """Push a scene; if it fails at once, the error screen is shown as for any other failure."""
         self._guarded(lambda: self.scenes.apply(Push(scene)))
 
     def run(self, max_frames: int | None = None) -> int:
-        """Play until the game is closed, or for so many frames. Returns the process's exit code."""
+        """Play until the game is closed, or for `max_frames`. Return the process's exit code."""
         try:
             frame = 0
             while (max_frames is None or frame < max_frames) and self.tick():
@@ -97,7 +97,7 @@ class App:
         return 0
 
     def tick(self) -> bool:
-        """Run one frame: events, the steps that are due, the picture. False once the game is over."""
+        """Run one frame: events, the steps that are due, drawing. Return False once the game is closed."""
         for event in pygame.event.get():
             self._handle(event)
         time_now = self._now()
@@ -116,7 +116,7 @@ class App:
         return self.scenes.running
 
     def close(self) -> None:
-        """Save the settings and close the window; the scene on top is left first."""
+        """Leave the top scene, save the settings and close the window."""
         try:
             self.scenes.close()
         except Exception:
@@ -131,23 +131,23 @@ class App:
         from pygame._sdl2 import controller
 
         try:
-            controller.init()  # pads already plugged in announce themselves as events
+            controller.init()  # gamepads already plugged in are announced by events
         except pygame.error:
             _log.exception("no gamepads")
 
     def _follow_window(self) -> None:
-        """Draw into the window as it is now."""
+        """Attach the canvas to the window's present size."""
         self.canvas.attach(self.window.surface)
         self._attached_size = self.window.size
         self._frame_rate = self.window.frame_rate
 
     def _look(self) -> None:
-        """Draw in the colours and with the size of text that the player chose."""
+        """Apply the player's palette and size of text."""
         self.canvas.palette = COLOUR_SAFE if self.context.settings.colour_safe else PALETTE
         typeface.grow(TEXT_SIZES.get(self.context.settings.text_size, 1.0))
 
     def apply_settings(self) -> None:
-        """Make the window and the sound follow the settings, and save them."""
+        """Apply the settings to the window and the sound, and save them."""
         if self.window.full_screen != self.context.settings.full_screen:
             self.window.full_screen = self.context.settings.full_screen
             self._follow_window()
@@ -188,7 +188,7 @@ class App:
                 self._guarded(lambda: self.scenes.handle_event(event))
 
     def _moved(self, event: pygame.event.Event) -> bool:
-        """Tell whether it was the mouse that moved, and not the window below it."""
+        """Whether the mouse moved, and not the window below it."""
         (x, y), (left, top) = event.pos, self.window.position
         before, self._mouse = self._mouse, ((x, y), (x + left, y + top))
         return all(now != then for now, then in zip(self._mouse, before, strict=False))
@@ -205,7 +205,7 @@ class App:
             pygame.mouse.set_visible(controls.mouse_in_use)
 
     def _clicked(self, event: pygame.event.Event) -> pygame.event.Event:
-        """Return the press that a click on a hint means, and any other event as it is."""
+        """Turn a click on a hint into its press; return any other event unchanged."""
         if event.type in _MOUSE:
             self.canvas.pointer = event.pos
         elif not self.context.controls.mouse_in_use:
@@ -222,7 +222,7 @@ class App:
             values["rel"] = (event.rel[0] / self.canvas.scale, event.rel[1] / self.canvas.scale)
         return pygame.event.Event(event.type, values)
 
-    # The picture
+    # Drawing
 
     def _draw(self) -> None:
         self.canvas.turn_page()
@@ -231,12 +231,12 @@ class App:
         self.window.flip()
 
     def _save_screenshot(self) -> None:
-        """Save what is seen as a picture, whole or not at all."""
+        """Save a screenshot, whole or not at all."""
         from game.core.collection import free_path
 
         path = free_path(self.context.user_dir / "screenshots", f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}", ".png")
         try:
-            picture = BytesIO()  # pygame itself would not say that the disk is full
+            picture = BytesIO()  # pygame itself does not report a full disk
             pygame.image.save(self.canvas.surface, picture, path.name)
             write_bytes(path, picture.getvalue(), flush=False)
         except OSError as error:
@@ -249,7 +249,7 @@ class App:
     # Faults
 
     def _guarded(self, call: Callable[[], None]) -> None:
-        """Run a scene's code; if it fails, the game goes on with a message and the way to the menu."""
+        """Call a scene's code; on an exception, log it and show the error screen, which leads to the menu."""
         try:
             call()
         except Exception as error:
@@ -259,7 +259,7 @@ class App:
 
 
 def log_to(folder: Path) -> None:
-    """Keep what goes wrong in a file of the player's; if that cannot be written, go without."""
+    """Log errors to a file in the player's folder; if it cannot be written, go on without."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handler = RotatingFileHandler(folder / LOG_NAME, maxBytes=500_000, backupCount=1, delay=True)

@@ -1,4 +1,4 @@
-"""The stack of scenes, and the one place that changes it."""
+"""Scene manager: the scene stack, and the only code that changes it."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 
 _log = logging.getLogger("tranquility")
-_FADE_STEPS: Final = 11  # in which the picture of a scene gives way to that of the next
+_FADE_STEPS: Final = 11  # length of the cross-fade between two scenes
 
 
 class SceneManager:
-    """Passes events and steps to the scene on top and applies what it returns.
+    """Scene stack that passes events and steps to its top scene and applies the transitions it returns.
 
-    The next scene is in charge at once; only the picture of the last one lingers for a moment, unless motion is to
+    The next scene takes over at once; only the picture of the last one fades for a moment, unless motion is to
     be reduced. `running` turns false when a scene asks to quit or to pop the last one.
 
     Args:
-        context: what every scene is given.
-        picture: the window's pixels as they were last drawn.
-        scene_of: makes the scene that a route names.
+        context: the shared services for every scene.
+        picture: returns the window's pixels as last drawn.
+        scene_of: makes the scene of a route.
 
     """
 
@@ -41,21 +41,21 @@ class SceneManager:
         self._stack: list[Scene] = []
         self._lingering: pygame.Surface | None = None
         self._fade = 0
-        self._seen = False  # whether there is a picture yet
+        self._seen = False  # whether a frame has been drawn yet
         self.running = True
 
     @property
     def top(self) -> Scene:
-        """The scene that is seen and heard."""
+        """Scene on top of the stack, which is seen and heard."""
         return self._stack[-1]
 
     @property
     def told(self) -> str:
-        """The stack, for the log."""
+        """Description of the stack, for the log."""
         return " > ".join(type(scene).__name__ for scene in self._stack)
 
     def handle_event(self, event: pygame.event.Event) -> None:
-        """Give one event to the top scene."""
+        """Pass one event to the top scene."""
         if self.running:
             self.apply(self.top.handle_event(event))
 
@@ -71,13 +71,13 @@ class SceneManager:
             self.apply(self.top.update())
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the top scene, and what is still to be seen of the one before."""
+        """Draw the top scene, and the fading picture of the one before."""
         self.top.draw(canvas, alpha)
         if self._lingering and self._lingering.get_size() == canvas.surface.get_size():
             canvas.surface.blit(self._lingering, (0, 0))
 
     def apply(self, transition: Transition | None) -> None:
-        """Do what a scene asked for, and let it be heard."""
+        """Apply a transition that a scene returned, and play its sound."""
         if transition is not None:
             self._context.sound.play("back" if isinstance(transition, Pop) else "choose")
             self._linger()
@@ -97,7 +97,7 @@ class SceneManager:
                 self.running = False
 
     def reset(self, *routes: Route) -> None:
-        """Leave every scene without a word to them, for their state is in doubt, and put these in place."""
+        """Replace the whole stack without calling `exit` of its scenes, whose state may be broken."""
         scenes = [self._scene_of(route) for route in routes]
         self._linger()
         left = [scene for scene in self._stack if scene not in scenes]
@@ -109,12 +109,12 @@ class SceneManager:
         return self._scene_of(scene) if isinstance(scene, Route) else scene
 
     def close(self) -> None:
-        """Leave every scene, for good."""
+        """Leave and close every scene."""
         if self._stack:
             self._leave(len(self._stack))
 
     def _linger(self) -> None:
-        """Let what is seen now stay for a moment over what comes."""
+        """Keep the present picture, to fade it over the next scene."""
         if self._seen and not self._context.settings.reduced_motion:
             self._lingering, self._fade = self._picture().copy(), _FADE_STEPS
             self._lingering.set_alpha(round(255 * (self._fade / (_FADE_STEPS + 1)) ** 2))
@@ -125,16 +125,16 @@ class SceneManager:
 
     def _pop(self, levels: int) -> None:
         if levels >= len(self._stack):
-            self.running = False  # `close` leaves the top scene
+            self.running = False  # `close` calls the top scene's `exit`
             return
         self._leave(levels)
         self.top.enter(self._context)
 
     def _leave(self, levels: int) -> None:
-        """Take the top scenes away, for good, and with them what they hold.
+        """Remove the top scenes for good, and free their memory.
 
-        A scene and its widgets hold each other and many pictures. Collected but now and then, they came to 250 MB in
-        an hour; here, between two pictures, it takes a few milliseconds.
+        A scene and its widgets are reference cycles with many pictures. Collected only now and then, they took 250 MB
+        in an hour; a collection here, between two frames, takes a few milliseconds.
         """
         left = self._stack[-levels:]
         try:
@@ -147,7 +147,7 @@ class SceneManager:
 
 
 def _close(scenes: list[Scene]) -> None:
-    """Let scenes give back what they hold. One that cannot, such as one that failed early, keeps no other from it."""
+    """Close scenes that hold resources. A failure, such as of a half-built scene, does not affect the others."""
     for scene in reversed(scenes):
         if isinstance(scene, Lasting):
             try:

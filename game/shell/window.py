@@ -1,4 +1,4 @@
-"""The window itself: opening it, full screen and back, its pixels."""
+"""Game window: opening, full screen, size and frame rate."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from game.drawing.icon import draw_icon
 from game.drawing.tokens import VIEW_SIZE
 
 MINIMUM_SIZE: Final = (640, 360)
-_INVISIBLE: Final = ("offscreen", "dummy", "evdev")  # what SDL falls back to without a screen
+_INVISIBLE: Final = ("offscreen", "dummy", "evdev")  # SDL's drivers without a screen
 
 
 class NoDisplayError(Exception):
-    """There is no screen to open a window on."""
+    """Error: there is no screen to open a window on."""
 
 
 class GameWindow:
-    """One resizable window, which stays the same one through full screen and back.
+    """Resizable window, which is not recreated when full screen changes.
 
     Attributes:
-        minimised: nothing drawn would be seen.
+        minimised: whether the window is minimised, so that nothing drawn is visible.
 
     Raises:
         NoDisplayError: no window can be opened.
@@ -49,12 +49,12 @@ class GameWindow:
 
     @property
     def surface(self) -> pygame.Surface:
-        """The window's pixels; another surface after every change of size."""
+        """Surface of the window's pixels; a new one after every change of size."""
         return self._window.get_surface()
 
     @property
     def size(self) -> tuple[int, int]:
-        """The window's size in pixels."""
+        """Size of the window in pixels."""
         return self._window.size
 
     @size.setter
@@ -63,7 +63,7 @@ class GameWindow:
 
     @property
     def position(self) -> tuple[int, int]:
-        """Where on the desktop the window's top left corner is, in pixels."""
+        """Position of the window's top left corner on the desktop, in pixels."""
         return self._window.position
 
     @property
@@ -85,24 +85,24 @@ class GameWindow:
             self._place(*self._windowed)
 
     def _place(self, size: tuple[int, int], position: tuple[int, int] | int) -> None:
-        # A window manager does this by itself. A bare X server has none; it has one screen as well.
+        # A window manager does this by itself. A bare X server has none, and only one screen.
         if len(pygame.display.get_desktop_sizes()) == 1 and self._window.size != size:
             self._window.size = size
             self._window.position = position
 
     @property
     def frame_rate(self) -> int:
-        """Frames a second worth drawing on this screen; few while nobody can see them."""
+        """Frames per second to draw on this screen; few while the window is not visible."""
         if self.minimised:
             return 20
         rates = pygame.display.get_desktop_refresh_rates()
         return min(max(rates[0] if rates else 60, 60), 144)
 
     def flip(self) -> None:
-        """Show what was drawn."""
+        """Show the frame that was drawn."""
         self._window.flip()
 
     def close(self) -> None:
-        """Close the window and leave the screen."""
+        """Close the window and release the display."""
         self._window.destroy()
         pygame.display.quit()
