@@ -10,7 +10,7 @@ STEP: Final = 1 / 60
 class FixedStep:
     """Fixed-timestep accumulator: counts the steps of 1/60 s that are due, and the fraction of the next one.
 
-    A long frame is caught up with at most `limit` steps; the rest of it is forgotten, so that a slow
+    A long frame is caught up with at most `limit` steps; the rest of it is dropped, so that a slow
     machine runs slowly instead of falling ever further behind.
     """
 

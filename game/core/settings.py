@@ -41,7 +41,7 @@ class Settings:
     hands: str = "own"  # handicap of the hands, a name of game.flight.handicap.HANDS
     check_flights: bool = False  # check flights: every fifth flight is flown without help
     teach: bool = False  # whether good landings are kept for a network to learn from
-    explain: bool = True  # whether a panel says what the co-pilot thinks
+    explain: bool = True  # whether the co-pilot's panel is shown
     gravity: float = field(default=1.0, metadata={"limits": GRAVITY_SHARES})  # share of normal gravity in free flights
     pace: float = field(default=1.0, metadata={"limits": PACES})  # time scale of a flight
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them

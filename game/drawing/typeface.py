@@ -27,7 +27,7 @@ _FILES: Final[dict[Weight, str]] = {
     "semibold": "ManropeSemiBold",
 }
 _LONGEST: Final = 1000  # characters of a text; no line on any screen has more
-# Pixels of a text before it is scaled down; a whole line of the largest screen takes half of it. From some 100,000
+# Width in pixels of a text before it is scaled down; a full line of the largest screen takes half. From some 100,000
 # on, SDL's scaling writes past the end of its memory.
 _WIDEST: Final = 32_768
 # Thin light strokes on a dark ground look thinner than they are; this lifts the half-covered pixels.

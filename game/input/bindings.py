@@ -1,7 +1,7 @@
 """Key and button bindings: the defaults, and the player's changes.
 
-Enter, Escape and the arrows, and a pad's A, B, Start and D-pad, keep what they mean in menus whatever is changed:
-nobody can lock themselves out.
+Enter, Escape and the arrows, and a gamepad's A, B, Start and D-pad, always keep their meaning in menus, so that
+players cannot lock themselves out.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Held(Enum):
 Meaning = Command | Held
 Table = Mapping[Meaning, tuple[int, ...]]
 
-# A pad's triggers are axes; they are numbered as further buttons, pressed or not.
+# A gamepad's triggers are axes; they are treated as further buttons, pressed or not.
 TRIGGER_LEFT, TRIGGER_RIGHT = 32, 33
 TRIGGERS: Final = {
     pygame.CONTROLLER_AXIS_TRIGGERLEFT: TRIGGER_LEFT,

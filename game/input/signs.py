@@ -1,4 +1,4 @@
-"""Signs of gamepad and mouse buttons: one private-use character for each.
+"""Signs of gamepad and mouse buttons, as characters of text.
 
 Each is one character of Unicode's private use area, so a sign can stand in a hint as well as in a sentence.
 `game.drawing.glyphs` draws them.
@@ -12,7 +12,7 @@ import pygame
 
 Family = Literal["xbox", "playstation", "nintendo"]
 FAMILIES: Final[tuple[Family, ...]] = ("xbox", "playstation", "nintendo")
-# Beside the buttons, which have SDL's numbers, and the triggers, 32 and 33 (see `game.input.bindings`).
+# Numbers after the buttons, which have SDL's, and the triggers, 32 and 33 (see `game.input.bindings`).
 TURN, STICK_LEFT, STICK_RIGHT, CROSS, MOUSE_LEFT, MOUSE_RIGHT = 40, 41, 42, 43, 44, 45
 
 FIRST: Final = 0xE000
