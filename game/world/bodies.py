@@ -1,4 +1,4 @@
-"""Rigid bodies and their contacts, drawn as they are: outlines, points, normals, impulses."""
+"""Drawing of rigid bodies and their contacts: outlines, contact points, normals and impulses."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from game.drawing.paint import mix
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, MUTE, NET, NIGHT1, Colour
 from game.world.camera import View
 
-_MARK: Final = (0.45, 0.82)  # of a disc's radius, from and to, so that its turning is seen
+_MARK: Final = (0.45, 0.82)  # start and end of the mark that shows a disc's rotation, in shares of its radius
 _EDGE: Final = 1.2  # points
 _FILL: Final = 0.26
 _LIT: Final = 0.45
-# A normal is this long at the least, in points, and longer by so much for each kilogram that it carries.
+# Length of a drawn normal, in points: the least, and what each kilogram carried adds.
 _NORMAL: Final = 6.0
 _PER_WEIGHT: Final = 4.0
 _LONGEST: Final = 64.0
@@ -34,7 +34,7 @@ _Paint = Callable[[tuple[int, int]], pygame.Surface]
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn for an image key: corners in units of a sprite's size, none for a disc, and a colour."""
+    """Shape drawn for an image key: corners in units of a sprite's size (none for a disc), and a colour."""
 
     corners: tuple[tuple[float, float], ...]
     colour: Colour
@@ -59,7 +59,7 @@ PICTURES: Final[dict[str, Picture]] = {
 
 
 class Outlines:
-    """Sprites to be drawn, layer upon layer. Raises KeyError for an image that is not in `PICTURES`."""
+    """The sprites of a world, in layers from back to front. Raises KeyError for an image that is not in `PICTURES`."""
 
     def __init__(self, sprites: Sequence[Sprite]) -> None:
         self.shapes = [(sprite.body, PICTURES[sprite.image].outline(sprite.size)) for sprite in sprites]
@@ -67,12 +67,12 @@ class Outlines:
         self._layers = [_Layer([sprite for sprite in sprites if sprite.layer == layer]) for layer in layers]
 
     def draw(self, canvas: Canvas, view: View, poses: Array, lit: int | None, held: bool) -> None:
-        """Draw every sprite at its body's pose (bodies, 3); that of body `lit` brighter, and in amber if `held`."""
+        """Draw every sprite at its body's pose (bodies, 3); draw body `lit` brighter, and in amber if `held`."""
         for layer in self._layers:
             layer.draw(canvas, view, poses, lit, held)
 
     def body_at(self, poses: Array, place: Array, reach: float) -> Body | None:
-        """Return the body that can be moved and is seen at a place in metres, or is within `reach` of it."""
+        """Return the movable body at a place in metres, or within `reach` of it; None if there is none."""
         best, nearest = None, reach
         for body, shape in self.shapes:
             if body.static:
@@ -188,12 +188,12 @@ def draw_grip(canvas: Canvas, start: tuple[float, float], end: tuple[float, floa
 
 
 def _colours(edge: Colour, share: float) -> _Colours:
-    """Of the edge, the inside, and the mark that shows the turning."""
+    """Return the colours of the edge, the inside, and the mark that shows the rotation."""
     return edge, mix(NIGHT1, edge, share), mix(NIGHT1, edge, 0.75)
 
 
 def _half_steps(paint: _Paint) -> _Paint:
-    """Return what paints only at whole and half pixels: pictures that take long must not be too many."""
+    """Wrap a paint function to use whole and half pixels only, which limits how many costly pictures are painted."""
     return lambda quarters: paint((quarters[0] & 2, quarters[1] & 2))
 
 
@@ -209,7 +209,7 @@ def _disc(radius: float, edge: Colour, fill: Colour, width: int, quarters: tuple
 
 
 def _stamp(surface: pygame.Surface, middles: Array, paints: Iterable[_Paint]) -> None:
-    """Blit pictures in one go, their middles at (n, 2) in pixels, to a quarter of one."""
+    """Blit pictures in one call, their middles at (n, 2) pixels, to a quarter of a pixel."""
     whole = np.floor(middles)
     quarters = (4 * (middles - whole)).astype(int).tolist()
     stamps = []

@@ -1,4 +1,4 @@
-"""What is said and lit on the spot: contact light when both feet are down, and what broke a craft."""
+"""Callouts beside the craft: the contact light when both feet are down, and the cause of a crash."""
 
 from __future__ import annotations
 
@@ -26,20 +26,23 @@ _ROWS: Final = (96.0, 600.0)  # the rows between which words may stand
 
 
 class Moments:
-    """Those of one flight; `follow` once after every step. While `calm`, words are there at once, and alone."""
+    """Callouts of one flight; call `follow` once after every step.
+
+    While `calm` (reduced motion), words appear at once, and without light.
+    """
 
     def __init__(self, env: LanderEnv, reduced_motion: bool = False) -> None:
         self._env, self.calm = env, reduced_motion
         self.forget()
 
     def forget(self) -> None:
-        """Begin with the moment that is shown: what was before it is not told."""
+        """Start from the moment that is shown; events before it get no callout."""
         self._was_down = bool(self._env.contacts[0].all())
         self._was_over = bool(self._env.outcome[0] != Outcome.FLYING)
         self._contact = self._crash = -1  # steps since; -1 for none
 
     def follow(self) -> None:
-        """Note what the last step brought."""
+        """Note the contacts and the crash of the last step."""
         env = self._env
         crashed = bool(env.outcome[0] == Outcome.CRASHED)
         self._contact += self._contact >= 0
@@ -52,7 +55,7 @@ class Moments:
         self._was_down, self._was_over = down, bool(env.outcome[0] != Outcome.FLYING)
 
     def draw_light(self, canvas: Canvas, view: View, pose: Doubles) -> None:
-        """Let light run along the deck from under both feet; with reduced motion there is the word alone."""
+        """Draw light that runs along the deck from both feet; with reduced motion, nothing."""
         if not 0 <= self._contact < _GLOW or self.calm:
             return
         gone = self._contact / _GLOW
@@ -78,7 +81,7 @@ class Moments:
             self._write(canvas, view, pose, crash_reason(self._env), shown, crash=True)
 
     def _shown(self, since: int, times: tuple[int, int, int]) -> float:
-        """How much of a word is there, 0 to 1, so many steps after it was due."""
+        """Opacity of a word, 0 to 1, `since` steps after it was due."""
         come, stay, go = times
         if not 0 <= since < come + stay + go:
             return 0.0

@@ -1,4 +1,4 @@
-"""The one place where metres become pixels."""
+"""Camera: the one place where metres become pixels."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ GROUND_LINE: Final = 1.0  # metres
 GROUND_ROW: Final = VIEW_SIZE[1] / 2 + (HOME[1] - GROUND_LINE) * POINTS_PER_METRE  # points
 WIDEST: Final = 0.74  # zoom at which all of the world in which a flight may be is seen
 CLOSEST: Final = 2.0
-LAND_REACH: Final = 28.0  # metres to both sides of the middle of the world that there is land to be seen
+LAND_REACH: Final = 28.0  # metres of visible land to either side of the middle of the world
 
 _PACE: Final = 2.6  # rad/s, of the spring that moves the camera
 _EDGE: Final = 1.5  # metres around a position to be kept in view
@@ -35,7 +35,7 @@ _CALM: Final = 0.16  # seconds in which a shaking dies down to a third
 
 @dataclass(frozen=True)
 class View:
-    """What part of the world a picture shows: `centre` in metres is its middle.
+    """The part of the world that a picture shows: `centre` is its middle, in metres.
 
     `scale` is the canvas's pixels per point; at a zoom of 1 the whole width of the world is seen. `closest` is the
     greatest zoom that there will be, 0 for this one: what is painted once and then scaled is painted for that.
@@ -48,12 +48,12 @@ class View:
 
     @property
     def pixels_per_metre(self) -> float:
-        """How large the world is drawn."""
+        """Scale of the drawn world, in pixels per metre."""
         return POINTS_PER_METRE * self.scale * self.zoom
 
     @property
     def painted_per_metre(self) -> float:
-        """How large, in pixels per metre, to paint what is then scaled to this view and those that follow."""
+        """Scale, in pixels per metre, at which to paint pictures that are then scaled to this view and later ones."""
         return POINTS_PER_METRE * self.scale * (self.closest or self.zoom)
 
     def pixels(self, position: npt.ArrayLike) -> Pixels:
@@ -76,7 +76,7 @@ class View:
 
 @dataclass(frozen=True)
 class Clear:
-    """The part of the screen in which a flight is to be seen, in points: what is beside it belongs to words."""
+    """The part of the screen, in points, that is kept clear for the flight; text has the rest."""
 
     left: float = 0.0
     right: float = float(VIEW_SIZE[0])
@@ -85,14 +85,14 @@ class Clear:
 
 @dataclass(frozen=True)
 class Shot:
-    """What a camera is to show: `across` in metres is the middle of the view."""
+    """Target of a camera: `across`, in metres, is the middle of the view."""
 
     across: float = 0.0
     zoom: float = 1.0
 
     @classmethod
     def around(cls, left: float, right: float, top: float, clear: Clear) -> Shot:
-        """Return the closest one that shows from `left` to `right`, and up to `top`, in metres, where it is clear."""
+        """Return the closest shot whose clear part shows `left` to `right`, and up to `top`, in metres."""
         wide = (clear.right - clear.left) / (POINTS_PER_METRE * max(right - left, 1.0))
         high = (GROUND_ROW - clear.head) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
         zoom = max(min(wide, high, CLOSEST), WIDEST)
@@ -100,20 +100,20 @@ class Shot:
         return cls((left + right) / 2 - aside, zoom).on_land()
 
     def on_land(self) -> Shot:
-        """The same, but for what would show where the land ends."""
+        """Return this shot, moved so that it never shows where the land ends."""
         reach = LAND_REACH - VIEW_SIZE[0] / (2 * POINTS_PER_METRE * self.zoom)
         return Shot(min(max(self.across, -reach), reach), self.zoom)
 
     def view(self, scale: float) -> View:
-        """Return the view that shows it."""
+        """Return the view of this shot, at `scale` pixels per point."""
         return View(scale, (self.across, centre_height(self.zoom)), self.zoom, CLOSEST)
 
 
 class Camera:
-    """Moves across and near, as if on a critically damped spring; moved in steps, drawn in between.
+    """Camera that pans and zooms on a critically damped spring; stepped at 60 Hz, interpolated when drawn.
 
-    One that never is told what to show stays at rest, with the whole width of the world in view. What it follows
-    never leaves the view, however fast it is.
+    Without a shot it stays at rest, with the whole width of the world in view. The subject that it follows never
+    leaves the view, however fast it is.
     """
 
     def __init__(self) -> None:
@@ -125,21 +125,21 @@ class Camera:
 
     @property
     def shot(self) -> Shot:
-        """What is shown now."""
+        """The shot that is shown now."""
         return Shot(float(self._state[0]), math.exp(self._state[1]))
 
     def cut(self, shot: Shot) -> None:
-        """Show something at once."""
+        """Show a shot at once, without easing."""
         self._moves = True
         self._state = self._before = np.array([shot.across, math.log(shot.zoom)])
         self._speed = np.zeros(2)
         self._tremor = 0.0
 
     def follow(self, shot: Shot, subject: tuple[float, float] | None = None) -> None:
-        """Ease towards a shot, with a position that must not leave the view; call once a step of 1/60 s.
+        """Ease towards a shot, and keep a position in view; call once per step of 1/60 s.
 
-        A critically damped spring reaches a shot that stays without ever going past it; this is its exact solution
-        over a step, and so the same in many small ones.
+        A critically damped spring reaches a fixed target without overshoot. This is its exact solution over a step,
+        so the result does not depend on the step size.
         """
         self._moves = True
         self._before = self._state
@@ -155,7 +155,7 @@ class Camera:
         self._tremor *= math.exp(-STEP / _CALM)
 
     def shake(self, strength: float) -> None:
-        """Be struck, so that the near world shakes by at most so many points."""
+        """Start a shake of the near world, of at most `strength` points."""
         self._tremor = max(self._tremor, strength)
 
     def view(self, scale: float, alpha: float = 1.0) -> View:
@@ -168,7 +168,7 @@ class Camera:
         return View(scale, (across + x, centre_height(zoom) + y), zoom, CLOSEST)
 
     def _keep(self, x: float, y: float) -> None:
-        """Let a position not leave the view, even where the spring is too slow for it."""
+        """Keep a position in view, even where the spring is too slow for it."""
         most = VIEW_SIZE[0] / (2 * POINTS_PER_METRE)
         high = math.log(GROUND_ROW / (POINTS_PER_METRE * max(y + _EDGE - GROUND_LINE, 1.0)))
         bounded = max(min(self._state[1], high), math.log(WIDEST))
@@ -178,7 +178,7 @@ class Camera:
         self._state = held
 
     def _shaken(self, alpha: float) -> Pixels:
-        """Return how far, in points, a blow has moved the view."""
+        """Return the offset of the view by the shake, in points."""
         time = self._time + (alpha - 1) * STEP
         strength = self._tremor if self._tremor > 0.1 else 0.0
         return strength * np.array([math.sin(_TREMOR[0] * time), math.sin(_TREMOR[1] * time + 1)])

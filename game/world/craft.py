@@ -1,4 +1,4 @@
-"""Landers as they are drawn: one in full with its fire, or a crowd in one go."""
+"""Drawing of landers: one in full with its flame, or a crowd in one call."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from game.world.camera import View
 from game.world.flame import HUMAN_PLUME, JET, NET_PLUME, Plume, plume, plumes
 
 STAND: Final = PARAMS.stand
-_FIRELIGHT: Final = 0.35  # what a craft's own fire adds by night
+_FIRELIGHT: Final = 0.35  # light that a craft's own flame adds by night
 
 
 def draw_craft(
@@ -35,7 +35,7 @@ def draw_craft(
 ) -> None:
     """Draw a lander by its image key, and its fire, which ends at the pixel row `floor`.
 
-    `light` is what falls on it besides; `size` 1 is true to scale, and one drawn smaller still stands on its feet.
+    `light`, 0 to 1, is the ambient light on it; `size` 1 is true to scale. A smaller lander still stands on its feet.
     """
     surface = canvas.surface
     x, y, angle = pose.tolist()
@@ -70,7 +70,7 @@ def draw_craft(
 
 
 def draw_fires(canvas: Canvas, view: View, poses: Doubles, flicker: int, size: float) -> None:
-    """Draw the main engines' fire of landers at poses (n, 3), small and in one go."""
+    """Draw the main engines' flames of landers at poses (n, 3), small and in one call."""
     angle = poses[:, 2]
     nozzles = _middles(poses, size)
     nozzles += size * art.NOZZLE[1] * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
@@ -79,26 +79,26 @@ def draw_fires(canvas: Canvas, view: View, poses: Doubles, flicker: int, size: f
 
 
 def draw_crowd(canvas: Canvas, view: View, poses: Doubles, size: float) -> None:
-    """Draw landers at poses (n, 3), small and in one go, each standing on its feet."""
+    """Draw landers at poses (n, 3), small and in one call, each standing on its feet."""
     middles = view.pixels(_middles(poses, size))
     canvas.surface.fblits(art.sprites(view.pixels_per_metre * size, poses[:, 2], middles))
 
 
 def stand(x: float, y: float, angle: float, size: float) -> tuple[float, float]:
-    """Return where the middle of a lander drawn at that size goes for its feet to stay where they are."""
+    """Return the middle at which to draw a lander of that size so that its feet stay in place."""
     lower = STAND * (1 - size)
     return x + lower * math.sin(angle), y - lower * math.cos(angle)
 
 
 def foot_place(x: float, y: float, angle: float, side: int) -> tuple[float, float]:
-    """Return where the sole of a foot is, -1 the left one and 1 the right one."""
+    """Return the position of the sole of a foot; `side` is -1 for the left foot, 1 for the right."""
     aside, down = side * FOOT_CENTRE[0], FOOT_CENTRE[1] - FOOT_SIZE[1] / 2
     cos, sin = math.cos(angle), math.sin(angle)
     return x + aside * cos - down * sin, y + aside * sin + down * cos
 
 
 def _middles(poses: Doubles, size: float) -> Doubles:
-    """Return what `stand` does, for poses (n, 3): (n, 2)."""
+    """Apply `stand` to poses (n, 3); return positions (n, 2)."""
     lower = STAND * (1 - size)
     angle = poses[:, 2]
     middles: Doubles = poses[:, :2] + lower * np.stack([np.sin(angle), -np.cos(angle)], axis=1)
@@ -124,7 +124,7 @@ def _burn(
 
 
 def shaded(picture: pygame.Surface, light: float) -> pygame.Surface:
-    """Return a picture as it is seen in so much light, 0 to 1."""
+    """Return a picture darkened to `light`, 0 to 1."""
     if light >= 1:
         return picture
     dark = picture.copy()
@@ -133,5 +133,5 @@ def shaded(picture: pygame.Surface, light: float) -> pygame.Surface:
 
 
 def scaling(view: View) -> float:
-    """By what to scale a picture that was painted for the closest view."""
+    """Return the factor that scales a picture painted for the closest view to this one."""
     return view.pixels_per_metre / view.painted_per_metre

@@ -1,4 +1,4 @@
-"""Fire from the engines: shapes of light, to be added, made once for each angle, strength and flicker."""
+"""Engine flames: additive sprites, painted once for each angle, thrust and flicker."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FINE: Final = 40.0  # pixels per metre at which fire is painted, to be turned a
 
 @dataclass(frozen=True, eq=False)  # one of a kind each, and so a quick key
 class Plume:
-    """What a jet of fire looks like, from its heart outwards; lengths in metres at full thrust."""
+    """Appearance of a flame, from its core outwards; lengths in metres at full thrust."""
 
     length: float
     width: float
@@ -38,9 +38,9 @@ JET: Final = Plume(0.95, 0.085, (236, 242, 255), (150, 178, 226), (70, 92, 150))
 def plume(
     kind: Plume, pixels_per_metre: float, angle: float, thrust: float, flicker: int
 ) -> tuple[pygame.Surface, tuple[float, float]] | None:
-    """Return fire that leaves along `angle` (radians; 0 is straight down), and where in it the nozzle is.
+    """Return the picture of a flame along `angle` (radians; 0 is straight down), and the nozzle's place in it.
 
-    `thrust` is 0 to 1; None stands for no fire at all.
+    `thrust` is 0 to 1. Returns None where there is no flame at all.
     """
     level = math.ceil(min(thrust, 1.0) * LEVELS - 0.25)
     if level <= 0:
@@ -56,7 +56,7 @@ def plume(
 def plumes(
     kind: Plume, pixels_per_metre: float, angles: Doubles, nozzles: Doubles, flicker: int
 ) -> list[tuple[pygame.Surface, tuple[int, int]]]:
-    """Return the fires of a swarm at full thrust, ready to be blitted: angles (n,), nozzles (n, 2) in pixels."""
+    """Return the flames of a swarm at full thrust, ready to be blitted: angles (n,), nozzles (n, 2) in pixels."""
     degrees = np.rint(np.degrees(angles) / 6).astype(int) * 6 % 360
     fires = []
     for number, (turn, (x, y)) in enumerate(zip(degrees.tolist(), np.rint(nozzles).astype(int).tolist(), strict=True)):

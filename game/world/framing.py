@@ -1,4 +1,4 @@
-"""What a camera shows of a flight: the craft, and the pads that it may still reach."""
+"""Camera framing of a flight: the craft, and the pads that it can still reach."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ ALL: Final = Clear()
 _AROUND: Final = 2.2  # metres beside a craft, and above it
 _BESIDE: Final = 1.6  # metres beside a pad
 _LEAD: Final = 0.6  # seconds: how far ahead of a craft the camera looks
-# Of several pads, those count to which a craft at that height may still turn.
+# Of several pads, only those count that a craft at that height can still reach.
 _REACH: Final = (6.0, 2.2)  # metres to the side at the height of the ground, and more for every metre above it
-_FADE: Final = 3.0  # metres over which a pad out of reach stops to count
+_FADE: Final = 3.0  # metres over which a pad out of reach stops counting
 
 
 def framed(env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> Shot:
-    """Return the closest shot with the craft, what lies ahead of it, and its pads, where the screen is clear."""
+    """Return the closest shot that fits the craft, the way ahead of it, and its pads into the clear screen."""
     x, y = env.position[slot].tolist()
     ahead_x, ahead_y = (env.position[slot] + _LEAD * env.velocity[slot]).tolist()
     left, right = min(x, ahead_x) - _AROUND, max(x, ahead_x) + _AROUND
@@ -32,7 +32,7 @@ def framed(env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> Shot:
 
 
 def whole(path: Doubles) -> Shot:
-    """Return a shot of all of a flight that is over, (k, 2): the view at rest, but for what that takes."""
+    """Return a shot of the whole path (k, 2) of a finished flight: the view at rest, widened as far as needed."""
     (left, _), (right, top) = (path.min(axis=0) - _AROUND).tolist(), (path.max(axis=0) + _AROUND).tolist()
     zoom = min(1.0, Shot.around(left, right, top, ALL).zoom)
     half = VIEW_SIZE[0] / (2 * POINTS_PER_METRE * zoom)
@@ -40,13 +40,13 @@ def whole(path: Doubles) -> Shot:
 
 
 def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> None:
-    """Let a camera follow a flight for a step."""
+    """Move a camera with a flight, for one step."""
     x, y = env.position[slot].tolist()
     camera.follow(framed(env, slot, clear), (x, y))
 
 
 def _pads(env: LanderEnv, slot: int, x: float, y: float) -> list[tuple[tuple[float, float], float]]:
-    """Return both edges of every pad, and how much it counts, 0 to 1; a single one always does."""
+    """Return both edges of every pad and its weight in the framing, 0 to 1; a single pad has weight 1."""
     shift = float(env.pad_shift[slot])
     pads = env.ground.pads
     near, more = _REACH

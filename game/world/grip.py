@@ -1,4 +1,4 @@
-"""The mouse takes hold of a body: a damped spring between a point of it and the mouse."""
+"""Mouse grip: a damped spring between a point of a body and the mouse."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _STRONGEST: Final = 150.0  # m/s² of the grabbed body: a hand may throw, it may
 
 
 class Grip:
-    """Holds `body` where it was taken; `target` in metres is where the hand is now."""
+    """Spring that pulls the gripped point of `body` towards `target`, the place of the hand in metres."""
 
     def __init__(self, body: Body, place: Array) -> None:
         self.body = body
@@ -24,17 +24,17 @@ class Grip:
         self._arm = rotate(place - body.position[0], np.cos(-angle), np.sin(-angle))
 
     def place(self, pose: Array) -> Array:
-        """Where the grabbed point is, in metres, with the body at a pose (3,)."""
+        """Return the gripped point, in metres, with the body at a pose (3,)."""
         return pose[:2] + rotate(self._arm, np.cos(pose[2]), np.sin(pose[2]))
 
     def pull(self) -> None:
-        """Pull for the next step."""
+        """Apply the spring's force for the next step."""
         body = self.body
         arm = self.place(np.append(body.position[0], body.angle[0])) - body.position[0]
         turning = float(body.angular_velocity[0])
         velocity = body.velocity[0] + turning * np.array([-arm[1], arm[0]])
         away = self.target - body.position[0] - arm
-        # How heavy the body feels at that point: less and less the farther it is from the middle.
+        # Effective mass of the body at that point: it falls with the distance from the centre of mass.
         mass = 1.0 / (1.0 / body.mass + float(arm @ arm) / body.inertia)
         force = mass * (_PACE**2 * away - 2 * _DAMPING * _PACE * velocity)
         most = _STRONGEST * mass

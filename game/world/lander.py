@@ -1,6 +1,6 @@
-"""The lander, drawn as facets in its own frame (metres) and lit from where the sun will rise.
+"""Pictures of the lander: flat facets in its own frame (metres), lit from where the sun will rise.
 
-Its outline is the physics' own: the hull's corners and the feet of `ai.lander.environment`.
+The outline is that of the physics: the hull's corners and the feet of `ai.lander.environment`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from game.world.landscape.sheet import fitted
 
 Corner = tuple[float, float]
 
-REACH: Final = 1.45  # metres from the centre of mass to the tips of the feet, and a little
+REACH: Final = 1.45  # metres from the centre of mass to just beyond the tips of the feet
 SIZE: Final = (2 * REACH, 2 * REACH)  # metres across and up a picture of the lander, true to scale
 LANDER, WRECK = "lander", "wreck"  # image keys of sprites
 ANTENNA_TIP: Final = (0.16, 1.16)
@@ -44,7 +44,7 @@ _GLASS: Final = (22, 36, 66)
 
 @dataclass(frozen=True)
 class Facet:
-    """A flat piece: corners in metres, its own colour, and where it faces (right, up, towards us)."""
+    """A flat piece: corners in metres, base colour, and normal (right, up, towards the viewer)."""
 
     corners: tuple[Corner, ...]
     colour: Colour
@@ -55,7 +55,7 @@ class Facet:
 
 @dataclass(frozen=True)
 class Finish:
-    """How the facets are lit: by what share of the light there is, and whether their edges catch the sun."""
+    """Lighting of the facets: their share of the light, and whether their edges catch the sun."""
 
     light: float
     rim: bool
@@ -172,16 +172,16 @@ _RIMS: Final = (
 
 
 def share(sprite: Sprite) -> float:
-    """Return how large a sprite is drawn, of what is true to scale."""
+    """Return the size at which a sprite is drawn; 1 is true to scale."""
     return sprite.size[0] / SIZE[0]
 
 
 def turned(
     image: str, pixels_per_metre: float, angle: float, middle: tuple[float, float] = (0.0, 0.0), ratio: float = 1.0
 ) -> tuple[pygame.Surface, tuple[int, int]]:
-    """Return a picture turned by `angle`, and the corner that brings its centre of mass to `middle` in pixels.
+    """Return a picture turned by `angle`, and the corner that puts its centre of mass at `middle`, in pixels.
 
-    It is painted at so many pixels per metre and then scaled by `ratio`.
+    The picture is painted at `pixels_per_metre` and then scaled by `ratio`.
     """
     degrees = round(math.degrees(angle)) % 360
     return fitted(lambda halves: painted(pixels_per_metre, degrees, halves, image), ratio, middle)
@@ -200,14 +200,14 @@ def sprites(pixels_per_metre: float, angles: Doubles, middles: Doubles) -> list[
 
 @lru_cache(maxsize=512)
 def _packed(pixels_per_metre: float, degrees: int) -> pygame.Surface:
-    """Return the lander stored so that clear and solid runs cost next to nothing: there are hundreds to draw."""
+    """Return the lander, run-length encoded (RLE): there are hundreds to draw, and RLE makes clear pixels free."""
     picture = painted(pixels_per_metre, degrees, (0, 0)).copy()
     picture.set_alpha(255, pygame.RLEACCEL)
     return picture
 
 
 def painted(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image: str = LANDER) -> pygame.Surface:
-    """Return a picture at a size and angle, its middle moved right and down by so many half pixels, 0 or 1."""
+    """Return a picture at a size and angle, its middle moved right and down by 0 or 1 `halves` of a pixel."""
     paint = _paint if pixels_per_metre < _LARGE else _paint_large
     return paint(pixels_per_metre, degrees, halves, image)
 
@@ -250,7 +250,7 @@ def _strut(sheet: pygame.Surface, colour: Colour, start: Corner, end: Corner, wi
 
 
 def _lit(turn: float, share: float) -> list[Colour]:
-    """Return each facet's colour under the sun's first warmth and the Earth's cold light, or a share of it."""
+    """Return each facet's colour in the sun's first warm and the Earth's cold light, or in a share of it."""
     cos, sin = math.cos(turn), math.sin(turn)
     facing = _FACING.copy()
     facing[:, 0], facing[:, 1] = _FACING[:, 0] * cos - _FACING[:, 1] * sin, _FACING[:, 0] * sin + _FACING[:, 1] * cos

@@ -1,4 +1,4 @@
-"""Dust, sparks, fragments and the glow of exhaust. Decoration only: they touch nothing, nothing depends on them."""
+"""Particles: dust, sparks, fragments and exhaust glow. Decoration only; the simulation never depends on them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _FINE: Final = 8  # pixels up to which there is a picture for every radius
 
 
 class Kind(IntEnum):
-    """What a particle is: how it moves, fades, grows and is drawn."""
+    """Kind of a particle, which decides how it moves, fades, grows and is drawn."""
 
     DUST = 0  # fine, in clouds that grow
     GRAIN = 1  # coarse, in flat arcs
@@ -50,7 +50,7 @@ _MOST: Final = 64
 
 
 class Particles:
-    """A fixed number of slots; the oldest are taken over when all are in use.
+    """Pool of a fixed number of particles; when all slots are in use, the oldest are replaced.
 
     The ground, `gravity` in m/s² and the colour of its dust are those of the flight; gravity may change, and so may
     `wind`, the speed of the air to the right in m/s.
@@ -73,16 +73,16 @@ class Particles:
 
     @property
     def alive(self) -> Bools:
-        """Which slots are in use."""
+        """Mask (slots,) of the slots in use."""
         alive: Bools = self._age < self._life
         return alive
 
     def clear(self) -> None:
-        """Take every particle away."""
+        """Remove every particle."""
         self._age[:] = np.inf
 
     def update(self) -> None:
-        """Let a step of 1/60 s pass."""
+        """Advance by one step of 1/60 s."""
         live = np.flatnonzero(self.alive)
         if not len(live):
             return
@@ -97,7 +97,7 @@ class Particles:
         self._size[live] += _GROWTH[kind] * STEP
 
     def _bounce(self, position: Doubles, velocity: Doubles, kind: Ints) -> None:
-        """Throw back what has come into the ground; what is exhaust there spreads along it."""
+        """Bounce particles that have entered the ground; exhaust spreads along it instead."""
         x = position[:, 0]
         floor = self._relief.height(x)
         low = np.flatnonzero(position[:, 1] < floor)
@@ -115,7 +115,7 @@ class Particles:
         position[low, 1] = floor[low]
 
     def burn(self, nozzle: Doubles, direction: Doubles, carried: Doubles, thrust: float, blue: float) -> None:
-        """Let glowing gas leave a nozzle along a unit vector; `carried` is the velocity of the craft."""
+        """Emit glowing exhaust from a nozzle along a unit vector; `carried` is the velocity of the craft."""
         count = int(self._rng.poisson(2.4 * thrust))
         if count:
             kind = Kind.BLUE if blue > 0.5 else Kind.AMBER
@@ -151,7 +151,7 @@ class Particles:
                       self._rng.uniform(*size, number))  # fmt: skip
 
     def settle(self, foot: tuple[float, float], strength: float) -> None:
-        """Raise the little dust that a foot raises, and, where it comes down hard, sparks; `strength` 0 to 1."""
+        """Raise a foot's dust, and sparks where it comes down hard; `strength` 0 to 1."""
         for kind, count, fast, rise, life, size in (
             (Kind.DUST, int(4 + 9 * strength), (0.3, 1.8), (0.1, 0.8), (0.5, 1.2), (0.06, 0.14)),
             (Kind.SPARK, int(22 * max(0.0, strength - 0.35)), (0.5, 4.5), (0.3, 2.4), (0.25, 0.8), (0.02, 0.045)),
@@ -162,7 +162,7 @@ class Particles:
             self._add(kind, start, speed, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
 
     def burst(self, position: Doubles, velocity: Doubles, share: float = 1.0) -> None:
-        """Break something: sparks, fragments and a ring of dust, or a share of them."""
+        """Emit the debris of a crash: sparks, fragments and a ring of dust, or a share of them."""
         for kind, most, speed, life, size in (
             (Kind.SPARK, 52, 6.5, (0.4, 1.6), (0.02, 0.06)),
             (Kind.SHARD, 22, 4.2, (2.2, 4.5), (0.06, 0.20)),
@@ -177,7 +177,7 @@ class Particles:
             self._add(kind, start, push, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
 
     def draw(self, surface: pygame.Surface, view: View, alpha: float) -> None:
-        """Draw what lives, between the last two steps."""
+        """Draw the particles, `alpha` of the way from the last step to this one."""
         live = np.flatnonzero(self.alive)
         if not len(live):
             return
@@ -215,7 +215,7 @@ class Particles:
 
 @lru_cache(maxsize=2048)
 def _sprite(kind: int, radius: int, level: int, turn: int, dust: Colour) -> pygame.Surface:
-    """Return what a particle looks like, `radius` pixels to all sides of its middle one; `level` is in 1/8."""
+    """Return a particle's picture, `radius` pixels to every side of its middle pixel; `level` is in 1/8."""
     if kind == Kind.DUST:
         return _puff(radius, level, dust)
     if kind == Kind.GRAIN:
@@ -256,7 +256,7 @@ def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
 
 
 def _shard(radius: int, shape: int, turn: int, level: int) -> pygame.Surface:
-    """Return one of seven bits of foil and frame, tumbling in sixteenths of a turn."""
+    """Return one of seven fragments of foil and frame, turned in sixteenths of a full turn."""
     side = 2 * radius + 1
     sheet = pygame.Surface((side * 4, side * 4), pygame.SRCALPHA)
     colour = _SHARDS[shape % len(_SHARDS)]

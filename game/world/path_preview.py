@@ -1,4 +1,4 @@
-"""The dotted paths ahead of a flight: where it goes by itself, and where a network would take it."""
+"""Path preview: dotted paths ahead of a flight, without input and as a network would fly it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from game.world.paths import draw_dotted
 
 
 class Outlook:
-    """Of one flight; `follow` once after every step, and while it waits."""
+    """Path preview of one flight; call `follow` once after every step, and while the craft waits."""
 
     def __init__(self, flight: Flight, network: Flyer | None) -> None:
         self._flight = flight
@@ -22,15 +22,15 @@ class Outlook:
 
     @property
     def asks(self) -> bool:
-        """Whether there is a network to ask for its way."""
+        """Whether a network's path is previewed too."""
         return self._forecast is not None
 
     def ask(self, network: Flyer | None) -> None:
-        """Show where this network would go from here on, or, without one, only where the flight goes by itself."""
+        """Preview this network's path from here on; with None, only the path without input."""
         self._forecast = Forecast(network, self._flight.env.ground) if network else None
 
     def follow(self, waiting: bool) -> None:
-        """Look a little further ahead; the way by itself stays the same while the craft hangs and waits."""
+        """Extend both paths; the path without input stays the same while the craft hangs and waits."""
         if self._arrived:
             return
         self._drifts = not self._drifts and not waiting  # every other step, so that no frame has all of both
@@ -40,7 +40,7 @@ class Outlook:
             self._forecast.follow(self._flight.env, 1 if self._drifts else 2)
 
     def draw(self, canvas: Canvas, view: View, head: float) -> None:
-        """Draw both ways, until there is none left to go, below the words in the uppermost `head` points."""
+        """Draw what is left of both paths, below the text in the uppermost `head` points."""
         if self._arrived:
             return
         draw_dotted(canvas, view, self._drift.path, HUMAN, head=head)

@@ -1,4 +1,4 @@
-"""Lines through the sky: where a lander will go, and where others went."""
+"""Paths drawn in the sky: dotted previews of a flight, and trails of past flights."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ class _Trail:
 
 
 class Trails:
-    """The ways of recent flights of `count` landers, fading; `follow` once after every step.
+    """Fading trails of the recent flights of `count` landers; call `follow` once after every step.
 
-    A point is kept every `stride` steps, and the last `keep` flights that ended stay to be seen.
+    A point is kept every `stride` steps, and the last `keep` finished flights stay visible.
     """
 
     def __init__(self, count: int, keep: int = 12, stride: int = _TRAIL_STRIDE) -> None:
@@ -65,7 +65,7 @@ class Trails:
         self._step = 0
 
     def follow(self, position: Doubles, outcome: Ints, fresh: Bools, ended: Bools) -> None:
-        """Note positions (n, 2) and outcomes (n,); `fresh` flights began anew, `ended` ones ended just now."""
+        """Note positions (n, 2) and outcomes (n,); `fresh` slots (n,) began a new flight, `ended` ones just ended."""
         for slot in np.flatnonzero(fresh):
             self._open[slot] = []
         self._step += 1
@@ -81,7 +81,7 @@ class Trails:
             trail.age += 1 / 60
 
     def draw(self, canvas: Canvas, view: View, shown: int, head: float = 0.0) -> None:
-        """Draw the trails of ended flights, newest brightest, and the one of slot `shown` so far, below the `head`."""
+        """Draw the trails of finished flights, newest brightest, and that of slot `shown` so far, below the `head`."""
         for rank, trail in enumerate(reversed(self._done)):
             strength = 0.55 * self._fade**rank * max(0.0, 1 - trail.age / 40)
             landed = trail.outcome == Outcome.LANDED
@@ -103,9 +103,9 @@ def _thinned(points: Doubles) -> Doubles:
 
 
 def draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strength: float, head: float = 0.0) -> None:
-    """Draw a line as if translucent: each stretch is mixed with what lies under its middle.
+    """Draw a line as if translucent: each stretch is blended with the colour under its middle.
 
-    It fades out towards the uppermost `head` pixels, where words stand.
+    It fades out towards the uppermost `head` pixels, where text stands.
     """
     places = points.tolist()
     area = surface.get_rect()
@@ -124,7 +124,7 @@ def draw_faint(surface: pygame.Surface, points: Doubles, colour: Colour, strengt
 def draw_stretch(surface: pygame.Surface, colour: Colour | pygame.Color, places: Sequence[Point]) -> None:
     """Draw a thin open line through places in pixels, two or more.
 
-    pygame's `aalines` reads beyond the end of two points alone, and then draws by chance.
+    With just two points, pygame's `aalines` reads beyond their end and draws garbage.
     """
     if len(places) > 2:
         pygame.draw.aalines(surface, colour, False, places)

@@ -1,4 +1,4 @@
-"""All that is seen of one flight in the world, and how: land, craft, fire and dust, before a camera."""
+"""The world view of one flight: land, craft, flames and dust, as the camera sees them."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _EDGE, _LOWEST = 24.0, 620.0  # points that a mark keeps from the sides, and its
 
 
 class Scenery:
-    """The world around a flight; `follow` once after every step of it.
+    """The world around a flight; call `follow` once after every step of it.
 
-    With reduced motion the camera rests, nothing shakes, and stars and lamps are still. Decoration has a chance of
-    its own: what flies never depends on what is drawn.
+    With reduced motion the camera rests, nothing shakes, and stars and lamps are still. Decoration has a random
+    generator of its own: a flight never depends on what is drawn.
 
     Attributes:
-        clear: where on the screen the flight is to be seen from now on.
-        stage: the craft's fire, its dust and what a crash leaves.
+        clear: the part of the screen in which to show the flight from now on.
+        stage: the craft's flames, its dust and the wreck of a crash.
 
     """
 
@@ -46,7 +46,7 @@ class Scenery:
 
     @property
     def calm(self) -> bool:
-        """Whether motion is reduced; can be changed in the midst of a flight."""
+        """Whether motion is reduced; may change during a flight."""
         return self._calm
 
     @calm.setter
@@ -58,12 +58,12 @@ class Scenery:
 
     @property
     def across(self) -> float:
-        """How far across the screen the craft is drawn, in points."""
+        """Horizontal place of the craft on the screen, in points."""
         place = self._flight.poses.now[0, :2]
         return float(self._camera.view(1.0).points(place)[0])
 
     def cut(self) -> None:
-        """Turn to the flight as it stands, at once; with reduced motion only if it would be behind words, for good."""
+        """Cut the camera to the flight. With reduced motion, zoom out, and stay out, only where text would hide it."""
         shot = framing.framed(self._flight.env, clear=self.clear)
         if not self._calm:
             self._camera.cut(shot)
@@ -71,7 +71,7 @@ class Scenery:
             self._camera.cut(Shot(zoom=shot.zoom))
 
     def wind_to(self) -> None:
-        """Show the flight at another moment: what the steps before it left is gone."""
+        """Show the flight at another moment, without the traces of the steps before."""
         flight = self._flight
         self.stage.forget()
         self._moments.forget()
@@ -81,12 +81,12 @@ class Scenery:
         self.cut()
 
     def breathe(self) -> None:
-        """Let 1/60 s pass for what moves whether or not anything flies."""
+        """Advance by 1/60 s all that moves whether or not anything flies."""
         if not self._calm:
             self._time += STEP
 
     def follow(self, ended: bool, shot: Shot | None = None) -> None:
-        """Follow a step, with which the flight `ended` or not; a `shot` is shown instead of the flight."""
+        """Follow one step; `ended` is whether the flight ended with it. A `shot` replaces the flight's own."""
         flight = self._flight
         self.stage.follow(np.array([flight.flown_by is Hand.NETWORK]), np.array([ended]))
         self._moments.follow()
@@ -99,11 +99,11 @@ class Scenery:
             self._camera.follow(shot)
 
     def view(self, scale: float, alpha: float = 1.0) -> View:
-        """Return what the camera shows, `alpha` of the way from the last step to this one."""
+        """Return the camera's view, `alpha` of the way from the last step to this one."""
         return self._camera.view(scale, alpha)
 
     def shot_of(self, path: Doubles) -> Shot:
-        """Return a shot of the whole of a path (k, 2); with reduced motion, of what is always shown."""
+        """Return a shot of a whole path (k, 2); with reduced motion, the resting shot."""
         return self._camera.shot if self._calm else framing.whole(path)
 
     def draw_land(self, canvas: Canvas, alpha: float, earth: tuple[float, float] = EARTH) -> None:
@@ -117,9 +117,9 @@ class Scenery:
             self.stage.wind.draw(canvas.surface, view, alpha)
 
     def draw_craft(self, canvas: Canvas, alpha: float, words: bool = True) -> None:
-        """Draw the craft with all that it raises; `words` is whether what happens is told on the spot.
+        """Draw the craft with its flames and dust; `words` is whether to draw the callouts too.
 
-        One that has left the area is gone from sight; a cross stands where that was.
+        A craft that has left the area is not drawn; a cross marks where it left.
         """
         view, pose = self.view(canvas.scale, alpha), self._flight.poses.at(alpha)[0]
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
@@ -134,7 +134,7 @@ class Scenery:
 
 
 def mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:
-    """Mark where a craft has left the area, or the nearest place to it that is clear of words."""
+    """Mark where a craft has left the area, or the nearest place that is clear of text."""
     x, y = view.points(pose[:2]).tolist()
     place = (min(max(x, _EDGE), VIEW_SIZE[0] - _EDGE), min(max(y, framing.ALL.head), _LOWEST))
     canvas.glow(place, 18, canvas.palette.warn, 0.5)

@@ -1,4 +1,4 @@
-"""What moves in front of the landscape: landers, their fire and its light, shadows, dust."""
+"""Everything that moves in front of the landscape: landers, their flames and light, shadows, dust."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from game.world.landscape.wind import Wind
 from game.world.particles import DUST, Particles
 from game.world.wreck import Wreck
 
-_IGNITE: Final = 0.34  # share of the way to full thrust, and to none, in a step
+_IGNITE: Final = 0.34  # share of the way to full or no thrust that a flame covers per step
 _DIE: Final = 0.22
 _DUST_HEIGHT: Final = 6.0
 _LIGHT_HEIGHT: Final = 9.0
@@ -34,14 +34,14 @@ _JOLT: Final = 11.0  # points, of the hardest blow
 
 
 class Stage:
-    """The fire, dust and light around the landers of one environment; `follow` once after every step.
+    """The flames, dust and light around the landers of one environment; call `follow` once after every step.
 
-    `dust` is what colour flies up, `light` what falls on the craft, 0 to 1, besides that of their own fire.
+    `dust` is the colour of dust, `light` the ambient light on the craft, 0 to 1, without that of their flames.
 
     Attributes:
         calm: whether motion is reduced.
-        jolt: how hard the last step shook what is near, in points.
-        wind: the flight's, which carries what flies about.
+        jolt: camera shake caused by the last step, in points.
+        wind: the flight's wind, which carries particles.
 
     """
 
@@ -60,7 +60,7 @@ class Stage:
         self.particles, self.wind = Particles(rng, self._relief, env.gravity, dust), Wind(env, dust)
         count = env.num_envs
         self.thrust = np.zeros((count, 3))  # main engine, left-hand jet, right-hand jet
-        self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between in passing
+        self.blue = np.zeros(count)  # 0 while a person flies, 1 while a network does, in between during a handover
         self.flash = np.zeros(count, np.intp)
         self.jolt = 0.0
         self._lander = Sprite(env.lander, art.LANDER, art.SIZE)
@@ -70,7 +70,10 @@ class Stage:
         self._fall = 0.0
 
     def follow(self, networks: Bools, ended: Bools) -> None:
-        """Ease everything towards what the environment now says; `networks` (n,) fly, `ended` ended just now."""
+        """Ease all effects towards the environment's state.
+
+        `networks` (n,) is whether a network flies each lander, `ended` (n,) whether its flight just ended.
+        """
         env = self._env
         flying = env.outcome == Outcome.FLYING
         fired = env.fired
@@ -91,7 +94,7 @@ class Stage:
         self.particles.update()
 
     def forget(self) -> None:
-        """Take away what the last steps have left: another moment is shown."""
+        """Remove the traces of the last steps, because another moment is shown."""
         self.flash[:] = 0
         self.particles.clear()
         self.wind.forget()
@@ -99,11 +102,11 @@ class Stage:
         self._down, self._fall = self._env.contacts[0].copy(), 0.0
 
     def wreck_pose(self, alpha: float) -> Doubles | None:
-        """Where what a crash left is now, x, y and angle; None where nothing tumbles."""
+        """Return the pose (x, y, angle) of the tumbling wreck; None where there is none."""
         return None if self._wreck is None else self._wreck.pose(alpha)
 
     def _follow_one(self, ended: bool) -> None:
-        """Let a single lander burn, raise dust, touch and break as it should be seen from near."""
+        """Update the close-up effects of a single lander: exhaust, dust, touchdown, crash."""
         env = self._env
         if ended and env.outcome[0] == Outcome.CRASHED:
             speed = float(env.impact[0, :2].max())
@@ -130,7 +133,7 @@ class Stage:
             self.particles.blow(aim, thrust * (1 - reach / _DUST_HEIGHT) ** 1.5)
 
     def _touch(self) -> None:
-        """Let each foot that comes down raise dust, and more, the harder it does."""
+        """Raise dust for each foot that comes down, more for a harder touchdown."""
         env = self._env
         down = env.contacts[0]
         (x, y), angle = env.position[0].tolist(), float(env.angle[0])
@@ -143,7 +146,7 @@ class Stage:
     # One lander in full
 
     def sprite(self, slot: int = 0, size: float = 1.0) -> Sprite:
-        """Return what is drawn for a slot's lander; `size` 1 is true to scale."""
+        """Return the sprite of a slot's lander; `size` 1 is true to scale."""
         sprite = self._lander if self._wreck is None else self._wreck.sprite
         image = art.WRECK if self._env.outcome[slot] == Outcome.CRASHED else art.LANDER
         return replace(sprite, image=image, size=(size * sprite.size[0], size * sprite.size[1]))
@@ -169,7 +172,7 @@ class Stage:
         self._draw_flash(canvas, view, x, y, slot)
 
     def _draw_wreck(self, canvas: Canvas, view: View, sprite: Sprite, pose: Doubles, slot: int) -> None:
-        """Draw what a crash has left, dark; where it does not tumble, it sags to the side it leans to."""
+        """Draw the dark wreck of a crash; one that does not tumble sags to the side it leans to."""
         x, y, angle = pose.tolist()
         if self._wreck is None:
             sag = 1 - (self.flash[slot] / _FLASH_STEPS) ** 2
@@ -179,10 +182,10 @@ class Stage:
         craft = art.turned(sprite.image, view.painted_per_metre * size, angle, (middle[0], middle[1]), scaling(view))
         canvas.surface.blit(shaded(craft[0], self._light), craft[1])
 
-    # A swarm, small and in one go, each standing on its feet; `shown` is a mask (n,)
+    # A swarm, small and in one call, each standing on its feet; `shown` is a mask (n,)
 
     def draw_fires(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:
-        """Draw the fire of those whose main engine burns."""
+        """Draw the flames of those whose main engine burns."""
         draw_fires(canvas, view, poses[shown & (self.thrust[:, 0] > 0.25)], self._flicker, size)
 
     def draw_swarm(self, canvas: Canvas, view: View, poses: Doubles, shown: Bools, size: float) -> None:

@@ -1,4 +1,4 @@
-"""A swarm that learns elsewhere, as it was last seen: eased between two sights, with the ways of recent flights."""
+"""Swarm of a training run in another process: interpolated between snapshots, with trails of recent flights."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from game.world.landscape.backdrop import Backdrop
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
 
-_SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # landers up to, how large they are drawn
-_KEEP: Final = 16  # flights whose way stays to be seen
-_LONGEST_GAP: Final = 12.0  # frames between two sights that are still eased over
-_JUMP: Final = 4.0  # metres: further than any lander flies between two sights
-_LABEL: Final = (3.2, 1.6)  # metres that the word over a lander takes: nearer to each other, the best alone has one
+_SIZES: Final = ((1, 1.0), (16, 0.8), (64, 0.6), (256, 0.46), (1024, 0.3))  # (landers at most, drawn size)
+_KEEP: Final = 16  # flights whose trail stays visible
+_LONGEST_GAP: Final = 12.0  # frames between two snapshots, up to which landers are interpolated
+_JUMP: Final = 4.0  # metres: farther than any lander flies between two snapshots
+_LABEL: Final = (3.2, 1.6)  # metres that a lander's label takes; of landers closer than that, only the best is labelled
 _MOON: Final = 5
 _EARTH: Final = (880.0, 150.0)  # points of the small picture: clear of the figures
 
@@ -33,7 +33,7 @@ _EARTH: Final = (880.0, 150.0)  # points of the small picture: clear of the figu
 class LearningSwarm:
     """The landers of one training run in the upper left part of the view.
 
-    `width` is the share of the view's width that they have; the world keeps its proportions in it.
+    `width` is their share of the view's width; the world keeps its proportions.
     """
 
     def __init__(self, width: float) -> None:
@@ -43,7 +43,7 @@ class LearningSwarm:
         self.clear()
 
     def clear(self) -> None:
-        """Forget the run that was seen."""
+        """Forget the run shown so far."""
         self.sight: Sight | None = None
         self._trails = Trails(0)
         self._before: Doubles = np.empty((0, 3))
@@ -54,7 +54,7 @@ class LearningSwarm:
         self._lucky = 0
 
     def take(self, sight: Sight) -> None:
-        """Note what the landers did last."""
+        """Take a new snapshot of the landers."""
         poses = np.column_stack([sight.position, sight.angle]).astype(float)
         last = self.sight
         if last is None or len(last.outcome) != len(sight.outcome):
@@ -75,14 +75,14 @@ class LearningSwarm:
             self._lucky = int(np.where(flying, sight.earned, -np.inf).argmax())
 
     def update(self, still: bool = False) -> None:
-        """Let 1/60 s pass; while `still`, the lamps and flames stay as they are."""
+        """Advance by 1/60 s; while `still`, lamps and flames do not flicker."""
         self._since += 1
         if not still:
             self._time += 1 / 60
             self._frame += 1
 
     def draw(self, canvas: Canvas, alpha: float, paused: bool = False) -> None:
-        """Draw the moon, the pad, the landers."""
+        """Draw the moon, the pad and the landers."""
         view = View(canvas.scale, self._centre, self._share)
         moon = _moon(canvas.surface.get_size(), self._share)
         canvas.surface.blit(moon, (0, 0))
@@ -133,7 +133,7 @@ class LearningSwarm:
 
 @lru_cache(maxsize=2)
 def _moon(size: tuple[int, int], share: float) -> pygame.Surface:
-    """Return the landscape as it lies behind the swarm, darkened towards its lower edge."""
+    """Return the landscape behind the swarm, darkened towards its lower edge."""
     small = (round(size[0] * share), round(size[1] * share))
     picture = pygame.Surface(small)
     Backdrop(small, np.random.default_rng(_MOON), reduced_motion=True).paint(picture, earth=_EARTH)

@@ -1,4 +1,4 @@
-"""What a crash leaves, tumbling on by the same laws as all else; decoration, in a world of its own."""
+"""Wreck of a crash: a rigid body that tumbles on in a physics world of its own. Decoration only."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from ai.lander.environment import FOOT_CENTRE, FOOT_SIZE, HULL, LanderEnv
 from engine import Polygon, Sprite, World
 from game.world.lander import SIZE, WRECK
 
-_STEPS: Final = 420  # after which it lies still, whatever it does
+_STEPS: Final = 420  # at most; after them the wreck lies still
 _STILL: Final = 0.05  # m/s and rad/s
 _SPIN: Final = 0.6  # rad/s for every m/s of the blow, at most
 _HOP: Final = 0.12  # share of the blow that throws it up again
 
 
 class Wreck:
-    """The craft of one slot from the moment it crashed; `step` once for every step of 1/60 s.
+    """The craft of one slot from the moment of its crash; call `step` once for every step of 1/60 s.
 
-    Gravity, hills and pads are the flight's own, the pads where they were in that moment.
+    Gravity, hills and pads are those of the flight, with moving pads frozen at that moment.
 
     Attributes:
-        sprite: how the body that tumbles is drawn.
+        sprite: picture of the tumbling body.
 
     """
 
@@ -47,11 +47,11 @@ class Wreck:
 
     @property
     def moves(self) -> bool:
-        """Whether it has not come to rest."""
+        """Whether the wreck still moves."""
         return self._steps < _STEPS and self._rest < 20
 
     def step(self) -> None:
-        """Let 1/60 s pass."""
+        """Advance by 1/60 s."""
         self._before = self._now
         if not self.moves:
             return

@@ -1,1 +1,1 @@
-"""What stands still in the world: sky, ridges, ground and pads, and how other worlds look."""
+"""Landscape: sky, ridges, ground, pads and wind, and the themes of other worlds."""

@@ -31,14 +31,14 @@ EARTH: Final = (312.0, 152.0)  # points
 EARTH_RADIUS: Final = 43.0
 _EARTH_DEPTH: Final = 0.008
 _MOON: Final = 5
-_PLAIN_DETAIL: Final = 1.5  # as finely as the plain is painted for a camera that comes near
+_PLAIN_DETAIL: Final = 1.5  # resolution at which the plain is painted for a camera that comes near
 
 
 class Backdrop:
     """Sky, Earth, stars, ridges and plain for a view of `size` pixels.
 
-    The same generator state gives the same landscape. Drawing at another size than it was built for is an
-    error: build another.
+    The same generator state gives the same landscape. It can be drawn only at the size that it was built for;
+    build another for another size.
     """
 
     def __init__(self, size: tuple[int, int], rng: np.random.Generator, reduced_motion: bool = False) -> None:
@@ -54,7 +54,7 @@ class Backdrop:
         self._look = MOON
 
     def under(self, look: Look) -> Backdrop:
-        """Return the same land on another world, or in other light."""
+        """Return the same land under another theme: another world, or other light."""
         other = copy(self)
         other._look, other._plains = look, {}
         other._sky = look.on_sky(self._sky)
@@ -80,10 +80,10 @@ class Backdrop:
     ) -> None:
         """Fill a surface of this backdrop's size, as seen in a view; without one, as at rest.
 
-        No star is where `words` are, in pixels: it would be read as a dot, or as a speck on a panel.
+        No star is drawn inside `words`, in pixels: it would be read as a dot, or as a speck on a panel.
 
-        What is far away keeps its size however close the camera comes. It goes up and down with the horizon, and
-        aside by a small share of what the camera does.
+        Distant layers keep their size at any zoom. They move up and down with the horizon, and sideways by a small
+        share of the camera's movement (parallax).
         """
         view = view or View(self.size[1] / 720)
         across = -view.centre[0] * POINTS_PER_METRE * view.scale
@@ -104,7 +104,7 @@ class Backdrop:
         plain.draw(surface, view, corner)
 
     def _plain(self, view: View) -> tuple[Sheet, tuple[float, float]]:
-        """Return the plain, and where in the world its top left corner is; painted when it is first seen so large."""
+        """Return the plain and the place of its top left corner in the world; paint it when first needed at a size."""
         detail = min(view.closest, _PLAIN_DETAIL) or 1.0
         if detail not in self._plains:
             width, height = (round(length * detail) for length in self.size)
@@ -126,8 +126,8 @@ class Backdrop:
 
 
 def landscape(size: tuple[int, int], reduced_motion: bool, look: str = "moon") -> Backdrop:
-    """Return the game's own moon at that size, or its look elsewhere, shared by every scene that shows it."""
-    return _paint_landscape(size, reduced_motion, look)  # always called in the same way, to be found again
+    """Return the game's landscape at that size under a theme; all scenes share it."""
+    return _paint_landscape(size, reduced_motion, look)  # positional: equal calls share a cache entry
 
 
 @lru_cache(maxsize=3)

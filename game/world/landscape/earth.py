@@ -1,4 +1,4 @@
-"""The Earth, small and far, with a day side, clouds and a thin bright air."""
+"""Picture of the distant Earth: day side, clouds and a thin bright atmosphere."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FACTOR: Final = 2
 
 
 def paint_earth(radius: float, rng: np.random.Generator) -> tuple[pygame.Surface, pygame.Surface]:
-    """Return the disc, with transparency, and the glow around it, to be added first."""
+    """Return the disc, with transparency, and the additive glow around it, to be drawn first."""
     half = int(radius * 1.06) + 2
     axis = (np.arange(2 * half * _FACTOR, dtype=np.float32) + 0.5) / _FACTOR - half
     x, y = axis[None, :] / radius, axis[:, None] / radius

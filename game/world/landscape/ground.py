@@ -1,4 +1,4 @@
-"""The ground that is landed on: hills and knolls in front of the plain, and the pads."""
+"""Ground of a flight: hills and knolls in front of the plain, and the pads."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _LIP: Final = 0.3  # metres that a knoll is lower than its pad
 
 
 def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: float = 0.0) -> None:
-    """Draw hills, if there are any, and pads, `shift` metres to the right; of several, each with its factor."""
+    """Draw hills, if any, and pads, `shift` metres to the right; of several pads, each with its score factor."""
     if ground.hills:
         sheet, corner = paint_hills(ground, round((_DETAIL if view.closest else 1.0) * view.painted_per_metre, 3))
         sheet.draw(canvas.surface, view, corner)
@@ -43,7 +43,7 @@ def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: 
 
 @lru_cache(maxsize=2)
 def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[Sheet, tuple[float, float]]:
-    """Return the hills, and the place in metres of their top left corner."""
+    """Return the picture of the hills, and the place of its top left corner in metres."""
     crest_x = np.arange(-_REACH, _REACH, 1 / pixels_per_metre)
     crest = hills_height(ground, crest_x).astype(np.float32)
     top = float(crest.max()) + 0.1
@@ -70,7 +70,7 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[Sheet, tuple[f
 
 
 def hills_height(ground: Ground, x: Doubles) -> Doubles:
-    """Height of the hills alone, without the pads on them, in metres at x (k,)."""
+    """Return the height of the hills at x (k,), in metres, without the pads on them."""
     height = np.full(x.shape, ground.base)
     for hill in ground.hills:
         across, up = np.array(hill).T
@@ -95,7 +95,7 @@ def _folds(shape: tuple[int, int], pixels_per_metre: float, rng: np.random.Gener
 
 
 def _softened(row: Picture, width: float) -> Picture:
-    """Return a row (k,) blurred over so many pixels: a hill's corners are to be seen at its edge alone."""
+    """Return a row (k,) blurred over `width` pixels, so that a hill's corners show only at its edge."""
     blur = np.hanning(2 * round(width) + 1)
     soft: Picture = np.convolve(np.pad(row, len(blur) // 2, "edge"), blur / blur.sum(), "valid").astype(np.float32)
     return soft

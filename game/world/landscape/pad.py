@@ -1,4 +1,4 @@
-"""The landing pad: a deck on the regolith, its lights, and the light they throw."""
+"""Drawing of the landing pad: a deck on the regolith, its lamps, and the light they cast."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from game.world.camera import View
 from game.world.landscape.sheet import Sheet
 
 _FACTOR: Final = 4
-_BACK: Final = 0.20  # how far the deck's far edge is seen above its near one, in metres
+_BACK: Final = 0.20  # metres by which the deck's far edge appears above its near one
 _LAMP: Final = 0.20  # height of a lamp above the deck
 _MARGIN: Final = 0.6
-_SOFT: Final = 0.25  # as finely as light without edges is painted
-_BLUR: Final = 0.03  # and so wrong may its width be
+_SOFT: Final = 0.25  # resolution at which light without edges is painted
+_BLUR: Final = 0.03  # relative error that its width may have
 
 
 def draw_pad(
@@ -45,7 +45,7 @@ def draw_pad(
 
 @lru_cache(maxsize=8)
 def _paint(pixels_per_metre: float, width: float, height: float, colour: Colour) -> tuple[Sheet, tuple[float, float]]:
-    """Return the deck of a pad that is so high, and where its corner is from the middle of its top, in metres."""
+    """Return the picture of a pad `height` metres high, and its corner relative to the middle of its top, in metres."""
     scale = pixels_per_metre * _FACTOR
     half = math.ceil((width / 2 + _MARGIN) * pixels_per_metre)
     above, below = math.ceil(_MARGIN * pixels_per_metre), math.ceil((height + 0.25) * pixels_per_metre)

@@ -1,4 +1,4 @@
-"""The shape of the ground as decoration needs it: many heights at once, quickly."""
+"""Height map of the ground for decoration: many heights in one fast look-up."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _STEP: Final = 0.1
 
 
 class Relief:
-    """Heights of the ground under one environment, its moving pad where that is now."""
+    """Height map of one environment's ground, with a moving pad at its current place."""
 
     def __init__(self, env: LanderEnv) -> None:
         self._env = env
         self._heights = _heights(env.ground)
 
     def height(self, x: Doubles) -> Doubles:
-        """Height in metres of what lies under x (k,), to the nearest tenth of a metre aside."""
-        if self._env.conditions.moves:  # and nothing else is there: one pad on a plain
+        """Return the height in metres of the ground or pad under x (k,); x is rounded to a tenth of a metre."""
+        if self._env.conditions.moves:  # such a world has one pad on a plain, and nothing else
             x = x - float(self._env.pad_shift[0])
         places = np.rint((x + _REACH) / _STEP).astype(np.intp)
         heights: Doubles = self._heights[places.clip(0, len(self._heights) - 1)]

@@ -1,4 +1,4 @@
-"""A picture that stands in the world, painted once and drawn at any zoom."""
+"""Pictures fixed in the world, painted once and drawn at any zoom."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import pygame
 
 from game.world.camera import View
 
-_STRIDE, _ROWS = 64, 16  # pixels of the picture: what is scaled begins and ends at a multiple of them
-_SPARE: Final = 3  # pixels that it reaches beyond the view at least
+_STRIDE, _ROWS = 64, 16  # pixels of the picture: a scaled part begins and ends at multiples of these
+_SPARE: Final = 3  # pixels that the scaled part reaches beyond the view, at least
 _RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side: its middle moves the other way
 
 
 class Sheet:
     """A picture painted at `per_metre` pixels per metre.
 
-    `soft` is the share of its width by which it may be wrong, half of that at either end.
+    `soft` is the relative error that its width may have, half of it at either end.
 
-    To scale what is in view takes less than a millisecond, to paint it anew a hundred times that. What was scaled
-    last is kept until the view has moved on by a stride, or it would be more wrong than that.
+    Scaling the part in view takes less than a millisecond; painting it anew takes a hundred times that. The last
+    scaled part is reused until the view has moved by a stride, or its error would exceed `soft`.
     """
 
     def __init__(self, picture: pygame.Surface, per_metre: float, soft: float = 1 / 300) -> None:
@@ -30,7 +30,7 @@ class Sheet:
         self._scaled = picture
 
     def draw(self, surface: pygame.Surface, view: View, corner: tuple[float, float], flags: int = 0) -> None:
-        """Draw it with its top left corner at that place in the world."""
+        """Draw the picture with its top left corner at a place in the world, in metres."""
         ratio = view.pixels_per_metre / self.per_metre
         x, y = view.pixels(corner).tolist()
         width, height = self.picture.get_size()
@@ -46,7 +46,7 @@ class Sheet:
         size = (max(1, round((stop - start) * ratio)), max(1, round(low * ratio)))
         if crop != self._crop or abs(size[0] - self._scaled.get_width()) > self._soft * size[0]:
             self._crop = crop
-            if self.picture.get_flags() & pygame.RLEACCEL:  # which would be undone and redone every time
+            if self.picture.get_flags() & pygame.RLEACCEL:  # scaling would decode and encode it again every time
                 self.picture.set_alpha(255)
             self._scaled = pygame.transform.smoothscale(self.picture.subsurface(crop), size)
         middle = x + (start + stop) / 2 * ratio
@@ -56,11 +56,11 @@ class Sheet:
 def fitted(
     paint: Callable[[tuple[int, int]], pygame.Surface], ratio: float, middle: tuple[float, float]
 ) -> tuple[pygame.Surface, tuple[int, int]]:
-    """Return a small square picture scaled by `ratio`, and the corner that brings its middle to a place in pixels.
+    """Return a small square picture scaled by `ratio`, and the corner that puts its middle at a place, in pixels.
 
-    `paint` gives it with its middle moved right and down by 0 or 1 half pixels, and clear for two pixels around.
-    Between those, or, where it is scaled, between what to leave of its rim, is chosen what comes nearest to the
-    place, so that slow motion is smooth.
+    `paint` returns the picture with its middle moved right and down by 0 or 1 half pixels, and a clear rim of two
+    pixels. For smooth slow motion, the variant nearest to the place is chosen: among the half pixels or, where the
+    picture is scaled, among how much of its rim to leave out.
     """
     scaled = abs(ratio - 1) > 1e-6
     side = paint((0, 0)).get_width() - 2 * scaled

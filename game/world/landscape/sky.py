@@ -22,7 +22,7 @@ _CORE: Final = (255, 204, 138)
 
 
 def paint_sky(size: tuple[int, int], rng: np.random.Generator) -> pygame.Surface:
-    """Return everything that is too far away ever to move: night, glow, star dust."""
+    """Return the part of the sky that never moves: night, glow and faint stars."""
     width, height = -(-size[0] // 2), -(-size[1] // 2)  # too smooth to need every pixel
     warm = mix(DUSK, EMBER, 0.14)
     night = [
@@ -64,9 +64,9 @@ def _milky_way(size: tuple[int, int], rng: np.random.Generator) -> Picture:
 
 
 def _far_stars(size: tuple[int, int], rng: np.random.Generator) -> tuple[tuple[Ints, Ints], Doubles]:
-    """Return single pixels (columns, rows), more of them along the band, and the light (n, 3) that sets them alight.
+    """Return the faint stars: single pixels (columns, rows), denser along the band, and their light (n, 3).
 
-    The glow drowns the low ones. None is as bright as to be read as a dot: they stay where words are.
+    The glow hides those near the horizon. None is bright enough to be read as a dot, so they stay behind text.
     """
     width, height = size
     count = round(width * height / 640)
@@ -106,9 +106,9 @@ class NearStars:
     def draw(
         self, surface: pygame.Surface, shift: tuple[float, float], time: float, words: Sequence[pygame.Rect] = ()
     ) -> None:
-        """Add the stars to the sky, but where words are.
+        """Add the stars to the sky, except behind text.
 
-        `shift` is how far, in pixels, the foreground has gone aside and the horizon up.
+        `shift` is how far the foreground has moved sideways and the horizon up, in pixels.
         """
         place = self._place + np.stack([self._depth * shift[0], np.full(len(self._depth), shift[1])], axis=1)
         corners = np.rint(place - self._half[:, None]).astype(np.intp).tolist()

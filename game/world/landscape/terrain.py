@@ -1,4 +1,4 @@
-"""The moon below: ridges in the haze, each lit along its crest, and the plain in the foreground."""
+"""Terrain of the moon: hazy ridges, each lit along its crest, and the plain in the foreground."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ RIDGES: Final = (
 
 
 def paint_ridge(size: tuple[int, int], ridge: Ridge, rng: np.random.Generator) -> tuple[pygame.Surface, int]:
-    """Return a range as a layer wider than the view by its margins, and the row its top belongs on."""
+    """Return a ridge as a layer wider than the view by its margins, and the row of its top edge."""
     view_width, height = size
     width = round(view_width * (1 + 2 * MARGIN))
     wave = profile(width, rng, ridge.humps, octaves=7, gain=ridge.rough)
-    valley = bell(width, (SUN[0] + MARGIN) * view_width, 0.24 * view_width)  # the dawn is to be seen
+    valley = bell(width, (SUN[0] + MARGIN) * view_width, 0.24 * view_width)  # so that the dawn stays visible
     crest = height * (ridge.crest - ridge.relief * (wave * (1 - 0.6 * valley) + 0.25 - ridge.valley * valley))
     top, bottom = int(crest.min()) - 2, round(height * (PLAIN_HORIZON + 0.045))
     below = np.arange(top, bottom, dtype=np.float32)[:, None] + 0.5 - crest
@@ -102,7 +102,7 @@ def _relief(depth: Picture, height: int, rng: np.random.Generator) -> Picture:
 
 
 def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float = MARGIN) -> tuple[pygame.Surface, int]:
-    """Return the plain with its craters and stones, wider than the view by its margins, and its top's row."""
+    """Return the plain with its craters and stones, wider than the view by its margins, and the row of its top."""
     view_width, height = size
     width = round(view_width * (1 + 2 * margin))
     edge = height * (PLAIN_HORIZON + 0.006 * profile(width, rng, 6.5 * width / view_width, octaves=6))
@@ -131,7 +131,7 @@ def paint_plain(size: tuple[int, int], rng: np.random.Generator, margin: float =
 
 
 def _plain_noise(near: Picture, width: int, view_width: int, rng: np.random.Generator) -> Picture:
-    """Return a rolling surface seen from low above it: fine far away, coarse in front."""
+    """Return the texture of a rolling surface seen at a low angle: fine far away, coarse in front."""
     field = _hummocks(int(rng.integers(2**31)))
     side = len(field)
     scale = 0.16 + near
@@ -143,7 +143,7 @@ def _plain_noise(near: Picture, width: int, view_width: int, rng: np.random.Gene
 
 @lru_cache(maxsize=2)
 def _hummocks(seed: int) -> Picture:
-    """Return a rolling surface seen from above; kept, for the same plain is painted for near and for far cameras."""
+    """Return a rolling surface seen from above; cached, as the same plain is painted for near and far cameras."""
     return clouds((512, 512), np.random.default_rng(seed), (30, 30), octaves=5, gain=0.62) * 2.2
 
 

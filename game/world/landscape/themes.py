@@ -1,4 +1,4 @@
-"""How other worlds than the moon look, and the moon by night: the same land in other light and other air."""
+"""Themes of the landscape: the same land on other worlds and by night, in other light and air."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Light = tuple[float, float, float]  # red, green, blue
 
 @dataclass(frozen=True)
 class Look:
-    """What becomes of every colour of the moon at dawn.
+    """Colour transformation of the landscape, relative to the moon at dawn.
 
     Attributes:
-        sky, land: what each is multiplied by.
-        air: what the sky has more of, 0 to 255, all of it at the horizon; `thick`, a share, of that at the top.
-        dust: what the land has more of.
-        light: what falls on a craft, 0 to 1.
-        stars, earth: whether they are seen.
+        sky, land: factors (red, green, blue) on their colours.
+        air: light added to the sky, 0 to 255 at the horizon; at the top, only the share `thick` of it.
+        dust: light added to the land.
+        light: ambient light on a craft, 0 to 1.
+        stars, earth: whether they are visible.
 
     """
 
@@ -39,7 +39,7 @@ class Look:
     earth: bool = True
 
     def on_dust(self, colour: Colour) -> Colour:
-        """Return the colour of dust that flies up: the land's own, but never too dark to be seen."""
+        """Return the colour of flying dust: that of the land, but never too dark to be visible."""
         red, green, blue = (
             round(min(255.0, value * max(share, _LEAST_DUST) + more))
             for value, share, more in zip(colour, self.land, self.dust, strict=True)
@@ -47,13 +47,13 @@ class Look:
         return red, green, blue
 
     def on_sky(self, picture: pygame.Surface) -> pygame.Surface:
-        """Return a sky in this light."""
+        """Return a picture of the sky under this theme."""
         rows = np.clip(np.arange(picture.get_height()) / (HORIZON * picture.get_height()), 0.0, 1.0)
         depth = (self.thick + (1 - self.thick) * rows**1.5)[None, :, None]
         return _in_light(picture, self.sky, depth.astype(np.float32) * np.array(self.air, np.float32))
 
     def on_land(self, picture: pygame.Surface) -> pygame.Surface:
-        """Return a layer of land in this light, as clear as it was where it was clear."""
+        """Return a layer of land under this theme, its transparency unchanged."""
         lit = _in_light(picture, self.land, np.array(self.dust, np.float32))
         lit.set_alpha(255, pygame.RLEACCEL)
         return lit
@@ -76,7 +76,7 @@ LOOKS: Final[dict[str, Look]] = {
 
 
 def look_of(mission: str) -> str:
-    """Name the look of a mission; of what is none, the moon's."""
+    """Return the theme's name for a mission; "moon" where it has none of its own."""
     found = MISSIONS.get(mission)
     return "moon" if found is None else "night" if found.night else found.world
 

@@ -1,4 +1,4 @@
-"""Wind that can be seen: dust that it carries, as fast as it pushes."""
+"""Visible wind: drifting dust whose speed follows the wind's push."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from game.drawing.tokens import Colour
 from game.world.camera import View
 
 _COUNT: Final = 90
-_WIDTH, _LOW, _HIGH = 64.0, 1.3, 24.0  # metres: how wide and between which heights it blows
+_WIDTH, _LOW, _HIGH = 64.0, 1.3, 24.0  # metres: width, and the heights between which dust drifts
 _CARRY: Final = 16.0  # m/s of the air for every m/s² that it pushes a craft
-_TRAIL: Final = 0.2  # seconds of its way that a grain seems to stretch over
-_STEPS: Final = 4  # points by which trails differ in length, so that few are ever made
+_TRAIL: Final = 0.2  # seconds of movement that a grain's trail covers
+_STEPS: Final = 4  # points: lengths of trails are multiples of it, so that few pictures are made
 
 
 class Wind:
-    """Follows the wind of a flight; where it stands is a matter of time alone, so any moment can be shown."""
+    """Drifting dust in the wind of a flight; a function of time alone, so any moment can be shown."""
 
     def __init__(self, env: LanderEnv, dust: Colour) -> None:
         self._env, self._dust = env, dust
@@ -32,25 +32,25 @@ class Wind:
         self.forget()
 
     def forget(self) -> None:
-        """Show the moment at which the flight stands."""
+        """Jump to the flight's current moment."""
         self._time = float(self._env.time[0])
 
     def follow(self) -> None:
-        """Follow a step; after the end of the flight, the wind goes on."""
+        """Advance by one step; after the end of the flight, the wind goes on."""
         flying = self._env.outcome[0] == Outcome.FLYING
         self._time = float(self._env.time[0]) if flying else self._time + STEP
 
     @property
     def speed(self) -> float:
-        """How fast the air goes to the right, in m/s; the nearest dust goes with it."""
+        """Speed of the air to the right, in m/s, which is also that of the nearest dust."""
         return self._of_air(self._env.conditions.push(np.array([self._time])))
 
     def _of_air(self, given: Doubles) -> float:
-        """Turn a push of the wind (1,) in N, or what it has given in N s, into the speed or the way of the air."""
+        """Convert the wind's force (1,) in N to the air's speed in m/s, or its impulse in N s to the air's way in m."""
         return _CARRY / self._env.params.mass * float(given[0])
 
     def draw(self, surface: pygame.Surface, view: View, alpha: float) -> None:
-        """Draw it, `alpha` of the way from the last step to this one."""
+        """Draw the dust, `alpha` of the way from the last step to this one."""
         conditions, time = self._env.conditions, np.array([self._time + (alpha - 1) * STEP])
         gone, speed = (self._near * self._of_air(given) for given in (conditions.impulse(time), conditions.push(time)))
         place = self._start.copy()
