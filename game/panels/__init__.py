@@ -1,1 +1,1 @@
-"""What explains a network or a run: its values, its charts, its settings, its rewards."""
+"""Panels that explain a network or a training run: Q-values, charts, settings, rewards."""

@@ -1,4 +1,4 @@
-"""The one hint on the training screen: what is off, a remedy at a press, and the way back."""
+"""Advice box of the training screen: one diagnosis, its remedy at a press, and an undo."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from game.ui.widgets import Word
 
 _WORD: Final = 62.0  # from one word to the next
 _LINE: Final = 16.0
-_LINES: Final = 2  # that a hint has room for, also in the largest text
+_LINES: Final = 2  # of room for a hint, also at the largest text size
 
 
 class Advice:
-    """Asks the adviser and shows what it says in a box of a form; `turn` sets a knob by its name.
+    """Box in a form with the adviser's current hint; `turn` sets a knob by its name.
 
     `go_back` is called with the moment, in decisions, that a run should return to.
 
     Attributes:
-        done: what the last remedy did, in words.
+        done: description of the last remedy's effect.
 
     """
 
@@ -47,26 +47,26 @@ class Advice:
 
     @property
     def shown(self) -> bool:
-        """Whether there is anything to see."""
+        """Whether the box has anything to show."""
         return bool(self._words)
 
     def follow(
         self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
     ) -> None:
-        """Look at the run again; call it when there is news."""
+        """Diagnose the run again; call it when there is news."""
         if len(history):
             self._moment = int(history["decisions"][-1])
         self._lay(self.adviser.advise(history, config, dead_share, clipped_share))
 
     def hush(self, quiet: bool) -> None:
-        """Say nothing while something else waits to be applied or undone: one question at a time."""
+        """Hide the hint while other changes wait to be applied or undone: one question at a time."""
         if quiet != self._quiet:
             self._quiet = quiet
-            self.adviser.undo()  # what was applied is in that question's hands
+            self.adviser.undo()  # that question decides on what was applied
             self._lay(self._hint)
 
     def clear(self) -> None:
-        """Begin anew with another run."""
+        """Reset for another run."""
         self.adviser.reset()
         self._lay(None)
 
@@ -88,7 +88,7 @@ class Advice:
         return self._box.width - 28
 
     def _lay(self, hint: Hint | None) -> None:
-        """Put the words there that fit what is shown."""
+        """Add the buttons that fit the hint that is shown."""
         self._hint = hint
         wanted: list[tuple[str, Callable[[], None]]] = []
         if self._quiet:
@@ -134,6 +134,6 @@ class Advice:
         self._lay(None)
 
     def _keep(self) -> None:
-        """Leave the remedy as it is."""
+        """Keep the remedy, and close the hint."""
         self.adviser.undo()
         self._lay(None)

@@ -1,7 +1,7 @@
-"""One row of the panel of knobs: a label, a track or a switch or words, a figure.
+"""Knobs: rows of the panel of settings, each a label, a control (slider, switch or words) and a figure.
 
-Blue changes a run as it goes on. Grey and hollow takes a new run. An amber dot marks what the player has changed;
-R, the pad's X, or a click on the name brings back what the preset says, where a tick stands on the track.
+A blue knob changes a run while it goes on. A grey, hollow knob takes a new run. An amber dot marks a value that the
+player has changed; R, the gamepad's X, or a click on the name restores the preset's value, a tick on the track.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ MARGIN: Final = 16  # left of the label, for the dot
 _TRACK: Final = (142.0, 62.0)  # from the label to the track, from the track to the right end
 _GAP: Final = 14.0  # between words
 _LONGEST_SEED: Final = 9  # digits
-_DIM: Final = mix(FAINT, MUTE, 0.45)  # of what changes nothing
-_NOTE: Final = LABEL - 1.5  # the size of what is written over a track
-_CLEAR: Final = 9.0  # from the middle of the handle to such words
+_DIM: Final = mix(FAINT, MUTE, 0.45)  # of a knob that has no effect
+_NOTE: Final = LABEL - 1.5  # size of text over a track
+_CLEAR: Final = 9.0  # from the middle of the handle to that text
 
 
 class Knob(Widget):
-    """What all kinds share. The panel owns the value: `turn` asks for another, `display` brings it back here.
+    """Base of all knobs. The panel owns the value: `turn` requests another, `display` shows the current one.
 
-    `enter` is called by Enter, or a pad's A, on a slider: there is nothing to press on it.
+    `enter` is called by Enter, or a gamepad's A, on a slider, which has nothing to press.
 
     Attributes:
-        value: what is shown.
-        home: what the preset says.
+        value: the value that is shown.
+        home: the preset's value.
         waits: whether the value is yet to be applied.
-        now: what acts in its place at this moment of a run, if that is something else.
-        idle: why it changes nothing; empty if it does.
+        now: the value in force at this moment of a run, where it differs; else None.
+        idle: why the knob has no effect; empty if it has one.
 
     """
 
@@ -75,7 +75,7 @@ class Knob(Widget):
 
     @property
     def live(self) -> bool:
-        """Whether a run may go on while this is turned."""
+        """Whether the knob may change while a run goes on."""
         return self.dial.live
 
     @property
@@ -85,28 +85,28 @@ class Knob(Widget):
 
     @property
     def track(self) -> tuple[float, float]:
-        """From where to where it can be turned, in points."""
+        """Left and right end of the track, in points."""
         return self.box.left + MARGIN + _TRACK[0], self.box.right - _TRACK[1]
 
     @property
     def colour(self) -> Colour:
-        """Blue, grey for what takes a new run, amber for what waits, dim for what changes nothing."""
+        """Colour of the knob: blue, grey if it takes a new run, amber if it waits, dim if it has no effect."""
         return HUMAN if self.waits else _DIM if self.idle else NET if self.live else MUTE
 
     def turn(self, value: Any) -> None:
-        """Ask for another value."""
+        """Request another value from the panel."""
         if value != self.value:
             self._turn(self.dial, value)
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Go back to the preset's value."""
+        """Restore the preset's value on the key for it."""
         if self.changed and translate(event) is Command.RETRY:
             self.turn(self.home)
             return True
         return False
 
     def process_event(self, event: pygame.event.Event) -> bool:
-        """Keep a press on the name apart from one on the track."""
+        """Tell a press on the name from one on the track."""
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
             self._named = self.hover_point(*event.pos) and event.pos[0] < self.track[0] - 10
             if self._named:
@@ -131,14 +131,14 @@ class Knob(Widget):
 
 
 class SliderKnob(Knob):
-    """A number, on one of the stops of its track."""
+    """A number, chosen among the stops of a track."""
 
     def _at(self, value: Any) -> float:
-        """How far along the track a value stands, 0 to 1."""
+        """Return the place of a value along the track, 0 to 1."""
         return _along(self.dial.stops, value)
 
     def _places(self) -> dict[float, Any]:
-        """Where along the track it can stand: at a stop, or at the preset's value."""
+        """Map places along the track to values: the stops, and the preset's value."""
         return {self._at(value): value for value in (*self.dial.stops, self.home)}
 
     def shift(self, direction: int) -> bool:
@@ -150,7 +150,7 @@ class SliderKnob(Knob):
         return True
 
     def press(self) -> None:
-        """Leave it to the panel, unless the mouse has let go of it."""
+        """Call `enter`, unless the press is the mouse letting go of the handle."""
         if self.ringed:
             self._enter()
 
@@ -180,14 +180,14 @@ class SliderKnob(Knob):
         self.write(canvas, figure(self.value))
 
     def _paint_now(self, canvas: Canvas, now: float, handle: float) -> None:
-        """Mark on the track what acts now, and write it above."""
+        """Mark the value in force on the track, and write it above."""
         left, right = self.track
         x, middle = left + self._at(now) * (right - left), self.box.centery
         canvas.line((x, middle - 1), (x, middle + 6), INK, 2)
         self._paint_beside(canvas, texts.KNOB_NOW.format(value=figure(now)), middle - 4, x, handle)
 
     def _paint_beside(self, canvas: Canvas, words: str, baseline: float, x: float, handle: float) -> None:
-        """Write over the track, around x as far as there is room, and beside the handle."""
+        """Write text over the track, around x as far as there is room, clear of the handle."""
         left, right = self.track
         width = canvas.text_width(words, size=_NOTE)
         start = min(max(x - width / 2, left), right - width)
@@ -198,7 +198,7 @@ class SliderKnob(Knob):
 
 
 class SwitchKnob(Knob):
-    """On or off."""
+    """A setting that is on or off."""
 
     _slid: float | None = None
 
@@ -232,13 +232,13 @@ class SwitchKnob(Knob):
 
 
 class WordsKnob(Knob):
-    """One of a few words."""
+    """A choice among a few words."""
 
     values: tuple[Any, ...] = ()
     row: WordRow
 
     def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
-        """Show what the panel says; a value that is on no word has one made for it."""
+        """Show what the panel says; a value without a word gets one made for it."""
         super().display(value, home, waits=waits, now=now, idle=idle)
         own = [extra for extra in (home, value) if extra not in self.dial.stops]
         values = (*self.dial.stops, *dict.fromkeys(own))
@@ -270,7 +270,7 @@ class WordsKnob(Knob):
 
 
 class SeedKnob(Entry):
-    """The seed: typed, or one up and down with the arrows. A run begins with it, so it always takes a new one."""
+    """The random seed: typed, or stepped with the arrows. It takes a new run, as a run begins with it."""
 
     live = False
     changed = False
@@ -289,7 +289,7 @@ class SeedKnob(Entry):
             self.line.set(str(value))
 
     def shift(self, direction: int) -> bool:
-        """One up, one down."""
+        """Raise or lower the seed by one."""
         self._turn(min(max(self.value + direction, 0), 10**_LONGEST_SEED - 1))
         return True
 
@@ -309,7 +309,7 @@ class SeedKnob(Entry):
 
     @property
     def start(self) -> tuple[float, float]:
-        """Where the number begins: it ends at the right end of the row."""
+        """Left end of the number, which is aligned to the right end of the row."""
         return self.box.right - typeface.width(self.line.text, SMALL, "regular"), self.box.centery + 4.5
 
     def paint(self, canvas: Canvas) -> None:
@@ -325,13 +325,13 @@ class SeedKnob(Entry):
 
 @lru_cache(maxsize=1024)
 def _along(stops: tuple[Any, ...], value: Any) -> float:
-    """Return how far a value is from the first stop to the last: they are equally far from each other."""
+    """Return the place of a value between the first stop and the last, 0 to 1; stops are evenly spaced."""
     sizes = np.abs(np.array(stops, dtype=float))  # they rise, or fall below 0
     return float(np.interp(abs(value), sizes, np.linspace(0.0, 1.0, len(sizes))))
 
 
 def draw_row(canvas: Canvas, widget: Widget, *, changed: bool, dim: bool = False) -> None:
-    """Draw what every row has: the ring of the focus, the dot of a change, the label."""
+    """Draw the parts that all rows share: focus ring, dot of a change, label."""
     box = widget.box
     if widget.ringed and widget.warmth > 0.02:
         canvas.outline(box.inflate(12, 0), 6, INK, 1, 0.35 * widget.warmth)

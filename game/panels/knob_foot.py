@@ -1,4 +1,4 @@
-"""The foot of the panel of knobs: what was refused, what waits for an answer, or what the knob in focus is for."""
+"""Foot of the panel of knobs: a refused value, a question that waits, or the help of the knob in focus."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from game.ui.hints import draw_hints
 from game.ui.widget import Widget
 
 HEIGHT: Final = 60  # points, at the bottom of the panel
-ANSWERS: Final = 42  # from the bottom to the top of the words that answer a notice
+ANSWERS: Final = 42  # from the bottom to the top of a notice's buttons
 _LINE: Final = 16.0  # from a baseline to the next
-_ABOVE: Final = 40.0  # what a longer text needs more
+_ABOVE: Final = 40.0  # extra height for a longer text
 _NOTICE: Final = 50.0  # from the bottom to the top of a notice
-_EXPLAINED: Final = 78.0  # what stands above it, from the first baseline
+_EXPLAINED: Final = 78.0  # height of the text above it, from the first baseline
 
 
 def draw_foot(
     canvas: Canvas, box: pygame.Rect, tuning: Tuning, focused: Widget | None, controls: Controls, *, picking: bool
 ) -> None:
-    """Draw into the panel's box what matters most; `focused` is the widget of the panel that is in focus."""
+    """Draw the most important message into the panel's box; `focused` is the panel's widget in focus."""
     first = box.bottom - HEIGHT + 22.0
     if tuning.problem:
         canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
@@ -58,14 +58,14 @@ def _draw_notice(canvas: Canvas, box: pygame.Rect, heading: str, line: str) -> N
 
 
 def _write_parts(canvas: Canvas, told: str, start: tuple[float, float], width: float) -> None:
-    """Write paragraphs: the first muted, what was measured below it."""
+    """Write paragraphs: a muted explanation, and measurements below it."""
     x, y = start
     for number, part in enumerate(told.split("\n")):
         y = _write(canvas, part, (x, y), width, INK if number else MUTE) + 6
 
 
 def _draw_marks(canvas: Canvas, box: pygame.Rect, widget: Knob | SeedKnob, controls: Controls) -> None:
-    """Say whether it takes a new run, and how the preset's value comes back."""
+    """Say whether the knob takes a new run, and how to restore the preset's value."""
     baseline = box.bottom - 4
     if not widget.live:
         canvas.marker("ring", (box.left + 4, baseline - 4), 8, MUTE)
@@ -77,7 +77,7 @@ def _draw_marks(canvas: Canvas, box: pygame.Rect, widget: Knob | SeedKnob, contr
 
 
 def _listed(names: list[str]) -> str:
-    """Name the knobs that wait: as many as there is room for."""
+    """List the knobs that wait, as many as there is room for."""
     labels = list(dict.fromkeys(label(name.split(".")[0]) for name in names))
     return ", ".join(labels) if len(labels) < 3 else texts.KNOBS_MORE.format(first=labels[0], count=len(labels) - 1)
 

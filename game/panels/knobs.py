@@ -1,4 +1,4 @@
-"""The panel of knobs of a training run: presets, pages of knobs, and what the one in focus is for."""
+"""Panel of knobs of a training run: presets, pages of knobs, and help on the knob in focus."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ _TAB_GAP: Final = 13.0
 
 
 class Knobs:
-    """Made of widgets of a form, in a box of about 384 by 360 points; the scene draws the panel behind it.
+    """Panel of knobs, as widgets of a form in a box of about 384 by 360 points; the scene draws its background.
 
-    What may change while a run goes on changes at once. What takes a new run waits, says so, and is applied or
-    undone by the player.
+    A knob that may change during a run takes effect at once. One that takes a new run waits, says so, and is applied
+    or undone by the player.
 
     Args:
-        form: where the widgets are added; the scene passes events and updates to it, and draws it.
-        box: where, in points; the dots of what was changed are up to 16 points to the left of it.
-        config: what to begin with.
-        seed: the seed of that.
-        on_change: hears of every knob that has changed, by its name in the configuration ("weights.time" for a part of
-            the reward, "seed" for the seed), and of its value: while a run goes on, of those alone that may.
-        on_restart: asked for a new run with another configuration and seed, once the player has applied them.
-        family: the kind of run, with all there is to choose from.
+        form: form to which the widgets are added; the scene passes events and updates to it, and draws it.
+        box: box of the panel, in points; the dots of changed knobs are up to 16 points to the left of it.
+        config: configuration to begin with.
+        seed: seed to begin with.
+        on_change: called with the name and value of every knob that changes; during a run, only of those that may.
+            Names are those of the configuration ("weights.time" for a part of the reward, "seed" for the seed).
+        on_restart: called with a configuration and seed for a new run, once the player has applied them.
+        family: the kind of run, with its presets and knobs.
 
     """
 
@@ -68,54 +68,54 @@ class Knobs:
 
     @property
     def config(self) -> Configuration:
-        """What holds now; what waits to be applied is not in it."""
+        """The configuration in force, without changes that wait to be applied."""
         return self._tuning.config
 
     @property
     def seed(self) -> int:
-        """The seed that belongs to it."""
+        """The seed of the configuration in force."""
         return self._tuning.seed
 
     @property
     def name(self) -> str:
-        """The preset or the sabotage that this is or began as, in the player's words."""
+        """Displayed name of the preset or sabotage that this configuration is, or began as."""
         return self._family.word(self._tuning.holds)
 
     @property
     def changed(self) -> bool:
-        """Whether knobs were turned away from what has that name, in what holds now."""
+        """Whether the configuration in force differs from the preset or sabotage of that name."""
         return self._tuning.changed
 
     @property
     def waiting(self) -> list[str]:
-        """Which knobs wait for a new run, by name."""
+        """Names of the knobs that wait for a new run."""
         return self._tuning.waiting
 
     def set_running(self, running: bool) -> None:
-        """Say whether a run goes on; without one, every knob changes at once."""
+        """Set whether a run goes on; without one, every knob takes effect at once."""
         if running != self._tuning.running:
             self._tuning.set_running(running)
             self._lay()
 
     def show_in_force(self, in_force: InForce | None) -> None:
-        """Show beside the settings what acts at this moment of a run; None for nothing."""
+        """Show the values in force at this moment of a run beside the settings; None for none."""
         if in_force is not self._tuning.in_force:
             self._tuning.in_force = in_force
             self._lay()
 
     def set_config(self, config: Configuration, seed: int) -> None:
-        """Show a configuration that came from elsewhere, such as a run that was loaded; nobody is called."""
+        """Show a configuration from elsewhere, such as a loaded run, without calling `on_change` or `on_restart`."""
         self._tuning.set_config(config, seed)
         self._picking = False
         self._lay()
 
     def turn(self, name: str, value: Any) -> None:
-        """Turn a knob by its name, as if by hand; for an impossible value, the panel says why not."""
+        """Set a knob by its name, as if by hand; for an invalid value, the panel says why it is refused."""
         self._tuning.turn(name, value)
         self._lay()
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw what is not a widget; the form draws the widgets."""
+        """Draw all but the widgets, which the form draws."""
         box, y = self._box, self._box.top + _HEAD
         canvas.line((box.left, y), (box.right, y), LINE, 1)
         if self.changed:
@@ -127,7 +127,7 @@ class Knobs:
         knob_foot.draw_foot(canvas, self._box, self._tuning, focused, self._form.controls, picking=self._picking)
 
     def _draw_changed(self, canvas: Canvas) -> None:
-        """Say that knobs were turned: in a word, or by a dot where there is no room for it."""
+        """Mark that knobs were changed: by a word, or by a dot where there is no room for it."""
         left, baseline = self._box.left + canvas.text_width(self.name, size=TITLE) + 9, self._box.top + _BASELINE
         room = self._sections["head"][1][1].box.left - left - 9
         if canvas.text_width(texts.KNOBS_CHANGED, size=LABEL) <= room:
@@ -138,7 +138,7 @@ class Knobs:
     # Widgets
 
     def _lay(self) -> None:
-        """Put the widgets in place that belong here now, and show in them what holds."""
+        """Lay out the widgets of the current page, and show the current values in them."""
         tuning, picking = self._tuning, self._picking
         answer = "apply" if tuning.waiting else "undo" if tuning.put_aside else ""
         sections: dict[str, tuple[Hashable, Callable[[], list[Widget]]]] = {
@@ -166,7 +166,7 @@ class Knobs:
                 widget.display(tuning.draft_seed, waits=SEED in waiting)
 
     def _make_head(self) -> list[Widget]:
-        """The chosen one large on the left, which brings all of it back; the others on the right."""
+        """Make the head: the chosen preset large on the left (a press restores it), the others on the right."""
         box, named, manager = self._box, self._tuning.holds, self._form.manager
         top = box.top + 5
         chosen = _Title(manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named))
@@ -200,14 +200,14 @@ class Knobs:
         return rows
 
     def _row(self, number: int) -> pygame.Rect:
-        """The box of a row: as far from the next as the longest page allows."""
+        """Return the box of a row; the longest page sets the distance between rows."""
         box, dials = self._box, self._tuning.dials.values()
         longest = max(sum(dial.page == page for dial in dials) for page in self._pages)
         pitch = min(_PITCH, (box.height - _HEAD - _TABS - knob_foot.HEIGHT) // longest)
         return pygame.Rect(box.left - MARGIN, box.top + _HEAD + _TABS + number * pitch, box.width + MARGIN, pitch)
 
     def _make_picks(self) -> list[Widget]:
-        """What can be taken away, in two columns."""
+        """Make the list of sabotages, in two columns."""
         base, (left, top) = self._tuning.named[0], self._box.topleft
         sabotages = self._family.sabotages
         half = (len(sabotages) + 1) // 2
@@ -224,7 +224,7 @@ class Knobs:
         return picks
 
     def _make_answers(self, answer: str) -> list[Widget]:
-        """The words that apply or undo."""
+        """Make the buttons that apply or undo."""
         words = {"apply": [(texts.KNOBS_UNDO, self._undo), (texts.KNOBS_APPLY, self._apply)],
                  "undo": [(texts.KNOBS_UNDO, self._undo)]}  # fmt: skip
         right, made = self._box.right - 14.0, []
@@ -255,18 +255,18 @@ class Knobs:
         self._lay()
 
     def _seek(self) -> None:
-        """Bring the focus to the words that apply and undo, if there are any."""
+        """Move the focus to the buttons that apply and undo, if there are any."""
         self._focus("answers")
 
     def _focus(self, section: str) -> None:
-        """Bring the focus to the first widget of a section."""
+        """Move the focus to the first widget of a section."""
         if widgets := self._sections[section][1]:
             self._form.focus(widgets[0])
 
     def _loads(self, named: Named) -> Callable[[], None]:
         def load() -> None:
             self._tuning.load(named)
-            self._picking = bool(named[1] and self._tuning.waiting)  # what it is for is told as long as it waits
+            self._picking = bool(named[1] and self._tuning.waiting)  # a sabotage's help stays as long as it waits
             self._lay()
             self._focus("answers" if self._picking else "head")
 
@@ -296,7 +296,7 @@ class Knobs:
 
 
 class _Title(Word):
-    """The chosen preset: large, with a line under it."""
+    """Name of the chosen preset: large, with a line under it."""
 
     def __init__(
         self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
@@ -312,7 +312,7 @@ class _Title(Word):
 
 
 class _Answer(Word):
-    """Apply or undo: the player's, and so amber."""
+    """Button that applies or undoes; amber, the player's colour."""
 
     def __init__(
         self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
@@ -320,7 +320,7 @@ class _Answer(Word):
         super().__init__(manager, box, label, on_press, size=TEXT)
 
     def tint(self) -> Colour:
-        """Amber, and ink as it comes into focus."""
+        """Colour of the button: amber, shifted to ink while in focus."""
         return mix(HUMAN, INK, self.warmth)
 
 

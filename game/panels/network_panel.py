@@ -1,4 +1,4 @@
-"""Inside a learner: its network, drawn live, small or large; and what it is paid for."""
+"""Network panel of a training run: the live network, small or large, and the parts of the reward."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ _LEFT: Final = 40.0
 
 
 class Inside:
-    """Two pictures in the panel, one shown at a time; the network also large, where the scene makes room for it.
+    """Panel that shows the network or the reward bar; the network also large, where the scene makes room for it.
 
     Attributes:
         large: whether the network is shown large.
-        health: what is wrong inside the network.
+        health: diagnosis of the network's units and numbers.
 
     """
 
@@ -61,13 +61,13 @@ class Inside:
         self.clear()
 
     def clear(self) -> None:
-        """Begin anew with another run."""
+        """Reset for another run."""
         self._network: NeuralNetwork | None = None
         self.health = NetworkHealth()
 
     @property
     def busy(self) -> bool:
-        """Whether the next frame draws a part of a new picture of the network."""
+        """Whether the next frame paints part of a new picture of the network."""
         return self._shows_network and self._view.busy
 
     @property
@@ -75,7 +75,7 @@ class Inside:
         return self.large or self._picture == _NETWORK
 
     def place(self, large: bool) -> list[Widget]:
-        """Show the network large, or small; returns the widgets that go with the large one, for the form."""
+        """Show the network large or small; return the large network's widgets, for the form."""
         self.large = large
         self._closer.label = texts.TRAIN_CLOSER_BACK if large else texts.TRAIN_CLOSER
         self._view.place(_LARGE if large else _SMALL)
@@ -88,12 +88,12 @@ class Inside:
                 Pointer(self._form.manager, _LARGE, self.follow)]  # fmt: skip
 
     def take(self, insight: Insight, config: Config) -> None:
-        """Look at the network as a run tells of it."""
+        """Show the network that a run reports."""
         if self._network is None or self._network.values.shape != insight.values.shape:
             self._network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
         network = self._network
         if network.values.shape != insight.values.shape:
-            return  # of a run that has just been replaced
+            return  # it belongs to a run that has just been replaced
         network.values = insight.values
         network.gradients[:] = insight.gradients
         self._view.output_scale = config.reward_scale
@@ -101,11 +101,11 @@ class Inside:
         self.health.look(network, insight.observation, config.gradient_clip)
 
     def pay(self, history: History) -> None:
-        """Show what the latest flights were paid for."""
+        """Show the reward of the latest flights, part by part."""
         self._strip.set(PARTS, history.parts[-1])
 
     def follow(self, event: pygame.event.Event) -> None:
-        """Follow the mouse, or what stands in for it: an event, its position in points."""
+        """Follow the mouse or the virtual pointer; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
             self._view.hover(event.pos if self._shows_network else None)
             self._strip.hover(None if self._shows_network and not self.large else event.pos)
@@ -115,12 +115,12 @@ class Inside:
         return not self.large and self._picture == _NETWORK and _SMALL.collidepoint(point)
 
     def update(self, at_once: bool) -> None:
-        """Let 1/60 s pass."""
+        """Advance by 1/60 s."""
         self._view.update(at_once=at_once)
         self._strip.update(at_once=at_once)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw what is shown in the panel, and the large network with its title beside it."""
+        """Draw the panel's picture, and the large network with its title beside it."""
         if self.large:
             canvas.text(texts.NET_TITLE, (_LEFT, 46), size=TITLE)
             canvas.text(texts.NET_LINES[self._view.show], (_LEFT, 70), size=SMALL, colour=MUTE)
@@ -131,7 +131,7 @@ class Inside:
 
     def _turn(self, index: int) -> None:
         self._picture = index
-        if self.large:  # it is asked for the network where that is small
+        if self.large:  # the heading asks for the network where that is small
             self._on_closer()
 
     def _show(self, index: int) -> None:

@@ -1,4 +1,4 @@
-"""Which units and links of a network are drawn, and how strongly. Arrays alone; no surfaces."""
+"""Plan of a network's drawing: which units and links are drawn, and how strongly. Arrays only, no surfaces."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ Show = Literal["weights", "activations", "gradients"]
 Indices = npt.NDArray[np.intp]
 Numbers = npt.NDArray[np.floating[Any]]
 
-_LOYALTY: Final = 2.0  # how much stronger a unit must be than one that is shown to take its place
-_MEMORY: Final = 0.95  # of how strongly a unit has answered, from one plan to the next
-_SILENT: Final = 0.1  # what a unit that never answers counts for, of one that answers like the average
-_FAINTEST: Final = 0.02  # of the largest link: what is smaller is not drawn
+_LOYALTY: Final = 2.0  # factor by which a unit must be stronger than a shown one to replace it
+_MEMORY: Final = 0.95  # decay of a unit's average activity from one plan to the next
+_SILENT: Final = 0.1  # weight of a unit that is never active, relative to one of average activity
+_FAINTEST: Final = 0.02  # share of the largest link, below which a link is not drawn
 
 
 @dataclass(frozen=True)
 class Column:
-    """One stage of units, as far as it is shown.
+    """The shown units of one layer.
 
     Attributes:
-        units: (k,) numbers of those that are shown, rising.
-        total: how many there are.
+        units: (k,) indices of the shown units, rising.
+        total: number of units in the layer.
         values: (k,) activations; NaN where unknown or damaged.
-        bias: (k,) or None for the inputs.
+        bias: (k,) biases; None for the inputs.
         damaged: (k,) whether any of a unit's numbers is not finite.
 
     """
@@ -44,27 +44,27 @@ class Column:
 
 @dataclass(frozen=True)
 class Edge:
-    """A link that is drawn, from a unit of `column` to one of the next, both by their place among the shown."""
+    """A drawn link from a unit of `column` to one of the next, both by their place among the shown units."""
 
     column: int
     start: int
     end: int
-    size: float  # 0 to 1, of the largest between these columns
+    size: float  # 0 to 1, relative to the largest between these columns
     positive: bool
 
 
 def steady_choice(strength: Numbers, most: int, before: Indices | None = None) -> Indices:
-    """Return the `most` strongest units, rising; those of `before` stay until another is much stronger."""
+    """Return indices of the `most` strongest units, rising; those of `before` stay until another is much stronger."""
     if len(strength) <= most:
         return np.arange(len(strength))
-    strength = np.nan_to_num(np.asarray(strength, float), nan=np.inf, posinf=np.inf)  # damage is to be seen
+    strength = np.nan_to_num(np.asarray(strength, float), nan=np.inf, posinf=np.inf)  # damaged units must be shown
     if before is not None and len(before) == most and before[-1] < len(strength):
         strength[before] *= _LOYALTY
     return np.sort(np.argsort(-strength, kind="stable")[:most])
 
 
 def strongest_edges(matrix: Numbers, column: int, most: int) -> list[Edge]:
-    """Return the `most` largest numbers of a matrix (starts, ends) as edges, the faintest first."""
+    """Return the `most` entries of a matrix (starts, ends) of largest magnitude as edges, the faintest first."""
     size = np.nan_to_num(np.abs(matrix).astype(float), nan=0.0, posinf=0.0).ravel()
     chosen = np.argsort(size, kind="stable")[-most:]
     largest = float(size[chosen[-1]]) if len(chosen) else 0.0
@@ -80,11 +80,10 @@ def strongest_edges(matrix: Numbers, column: int, most: int) -> list[Edge]:
 
 
 class Plan:
-    """A network at one moment, as far as it is shown: columns of units, and the numbers of the links between them.
+    """Snapshot of a network for drawing: columns of shown units, and the weights of the links between them.
 
-    At most `most` units of a stage are shown: those that most hangs on, by their weights and by how strongly they
-    have answered of late; the same ones as in the plan `before`, as far as that is fair.
-    Everything is copied: the network may change afterwards.
+    At most `most` units of a layer are shown: the most important by their weights and recent activity, with a
+    preference for those of the plan `before`. Everything is copied, so the network may change afterwards.
     """
 
     def __init__(
@@ -118,7 +117,7 @@ class Plan:
         for number, (weights, gradient) in enumerate(self._links):
             with np.errstate(all="ignore"):
                 if show == "gradients":
-                    matrix = -gradient  # the way in which learning moves the weight
+                    matrix = -gradient  # gradient descent moves the weight against the gradient
                 elif show == "activations":
                     matrix = weights * self.columns[number].values[:, None]
                 else:
@@ -127,12 +126,12 @@ class Plan:
         return sorted(found, key=lambda edge: edge.size)
 
     def best(self) -> int | None:
-        """Return the place of the output that is largest, if that is known."""
+        """Return the place of the largest output; None if the outputs are unknown."""
         values = self.columns[-1].values if self.columns else np.zeros(0)
         return int(np.nanargmax(values)) if len(values) > 1 and np.isfinite(values).any() else None
 
     def brightness(self, column: int) -> Numbers:
-        """Return how the units of a column are lit, (k,) in -1 to 1: outputs from the least to the greatest."""
+        """Return the brightness of a column's units, (k,) in -1 to 1; outputs are scaled from least to greatest."""
         values = self.columns[column].values
         finite = values[np.isfinite(values)]
         if not len(finite):
@@ -141,7 +140,7 @@ class Plan:
         if column == len(self.columns) - 1:
             span = float(np.ptp(finite))
             return np.clip((values - finite.min()) / span, 0.0, 1.0) if span > 0 else np.full(len(values), 0.5)
-        least = 1.0 if column == 0 else 1e-9  # observations are of order one; of a faint one not much is made
+        least = 1.0 if column == 0 else 1e-9  # observations are of order one; a faint one stays faint
         lit: Numbers = values / max(float(np.abs(finite).max()), least)
         return lit
 
@@ -149,10 +148,10 @@ class Plan:
 def _values(
     network: NeuralNetwork, observation: npt.ArrayLike | None, sizes: Sequence[int]
 ) -> tuple[list[Numbers], bool]:
-    """Return the values of each stage, and true; or NaN for all, and false, without a fitting observation."""
+    """Return each layer's values and True; without a fitting observation, NaN for all and False."""
     try:
         values = [] if observation is None else traces(network, observation)
-    except ValueError:  # it is of another shape
+    except ValueError:  # the observation has another shape
         values = []
     if sizes and [np.shape(each) for each in values] == [(size,) for size in sizes]:
         return values, True
@@ -160,7 +159,7 @@ def _values(
 
 
 def _strength(found: Sequence[Link], stage: int) -> Numbers:
-    """Return how much hangs on each unit of a stage: the norms of what leads to it and away from it, multiplied."""
+    """Return the importance of each unit of a layer: the product of the norms of its incoming and outgoing weights."""
     with np.errstate(all="ignore"):
         away = np.linalg.norm(found[stage].weights, axis=1) if stage < len(found) else 1.0
         to = np.linalg.norm(found[stage - 1].weights, axis=0) + 0 * found[stage - 1].bias if stage else 1.0
@@ -169,7 +168,7 @@ def _strength(found: Sequence[Link], stage: int) -> Numbers:
 
 
 def _liveliness(activity: Numbers) -> Numbers:
-    """Return how much units have had to say, about 1 on average: of those that are silent little is to be seen."""
+    """Return the units' activity relative to the average, so that inactive units count for little."""
     average = float(activity.mean())
     lively: Numbers = activity / average + _SILENT if average > 0 else np.ones(len(activity))
     return lively

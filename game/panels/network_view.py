@@ -1,8 +1,8 @@
-"""A network, drawn: its units in columns, the strongest links between them, and what runs along these now.
+"""Drawing of a network: its units in columns, the strongest links between them, and pulses along the links.
 
-Blue adds and orange takes away, told apart by eyes of every kind. What is drawn is kept on two sheets, one of
-light and one of signs, until the numbers change; then new ones are drawn a few edges a step, and take their
-place when they are done. Only the pulses of learning are drawn every frame.
+Blue adds and orange takes away, two colours that colour-blind eyes tell apart too. The drawing is cached on two
+sheets, one of light and one of signs, until the numbers change; then new sheets are painted, a few edges a step, and
+replace the old ones when finished. Only the pulses of learning are drawn every frame.
 """
 
 from __future__ import annotations
@@ -24,38 +24,38 @@ from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
 from game.panels.network_plan import Column, Edge, Plan, Show
 
-Sheets = tuple[Canvas, Canvas]  # of light, to be added, and of signs above it
+Sheets = tuple[Canvas, Canvas]  # additive light, and the signs above it
 
 ADDS: Final = NET
 TAKES: Final = EMBER
 
-_LARGE: Final = 300.0  # points of height, from which on there is room for values beside the names
+_LARGE: Final = 300.0  # points of height from which there is room for values beside the names
 _PITCH: Final = 13.0  # points between units, at least
 _MOST_UNITS: Final = 24  # in a column
 _MARGIN: Final = 8.0  # of the sheets around the box
 _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
 _FLOW: Final = 1 / 90  # of an edge that a pulse travels in a sixtieth of a second
 _MOST_PULSES: Final = 26
-_GOLDEN: Final = 0.618034  # pulses begin as far from each other as can be
+_GOLDEN: Final = 0.618034  # golden ratio: spreads the pulses' starts as evenly as possible
 _CHUNK: Final = 9_000.0  # pixels of edges drawn in one step: about a millisecond
 _GLOWING: Final = 0.55  # units lit more than this shine on what is around them
 
 
 class NetView:
-    """The drawing in a box of points, of any size. `inputs` and `outputs` name what goes in and comes out."""
+    """View of a network in a box of any size, in points. `inputs` and `outputs` are the names of its ends."""
 
     def __init__(self, box: pygame.typing.RectLike, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> None:
         self.box = pygame.FRect(box)
         self.inputs, self.outputs = tuple(inputs), tuple(outputs)
-        self.output_scale = 1.0  # what a point of reward is in the unit of the network's outputs
+        self.output_scale = 1.0  # one point of reward, in units of the network's outputs
         self.plan: Plan | None = None
         self.edges: list[Edge] = []
-        self.redraws = 0  # how often the sheets were drawn
+        self.redraws = 0  # number of times that the sheets were painted
         self._show: Show = "weights"
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
         self._hovered: tuple[int, int] | None = None
         self._centres: list[list[Point]] = []  # of all units that are shown, in points
-        self._canvas: Canvas | None = None  # that the sheets are for
+        self._canvas: Canvas | None = None  # for which the sheets were painted
         self._sheets: Sheets | None = None
         self._spare: Sheets | None = None
         self._painting: Generator[None, None, Sheets] | None = None
@@ -67,12 +67,12 @@ class NetView:
 
     @property
     def columns(self) -> list[Column]:
-        """The stages of the network, as far as they are shown."""
+        """The shown columns of the network, one per layer."""
         return self.plan.columns if self.plan else []
 
     @property
     def show(self) -> Show:
-        """What the edges stand for: "weights", "activations" or "gradients"."""
+        """Quantity that the edges show: "weights", "activations" or "gradients"."""
         return self._show
 
     @show.setter
@@ -83,7 +83,7 @@ class NetView:
             self._due = True
 
     def set(self, network: NeuralNetwork, observation: npt.ArrayLike | None = None) -> None:
-        """Show a network as it is now, and what it makes of an observation (inputs,), as the network takes it."""
+        """Show a network's current state, and its activations for an observation (inputs,) already normalised."""
         self._given = network, observation
         self.plan = Plan(network, observation, self._most_units, self.plan)
         self._centres = self._lay_out()
@@ -109,7 +109,7 @@ class NetView:
         self.edges = self.plan.edges(self._show, most) if self.plan else []
 
     def hover(self, point: Point | None) -> None:
-        """Let the unit under a point of the canvas stand out; None for none."""
+        """Highlight the unit under a point of the canvas; None for none."""
         hovered = self.unit_at(point) if point else None
         if hovered != self._hovered:
             self._hovered = hovered
@@ -127,22 +127,22 @@ class NetView:
         return [(number, place) for number, column in enumerate(self._centres) for place in range(len(column))]
 
     def name(self, number: int, place: int) -> str:
-        """Return what a unit is called, given its column and its place in it."""
+        """Return the name of a unit, given its column and its place in it."""
         unit = int(self.columns[number].units[place])
         names = self._names(number)
         return names[unit] if unit < len(names) else texts.NET_UNIT.format(layer=number, unit=unit + 1)
 
     def _unit(self, number: int) -> float:
-        """What the numbers of a column's units are divided by to be shown: outputs are shown in points of reward."""
+        """Return the divisor for a column's displayed values; outputs are shown in points of reward."""
         return self.output_scale if number == len(self.columns) - 1 else 1.0
 
     def _names(self, number: int) -> tuple[str, ...]:
         return self.inputs if number == 0 else self.outputs if number == len(self.columns) - 1 else ()
 
     def update(self, at_once: bool = False) -> None:
-        """Let 1/60 s pass: pulses travel, or with motion reduced, `at_once`, are left to the edges' brightness.
+        """Advance by 1/60 s: pulses travel. With reduced motion, `at_once`, only the edges' brightness shows them.
 
-        If new sheets are due, a part of them is drawn.
+        If new sheets are due, part of them is painted.
         """
         self._rested += 1
         self._still = at_once
@@ -160,7 +160,7 @@ class NetView:
 
     @property
     def busy(self) -> bool:
-        """Whether the next step draws a part of new sheets, or is to begin that."""
+        """Whether the next step paints part of new sheets, or begins to."""
         return self._due or self._painting is not None
 
     # Where things are, in points
@@ -171,7 +171,7 @@ class NetView:
 
     @property
     def _foot(self) -> float:
-        """Room for the legend and the numbers of units."""
+        """Height for the legend and the unit counts, in points."""
         return 36.0 if self._large else 18.0
 
     @property
@@ -180,7 +180,7 @@ class NetView:
 
     @property
     def _sides(self) -> tuple[float, float]:
-        """Room for the names on the left and on the right."""
+        """Width for the names on the left and on the right, in points."""
         size = self._name_size
         left, right = (
             max((typeface.width(name, size, "regular") + 10 for name in names), default=4.0)
@@ -194,7 +194,7 @@ class NetView:
         return min(max(0.24 * (self.box.height - self._foot) / crowd, 2.0), 7.0)
 
     def _lay_out(self) -> list[list[Point]]:
-        """Return where the units of each column stand."""
+        """Return the places of each column's units, in points."""
         (left, right), box, radius = self._sides, self.box, self._radius
         across = (box.width - left - right - 2 * radius) / max(len(self.columns) - 1, 1)
         high = box.height - self._foot - 2 * radius - 4
@@ -234,7 +234,7 @@ class NetView:
         return light, signs
 
     def _paint(self, canvas: Canvas) -> Generator[None, None, Sheets]:
-        """Draw the network as it is now onto new sheets, in parts, and return them."""
+        """Paint the current network onto new sheets, in parts, and return them."""
         self.redraws += 1
         light, signs = self._blank(canvas)
         plan, edges, hovered = self.plan, self.edges, self._hovered
@@ -299,7 +299,7 @@ class NetView:
     def _paint_names(
         self, signs: Canvas, number: int, column: Column, centres: Sequence[Point], best: int | None
     ) -> None:
-        """Write names beside the units, in a large drawing with their values, and below how many there are."""
+        """Write names beside the units (with values, in a large drawing), and the unit counts below."""
         names, size = self._names(number), self._name_size
         values = self._large and bool(np.isfinite(column.values).any())
         side = self._radius + 6
@@ -331,7 +331,7 @@ class NetView:
         signs.pill((word.left - 13, y - 5, 9, 2), TAKES)
 
     def _draw_pulses(self, canvas: Canvas) -> None:
-        """Let light run backwards along the edges that learning moves most."""
+        """Draw pulses that run backwards along the edges with the largest gradients."""
         radius = max(1.4, 0.4 * self._radius)
         for number, edge in enumerate(self.edges[-_MOST_PULSES:]):
             along = (self._phase * (1.0, 1.5, 1.0)[number % 3] + _GOLDEN * number) % 1.0
@@ -354,7 +354,7 @@ class NetView:
 
 
 def _all_of(painting: Generator[None, None, Sheets]) -> Sheets:
-    """Draw all parts at once."""
+    """Paint all parts at once."""
     while True:
         try:
             next(painting)
@@ -368,6 +368,6 @@ def _figure(value: float) -> str:
 
 
 def _dimmed(colour: Colour, strength: float) -> Colour:
-    """Return a colour as light to be added."""
+    """Return a colour dimmed to `strength`, for additive blending."""
     red, green, blue = (round(min(max(strength, 0.0), 1.0) * part) for part in colour)
     return red, green, blue

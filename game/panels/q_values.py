@@ -1,4 +1,4 @@
-"""The value of each action in points of reward: the same picture wherever a network's decision is shown."""
+"""Q-value panel: the value of each action in points of reward, drawn alike wherever a decision is shown."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _BAR: Final = 3.0
 
 @dataclass(frozen=True)
 class QValues:
-    """What the picture shows of one decision of one lander.
+    """Q-values of one decision of one lander, in points of reward.
 
     Attributes:
-        points: what each action is worth, in points of reward.
+        points: value of each action, in points of reward.
         flown: the action that is flown.
-        asked: what the pilot asked for; None where nobody did.
-        feasible: which actions the pilot could have had.
-        allowed: how many points below the best an action may be to be feasible; None where that is not the rule.
+        asked: the action that the pilot asked for; None without a pilot.
+        feasible: the actions that the co-pilot would have let the pilot fly.
+        allowed: largest loss of a feasible action, in points below the best; None where another rule holds.
 
     """
 
@@ -49,7 +49,7 @@ class QValues:
 
     @classmethod
     def of(cls, decision: Decision) -> QValues | None:
-        """Return what there is to show of one lander's decision; None if it weighed nothing up."""
+        """Return the Q-values of one lander's decision; None if it has none (a scripted pilot)."""
         if decision.points is None:
             return None
         return cls(tuple(decision.points[0].tolist()), int(decision.action[0]))
@@ -61,15 +61,15 @@ class QValues:
 
     @property
     def readable(self) -> bool:
-        """Whether all values are numbers."""
+        """Whether all values are finite."""
         return all(map(math.isfinite, self.points))
 
     def loss(self, action: int) -> float:
-        """How many points less than the best an action is worth."""
+        """Return the loss of an action: its value below the best, in points."""
         return self.expected - self.points[action]
 
     def fraction(self, loss: float) -> float:
-        """How long a bar is, 0 to 1, for so many points less than the best."""
+        """Return the length of a bar, 0 to 1, for a loss in points."""
         return min(max(1.0 - loss / SPAN, 0.0), 1.0) if math.isfinite(loss) else 0.0
 
 
@@ -89,7 +89,7 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
 
 
 def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
-    """Draw which action is flown, where nothing is known of what they are worth; `top` is the first baseline."""
+    """Draw which action is flown, for a pilot without Q-values; `top` is the first baseline."""
     for action, name in enumerate(ACTION_NAMES):
         y, here = top + _ROW * action, action == flown
         canvas.text(name, (left, y), size=SMALL, colour=INK if here else MUTE, room=_NAME - 20)
@@ -131,7 +131,7 @@ def _draw_axis(canvas: Canvas, left: float, y: float, width: float) -> None:
 
 
 def decision_words(decision: Decision) -> Sequence[str]:
-    """Say in two lines why one lander's action is flown, by a network that decides alone."""
+    """Explain in two lines why a network that decides alone flies one lander's action."""
     if decision.points is None:
         return texts.Q_WEIGHS_NOTHING
     if not np.isfinite(decision.points).all():
@@ -143,12 +143,12 @@ def decision_words(decision: Decision) -> Sequence[str]:
 
 
 def signed(points: float) -> str:
-    """Write points of reward with their sign; a dash for what is not a number."""
+    """Format points of reward with their sign; a dash if not finite."""
     return f"{points:+.1f}".replace("-", "−") if math.isfinite(points) else "–"
 
 
 def behind(loss: float) -> str:
-    """Write how many points less than the best an action is worth, in as many digits as tell it from nothing."""
+    """Format the loss of an action, in as many digits as tell it from zero."""
     if not math.isfinite(loss):
         return "–"
     figure = f"{loss:.{1 if loss >= 0.95 else 2}f}"

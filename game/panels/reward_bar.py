@@ -1,4 +1,4 @@
-"""What the agent is paid for: one strip, in which every part of the reward has its place and its colour."""
+"""Reward bar: the parts of a flight's reward side by side, each with its own place and colour."""
 
 from __future__ import annotations
 
@@ -35,15 +35,15 @@ _BAR_TOP: Final = 25.0
 _BAR_HEIGHT: Final = 13.0
 _NAMES: Final = 55.0  # baseline, from the top of the box
 _EASE: Final = 0.15
-_NEAR: Final = 1e-3  # of the width: so close, a part is there
-_LEAST: Final = 0.5  # points: what is narrower is not drawn
-_FADED: Final = 0.35  # how much is left of the others while one part is looked at
+_NEAR: Final = 1e-3  # share of the width within which a part has arrived
+_LEAST: Final = 0.5  # points below which a part is not drawn
+_FADED: Final = 0.35  # strength of the other parts while one is hovered
 _MARGIN: Final = 6.0  # of the sheet around the box
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A part's place in the strip, in points."""
+    """Place of a part in the bar, in points."""
 
     name: str
     value: float
@@ -53,9 +53,9 @@ class Piece:
 
 
 class Strip:
-    """Parts of the reward side by side: what was paid to the right of zero, what was charged to the left.
+    """Bar of the reward's parts: positive parts to the right of zero, negative ones to the left.
 
-    A mark stands at the sum. The mouse tells what a part is.
+    A mark stands at the sum. Hovering a part explains it.
     """
 
     def __init__(self, box: pygame.typing.RectLike, label: str = texts.STRIP_LABEL) -> None:
@@ -71,7 +71,7 @@ class Strip:
         self.redraws = 0
 
     def set(self, names: Sequence[str], values: npt.ArrayLike) -> None:
-        """Show what each part has paid, per flight; a part whose value is not finite counts as 0."""
+        """Set the reward of each part, per flight; a value that is not finite counts as 0."""
         numbers = np.nan_to_num(np.array(values, float).ravel(), nan=0.0, posinf=0.0, neginf=0.0)
         names = tuple(names)[: len(numbers)]
         numbers = numbers[: len(names)]
@@ -84,11 +84,11 @@ class Strip:
             self._arrive()
 
     def hover(self, point: Point | None) -> None:
-        """Follow the mouse, a point of the canvas; None for none."""
+        """Highlight the part under a point of the canvas; None for none."""
         self._pointer = point
 
     def update(self, at_once: bool = False) -> None:
-        """Let 1/60 s pass: the parts ease towards their values, or are there `at_once`."""
+        """Advance by 1/60 s: the parts ease towards their values, or take them `at_once`."""
         if at_once:
             self._arrive()
         self._shown = self._shown + (self._values - self._shown) * _EASE
@@ -110,7 +110,7 @@ class Strip:
         return float(self.box.x + self.box.width * (value - low) / (high - low))
 
     def pieces(self) -> list[Piece]:
-        """Return the parts where they lie now: outwards from zero, always in the same order."""
+        """Return the parts at their current places: outwards from zero, always in the same order."""
         sums = {False: 0.0, True: 0.0}
         pieces = []
         for number, (name, value) in enumerate(zip(self.names, self._shown.tolist(), strict=True)):
@@ -129,7 +129,7 @@ class Strip:
         return next((piece for piece in near if piece.left <= point[0] < piece.right), None)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the strip."""
+        """Draw the bar."""
         pieces = self.pieces()
         hovered = self.piece_at(self._pointer) if self._pointer else None
         wanted = (pieces, hovered and hovered.name, canvas.scale)
@@ -185,7 +185,7 @@ class Strip:
 
 
 def signed(value: float) -> str:
-    """Write a sum of rewards with its sign and without fractions that nobody asks for."""
+    """Format a sum of rewards with its sign and no needless decimals."""
     if not math.isfinite(value):
         return "–"
     if abs(value) >= 1e4:

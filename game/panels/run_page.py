@@ -1,4 +1,4 @@
-"""A run that was kept, in words and figures: its row in a list, and all that is said of it beside that."""
+"""Description of a saved run: its row in a list, and its page of details."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from game.ui.listing import shortened
 
 
 def row(run: SavedRun, own: bool) -> tuple[str, str, str, str]:
-    """Return the name of a run, how often it lands, what it has learnt from, and when it was saved."""
+    """Return the row of a run: name, landing rate, decisions learnt from, and date saved."""
     saved = time.strftime("%Y-%m-%d", time.localtime(run.saved)) if own else texts.RUNS_SHIPPED
     if run.problem:
         return run.name, "–", "–", saved
@@ -20,7 +20,7 @@ def row(run: SavedRun, own: bool) -> tuple[str, str, str, str]:
 
 
 def suggestion(library: Library, run: SavedRun) -> str:
-    """Name a run by its figures: for those who have no keys to write with."""
+    """Suggest a name from a run's figures, for players without a keyboard."""
     if run.problem:
         return library.free_name(run.name)
     count = "".join(_count(run.decisions))
@@ -29,7 +29,7 @@ def suggestion(library: Library, run: SavedRun) -> str:
 
 
 def draw_run(canvas: Canvas, run: SavedRun, left: float, width: float, *, own: bool, named: bool, flies: bool) -> None:
-    """Draw all that is said of a run; its name only if `named`, for there it may be changed."""
+    """Draw the details of a run; its name only if `named`, as an entry to rename it may stand there."""
     if named:
         canvas.text(shortened(canvas, run.name, TITLE, width), (left, 165), size=TITLE)
     y = 222 if run.problem else 294

@@ -1,4 +1,4 @@
-"""How a training run stands, in words and one large figure: the same for landers and digits."""
+"""Status of a training run, in words and one large figure; shared by landers and digits."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _LEADING: Final = 17.0
 
 
 def start_word(state: State | None) -> str:
-    """What the word is that starts a run, lets it rest, and lets it go on."""
+    """Return the label of the button that starts, pauses and resumes a run."""
     if state in (State.RUNNING, State.STARTING):
         return texts.TRAIN_PAUSE
     return texts.TRAIN_RESUME if state is State.PAUSED else texts.TRAIN_START
 
 
 def rate_colour(palette: Palette, percent: float) -> Colour:
-    """Return the colour of a rate of success: that of success only where most attempts do succeed."""
+    """Return the colour of a success rate; the colour of success only where most attempts succeed."""
     return palette.good if percent > 50 else INK
 
 

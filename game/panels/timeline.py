@@ -1,4 +1,4 @@
-"""The time of a flight as a strip: who flew when, which engines burnt, and the moment that is shown."""
+"""Timeline of a replay: who flew when, which engines fired, and the moment that is shown."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _LABELS: Final = 84.0  # room for the lanes' names
 _LANE: Final = 15.0  # points from one lane to the next
 _BAR: Final = 3.0
 _TOP: Final = 6.0  # of the strip, from the upper edge
-_STEP: Final = 6  # physics steps that an arrow moves by
+_STEP: Final = 6  # physics steps per press of an arrow key
 _LIT: Final = mix(MUTE, INK, 0.5)
 _COLOURS: Final = {Hand.HUMAN: HUMAN, Hand.NETWORK: NET}
 
 
 class Timeline(Widget):
-    """Lanes of a flight's actions (steps,) and whose they were. `on_seek` hears of the step that is wanted."""
+    """Lanes of a flight's actions (steps,) and who flew them; `on_seek` is called with the step to show."""
 
     def __init__(
         self,
@@ -47,24 +47,24 @@ class Timeline(Widget):
         self._lanes = [[(start, stop, _LIT) for start, stop, on in runs(lane) if on] for lane in lit]
 
     def press(self) -> Transition | None:
-        """Stop, or go on; the mouse only winds."""
+        """Pause or resume; the mouse only seeks."""
         if self.ringed:
             self._on_press()
         return None
 
     def shift(self, direction: int) -> bool:
-        """Wind a tenth of a second."""
+        """Seek a tenth of a second."""
         self._on_seek(self.at + _STEP * direction)
         return True
 
     def drag(self, x: float) -> None:
-        """Follow the mouse."""
+        """Seek to the mouse."""
         left, width = self._track
         self._on_seek(round(self.length * (x - left) / width))
 
     @property
     def _track(self) -> tuple[float, float]:
-        """Left end and width."""
+        """Left end and width of the strip, in points."""
         return self.box.left + _LABELS, self.box.width - _LABELS
 
     def _place(self, step: float) -> float:
@@ -77,14 +77,14 @@ class Timeline(Widget):
         (left, width), top = self._track, self.box.top + _TOP
         self._still.draw(canvas, self.box, tuple(self.box), self._paint_runs)
         far = self._place(self.reached)
-        if far < left + width - 1:  # what has not been looked at yet
+        if far < left + width - 1:  # the part that is not computed yet
             canvas.fill(canvas.rect(far, top - 1, left + width - far, _BAR + 2), LINE, 0.7)
         x = self._place(self.at)
         canvas.line((x, top - 5), (x, top + 12 + 2 * _LANE + 5), INK, 1)
         canvas.dot((x, top + 1.5), 4.5 + self.warmth, INK)
 
     def _paint_runs(self, canvas: Canvas) -> None:
-        """Draw what was flown: the same until the end, and many stretches of it."""
+        """Draw the lanes, which stay the same until the end; they can have many stretches."""
         left, width = _LABELS, self._track[1]
 
         def lay(stretches: Sequence[tuple[int, int, Colour]], top: float) -> None:
@@ -102,7 +102,7 @@ class Timeline(Widget):
 
 
 def runs(values: Iterable[V]) -> list[tuple[int, int, V]]:
-    """Return where each stretch of equal values begins and ends, and the value."""
+    """Return the start, end and value of each run of equal values (run-length encoding)."""
     found, start = [], 0
     for value, same in groupby(values):
         stop = start + len(list(same))

@@ -1,4 +1,4 @@
-"""The charts of a run, with other runs beside it; a marker on them chooses one of its checkpoints."""
+"""Training charts of a run, with other runs for comparison; a marker chooses one of its checkpoints."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from game.drawing.canvas import Canvas
 from game.training.dials import told
 from game.training.training_run import Beside
 
-_TURNS: Final = 12  # in which the charts look at the history, one in every other: no frame has all of it
-_TOGETHER: Final = 0.5  # seconds in which several knobs that are turned share one mark: a preset turns many
+_TURNS: Final = 12  # frames in a round: in every second one, one chart reads the history, which spreads the load
+_TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
 _LEGEND: Final = (40.0, 450.0)
@@ -39,8 +39,8 @@ class Board:
     """Six charts over one axis: seconds, decisions, or each run from its beginning to its end.
 
     Attributes:
-        chosen: the checkpoint under the marker, if there is one.
-        axis: which of texts.TRAIN_AXES.
+        chosen: the checkpoint under the marker; None without one.
+        axis: index into `texts.TRAIN_AXES`.
 
     """
 
@@ -55,14 +55,14 @@ class Board:
         self.clear()
 
     def clear(self) -> None:
-        """Begin anew with another run, or with others beside it."""
+        """Reset for another run, or for other runs beside it."""
         self.chosen: Checkpoint | None = None
         self.charts.mark(None)
-        self._told = [-1] * len(_CHARTS)  # points of the history that each chart has
+        self._told = [-1] * len(_CHARTS)  # points of the history shown in each chart
         self._legend: list[Series] = []
 
     def measure_by(self, axis: int) -> None:
-        """Measure the charts by another axis."""
+        """Switch the charts to another horizontal axis."""
         self.axis = axis
         for chart in self.charts.charts:
             chart.read_x = texts.TRAIN_AXIS[axis].format
@@ -70,7 +70,7 @@ class Board:
         self._mark()
 
     def look(self, history: History, beside: Sequence[Beside[History]]) -> None:
-        """Take what is new in the run that goes on, with those beside it; call it once a frame."""
+        """Read new points of the current run and of those beside it; call it once a frame."""
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
         self._history, points = history, len(history)
@@ -93,7 +93,7 @@ class Board:
         return Series(x, _shown(run, name), beside.name, colour, dash, smooth=name not in _STEPPED)
 
     def _place(self, seconds: float) -> float:
-        """Where a moment of the run that goes on stands on the axis."""
+        """Return the place of a moment of the current run on the axis."""
         history = self._history
         if self.axis == 0 or not len(history):
             return seconds
@@ -107,7 +107,7 @@ class Board:
             self.charts.mark(self._place(self.chosen.seconds), caption)
 
     def choose(self, place: float | int, checkpoints: Sequence[Checkpoint]) -> None:
-        """Choose the checkpoint at a place on the axis, or one further left or right for a whole -1 or 1."""
+        """Choose the checkpoint at a place on the axis (float), or the one to the left or right (int -1 or 1)."""
         if not checkpoints:
             return
         if isinstance(place, int):
@@ -121,21 +121,21 @@ class Board:
         self._mark()
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the charts, and which line is which."""
+        """Draw the charts and their legend."""
         if self._legend:
             draw_legend(canvas, self._legend, _LEGEND)
         self.charts.draw(canvas)
 
 
 def _shown(run: History, name: str) -> Doubles:
-    """Return a column as a chart shows it: shares in percent, values in points of reward."""
+    """Return a column in the unit of its chart: shares in percent, values in points of reward."""
     if name == "mean_q":
         return in_points(run[name], run.reward_scale)
     return 100.0 * run[name] if name == "success" else run[name]
 
 
 def _ticks(history: History) -> list[Tick]:
-    """Return the moments worth a mark: checkpoints, and knobs that were turned."""
+    """Return the marks on the axis: checkpoints and changed knobs."""
     ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds)) for each in history.checkpoints]
     if history.alterations and len(history):
         when = np.interp([each.decisions for each in history.alterations], history["decisions"], history["seconds"])
@@ -149,7 +149,7 @@ def _ticks(history: History) -> list[Tick]:
 
 
 def _listed(words: Sequence[str]) -> str:
-    """Name what was turned in one moment: as much as there is room for."""
+    """List the knobs changed at one moment, as many as there is room for."""
     few = ", ".join(words[:_FEW])
     return few if len(words) <= _FEW else texts.TRAIN_TURNED_MORE.format(few=few, count=len(words) - _FEW)
 
