@@ -1,1 +1,1 @@
-"""What is shown over a flight: read-outs, cards, and how the stick is shared."""
+"""Cockpit: read-outs and cards over a flight, and the display of shared control with the co-pilot."""

@@ -1,4 +1,4 @@
-"""The dial: a line from you to the network, turned by keys, wheel, drag or a pad's stick, and who flies above it."""
+"""Assist dial: a slider from player to network (keys, wheel, drag or gamepad), with who flies written above."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from game.input.controls import Command, translate
 _MIDDLE: Final = VIEW_SIZE[0] / 2
 _TRACK: Final = (_MIDDLE - 90, _MIDDLE + 90)
 _LINE: Final = 59.0
-_HOLD: Final = pygame.Rect(_TRACK[0] - 14, _LINE - 12, 208, 24)  # where the mouse takes hold of the handle
+_HOLD: Final = pygame.Rect(_TRACK[0] - 14, _LINE - 12, 208, 24)  # where the mouse can grab the handle
 _KEY_STEP: Final = 0.1
 _WHEEL_STEP: Final = 0.05
 _EASE: Final = 0.2
 
 
 class Dial:
-    """Shows and turns `settings.assist`; the handle goes to the network's end while that has the stick."""
+    """Dial for `settings.assist`; the handle moves to the network's end while the network has the stick."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
@@ -32,7 +32,7 @@ class Dial:
         self._dragged = False
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Turn with an event, the mouse's in points; whether it was meant for the dial."""
+        """Turn the dial by an event, a mouse's in points; return whether the event was meant for it."""
         match event.type:
             case pygame.MOUSEWHEEL:
                 self._turn(self._settings.assist + _WHEEL_STEP * event.y)
@@ -51,14 +51,14 @@ class Dial:
         return True
 
     def follow(self, stick: Stick) -> None:
-        """Let 1/60 s pass for the handle, which stands at what acts: nothing, where nobody can share the stick."""
+        """Advance the handle by 1/60 s towards the assist in force, which is 0 where the stick can't be shared."""
         assist = self._settings.assist if stick is Stick.BOTH else 0.0
         wanted = 1.0 if stick is Stick.NETWORK else assist
         at_once = self._settings.reduced_motion or self._dragged
         self._shown += (1.0 if at_once else _EASE) * (wanted - self._shown)
 
     def draw(self, canvas: Canvas, text: str, stick: Stick, lamp: tuple[Shape, Colour, float]) -> None:
-        """Write who flies, behind a lamp of that shape, colour and glow, and draw the line."""
+        """Write who flies, after a lamp of that shape, colour and glow, and draw the slider."""
         draw_title(canvas, text, lamp)
         left, right = _TRACK
         for word, x, align in zip(texts.DIAL_ENDS, (left - 10, right + 10), ("right", "left"), strict=True):

@@ -1,4 +1,4 @@
-"""Everything of the co-pilot that is seen in a flight, in one place for the scene that flies it."""
+"""Co-pilot displays of a flight, gathered for the scene that flies it: dial, panel, callouts, card."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from game.world.camera import Clear, View
 
 MODES: Final = ("tolerance", "guardian")
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
-_CARD_LEFT: Final = float(MARGIN)  # where else a card may stand, to leave the path in sight
+_CARD_LEFT: Final = float(MARGIN)  # the other place of a card, where the path would be hidden
 _CARD_RIGHT: Final = float(VIEW_SIZE[0] - MARGIN - CARD.width)
 
 
 class Cockpit:
-    """Of one flight; `help` before every step of it, `follow` after.
+    """Cockpit of one flight; call `help` before every step, `follow` after it.
 
-    Where `credit` says that nobody may help, the dial is out of reach.
+    Where `credit` allows no help, the dial is disabled.
     """
 
     def __init__(self, flight: Flight, settings: Settings, credit: Credit) -> None:
@@ -50,7 +50,7 @@ class Cockpit:
         self.help()
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Turn the dial, or change when the co-pilot steps in; whether the event meant that."""
+        """Turn the dial, or switch the co-pilot's mode; return whether the event meant that."""
         if self.credit.alone or not self._flight.shares:
             return False
         if translate(event) is Command.MODE:
@@ -59,18 +59,18 @@ class Cockpit:
         return self._dial.take(event)
 
     def help(self) -> None:
-        """Let the co-pilot help as the dial says."""
+        """Set the co-pilot's assist for the next step from the dial."""
         self._flight.help(0.0 if self.credit.alone else self._settings.assist, self._settings.copilot)
 
     def follow(self) -> None:
-        """Note the step just flown."""
+        """Update the displays after a step."""
         stepped_in = self.overrides.follow(self._flight)
         self.track.follow(self._flight, stepped_in)
         self._insight.follow(self._flight)
         self.credit.follow()
 
     def keep_lesson(self, folder: Path, hands: str) -> str:
-        """Keep a flight that is over as an example, if wished and worth it; return what to tell the player of that."""
+        """Save a finished flight as a demonstration, if wished and good enough; return a message for the player."""
         flight = self._flight
         if not (flight.outcome is Outcome.LANDED and self._settings.teach and hands == OWN):
             return ""
@@ -80,7 +80,7 @@ class Cockpit:
             return texts.NOT_TAUGHT.format(reason=error)
 
     def card(self, best: int, view: View) -> Card:
-        """Return the card of the flight, which is over; `best` is the score to beat without help."""
+        """Return the outcome card of the finished flight; `best` is the score to beat without help."""
         credit, card = self.credit, outcome_card(self._flight.env, self._flight.share)
         card = replace(card, score=credit.score(best), reason=credit.reason(card.reason))
         if not credit.helped:
@@ -89,12 +89,12 @@ class Cockpit:
         return replace(card, stepped_in=self.overrides.times, left=left)
 
     def ease(self) -> None:
-        """Let 1/60 s pass, whether or not anything flies."""
+        """Advance animations by 1/60 s, whether or not anything flies."""
         self._dial.follow(self.credit.stick)
 
     @property
     def clear(self) -> Clear:
-        """Where on the screen the flight is to be seen, beside the panel that explains it."""
+        """The part of the screen for the flight, beside the panel that explains it."""
         return Clear(right=PANEL.left - 16.0) if self._explains else Clear()
 
     @property
@@ -102,24 +102,24 @@ class Cockpit:
         return self._settings.explain and self._insight.shown and not self._flight.over
 
     def draw_panel(self, canvas: Canvas, view: View, pose: Doubles) -> None:
-        """Draw what explains the flight; it gives way to a craft that flies where it stands."""
+        """Draw the panel that explains the flight; hide it while the craft flies behind it."""
         if self._explains and not self._meets(view, pose):
             self._insight.draw(canvas, self._flight.share)
 
     def _meets(self, view: View, pose: Doubles) -> bool:
-        """Whether the craft is where the panel stands: only where the camera can't keep it clear."""
+        """Return whether the craft is behind the panel, which happens only where the camera can't keep it clear."""
         around = 2 * _CRAFT * view.pixels_per_metre / view.scale
         lower = PADS_HIGH if len(self._flight.env.ground.pads) > 1 else 0
         panel = pygame.Rect(PANEL.topleft, (PANEL.width, PANEL.height + lower))
         return bool(panel.inflate(around, around).collidepoint(view.points(pose[:2]).tolist()))
 
     def draw_beside(self, canvas: Canvas, view: View, pose: Doubles) -> None:
-        """Draw what was changed of what the hands asked for."""
+        """Draw the override beside the craft: the difference between the action asked for and the one flown."""
         if not self._flight.over:
             self.overrides.draw_word(canvas, view, pose, self.clear)
 
     def draw_top(self, canvas: Canvas) -> None:
-        """Say who flies, and who flew just now."""
+        """Draw who flies, and the line of who flew in the last seconds."""
         flight, credit = self._flight, self.credit
         lamp = self.overrides.lamp(flight)
         if flight.shares and not credit.alone:

@@ -1,4 +1,4 @@
-"""The panel that explains a shared step: what each action is worth, which were good enough, and whose it became."""
+"""Co-pilot panel: the Q-values of a shared decision, the feasible actions, and whose action is flown."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ if TYPE_CHECKING:
     from ai.copilot.copilot import SharedDecision
 
 PANEL: Final = pygame.Rect(VIEW_SIZE[0] - 36 - 280, 84, 280, 388)
-PADS_HIGH: Final = 102  # what the rows of three pads add
-_LEFT: Final = 20  # of what stands on the panel, from its corner
+PADS_HIGH: Final = 102  # extra height for the rows of three pads
+_LEFT: Final = 20  # left edge of the content, from the panel's corner
 _WIDTH: Final = PANEL.width - 40
-_VALUES: Final = 62  # the first line of the values, from its top
+_VALUES: Final = 62  # first baseline of the values, from the panel's top
 _WHY: Final = _VALUES + int(HEIGHT) + 20
 _PADS: Final = _WHY + 114  # the first pad's row
 _PAD_BAR: Final = (_LEFT + 96, _WIDTH - 96)
-_STAYS: Final = 50  # steps that the word on an override is kept, to be read
+_STAYS: Final = 50  # steps that the message on an override stays, to be read
 
 Why = tuple[str, str, str]  # a title, and two lines
 
 
 class Insight:
-    """Follows a flight that is shared, or that a network flies; `shown` while there is something to explain.
+    """Co-pilot panel of a flight that is shared or flown by a network; `shown` while it has something to explain.
 
     Attributes:
-        values: what is drawn of the decision that is flown; None before the first.
-        why: whose action it became, and why: a title and two lines.
+        values: Q-values of the decision that is flown; None before the first.
+        why: whose action is flown, and why: a title and two lines.
 
     """
 
@@ -51,12 +51,12 @@ class Insight:
         self.why: Why = ("", "", "")
         self._names = [texts.PAD_NAMES.get(pad.factor, "") for pad in ground.pads]
         self._likely: list[float] = []
-        self._override: Why | None = None  # why the latest one was, as long as that is still to be read
+        self._override: Why | None = None  # explanation of the latest override, while it is still shown
         self._stays = 0
         self._seen: object = None
 
     def follow(self, flight: Flight) -> None:
-        """Note the step just flown."""
+        """Update the panel after a step."""
         if flight.over:
             return
         self._stays = max(0, self._stays - 1)
@@ -76,7 +76,7 @@ class Insight:
             self._explain(flight.decision, int(flight.env.target[0]))
 
     def _explain(self, decision: SharedDecision, pad: int) -> None:
-        """Show a shared decision, by what actions are worth on the way to one of the pads."""
+        """Show a shared decision by its Q-values for one of the pads as the goal."""
         from ai.copilot.copilot import Rule
 
         self._likely = decision.likely[0].tolist()
@@ -102,7 +102,7 @@ class Insight:
         hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
-        """Say whose action it became; the latest override stays to be read for a moment, and is said to be past."""
+        """Draw whose action is flown; the latest override stays for a moment, marked as past."""
         title, *lines = self._override or self.why
         if self._override not in (None, self.why):
             title = texts.INSIGHT_BEFORE.format(title=title)
@@ -121,12 +121,12 @@ class Insight:
 
 
 def shared_values(decision: SharedDecision, pad: int) -> QValues:
-    """Return what there is to show of a shared decision for one lander, on the way to one of the pads."""
+    """Return the Q-values of one lander's shared decision, for one of the pads as the goal."""
     from ai.copilot.copilot import Mode, guardian_margin
 
     points, asked = decision.points[0, pad], int(decision.pilot[0])
     feasible, allowed = decision.feasible[0], None
-    if asked != COAST and decision.mode is Mode.GUARDIAN:  # it compares what is asked for with its own, nothing else
+    if asked != COAST and decision.mode is Mode.GUARDIAN:  # a guardian compares the action asked for with its own only
         feasible = (np.arange(NUM_ACTIONS) != asked) | feasible
         allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
     elif asked != COAST:
@@ -136,7 +136,7 @@ def shared_values(decision: SharedDecision, pad: int) -> QValues:
 
 
 def why(decision: SharedDecision, values: QValues) -> Why:
-    """Say whose action it became, and why, by the figures that decided it."""
+    """Explain whose action is flown, and why, by the figures that decided it."""
     from ai.copilot.copilot import Mode, Rule
 
     rule, asked = Rule(int(decision.rule[0])), values.asked
@@ -151,7 +151,7 @@ def why(decision: SharedDecision, values: QValues) -> Why:
     loss, allowed = values.loss(asked), values.allowed or 0.0
     if rule is Rule.PILOT and loss == 0.0:
         return title, texts.INSIGHT_SAME.format(asked=name), ""
-    if rule is Rule.PILOT and loss > allowed * (1 + 1e-5):  # by what it is worth on the way to another pad
+    if rule is Rule.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
         return title, texts.INSIGHT_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.INSIGHT_ANOTHER
     less, most = _told_apart(loss, allowed)
     if rule is Rule.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
@@ -162,7 +162,7 @@ def why(decision: SharedDecision, values: QValues) -> Why:
 
 
 def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
-    """Say by how much a guardian's own action is better, whichever pad is meant, and whether that is much."""
+    """Explain by how much a guardian's own action is better for every pad, and whether that exceeds its margin."""
     from ai.copilot.copilot import guardian_margin
 
     asked, best = int(decision.pilot[0]), int(decision.best[0])
@@ -177,7 +177,7 @@ def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
 
 
 def _told_apart(one: float, other: float) -> tuple[str, str]:
-    """Write two figures in so many digits that what is more also reads as more."""
+    """Format two figures with enough digits that the larger one also reads as larger."""
     for digits in range(1, 5):
         words = f"{one:.{digits}f}", f"{other:.{digits}f}"
         if words[0] != words[1] or one == other:

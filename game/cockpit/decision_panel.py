@@ -1,4 +1,4 @@
-"""The panel of a network that flies alone: the six values and nine inputs of the decision that is flown."""
+"""Decision panel of a network that flies alone: the six Q-values and nine inputs of the decision flown."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL, TEXT
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_actions, draw_q_values
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
-_COVER: Final = 0.92  # landers fly past behind it, and its small words are to be read all the same
-_LEFT: Final = 20  # of what stands on the panel, from its corner
-_VALUES: Final = 62  # the first line of the values, from its top
+_COVER: Final = 0.92  # opacity: the small text must stay readable while landers fly past behind it
+_LEFT: Final = 20  # left edge of the content, from the panel's corner
+_VALUES: Final = 62  # first baseline of the values, from the panel's top
 _WORDS: Final = _VALUES + HEIGHT + 28
-_INPUTS: Final = _WORDS + 72  # and the first of the inputs'
+_INPUTS: Final = _WORDS + 72  # first baseline of the inputs
 _PITCH: Final = 18
 _FIGURE: Final = 52  # room for an input's figure
 
 
 def draw_mind(canvas: Canvas, decision: Decision) -> None:
-    """Draw the decision of one lander: nothing here is computed anew, and nothing eased."""
+    """Draw the decision of one lander exactly as it was made: nothing is recomputed or eased."""
     left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
     canvas.panel(PANEL, _COVER)
     values = QValues.of(decision)
@@ -42,7 +42,7 @@ def draw_mind(canvas: Canvas, decision: Decision) -> None:
 
 
 def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, width: float) -> None:
-    """Draw each input as the network gets it: its figure, and a bar that shortens what is large (tanh)."""
+    """Draw each input of the network: its figure, and a bar compressed by tanh."""
     hud.draw_centred_bars(canvas, np.tanh(inputs).tolist(), top, left, width - _FIGURE, _PITCH)
     for number, (name, value) in enumerate(zip(texts.INPUTS, inputs, strict=True)):
         y = top + _PITCH * number + 4

@@ -1,4 +1,4 @@
-"""Read-outs, bars and cards over the world: thin figures, hairlines, one panel at most."""
+"""Head-up display (HUD): read-outs, bars and cards over the world; thin figures, one panel at most."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
 _BAR_TOP: Final = 708.0
-_SHADE, _SHADE_TOP = 0.6, 640.0  # how dark it is behind them, at most, and from where on
-_CAPITAL: Final = 0.72  # height of a figure, in sizes of its type
+_SHADE, _SHADE_TOP = 0.6, 640.0  # greatest darkness behind the read-outs, and the row from which it begins
+_CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
 _ASIDE, _ABOVE = 4.0, 16.0
 _WORDS: Final = (180.0, 66.0)
@@ -55,12 +55,12 @@ _PLENTY_OF_TIME: Final = 120.0
 
 @dataclass(frozen=True)
 class Readout:
-    """One figure on the ground line.
+    """One read-out on the ground line: a figure with its label and bar.
 
     Attributes:
-        fill: how much of the bar is full, 0 to 1; None for no bar.
-        limit: where on the bar the limit's tick stands; None for no limit.
-        within: whether the limit is kept; None where nothing is to be kept.
+        fill: filled share of the bar, 0 to 1; None for no bar.
+        limit: place of the limit's tick on the bar, 0 to 1; None for no limit.
+        within: whether the value is within the limit; None without a limit.
 
     """
 
@@ -73,10 +73,10 @@ class Readout:
 
 
 def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
-    """What a pilot needs to know."""
+    """Return the read-outs that a pilot needs."""
     limits = env.limits
     across, up = env.velocity[slot].tolist()
-    if env.conditions.moves:  # what counts on a pad that moves is how one moves beside it
+    if env.conditions.moves:  # on a moving pad, the speed relative to the pad counts
         across -= float(env.pad_velocity[slot])
     tilt = float(env.tilt[slot])
 
@@ -95,7 +95,7 @@ def flight_readouts(env: LanderEnv, slot: int = 0) -> list[Readout]:
 
 
 def _time(env: LanderEnv, slot: int) -> Readout:
-    """Say how much time is left, or, where there is plenty, how much has passed."""
+    """Return the read-out of the time left, or, where there is plenty, of the time flown."""
     flown, limit = float(env.time[slot]), env.limits.time
     if limit > _PLENTY_OF_TIME:
         return Readout(texts.TIME_FLOWN, f"{flown:.0f}", "s")
@@ -104,8 +104,8 @@ def _time(env: LanderEnv, slot: int) -> Readout:
 
 
 def _fuel(env: LanderEnv, slot: int) -> Readout:
-    """Say what was burnt, or, where the tank is small, what is left."""
-    burnt, tank = tenths(float(env.fuel[slot])), env.conditions.tank  # as the card has it, and as medals go by
+    """Return the read-out of the fuel used, or, where the tank is limited, of the fuel left."""
+    burnt, tank = tenths(float(env.fuel[slot])), env.conditions.tank  # rounded as on the card and for medals
     if tank == math.inf:
         return Readout(texts.FUEL_USED, f"{burnt:.1f}", "s")
     left = max(0.0, tank - burnt)
@@ -113,7 +113,7 @@ def _fuel(env: LanderEnv, slot: int) -> Readout:
 
 
 def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence[float] = COLUMNS) -> None:
-    """Draw figures side by side; a bar says how far from the limit, a mark beside the label on which side."""
+    """Draw read-outs side by side: the bar shows the distance from the limit, a mark by the label on which side."""
     top = canvas.px(_SHADE_TOP)
     canvas.surface.blit(_shade((canvas.size[0], canvas.size[1] - top)), (0, top))
     for x, readout in zip(columns, readouts, strict=True):
@@ -129,7 +129,7 @@ def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence
 
 @lru_cache(maxsize=2)
 def _shade(size: tuple[int, int]) -> pygame.Surface:
-    """Return what quietens craters and wrecks behind the figures, more and more towards the edge."""
+    """Return the dark gradient behind the figures, which makes them readable over craters and wrecks."""
     shade = pygame.Surface(size, pygame.SRCALPHA)
     shade.fill(NIGHT0)
     rise = np.linspace(0.0, 1.0, size[1]) ** 0.7
@@ -138,7 +138,7 @@ def _shade(size: tuple[int, int]) -> pygame.Surface:
 
 
 def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
-    """Draw label, mark, figure and unit on a sheet of their own: most stay the same for some frames."""
+    """Draw label, mark, figure and unit on a cached sheet, as most stay the same for some frames."""
     line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
     label = canvas.text(readout.label, (_ASIDE, _ABOVE), size=LABEL, colour=MUTE, weight="medium")
     if readout.within is not None:
@@ -149,7 +149,7 @@ def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
 
 
 def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> None:
-    """Say at the top who flies; a line along the edge of the view sweeps out from the middle in their colour."""
+    """Draw who flies at the top; a line in their colour sweeps out from the middle along the view's edge."""
     middle = VIEW_SIZE[0] / 2
     width = canvas.text_width(text, size=TEXT)
     canvas.text(text, (middle + 9, 41), size=TEXT, align="centre")
@@ -162,7 +162,7 @@ def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> 
 
 
 def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:
-    """Name, top left, what is being flown, and what is asked of the flight."""
+    """Draw the flight's name and its goal in the top left corner."""
     canvas.text(small, (MARGIN, 38), size=SMALL, colour=MUTE)
     canvas.text(large, (MARGIN, 58), size=TEXT)
     canvas.text(asked, (MARGIN, 78), size=SMALL, colour=MUTE)
@@ -171,7 +171,7 @@ def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None
 def draw_centred_bars(
     canvas: Canvas, values: Sequence[float], top: float, left: float, width: float, step: float
 ) -> None:
-    """Draw values -1 to 1 as bars, beside their names, that grow from the middle."""
+    """Draw values from -1 to 1 as bars that grow from the middle, beside their names."""
     track = width - 96
     middle = left + 96 + track / 2
     for number, value in enumerate(values):
@@ -184,7 +184,7 @@ def draw_centred_bars(
 
 
 def draw_share(canvas: Canvas, left: float, top: float, width: float, human: float) -> None:
-    """Say how much of a flight the person flew and how much the network; of a share, neither has none."""
+    """Draw the player's and the network's share of a flight; a share above zero never reads as 0 %."""
     you = round(100 * human) if human in (0.0, 1.0) else min(max(round(100 * human), 1), 99)
     if you:
         canvas.text(texts.SHARE_YOU.format(percent=you), (left, top), size=SMALL, colour=HUMAN)
@@ -246,7 +246,7 @@ def draw_card(
 
 
 def _draw_rival(canvas: Canvas, rival: Rival, labels: Sequence[str], corner: Point, width: float) -> None:
-    """Draw a rival's name, result and figures, in the columns of your own."""
+    """Draw a rival's name, result and figures, in the columns of the player's own."""
     left, top = corner
     canvas.dot((left + 4, top - 4), 4, NET)
     canvas.text(rival.name, (left + 16, top), size=SMALL, colour=NET)
@@ -261,7 +261,7 @@ def _draw_rival(canvas: Canvas, rival: Rival, labels: Sequence[str], corner: Poi
 def draw_opening(
     canvas: Canvas, keys: Sequence[tuple[str, str]], line: str, paths: Sequence[tuple[str, Colour]]
 ) -> None:
-    """Say in the middle, while the craft hangs still, how it is flown and what the dotted paths are."""
+    """Draw the controls and the legend of the dotted paths in the middle, while the craft hangs and waits."""
     middle = VIEW_SIZE[0] / 2
     canvas.text(line, (middle, 122), size=TEXT, colour=MUTE, align="centre")
     draw_hints(canvas, keys, (middle - hints_width(canvas, keys, TEXT) / 2, 150), size=TEXT)

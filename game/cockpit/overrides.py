@@ -1,4 +1,4 @@
-"""What is seen of a shared stick: a lamp, a line of who flew, a word beside the craft, and what was not flown."""
+"""Displays of shared control: lamp, line of who flew, and the co-pilot's overrides beside the craft."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from game.flight.flight import DECISION_STEPS, Flight, Hand
 from game.world import lander as art
 from game.world.camera import Clear, View
 
-_LASTS: Final = 40  # steps that a word stays after the last override: long enough to be read
+_LASTS: Final = 40  # steps that a message stays after the last override: long enough to be read
 _FADES: Final = 14
 _SAMPLES: Final = 120  # decisions on the line, eight seconds
 _STRIP: Final = (VIEW_SIZE[0] / 2 - 90, 77.0, 180.0)  # left, middle, width
-_DOTS: Final = 6  # of what was asked for and not flown
+_DOTS: Final = 6  # for an engine that was asked for and not fired
 _SIGN: Final = 9.0  # from the middle of a sign to the words beside it
 _LOWEST: Final = 620.0  # row above the read-outs
 _YOURS, _HANDED, _CHANGED = range(3)
 
 
 class Overrides:
-    """Follows a flight, step by step.
+    """Overrides of one flight; call `follow` once after every step.
 
     Attributes:
-        times: how often the co-pilot stepped in; what follows within a moment is the same time.
+        times: number of interventions by the co-pilot; overrides in quick succession count as one.
 
     """
 
@@ -44,7 +44,7 @@ class Overrides:
         self._line: deque[int] = deque(maxlen=_SAMPLES)
 
     def follow(self, flight: Flight) -> bool:
-        """Note the step just flown; whether the co-pilot has just stepped in."""
+        """Update after a step; return whether the co-pilot has just stepped in."""
         begins = flight.overridden and self._since > _FADES
         self._since = 0 if flight.overridden else self._since + 1
         if flight.overridden:
@@ -60,11 +60,11 @@ class Overrides:
 
     @property
     def strength(self) -> float:
-        """How bright the last override still is, 0 to 1."""
+        """Remaining brightness of the last override, 0 to 1."""
         return min(1.0, max(0.0, (_LASTS + _FADES - self._since) / _FADES))
 
     def lamp(self, flight: Flight) -> tuple[Shape, Colour, float]:
-        """Shape, colour and glow: a disc is whoever has the stick, a ring hands off, a diamond an override."""
+        """Return shape, colour and glow: disc for whoever has the stick, ring for hands off, diamond for an override."""
         if flight.hand is Hand.NETWORK:
             return "circle", NET, 0.8
         if self._since < _FADES:
@@ -74,7 +74,7 @@ class Overrides:
         return "circle", HUMAN, 0.8
 
     def draw_line(self, canvas: Canvas) -> None:
-        """Draw who flew in the last seconds: thin, and thick where the co-pilot stepped in."""
+        """Draw the line of who flew in the last seconds; it is thick where the co-pilot stepped in."""
         left, middle, width = _STRIP
         step = width / _SAMPLES
         x = left + width - step * len(self._line)
@@ -86,7 +86,7 @@ class Overrides:
             x += length
 
     def draw_word(self, canvas: Canvas, view: View, pose: Doubles, clear: Clear) -> None:
-        """Say beside the craft what was changed, where it is `clear`, and dot the fire that was not lit."""
+        """Write the override beside the craft, where it is `clear`, and draw suppressed flames as dots."""
         strength = self.strength
         if strength <= 0:
             return
@@ -104,7 +104,7 @@ class Overrides:
 
 
 def difference(asked: int, flown: int) -> str:
-    """Say what became of an action that was changed, in engines."""
+    """Describe the difference between two actions, in engines added, stopped or exchanged."""
     words = []
     main, name = flown // 3 - asked // 3, texts.ENGINE_MAIN
     if main:
@@ -117,7 +117,7 @@ def difference(asked: int, flown: int) -> str:
 
 
 def _unlit(asked: int, flown: int) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-    """Where in the craft's frame fire was asked for and not lit, and which way it would have burnt."""
+    """Return nozzle and direction, in the craft's frame, of each flame asked for but not fired."""
     fires = []
     if asked >= 3 > flown:
         fires.append((art.NOZZLE, (0.0, -1.0)))

@@ -1,4 +1,4 @@
-"""What surrounds a flight and can't be seen: wind, gravity, a pad that moves, an engine that fails."""
+"""Invisible conditions of a flight: wind, gravity, a moving pad, an engine failure."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MARGIN, MUTE, SMALL
 
-_FIRST: Final = 98.0  # the first row, under what is asked of the flight
+_FIRST: Final = 98.0  # the first row, below the flight's goal
 _ROW: Final = 20.0
-_NEAR_EDGE: Final = 6.0  # metres before the edge of the area that it is warned of
+_NEAR_EDGE: Final = 6.0  # distance in metres at which the edge of the area is announced
 _SOON: Final = 3.0  # seconds ahead that a failure is announced
-_ARROW: Final = 52.0  # points that the strongest wind is long
+_ARROW: Final = 52.0  # length of the strongest wind's arrow, in points
 _STRONGEST, _CALM = 0.6, 0.05  # m/s²
 
 
 def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
-    """Draw a row for everything that makes this flight another than on the moon."""
+    """Draw a row for each condition in which this flight differs from one on the moon."""
     for number, (text, wind, warns) in enumerate(surroundings(env)):
         y = _FIRST + number * _ROW
         x = float(MARGIN)
@@ -33,7 +33,7 @@ def draw_surroundings(canvas: Canvas, env: LanderEnv) -> None:
 
 
 def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
-    """Yield words, the wind in m/s² to the right if that is what they are about, and whether they warn."""
+    """Yield the rows: text, wind in m/s² to the right (0 on other rows), and whether the row is a warning."""
     conditions, params, time = env.conditions, env.params, float(env.time[0])
     if params.gravity != PARAMS.gravity:
         yield texts.GRAVITY.format(gravity=params.gravity, times=params.gravity / PARAMS.gravity), 0.0, False
@@ -54,7 +54,7 @@ def surroundings(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
 
 
 def _edges(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
-    """Warn of the edges of the area, which nothing in the world shows, while the flight goes there."""
+    """Yield warnings of the area's invisible edges while the flight heads for them."""
     (x, y), (across, up) = env.position[0].tolist(), env.velocity[0].tolist()
     limits = env.limits
     if env.outcome[0] != Outcome.FLYING:
@@ -67,7 +67,7 @@ def _edges(env: LanderEnv) -> Iterator[tuple[str, float, bool]]:
 
 
 def _draw_arrow(canvas: Canvas, start: tuple[float, float], push: float) -> None:
-    """Draw which way the wind blows, as long as it is strong."""
+    """Draw an arrow in the wind's direction; its length shows the strength."""
     left, y = start
     right = left + 6 + (_ARROW - 6) * min(1.0, abs(push) / _STRONGEST)
     tip, side = (right, 1.0) if push > 0 else (left, -1.0)

@@ -1,4 +1,4 @@
-"""The path a flight took, in the colours of who flew it, with the moments at which the co-pilot stepped in."""
+"""Flown path in the colours of who flew, with marks where the co-pilot stepped in."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from game.world.paths import draw_faint
 
 _STRIDE: Final = 4  # steps between points
 _MOST_MARKS: Final = 24
-_DIM: Final = 0.62  # the path is a memory, and not to outshine what is there
+_DIM: Final = 0.62  # dimmed, as the past must not outshine the present
 
 
 class Track:
-    """Grows with a flight; drawn once that is over."""
+    """Path of one flight, recorded step by step and drawn once the flight is over."""
 
     def __init__(self, flight: Flight) -> None:
         self._points: list[Doubles] = [flight.env.position[0].copy()]
@@ -30,7 +30,7 @@ class Track:
         self.moments: list[Doubles] = []
 
     def follow(self, flight: Flight, stepped_in: bool) -> None:
-        """Note the step just flown, and whether the co-pilot stepped in with it."""
+        """Record a step, and whether the co-pilot stepped in with it."""
         here = flight.env.position[0]
         if stepped_in:
             self.moments.append(here.copy())
@@ -40,11 +40,11 @@ class Track:
 
     @property
     def path(self) -> Doubles:
-        """Where the flight went so far, positions (k, 2)."""
+        """The path so far: positions (k, 2) in metres."""
         return np.array(self._points)
 
     def beside(self, lefts: Sequence[float], area: pygame.Rect, view: View) -> float:
-        """Return which of these an area of that size should begin at, to hide the least of the path."""
+        """Return the left edge, out of `lefts`, at which an area of that size hides the least of the path."""
         places = view.points(self.path)
 
         def hidden(left: float) -> int:
@@ -54,7 +54,7 @@ class Track:
         return min(lefts, key=hidden)
 
     def draw(self, canvas: Canvas, view: View, shown: float = 1.0) -> None:
-        """Draw the path, `shown` 0 to 1 of it from the start, and a diamond for every moment, below the head."""
+        """Draw the share `shown` (0 to 1) of the path, and a diamond for each intervention, below the head."""
         pixels = view.pixels(self.path)
         last = round(shown * len(self._hands))
         ends = [0]
@@ -70,6 +70,6 @@ class Track:
                     canvas.marker("diamond", spot, 8, NET)
 
     def _marked(self) -> list[Doubles]:
-        """Return the moments, or some of them where there are too many to be told apart."""
+        """Return the places of interventions, thinned out where they are too close to tell apart."""
         every = max(1, -(-len(self.moments) // _MOST_MARKS))
         return self.moments[::every]

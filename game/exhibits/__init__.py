@@ -1,4 +1,4 @@
-"""The gallery of physics: small worlds, each with one law of the engine to be seen in it."""
+"""Exhibits of the physics gallery: small worlds, each showing one law of the engine."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from game.exhibits.falls import Bounce, DragRace, Slopes
 from game.exhibits.momentum import Impacts, Spin
 from game.exhibits.piles import Heap, Stack
 
-# One row an exhibit, by its name in `texts.EXHIBITS`; each is built for a gravity in m/s².
+# Exhibits by their name in `texts.EXHIBITS`; each is built for a gravity in m/s².
 EXHIBITS: Final[dict[str, Callable[[float], Exhibit]]] = {
     "stack": Stack,
     "heap": Heap,

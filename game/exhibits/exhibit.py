@@ -1,4 +1,4 @@
-"""What every exhibit of the gallery is made of: a room, bodies with their sprites, and words that live with them."""
+"""Base of the exhibits: a room, bodies with their sprites, and live labels."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from engine.shapes import Point
 from engine.vector import Array
 from game.world.grip import Grip
 
-# How much of the view's width can be seen above the ground without meeting the words at the top.
+# Clear height above the ground, below the text at the top, as a share of the view's width.
 CLEAR: Final = 0.35
 _WALL: Final = 4.0
 _WALL_HEIGHT: Final = 200.0
@@ -21,12 +21,12 @@ _FIXED, _BOXES, _DISCS = range(3)  # layers
 
 @dataclass(frozen=True)
 class Label:
-    """A few words in the world, centred on a place in metres, or at that offset from a body.
+    """A label in the world, centred on a place in metres, or at that offset from a body.
 
     Attributes:
-        within: whether a limit is kept, shown by a mark beside the words; None for no mark.
-        fill: how much of a bar under the words is full, 0 to 1; None for no bar.
-        limit: where on that bar a tick stands.
+        within: whether the value is within its limit, shown by a mark beside the text; None for no mark.
+        fill: filled share of a bar under the text, 0 to 1; None for no bar.
+        limit: place of a tick on that bar, 0 to 1.
 
     """
 
@@ -46,11 +46,11 @@ class Exhibit:
     not be so after it.
 
     Attributes:
-        width: metres across the view.
+        width: width of the view, in metres.
         weightless: whether there is no gravity, whatever was chosen.
-        sprites: everything that is seen, by the keys of `game.world.bodies`.
-        bodies: what forces can move.
-        rules: lines at known heights or places, as start and end in metres.
+        sprites: all that is drawn, by the image keys of `game.world.bodies`.
+        bodies: the movable bodies.
+        rules: reference lines at known heights or places, as start and end in metres.
         touched: by body, (bodies,), whether a hand has moved it, or it has met one that a hand had moved.
 
     """
@@ -73,30 +73,30 @@ class Exhibit:
         self.touched = np.zeros(self.world.state.pose.shape[1], dtype=bool)
 
     def build(self) -> None:
-        """Put the bodies in."""
+        """Add the bodies."""
         raise NotImplementedError
 
     @property
     def state(self) -> str:
-        """Which of the exhibit's sentences in `texts.EXHIBITS` is true now."""
+        """Key of the sentence in `texts.EXHIBITS` that is true now."""
         return ""
 
     def figures(self) -> dict[str, float]:
-        """Return what the exhibit's live line quotes, by the names it has there."""
+        """Return the figures quoted in the exhibit's live line, by their names there."""
         raise NotImplementedError
 
     def labels(self) -> list[Label]:
-        """Return the words that stand beside bodies now."""
+        """Return the current labels."""
         return []
 
     def prepare(self) -> None:
-        """Push what is to be pushed in the next step."""
+        """Apply the exhibit's own impulses before the next step."""
 
     def observe(self) -> None:
-        """Measure what is to be measured after a step."""
+        """Take the exhibit's measurements after a step."""
 
     def step(self, grip: Grip | None = None) -> None:
-        """Let 1/60 s pass, in which a hand may pull at a body."""
+        """Advance by 1/60 s, during which a grip may pull at a body."""
         self.prepare()
         if grip:
             grip.pull()
@@ -107,7 +107,7 @@ class Exhibit:
         self.observe()
 
     def _hand_on_touch(self) -> None:
-        """Note which bodies have met one that a hand has moved; floor and walls hand nothing on."""
+        """Mark bodies that have met a touched one as touched too; floor and walls pass nothing on."""
         contacts = self.world.contacts
         if contacts is None or not self.touched.any():
             return
@@ -118,7 +118,7 @@ class Exhibit:
             met = pairs[self.touched[pairs].any(axis=1)]
 
     def add(self, shape: Shape, position: Point, image: str, **physics: Any) -> Body:
-        """Put a body in that is seen, its shape's middle at its position; `physics` is what `World.add` takes."""
+        """Add a visible body, its shape's middle at `position`; `physics` are keyword arguments of `World.add`."""
         body = self.world.add(shape, position, **physics)
         disc = isinstance(shape, Circle)
         layer = _FIXED if body.static else _DISCS if disc else _BOXES
@@ -127,36 +127,36 @@ class Exhibit:
             self.bodies.append(body)
         return body
 
-    # What can be measured in every exhibit
+    # Measurements of every exhibit
 
     @property
     def poses(self) -> Array:
-        """x, y, angle of every body, (bodies, 3), to be kept."""
+        """Copy of the poses (x, y, angle) of all bodies, (bodies, 3)."""
         poses: Array = self.world.state.pose[0].copy()
         return poses
 
     @property
     def kinetic_energy(self) -> float:
-        """Joules, of translation and rotation."""
+        """Kinetic energy of translation and rotation, in joules."""
         inverse, velocity = self.world.params.inverse_mass, self.world.state.velocity[0]
         moving = inverse[:, 0] > 0
         return float((0.5 * velocity[moving] ** 2 / inverse[moving]).sum())
 
     @property
     def energy(self) -> float:
-        """Joules, kinetic and of height above the floor."""
+        """Mechanical energy, in joules: kinetic, and potential above the floor."""
         inverse, heights = self.world.params.inverse_mass[:, 0], self.world.state.pose[0, :, 1]
         moving = inverse > 0
         return self.kinetic_energy + self.gravity * float((heights[moving] / inverse[moving]).sum())
 
     @property
     def contact_count(self) -> int:
-        """How many points touch."""
+        """Number of contact points."""
         contacts = self.world.contacts
         return int(contacts.manifold.valid.sum()) if contacts else 0
 
     def push(self, *bodies: Body) -> float:
-        """Newtons with which two bodies pressed on each other in the last step, or all that met a single one on it."""
+        """Return the last step's normal force, in newtons: between two bodies, or of all others on a single one."""
         contacts = self.world.contacts
         if contacts is None:
             return 0.0
@@ -165,7 +165,7 @@ class Exhibit:
 
 
 def extent(shape: Shape) -> tuple[float, float]:
-    """Return how wide and how high a shape is, in metres."""
+    """Return the width and height of a shape, in metres."""
     if isinstance(shape, Circle):
         return 2 * shape.radius, 2 * shape.radius
     wide, high = np.ptp(shape.vertices, axis=0).tolist()
@@ -173,10 +173,10 @@ def extent(shape: Shape) -> tuple[float, float]:
 
 
 def height(body: Body) -> float:
-    """Metres of its centre above the floor."""
+    """Return the height of a body's centre above the floor, in metres."""
     return float(body.position[0, 1])
 
 
 def speed(body: Body) -> float:
-    """Metres a second."""
+    """Return the speed of a body, in metres per second."""
     return float(np.hypot(*body.velocity[0]))

@@ -1,4 +1,4 @@
-"""One body and one law: friction on a slope, bouncing, drag."""
+"""Exhibits of single bodies: friction on a slope, restitution, drag."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from engine import Body, Circle, Polygon
 from game.core import texts
 from game.exhibits.exhibit import Exhibit, Label, height, speed
 
-# Below the ground line, where names of columns stand; points become metres by an exhibit's width.
+# Baseline of the columns' names below the ground line; points become metres by an exhibit's width.
 _BELOW: Final = -0.014
-_TOUCH: Final = 0.005  # metres between a body and the floor at which it has come down
-_SLID: Final = 0.1  # metres from its place at which a box has slid
+_TOUCH: Final = 0.005  # gap in metres below which a body counts as landed
+_SLID: Final = 0.1  # metres from its place from which a box counts as having slid
 _DISC: Final = 0.42  # metres, the radius of a disc of 1 kg
-_WALL: Final = 0.1  # of a normal that points up by less, the face is a wall
+_WALL: Final = 0.1  # a face whose normal points up by less is a wall
 
 
 class Slopes(Exhibit):
@@ -28,7 +28,7 @@ class Slopes(Exhibit):
     size = (1.4, 0.9)
 
     def build(self) -> None:
-        """Lay the slipperiest lowest, so that none runs into another."""
+        """Place the slipperiest box lowest, so that none runs into another."""
         slope = math.radians(self.degrees)
         left, right = -11.0, 5.0
         top = (right - left) * math.tan(slope)
@@ -45,18 +45,18 @@ class Slopes(Exhibit):
         self.slid: set[float] = set()
 
     def observe(self) -> None:
-        """Note which boxes have left their places without a hand's help, by their coefficients."""
+        """Record the boxes that have slid without the hand's help, by their coefficients of friction."""
         for box, place, friction in zip(self.boxes, self.places, self.frictions, strict=True):
             if not self.touched[box.index] and np.hypot(*(box.position[0] - place)) > _SLID:
                 self.slid.add(friction)
 
     def figures(self) -> dict[str, float]:
-        """Return the slope, its tangent, and how many boxes it has set in motion."""
+        """Return the slope, its tangent, and the number of boxes that have slid."""
         tangent = math.tan(math.radians(self.degrees))
         return {"degrees": self.degrees, "tangent": tangent, "slid": len(self.slid)}
 
     def labels(self) -> list[Label]:
-        """Say by each box how steep the ground is that it lies on, and whether that is too steep for it."""
+        """Label each box with the slope it lies on, and whether that exceeds its friction."""
         labels = []
         for box, friction in zip(self.boxes, self.frictions, strict=True):
             tangent = self.steepness(box)
@@ -69,7 +69,7 @@ class Slopes(Exhibit):
         return labels
 
     def steepness(self, box: Body) -> float | None:
-        """tan θ of the ground that a box lies flat on; None in the air, on an edge, or on something that can move."""
+        """Return tan θ of the ground that a box lies flat on; None in the air, on an edge, or on a movable body."""
         if not self.steps:
             return math.tan(math.radians(self.degrees))
         contacts = self.world.contacts
@@ -85,7 +85,7 @@ class Slopes(Exhibit):
 
 
 class Bounce(Exhibit):
-    """Five balls from one height: each comes back to e² of it."""
+    """Five balls dropped from one height h: each bounces back to e² h."""
 
     width = 22.0
     drop = 6.0
@@ -94,7 +94,7 @@ class Bounce(Exhibit):
     which = 3  # the ball that the live line is about
 
     def build(self) -> None:
-        """Hang up the balls, and mark where each will come back to."""
+        """Place the balls, and mark the height to which each will bounce."""
         self.balls: list[Body] = []
         for number, restitution in enumerate(self.restitutions):
             x = self._column(number)
@@ -118,7 +118,7 @@ class Bounce(Exhibit):
 
     @property
     def state(self) -> str:
-        """How far the ball with e = 0.75 has come."""
+        """Phase of the ball with e = 0.75: falling, rising, measured or touched."""
         if self.measured[self.which]:
             return "measured"
         if self.touched[self.balls[self.which].index]:
@@ -126,7 +126,7 @@ class Bounce(Exhibit):
         return "rising" if self.rising[self.which] else "falling"
 
     def figures(self) -> dict[str, float]:
-        """Return what the ball with e = 0.75 should come back to, and how high it has come."""
+        """Return the predicted bounce height of the ball with e = 0.75, and the measured one."""
         which = self.which
         restitution = self.restitutions[which]
         return {
@@ -137,7 +137,7 @@ class Bounce(Exhibit):
         }
 
     def labels(self) -> list[Label]:
-        """Name the columns; beside each mark, the height it stands for and the one that was measured."""
+        """Label the columns, and each mark with the predicted and the measured height."""
         labels = []
         for number, restitution in enumerate(self.restitutions):
             x, expected = self._column(number), restitution**2 * self.drop
@@ -153,7 +153,7 @@ class Bounce(Exhibit):
 
 
 class DragRace(Exhibit):
-    """Discs fall side by side with no drag, linear or quadratic drag: each has its own fastest fall."""
+    """Discs fall side by side without drag, with linear and with quadratic drag: each has its own terminal speed."""
 
     width = 40.0
     top = 13.0
@@ -168,7 +168,7 @@ class DragRace(Exhibit):
     )
 
     def build(self) -> None:
-        """Hang the discs up in a row."""
+        """Place the discs in a row."""
         self.discs: list[Body] = []
         for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
             image = "disc" if not linear + quadratic else "bright-disc" if linear else "ember-disc"
@@ -191,20 +191,20 @@ class DragRace(Exhibit):
 
     @property
     def state(self) -> str:
-        """How far that disc has come."""
+        """Phase of the light disc with linear drag: falling, landed or touched."""
         if self.landed:
             return "landed"
         return "touched" if self.touched[self.discs[self.which].index] else "falling"
 
     def terminal(self, number: int) -> float:
-        """Metres a second at which drag carries the weight; infinite without drag."""
+        """Return the terminal speed, at which drag balances the weight, in metres per second; infinite without drag."""
         _, mass, linear, quadratic = self.lanes[number]
         if linear:
             return mass * self.gravity / linear
         return math.sqrt(mass * self.gravity / quadratic) if quadratic else math.inf
 
     def figures(self) -> dict[str, float]:
-        """Return the terminal speed of the light disc with linear drag, and how fast it falls, or fell at last."""
+        """Return the terminal speed of the light disc with linear drag, and its current or last speed."""
         return {"terminal": self.terminal(self.which), "speed": self.speed}
 
     def labels(self) -> list[Label]:

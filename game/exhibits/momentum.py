@@ -1,4 +1,4 @@
-"""What impacts and pushes hand on: momentum and angular momentum."""
+"""Exhibits of conservation laws: momentum in impacts, angular momentum in spin."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine import DT, Body, Circle, Polygon
 from game.core import texts
 from game.exhibits.exhibit import CLEAR, Exhibit, Label, height, speed
 
-_MOVES: Final = 0.05  # metres a second
+_MOVES: Final = 0.05  # metres per second, from which a disc counts as moving
 
 
 class Impacts(Exhibit):
@@ -40,15 +40,15 @@ class Impacts(Exhibit):
 
     @property
     def state(self) -> str:
-        """Whether the energy is all that there was at first."""
+        """State of the energy: "untouched", or "touched" once a hand has changed it."""
         return "touched" if self.touched.any() else "untouched"
 
     def figures(self) -> dict[str, float]:
-        """Return the kinetic energy at first and now."""
+        """Return the kinetic energy at the start and now."""
         return {"first": self.energy_at_first, "now": self.kinetic_energy}
 
     def labels(self) -> list[Label]:
-        """Count over each rail those that moved at first and those on it that move now, wherever they came from."""
+        """Label each rail with the number of discs that moved at first, and that move on it now."""
         labels = []
         for number, rail in enumerate(self.rails):
             discs = self.on_rail(number)
@@ -71,7 +71,7 @@ class Impacts(Exhibit):
 
 
 class Spin(Exhibit):
-    """Free of gravity: what turns goes on turning, and a push beside the middle moves and turns."""
+    """Conservation of angular momentum, without gravity; an off-centre impulse both moves and turns a bar."""
 
     weightless = True
     momentum = 1.2  # kg·m²/s
@@ -80,7 +80,7 @@ class Spin(Exhibit):
     push_at = 30  # steps
 
     def build(self) -> None:
-        """Set three bodies turning with one angular momentum; lay two bars ready for a push."""
+        """Add three bodies spinning with the same angular momentum, and two bars to be pushed."""
         ceiling = CLEAR * self.width
         self.world.add(Polygon.box(self.width, 4.0), (0.0, ceiling + 2.0), static=True)
         self.rules.append(((-self.width / 2, ceiling), (self.width / 2, ceiling)))
@@ -100,22 +100,22 @@ class Spin(Exhibit):
         """Push both bars alike: one in the middle, one near its end."""
         if self.steps != self.push_at:
             return
-        self.pushed = [not self.touched[bar.index] for bar in self.bars]  # one that was moved is not where it was
+        self.pushed = [not self.touched[bar.index] for bar in self.bars]  # a bar that a hand has moved is not pushed
         for bar, offset, still in zip(self.bars, (0.0, self.reach), self.pushed, strict=True):
             if still:
                 bar.apply_force((self.impulse / DT, 0.0), bar.position[0] + (0.0, offset))
 
     def figures(self) -> dict[str, float]:
-        """Return what a push of the same strength gives to both bars."""
+        """Return the impulse, and the speed and spin that it gives to the bars."""
         spin = self.impulse * self.reach / self.bars[1].inertia
         return {"impulse": self.impulse, "reach": self.reach, "pace": self.impulse / self.bars[1].mass, "spin": spin}
 
     def angular_momenta(self) -> list[float]:
-        """kg·m²/s of the three that turn, each about its own middle."""
+        """Angular momenta of the three spinning bodies, in kg·m²/s, each about its own centre."""
         return [float(body.angular_velocity[0]) * body.inertia for body in self.turning]
 
     def labels(self) -> list[Label]:
-        """Say how fast each turns, and how fast the bars go."""
+        """Label the spinning bodies and the bars with their speeds."""
         labels = []
         for body, momentum in zip(self.turning, self.angular_momenta(), strict=True):
             spin = round(float(body.angular_velocity[0]), 2) + 0.0  # never -0.00

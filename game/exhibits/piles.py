@@ -1,4 +1,4 @@
-"""Many bodies at rest on each other: what carries what, and where the energy goes."""
+"""Exhibits of stacked bodies: contact forces in a stack, and energy loss in a heap."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from engine import Body, Circle, Polygon
 from game.exhibits.exhibit import Exhibit
 
 _SEED: Final = 3
-_SETTLED: Final = 60  # steps in which impulses that begin at nothing have come to carry ten boxes
-_SQUARE: Final = 0.1  # radians, and of a box's side, by which one in a column may be off
+_SETTLED: Final = 60  # steps until contact impulses, which start at zero, carry ten boxes
+_SQUARE: Final = 0.1  # tolerance of a box in a column: radians, and shares of a box's side
 
 
 class Stack(Exhibit):
@@ -22,7 +22,7 @@ class Stack(Exhibit):
     base = 8
 
     def build(self) -> None:
-        """Stack them; boxes of one kilogram."""
+        """Add the columns and the pyramid, of boxes of one kilogram."""
         self.columns = [
             [self._box(x, (level + 0.5) * self.box) for level in range(self.high)] for x in (-5.4, -2.7, 0.0)
         ]
@@ -34,13 +34,13 @@ class Stack(Exhibit):
 
     @property
     def state(self) -> str:
-        """Whether there is still a column, of two boxes at least, once it has settled under its weight."""
+        """State of the columns: "begun", "standing" (two boxes or more, settled) or "fallen"."""
         if self.steps < _SETTLED and not self.touched.any():
             return "begun"
         return "standing" if len(self.standing()) > 1 else "fallen"
 
     def figures(self) -> dict[str, float]:
-        """Return the weight of the highest column and what its lowest contact carries, or all of both."""
+        """Return the weight of the highest column and its ground force; with none standing, those of all bodies."""
         standing = self.standing()
         if len(standing) > 1:
             weighed, push = standing, self.push(self.floor, standing[0])
@@ -50,11 +50,11 @@ class Stack(Exhibit):
         return {"count": len(weighed), "weight": weight, "push": push}
 
     def standing(self) -> list[Body]:
-        """Return the boxes of the highest column, as far as each lies squarely on the one below."""
+        """Return the boxes of the highest column whose boxes lie squarely on each other."""
         return max((column[: self._height(column)] for column in self.columns), key=len)
 
     def _height(self, column: list[Body]) -> int:
-        """How many boxes of a column, from the ground up, are still where they were put, or moved as one."""
+        """Return the number of boxes, from the ground up, that are in place or have moved as one."""
         x, y, angle = self.world.state.pose[0, [box.index for box in column]].T
         lean = np.abs((angle + np.pi / 4) % (np.pi / 2) - np.pi / 4)
         level = np.abs(y - self.box * (np.arange(len(column)) + 0.5))
@@ -73,8 +73,8 @@ class Heap(Exhibit):
     count = 100
 
     def build(self) -> None:
-        """Hang them up in rows, each a little askew."""
-        self.world.iterations = 6  # it rests as well as with ten: no load is carried through more than a few of them
+        """Place the bodies in rows above the floor, each a little askew."""
+        self.world.iterations = 6  # enough to come to rest: no load passes through more than a few bodies
         rng = np.random.default_rng(_SEED)
         for number in range(self.count):
             row, column = divmod(number, self.columns)
@@ -91,9 +91,9 @@ class Heap(Exhibit):
 
     @property
     def state(self) -> str:
-        """Whether the energy that is not there now can only have turned into heat."""
+        """State of the energy: "untouched" while all lost energy has become heat, else "touched"."""
         return "touched" if self.touched.any() else "untouched"
 
     def figures(self) -> dict[str, float]:
-        """Return the energy at first, and what is left of it."""
+        """Return the mechanical energy at the start and now."""
         return {"first": self.at_first, "left": self.energy}
