@@ -16,7 +16,7 @@ NO_DISPLAY: Final = (
 # After a fault
 FAULT_TITLE: Final = "That screen has failed"
 FAULT_KEPT: Final = "The game goes on, and your settings are safe."
-FAULT_LOG: Final = "What happened is written down in {path}"
+FAULT_LOG: Final = "The details are in {path}"
 FAULT_BACK: Final = "{key}  back to the menu"
 
 # Keys' names and hints
@@ -126,7 +126,7 @@ OUTCOMES: Final = {
     "LANDED": ("Landed", "Both feet down, and at rest."),
     "CRASHED": ("Crashed", ""),
     "OUT_OF_BOUNDS": ("Lost", "Left the area {where}."),
-    "TIMED_OUT": ("Out of time", "Time ran out: {limit} s is all there is."),
+    "TIMED_OUT": ("Out of time", "Time ran out: the limit is {limit} s."),
 }
 CAUSES: Final = {
     "NONE": "Broke up.",
@@ -209,7 +209,7 @@ Q_UNIT: Final = "points"
 Q_BEST: Final = "best"
 Q_BEST_FLOWN: Final = ("The best action is flown.", "")
 Q_KEPT: Final = ("{kept} is kept: as good as the", "best ({best}) within {margin} points.")
-Q_WEIGHS_NOTHING: Final = ("Written rules: it weighs nothing up.", "")
+Q_WEIGHS_NOTHING: Final = ("Written rules, no action values.", "")
 VALUES_DAMAGED: Final = ("Its values are not numbers:", "this network is damaged.")
 MIND_INPUTS: Final = "WHAT IT SENSES"
 INPUTS: Final = (
@@ -329,8 +329,8 @@ HINT_RESTART_EXHIBIT: Final = "restart"
 # The library of networks: what is wrong with a name, with a run, and what could not be done
 NAME_EMPTY: Final = "A network needs a name."
 NAME_LONG: Final = "A name has {most} letters at most."
-NAME_LETTERS: Final = "A name is made of letters, digits, spaces and - _ . alone."
-NAME_ENDS: Final = "A name begins with no dot or space and ends with none."
+NAME_LETTERS: Final = "A name may have only letters, digits, spaces and - _ ."
+NAME_ENDS: Final = "A name must not begin or end with a dot or space."
 NAME_DEVICE: Final = "Windows keeps the name {name} for itself."
 NAME_TAKEN: Final = "There is a network called {name} already."
 RUN_UNNAMED: Final = "run"
@@ -342,7 +342,7 @@ RUN_ELSEWHERE: Final = "made for {env}, not for this lander"
 LIBRARY_UNREADABLE: Final = "The networks in {folder} could not be read: {reason}"
 GONE: Final = "{name} is not there any more."
 NOT_DELETED: Final = "{name} could not be deleted: {reason}"
-LIBRARY_NOT_PLAIN: Final = "{name} is not copied: {inside} in it is no plain file. Links may lead anywhere."
+LIBRARY_NOT_PLAIN: Final = "{name} is not copied: {inside} in it is a link or not a plain file."
 LIBRARY_TOO_LARGE: Final = "{name} is not copied: it is far larger than any network."
 LIBRARY_NO_RUN: Final = "{name} is no folder with a network in it."
 LIBRARY_NOT_RENAMED: Final = "{name} could not be renamed: {reason}"
@@ -605,7 +605,7 @@ SWARM_LUCKIEST: Final = "luckiest"
 TRAIN_TITLE: Final = "Watch it learn"
 TRAIN_LINE: Final = "Press Start: what falls like stones learns to land."
 TRAIN_BEGINS: Final = "The run is starting …"
-TRAIN_FIGURES: Final = "{count} landers at once  ·  {seconds:.0f} s  ·  {decisions:,} decisions"
+TRAIN_FIGURES: Final = "Landers: {count}  ·  {seconds:.0f} s  ·  {decisions:,} decisions"
 TRAIN_LANDED: Final = "% of the last 100 landed"
 TRAIN_START: Final = "Start"
 TRAIN_PAUSE: Final = "Pause"
@@ -644,7 +644,7 @@ TRAIN_NO_CHECKPOINT: Final = "There is nothing to fly against yet: press Start f
 TRAIN_KEPT: Final = "What it has learnt is kept, and offered when you come back."
 TRAIN_NOTHING: Final = "There is nothing to save yet: press Start first."
 TRAIN_NAME: Final = "{preset} run"
-NAMING: Final = "What shall this network be called?"
+NAMING: Final = "Name this network"
 TRAIN_SAVED: Final = "Saved as {name}: fly with it, or watch it."
 TRAIN_NOT_SAVED: Final = "Not saved: {problem}"
 NAMING_KEEP: Final = "Keep"
@@ -684,7 +684,7 @@ RUN_DELETED: Final = "{name} is gone, and can still be brought back."
 RUN_EXPORTED: Final = "Copied to {path}"
 RUN_IMPORTED: Final = "Copied here: {name}"
 TRAIN_COMPARE: Final = "Compare"
-TRAIN_COMPARE_WITH: Final = "Which run shall stand beside this one?"
+TRAIN_COMPARE_WITH: Final = "Compare this run with which?"
 TRAIN_NO_CURVES: Final = "{name} was saved without its curves."
 PICKING_EMPTY: Final = "Nothing is saved yet."
 HINT_TITLE: Final = "Hint"
@@ -762,7 +762,7 @@ DIGITS_NOT_FIXED: Final = "Not learnt"
 DIGITS_UNDO_FIX: Final = "Undo the fix"
 DIGITS_PROBLEM: Final = "{name} can't be read: {problem}"
 DIGITS_ALL: Final = "all {count}"
-DIGITS_PICK: Final = "Which network shall read?"
+DIGITS_PICK: Final = "Choose the network that reads"
 SHELF_TESTED: Final = "reads {part:.2%} of the test images"
 SHELF_DAMAGED: Final = "damaged"
 SHELF_HELD_OUT: Final = "{part:.2%} of those held out"
@@ -795,7 +795,7 @@ PUPIL_LOADING: Final = "Unpacking 60,000 handwritten digits …"
 PUPIL_FIGURES: Final = "epoch {epoch:.2f} of {epochs}  ·  {seconds:.0f} s  ·  {rate:,.0f} images a second"
 PUPIL_READ: Final = "% read of what was held out"
 PUPIL_TESTED: Final = "% read of the 10,000 test images"
-PUPIL_KEPT_BEST: Final = "Kept is its best network, of epoch {epoch}. The last one read {last} of what was held out."
+PUPIL_KEPT_BEST: Final = "Its best network, of epoch {epoch}, is kept. The last one read {last} of what was held out."
 PUPIL_FALLEN: Final = "It read {best} before, and reads {now} now. Go back to its best?"
 PUPIL_GO_BACK: Final = "Go back"
 PUPIL_WENT_BACK: Final = "back to its best, {part:.1%}"
@@ -892,7 +892,7 @@ INSIGHT_WHY: Final = {
 }
 INSIGHT_ALONE: Final = "It flies alone"
 INSIGHT_BEFORE: Final = "{title}, a moment ago"
-INSIGHT_SAME: Final = "{asked} is the best there is."
+INSIGHT_SAME: Final = "{asked} is the best action."
 INSIGHT_SAME_GOOD: Final = "{asked} is as good as any."
 INSIGHT_EVERY_PAD: Final = "more than {allowed}. For every pad: {flown}."
 INSIGHT_ANOTHER: Final = "and right for another pad, perhaps yours."
@@ -919,7 +919,7 @@ CHOICES_ASSIST_HELP: Final = {
     True: "While you fly; let go of everything, and it flies. In flight: {less}, {more}, or the wheel.",
 }
 CHOICES_MODE: Final = "It steps in"
-CHOICES_MODES: Final = ("when yours is not as good", "only in need")
+CHOICES_MODES: Final = ("when the network's choice is clearly better", "only in need")
 CHOICES_MODES_HELP: Final = (
     "Tolerance: your action is flown if it is worth nearly as much as the best, or else the nearest that is.",
     "Guardian: your action is flown unless another is better by far, for every pad that you may mean.",
@@ -934,8 +934,8 @@ CHOICES_HANDS: Final = "Hands"
 CHOICES_HANDS_WORDS: Final = {"own": "yours", "laggy": "laggy", "noisy": "noisy", "sensor": "no main engine"}
 CHOICES_HANDS_HELP: Final = {
     "own": "Your keys, as you press them.",
-    "laggy": "Your keys arrive late: four times of five, the last action goes on. Let the network help.",
-    "noisy": "Every seventh main engine and turn is another than you asked for. Let the network help.",
+    "laggy": "Your keys arrive late: in 4 of 5 decisions the last action goes on. Let the network help.",
+    "noisy": "One in seven engine commands and turns comes out wrong. Let the network help.",
     "sensor": "You steer, and have no main engine: without the network's help you fall.",
 }
 CHOICES_CHECK: Final = ("Check flights", "After four with help, one without, so that your own skill doesn't fade.")
@@ -1083,11 +1083,11 @@ BINDINGS_NO_PAD: Final = "Plug in a gamepad first."
 BINDINGS_FIXED: Final = "{key} keeps what it means in menus. Choose another."
 BINDINGS_TAKEN: Final = "It was {other}, which now has {key}."
 BINDINGS_ONLY: Final = "{key} is all that {other} has. Give that another first."
-BINDINGS_RESET: Final = "{what} is as it was."
-BINDINGS_ALL: Final = "All as it was"
-BINDINGS_ALL_RESET: Final = "Everything is as the game comes."
-HINT_AS_IT_WAS: Final = "as it was"
-HINT_LEAVE_KEY: Final = "leave it"
+BINDINGS_RESET: Final = "{what} has its default again."
+BINDINGS_ALL: Final = "Restore defaults"
+BINDINGS_ALL_RESET: Final = "All defaults are restored."
+HINT_AS_IT_WAS: Final = "default"
+HINT_LEAVE_KEY: Final = "cancel"
 MAIN_ENGINE: Final = "main engine"
 TURN: Final = "turn"
 TURN_TO_MOUSE: Final = "turn towards the pointer"
@@ -1169,7 +1169,7 @@ TUTORIAL_LET_GO: Final = "Let go of everything first."
 # Why a lesson begins again, where a flight's own end does not say so
 TUTORIAL_AGAIN: Final = "Once more, from the top."
 TUTORIAL_NETWORK_LANDED: Final = "The network has landed it: now you."
-TUTORIAL_LANDED_EARLY: Final = "Landed already, with more to be learnt before."
+TUTORIAL_LANDED_EARLY: Final = "Landed too early: more lessons come first."
 TUTORIAL_TOO_HIGH: Final = "Let go of  {main} : the area ends above you."
 TUTORIAL_RISES: Final = "Let go of  {main} : you are rising."
 TUTORIAL_TOO_FAST: Final = "{main}  now: too fast, so near the ground."
@@ -1204,10 +1204,10 @@ TEXT_SIZES: Final = {"normal": "normal", "large": "large", "largest": "largest"}
 
 # What keys and pads point with, where others have a mouse
 POINTER: Final = "Point"
-POINTER_LEAVE: Final = "lay it aside"
+POINTER_LEAVE: Final = "put it away"
 POINTER_GRIP: Final = "hold to grip"
 PEN_HOLD: Final = "hold to draw"
-PEN_LEAVE: Final = "lay the pen aside"
+PEN_LEAVE: Final = "put the pen away"
 
 # The command line
 CLI_PHYSICS: Final = "open the gallery of physics"
