@@ -64,7 +64,7 @@ class Overrides:
         return min(1.0, max(0.0, (_LASTS + _FADES - self._since) / _FADES))
 
     def lamp(self, flight: Flight) -> tuple[Shape, Colour, float]:
-        """Return shape, colour and glow: disc for whoever has the stick, ring for hands off, diamond for an override."""
+        """Return shape, colour and glow: disc for who has the stick, ring for hands off, diamond for an override."""
         if flight.hand is Hand.NETWORK:
             return "circle", NET, 0.8
         if self._since < _FADES:

@@ -1,1 +1,1 @@
-"""Drawing digits: the pad, what a network reads of it, and pictures of how it knows."""
+"""Handwritten digits: the drawing pad, the networks' readings of it, and their explanation."""

@@ -1,4 +1,4 @@
-"""The answer in the middle: what the chosen network says, how sure it is, the other beside it, and putting it right."""
+"""Answer panel: the chosen network's digit and confidence, the other network's, and correcting a wrong answer."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _SIZES: Final = 124.0, 48.0
 
 
 class DigitRow(Widget):
-    """A digit and how probable either network finds it; pressing it says that it is the right one.
+    """Row of one digit with both networks' probabilities; pressing it names it as the right digit.
 
     Attributes:
-        values: of the chosen network and of the other, 0 to 1.
+        values: probabilities from the chosen network and the other, 0 to 1.
 
     """
 
@@ -43,11 +43,11 @@ class DigitRow(Widget):
         self.best = False
 
     def press(self) -> None:
-        """Say that this is what was drawn."""
+        """Report this digit as the one that was drawn."""
         self._on_press(self.digit)
 
     def ease(self, at_once: bool) -> None:
-        """Let the bars follow."""
+        """Ease the bars towards the values."""
         super().ease(at_once)
         part = 1.0 if at_once else _EASE
         one, other = (now + (value - now) * part for now, value in zip(self._shown, self.values, strict=True))
@@ -73,12 +73,12 @@ def best_two(probabilities: Numbers) -> tuple[int, int]:
 
 
 def percent(value: float) -> str:
-    """Return a share in words of figures: never all, as nothing is certain."""
+    """Format a probability in percent, never as 100 %, since no answer is certain."""
     return f"{min(100 * value, 99.9):.1f} %" if value > 0.995 else f"{100 * value:.0f} %"
 
 
 def draw_answer(canvas: Canvas, reading: Reading, name: str) -> None:
-    """Write what a network says, large, and what the others say, small."""
+    """Draw a network's answer large, and the other networks' answers small."""
     if reading.verdict(name) is Verdict.EMPTY:
         canvas.text(texts.DIGITS_EMPTY, (LEFT, 140), size=TITLE)
         canvas.text(texts.DIGITS_EMPTY_HOW, (LEFT, 164), size=SMALL, colour=MUTE)
@@ -122,7 +122,7 @@ def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
     first, _ = best_two(reading.probabilities[name])
     sure = reading.verdict(name) is not Verdict.UNSURE
     label = canvas.text(called(name), (RIGHT, 122), size=LABEL, colour=MUTE, align="right")
-    canvas.pill((label.left - 22, 117, 16, 2), MUTE)  # its bars below are as thin
+    canvas.pill((label.left - 22, 117, 16, 2), MUTE)  # as thin as that network's bars below
     figure = str(first) if sure else "?"
     canvas.text(figure, (RIGHT, _BASELINE), size=_SIZES[1], weight="light", colour=MUTE, align="right")
     words = percent(reading.probabilities[name][first]) if sure else texts.DIGITS_UNSURE
@@ -130,7 +130,7 @@ def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
 
 
 def draw_fix(canvas: Canvas, fixing: Fixing, *, same: bool) -> None:
-    """Write how to put a wrong answer right, how that goes on, or what it has done; `same` to what is still drawn."""
+    """Draw how to correct an answer, or a fix's progress or result; `same`: whether its drawing is unchanged."""
     first, second = _fix_lines(fixing, same)
     canvas.text(first, (LEFT, FIX_TOP), size=SMALL, colour=HUMAN)
     for number, line in enumerate(wrapped(canvas, second, SMALL, RIGHT + 30 - LEFT)[:2]):

@@ -1,4 +1,4 @@
-"""What the network sees and why: each stage of preprocessing, saliency, filters, the maps of each layer."""
+"""Explanation of a reading: preprocessing stages, saliency map, filters, and feature maps of each layer."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from game.ui.widgets import Toggle, draw_switch
 
 LEFT: Final = 900.0
 RIGHT: Final = 1244.0
-STEPS: Final = ("crop", "fit", "width", "centre")  # each makes a stage of the one before
+STEPS: Final = ("crop", "fit", "width", "centre")  # each turns one stage into the next
 _TILE: Final = 62.0
 _PITCH: Final = (RIGHT - LEFT - _TILE) / len(STEPS)
 _TILES_TOP: Final = 58.0
@@ -28,12 +28,12 @@ _SWITCH: Final = 26.0, 13.0
 _WHY: Final = (LEFT, 240.0, 132.0)
 _FILTERS: Final = (LEFT + 160, 240.0)
 _MAPS_TOP: Final = 426.0
-_MAPS_BOTTOM: Final = 704.0  # layers of a large network that would go on beyond are left out
+_MAPS_BOTTOM: Final = 704.0  # layers of a large network that would reach below it are left out
 _GAP: Final = 3.0
 
 
 class StageSwitch(Toggle):
-    """Whether one step is taken; it stands under the picture of what the step makes."""
+    """Switch for one preprocessing step, under the picture of that step's result."""
 
     def __init__(self, manager: PointsManager, number: int, on_change: Callable[[bool], None]) -> None:
         left = LEFT + (number + 1) * _PITCH
@@ -41,7 +41,7 @@ class StageSwitch(Toggle):
         super().__init__(manager, box, texts.DIGITS_STAGES[number + 1], True, on_change)
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the switch alone: its name stands above."""
+        """Draw the switch without a label, since its name stands above."""
         if self.ringed and self.warmth > 0.02:
             canvas.outline(self.box.inflate(0, 4), 8, INK, 1, 0.4 * self.warmth)
         (width, height), box = _SWITCH, self.box
@@ -49,17 +49,17 @@ class StageSwitch(Toggle):
 
 
 class Sight:
-    """Draws a reading and its explanation; pictures are made anew only when these have changed."""
+    """View of a reading and its explanation; its pictures are cached until these change."""
 
     def __init__(self) -> None:
-        self._read: tuple[Reading | None, float] = None, 0.0  # what the pictures are of, and at what scale
+        self._read: tuple[Reading | None, float] = None, 0.0  # reading and scale for which the pictures were made
         self._explained: tuple[Explanation | None, float] = None, 0.0
         self._stages: list[pygame.Surface] = []
         self._saliency = self._filters = pygame.Surface((1, 1))
         self._layers: list[pygame.Surface] = []
 
     def draw(self, canvas: Canvas, reading: Reading, name: str, why: Explanation | None, steps: list[bool]) -> None:
-        """Draw everything; `steps` says which are taken."""
+        """Draw the whole explanation; `steps` says which preprocessing steps are on."""
         if self._read != (reading, canvas.scale):
             self._read = reading, canvas.scale
             self._stages = [_fitted(image, canvas.px(_TILE)) for image in reading.stages]
@@ -87,7 +87,7 @@ class Sight:
             left = LEFT + number * _PITCH
             taken = number == 0 or steps[number - 1]
             area = canvas.rect(left, _TILES_TOP, _TILE, _TILE)
-            picture_of.set_alpha(None if taken else 90)  # with one of 255 it would take forty times as long
+            picture_of.set_alpha(None if taken else 90)  # an alpha of 255 would take forty times as long
             canvas.surface.blit(picture_of, area)
             pygame.draw.rect(canvas.surface, LINE, area, 1)
             colour = INK if number == len(STEPS) else MUTE
@@ -145,14 +145,14 @@ def _layer(canvas: Canvas, layer: Numbers) -> pygame.Surface:
 
 
 def _mosaic(canvas: Canvas, tiles: Numbers, columns: int, width: float, gap: float) -> pygame.Surface:
-    """Return tiles that fill a width in points."""
+    """Return a mosaic of tiles that fills a width in points."""
     columns = min(columns, len(tiles))
     height = height_of(len(tiles), columns, (tiles.shape[1], tiles.shape[2]), width, gap)
     return mosaic(tiles, columns, (canvas.px(width), canvas.px(height)), gap * canvas.scale)
 
 
 def _fitted(image: Image, side: int) -> pygame.Surface:
-    """Return an image of any shape in a square, small ones with sharp pixels."""
+    """Return an image of any shape fitted into a square; small images keep sharp pixels."""
     coarse = max(image.shape) // side
     if coarse > 1:
         rows, columns = (max(1, length // coarse) for length in image.shape)

@@ -1,4 +1,4 @@
-"""Fix it: a network learns what a misread drawing was, in a process of its own; the last such lesson can be undone."""
+"""Fixing: fine-tune a network on a misread drawing, in a process of its own; the last fix can be undone."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from game.core import texts
 from game.core.worker import State, Worker
 from game.training.digit_models import PATIENCE, shelf
 
-_UNDONE: Final = ".undone"  # beside the fixes, until it is removed
+_UNDONE: Final = ".undone"  # suffix of an undone fix's folder until it is removed
 
 
 class Fixing:
-    """One fix at a time; `poll` once a frame. Networks go by the names that `game.training.digit_models` gives.
+    """Runs one fix at a time; call `poll` once a frame. Networks have their names in `game.training.digit_models`.
 
-    Every fix is a folder of its own and none is ever thrown away but by `undo`.
+    Every fix has a folder of its own, which only `undo` removes.
 
     Attributes:
-        digit: what the fix that goes on teaches, or the last one taught; None before the first.
-        step: how the fix that goes on stands; None before its first word, and between fixes.
-        networks: all there are, by name.
-        fixed: what the last fix has done, until the next begins or it is undone.
-        problem: why the last one failed, in words.
+        digit: digit taught by the current fix, or by the last one; None before the first.
+        step: progress of the current fix; None before its first message, and between fixes.
+        networks: all networks, by name.
+        fixed: result of the last fix, until the next begins or it is undone.
+        problem: why the last fix failed, in words; empty if it did not.
 
     """
 
@@ -44,25 +44,25 @@ class Fixing:
 
     @property
     def busy(self) -> bool:
-        """Whether a fix goes on."""
+        """Whether a fix is running."""
         return self._worker is not None
 
     def refresh(self) -> None:
-        """Look again at which networks there are."""
+        """Reread the list of networks."""
         self.networks = shelf(*self._folders)
 
     def folder(self, name: str) -> Path:
-        """Return where the network of that name is, with all fixes until now."""
+        """Return the folder of the named network with all its fixes."""
         return self.networks[name].versions()[0]
 
     def count(self, name: str) -> int:
-        """Return how many fixes can be undone."""
+        """Return the number of fixes that can be undone."""
         return len(self.networks[name].fixed())
 
     def begin(self, name: str, image: Image, digit: int, source: Path | None = None) -> bool:
-        """Begin to teach a network that an image (28, 28) is that digit; false while another fix goes on.
+        """Begin to teach a network that an image (28, 28) is that digit; return False while another fix runs.
 
-        `source` is the folder it was read from, where the last fix is damaged.
+        `source` is the folder that the network was read from, where the last fix is damaged.
         """
         if self.busy:
             return False
@@ -75,7 +75,7 @@ class Fixing:
         return True
 
     def poll(self) -> Fixed | None:
-        """Hear how it stands; returns what a fix has done once, when it is done."""
+        """Receive the fix's progress; return its result once, when it is finished."""
         if self._worker is None:
             return None
         done: Fixed | None = None
@@ -91,14 +91,14 @@ class Fixing:
         return done
 
     def undo(self, name: str) -> bool:
-        """Take the last fix of a network back; false if there is none, or it can't be removed."""
+        """Undo the last fix of a network; return False if there is none, or it can't be removed."""
         kept = self.networks[name].fixed()
         if not kept or self.busy:
             return False
         self.fixed, self.problem = None, ""
         aside = kept[-1].with_name(f"{_UNDONE}{time.time_ns()}")
         try:
-            kept[-1].rename(aside)  # at once, so that no half of it is ever read
+            kept[-1].rename(aside)  # atomic, so that no half-removed fix is ever read
             shutil.rmtree(aside, ignore_errors=True)
         except OSError as error:
             self.problem = texts.FIX_NOT_UNDONE.format(problem=error.strerror or error)
@@ -106,7 +106,7 @@ class Fixing:
         return True
 
     def close(self) -> None:
-        """End what goes on, for leaving; what is just being written has a moment to be whole."""
+        """End the running fix, if any; what it is just writing gets a moment to be whole."""
         self._let_go(0.5)
 
     def _let_go(self, grace: float) -> None:
@@ -116,7 +116,7 @@ class Fixing:
 
 
 def _accuracy(folder: Path) -> float | None:
-    """Return the accuracy on the test images that a network's folder tells of, if it does."""
+    """Return the test accuracy stored in a network's folder; None if there is none."""
     for file in ("config.json", "training.json"):
         with suppress(OSError, ValueError, KeyError, TypeError):
             return float(read_json(folder / file)["test"])

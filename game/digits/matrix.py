@@ -1,4 +1,4 @@
-"""The confusion matrix: what is read as what, with a misread digit in each cell; and all of a cell side by side."""
+"""Confusion matrix with a misread digit in each cell, and the chosen cell's digits side by side."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _GAP: Final = 8.0
 
 
 class Matrix(Widget):
-    """Ten rows, what a digit is, by ten columns, what it is read as. Mouse and arrows choose a cell.
+    """Confusion matrix: ten true digits (rows) by ten read ones (columns). Mouse and arrows choose a cell.
 
     Attributes:
-        cell: the chosen one, row and column.
+        cell: row and column of the chosen cell.
 
     """
 
@@ -34,17 +34,17 @@ class Matrix(Widget):
         super().__init__(manager, box, "")
         self.confusion: Confusion | None = None
         self.cell = (0, 0)
-        self._chosen = False  # by the player; until then it is the one that is misread most often
+        self._chosen = False  # by the player; until then, the most frequent error is chosen
         self._of: tuple[object, ...] = ()
         self._sheet: Canvas | None = None
 
     @property
     def pitch(self) -> float:
-        """From one cell to the next, in points."""
+        """Distance from one cell to the next, in points."""
         return self.box.width / _DIGITS
 
     def set(self, confusion: Confusion | None) -> None:
-        """Show what is misread now; None for nothing yet."""
+        """Show a confusion matrix; None for nothing yet."""
         self.confusion = confusion
         if confusion is None:
             self._chosen = False
@@ -75,7 +75,7 @@ class Matrix(Widget):
         self.cell, self._chosen = (row, column), True
 
     def paint(self, canvas: Canvas) -> None:
-        """Draw the cells, kept until they change, and the chosen one's edge."""
+        """Draw the cells, cached until they change, and the edge of the chosen one."""
         super().paint(canvas)
         if self._sheet is None or self._of != (self.confusion, canvas.scale):
             self._of = (self.confusion, canvas.scale)
@@ -120,7 +120,7 @@ class Matrix(Widget):
     # The chosen cell
 
     def draw_cell(self, canvas: Canvas, box: pygame.typing.RectLike) -> None:
-        """Say what the chosen cell means, and draw the digits that were misread so."""
+        """Draw the meaning of the chosen cell and its misread digits."""
         if self.confusion is None:
             return
         (row, column), area = self.cell, pygame.FRect(box)
@@ -144,7 +144,7 @@ class Matrix(Widget):
 
 
 def _draw_count(sheet: Canvas, count: int, right: float, bottom: float) -> None:
-    """Write how often, in the corner of a cell."""
+    """Draw a count in the corner of a cell."""
     words, colour = str(count), _warn(sheet)
     width = sheet.text_width(words, size=_COUNT) + 4
     sheet.fill(sheet.rect(right - width, bottom - 12, width, 12), NIGHT0)

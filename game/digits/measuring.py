@@ -1,4 +1,4 @@
-"""What steps of preprocessing are worth, measured in a process of its own while the screen goes on."""
+"""Ablation of preprocessing steps, measured in a process of its own while the screen goes on."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from game.training.digit_models import PATIENCE, called
 
 
 class Measuring:
-    """Measures each way of setting the switches once; `listen` once a frame. `folders` gives networks by name."""
+    """Measures the accuracy for each setting of the switches once; call `listen` once a frame.
+
+    `folders` gives networks by name.
+    """
 
     def __init__(self, folders: Callable[[], dict[str, Path]]) -> None:
         self._folders = folders
@@ -24,17 +27,17 @@ class Measuring:
         self.found: dict[Switches, StageAccuracy] = {}
 
     def ask(self, switches: Switches) -> None:
-        """Have it measured how much is read with such switches, if it is not known."""
+        """Request the accuracy with these switches, unless it is known."""
         if self._worker is None:
             self._worker = Worker(stage_accuracy, self._folders())
             self._worker.patience = PATIENCE
-            self._worker.pause()  # it works when it is asked
+            self._worker.pause()  # it works on request only
         if switches not in self._asked:
             self._asked.add(switches)
             self._worker.send(asdict(switches))
 
     def anew(self, switches: Switches) -> None:
-        """Forget everything, for the networks have changed, and measure again if anything was measured."""
+        """Discard all results because the networks have changed; measure again if anything was measured before."""
         if self._worker:
             self.close()
             self._worker = None
@@ -43,13 +46,13 @@ class Measuring:
             self.ask(switches)
 
     def listen(self) -> None:
-        """Hear what was measured."""
+        """Receive finished measurements."""
         if self._worker:
             for told in self._worker.poll():
                 self.found[Switches(**dict(told.steps))] = told
 
     def words(self, switches: Switches) -> str:
-        """Return what is known about such switches, or what to do to know more."""
+        """Return the result for these switches in words, or how to get one."""
         if self._worker is None:
             return texts.DIGITS_HINT
         told = self.found.get(switches)

@@ -1,4 +1,4 @@
-"""A pad to draw on with mouse, pen or finger: smooth strokes, undo, clear."""
+"""Drawing pad for mouse, pen or finger: smooth strokes, undo, clear."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _MOST_UNDONE: Final = 100
 
 
 class DrawingPad:
-    """Where a person draws. Feed it `handle_event`; events outside `rect` mean nothing to it.
+    """Drawing pad. Pass it events with `handle_event`; it ignores those outside `rect`.
 
     Attributes:
-        rect: where it is, in points.
-        revision: goes up with every change of the drawing.
+        rect: box of the pad, in points.
+        revision: counter, raised by every change of the drawing.
         drawing: whether the pen is down.
 
     """
@@ -48,17 +48,17 @@ class DrawingPad:
 
     @property
     def strokes(self) -> list[npt.NDArray[np.float64]]:
-        """The strokes, each as (n, 2) points from the pad's upper left corner, y down. They are kept; do not write."""
+        """The strokes, each as (n, 2) points from the pad's upper left corner, y down. Cached: do not modify."""
         return [stroke.points for stroke in self._strokes]
 
     @property
     def ink(self) -> Ink:
-        """The drawing as an image (height, width), 0 to 1, ink bright, two points a pixel. It is kept; do not write."""
+        """The drawing as an image (height, width), 0 to 1, ink bright, two points a pixel. Cached: do not modify."""
         self._ink.follow(self._strokes)
         return self._ink.cover
 
     def handle_event(self, event: pygame.event.Event) -> bool:
-        """Take one event, its position in points; false if it means nothing to the pad."""
+        """Handle an event, its position in points; return False if it means nothing to the pad."""
         match event.type:
             case pygame.MOUSEBUTTONDOWN if event.button == 1 and self.rect.collidepoint(event.pos):
                 self._begin(event.pos)
@@ -75,20 +75,20 @@ class DrawingPad:
         return True
 
     def undo(self) -> bool:
-        """Take back the last stroke, or the last clearing; false if there is nothing to take back."""
+        """Undo the last stroke, or the last clearing; return False if there is nothing to undo."""
         if not self._history:
             return False
         self._change(self._history.pop())
         return True
 
     def clear(self) -> None:
-        """Begin anew; `undo` brings the drawing back."""
+        """Clear the drawing; `undo` restores it."""
         if self._strokes:
             self._remember()
             self._change(())
 
     def lift(self) -> None:
-        """End the stroke, whatever the mouse does."""
+        """End the stroke, whatever the state of the mouse."""
         self.drawing = False
 
     def draw(self, canvas: Canvas, colour: Colour = INK) -> None:
@@ -105,13 +105,13 @@ class DrawingPad:
             rows, columns = changed
             alpha = pygame.surfarray.pixels_alpha(self._sheet)
             alpha[columns, rows] = (self._layer.cover[rows, columns] * 255.5).astype(np.uint8).T
-            del alpha  # it locks the surface
+            del alpha  # the array locks the surface
             (left, right, _), (top, bottom, _) = columns.indices(area.width), rows.indices(area.height)
             self._lay_ink(pygame.Rect(left, top, right - left, bottom - top))
         canvas.surface.blit(self._paper.surface, area)
 
     def _lay_ink(self, part: pygame.Rect) -> None:
-        """Put box, edge and ink into one picture again, in a part of it: every frame draws one, not three."""
+        """Repaint part of the picture of box, edge and ink, combined so that a frame draws one picture, not three."""
         paper, box = self._paper, (0, 0, *self.rect.size)
         paper.surface.set_clip(part)
         paper.surface.fill((0, 0, 0, 0))
@@ -128,7 +128,7 @@ class DrawingPad:
     def _go_on(self, position: Point) -> None:
         if not self.rect.inflate(PEN_WIDTH, PEN_WIDTH).collidepoint(position):
             self._outside = True
-        elif self._outside:  # back again: it has not drawn on its way there
+        elif self._outside:  # the pen is back inside; nothing is drawn for its way outside
             self._outside = False
             self._strokes = (*self._strokes, Stroke(self._place(position)))
             self.revision += 1
@@ -148,17 +148,17 @@ class DrawingPad:
 
 
 class _Layer:
-    """An image of strokes that is painted once, and goes on with them.
+    """Raster image of strokes, painted incrementally as they grow.
 
     Attributes:
-        cover: how much of each pixel is inked, 0 to 1, (height, width).
+        cover: ink coverage of each pixel, 0 to 1, (height, width).
 
     """
 
     def __init__(self, size: tuple[int, int], scale: float) -> None:
         self.scale = scale
         self.cover = np.zeros(size[::-1], np.float32)
-        self._painted: dict[Stroke, tuple[int, int]] = {}  # how much of each: settled, and points in all
+        self._painted: dict[Stroke, tuple[int, int]] = {}  # of each stroke: settled points, and all points
 
     def follow(self, strokes: tuple[Stroke, ...]) -> tuple[slice, slice] | None:
         """Paint what is new; return the rows and columns that changed, if any."""
@@ -182,7 +182,7 @@ class _Layer:
         return down, across
 
     def _pieces(self, stroke: Stroke) -> list[tuple[Point, Point, float]]:
-        """Return what is not painted yet: start, end and width, in pixels."""
+        """Return the segments not painted yet: start, end and width, in pixels."""
         scale, path = self.scale, stroke.path
         settled, count = self._painted.get(stroke, (0, 0))
         if count == len(path) and settled == stroke.settled:

@@ -1,4 +1,4 @@
-"""The pen of those who draw with keys or a gamepad."""
+"""Pen for drawing with keys or a gamepad."""
 
 from __future__ import annotations
 
@@ -14,6 +14,6 @@ _PACE: Final = 4.5  # points in a step of 1/60 s: slow enough for a digit
 
 
 def make_pen(manager: PointsManager, pad: Callable[[], DrawingPad]) -> Pointer:
-    """Return a pen that draws on a pad, or on whichever has taken its place by then."""
+    """Return a virtual pointer that draws on the pad that `pad` returns at that moment."""
     return Pointer(manager, pad().rect, lambda event: pad().handle_event(event), hold=texts.PEN_HOLD,
                    leave=texts.PEN_LEAVE, pace=_PACE)  # fmt: skip

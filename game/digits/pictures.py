@@ -1,4 +1,4 @@
-"""Arrays as pictures: grey, or two colours for what speaks for and against; one, or many side by side."""
+"""Pictures of arrays: grey or diverging colours, single or as a mosaic."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import pygame
 from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT0, PALETTE, Colour
 
 Numbers = npt.NDArray[np.float32]
-_GAP: Final = 255  # the colour that is none
+_GAP: Final = 255  # palette index of a gap
 _BACK: Final = np.array(NIGHT0, float)
 
 
 def _shades(low: Colour, high: Colour) -> npt.NDArray[np.uint8]:
-    """Return 255 colours for -1 to 1: one colour on either side of the night."""
+    """Return a diverging palette of 255 colours for -1 to 1, dark in the middle."""
     part = np.linspace(-1, 1, 255)[:, None]
     ends = np.where(part < 0, np.array(low, float), np.array(high, float))
     return np.asarray((_BACK + np.abs(part) * (ends - _BACK)).round(), np.uint8)
@@ -29,7 +29,7 @@ AMBER: Final = _shades(MUTE, HUMAN)
 
 
 def picture(values: Numbers, size: tuple[int, int], shades: npt.NDArray[np.uint8] = GREY) -> pygame.Surface:
-    """Return (height, width) numbers within -1 to 1 at a size in pixels, every number a sharp rectangle."""
+    """Return a picture of numbers (height, width) in -1 to 1, every number a sharp rectangle; `size` in pixels."""
     return mosaic(values[None], 1, size, 0, shades)
 
 
@@ -52,14 +52,14 @@ def mosaic(
 
 
 def height_of(count: int, columns: int, shape: tuple[int, int], width: float, gap: float) -> float:
-    """Return how tall a mosaic is whose cells are squares."""
+    """Return the height of a mosaic with square cells, in the unit of `width`."""
     tile = (width + gap) / columns - gap
     return -(-count // columns) * (tile * shape[0] / shape[1] + gap) - gap
 
 
 @lru_cache(maxsize=64)
 def _places(count: int, cells: int, pixels: int, gap: float) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-    """Return for each pixel along a side the number of its tile and of the cell in there; `cells` is the gap."""
+    """Return for each pixel along a side its tile and its cell in that tile; cell number `cells` is the gap."""
     pitch = (pixels + gap) / count
     at = np.arange(pixels) + 0.5
     tile = np.minimum(at // pitch, count - 1).astype(np.intp)

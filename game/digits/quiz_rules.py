@@ -1,4 +1,4 @@
-"""The quiz as a game without a screen: who reads better, a network that reads you, or you who read strangers."""
+"""Quiz rules, without a screen: the network reads the player's digits, the player reads strangers' digits."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from ai.digits.classifier import DIGITS
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier, Image
 
-ROUNDS: Final = 10  # in turns: one that is drawn, one that is read
-_LOOKED_AT: Final = 300  # strangers' digits, of which the hardest to read are asked
+ROUNDS: Final = 10  # alternating: one drawn by the player, one read by the player
+_LOOKED_AT: Final = 300  # number of strangers' digits from which the hardest to read are chosen
 
 
 @dataclass
 class Round:
-    """One question.
+    """One round of the quiz.
 
     Attributes:
         kind: whether the player draws and the network reads, or the player reads.
-        digit: what is to be drawn, or what a stranger meant.
-        image: (28, 28) what is read; None until it is drawn.
-        answer: what whose turn it is has read; None until then.
-        probabilities: (10,) what the network makes of the image.
+        digit: the digit to draw, or the one that a stranger meant.
+        image: (28, 28), the image to read; None until it is drawn.
+        answer: the digit read by the network or the player, whoever reads; None until then.
+        probabilities: (10,), the network's output for the image.
 
     """
 
@@ -38,16 +38,16 @@ class Round:
 
     @property
     def right(self) -> bool:
-        """Whether it was read as what it is."""
+        """Whether the answer is right."""
         return self.answer == self.digit
 
 
 class Contest:
-    """A quiz of ten rounds. Strangers' digits are taken from `images` and `labels`; without any, all is drawn.
+    """A quiz of ten rounds. Strangers' digits come from `images` and `labels`; without them, all rounds are drawn.
 
     Attributes:
         rounds: all of them.
-        place: the number of the one that goes on; ROUNDS when it is over.
+        place: index of the current round; ROUNDS when the quiz is over.
 
     """
 
@@ -72,7 +72,7 @@ class Contest:
 
     @property
     def round(self) -> Round | None:
-        """The round that goes on; None when all are over."""
+        """The current round; None when all are over."""
         return self.rounds[self.place] if self.place < len(self.rounds) else None
 
     def submit(self, image: Image) -> None:
@@ -83,18 +83,18 @@ class Contest:
             current.answer = int(current.probabilities.argmax())
 
     def read(self, digit: int) -> None:
-        """Say what the player reads."""
+        """Enter the digit that the player reads."""
         current = self.round
         if current and current.kind == "read" and current.answer is None:
             current.answer = digit
 
     def go_on(self) -> None:
-        """Go to the next round, once this one is answered."""
+        """Advance to the next round, once this one is answered."""
         if self.round and self.round.answer is not None:
             self.place += 1
 
     def score(self, kind: Literal["draw", "read"]) -> tuple[int, int]:
-        """Return how many rounds of a kind were read rightly, and how many were answered."""
+        """Return the numbers of right answers and of all answers in rounds of a kind."""
         answered = [each for each in self.rounds if each.kind == kind and each.answer is not None]
         return sum(each.right for each in answered), len(answered)
 
@@ -112,7 +112,7 @@ def _hardest(
     rng: np.random.Generator,
     count: int,
 ) -> list[tuple[Image, int]]:
-    """Return the images of which the network is least sure, out of some, and what they are."""
+    """Return the images, out of a random sample, of which the network is least sure, and their labels."""
     if not len(images):
         return []
     chosen = rng.choice(len(images), min(_LOOKED_AT, len(images)), replace=False)

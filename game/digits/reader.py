@@ -1,4 +1,4 @@
-"""What the networks read of a drawing, and how: stages, probabilities, activations, what spoke for the answer."""
+"""Digit reader: the networks' probabilities for a drawing, with preprocessing stages, activations and saliency."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from ai.nn.files import brief
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
-SURE: Final = 0.9  # nine in ten test images that are read rightly are read with more than that
+SURE: Final = 0.9  # nine in ten rightly read test images have a higher probability
 LIKELY: Final = 0.65  # and 99 in a hundred
 LEAST_INK, MOST_INK = 18.0, 200.0  # pixels: test images have 25 to 257, 99 in a hundred up to 186, a dot has 5
-MOST_FILTERS: Final = 32  # that there is room to show
+MOST_FILTERS: Final = 32  # as many as there is room for
 Numbers = npt.NDArray[np.float32]
 _log = logging.getLogger("tranquility")
 
 
 class Verdict(Enum):
-    """How far an answer can be trusted."""
+    """Confidence in an answer."""
 
     EMPTY = auto()
     SURE = auto()
@@ -38,7 +38,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Switches:
-    """Which steps of preprocessing are taken; `ai.digits.preprocessing.stages` says what each means."""
+    """Switches of the preprocessing steps; `ai.digits.preprocessing.stages` says what each means."""
 
     crop: bool = True
     fit: bool = True
@@ -46,7 +46,7 @@ class Switches:
     centre: bool = True
 
     def prepare(self, strokes: Image, canvas: npt.ArrayLike) -> Stages:
-        """Return every stage of strokes, as `ai.digits.preprocessing.redrawn` has drawn them, and of the canvas."""
+        """Return every stage, from strokes as `ai.digits.preprocessing.redrawn` draws them, or from the canvas."""
         if self.crop and self.fit and self.width:
             return stroke_stages(strokes, canvas, centre=self.centre)
         return stages(canvas, **vars(self))
@@ -54,17 +54,17 @@ class Switches:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """One look at a drawing; `probabilities` (10,) by the name of each network that could be read."""
+    """Reading of one drawing: `probabilities` (10,) by the name of each network that could be loaded."""
 
     stages: Stages
     probabilities: dict[str, Numbers]
 
     def verdict(self, name: str) -> Verdict:
-        """Return how far a network's answer can be trusted: all the way only if the others answer the same."""
+        """Return the confidence in a network's answer: full only if the other networks agree."""
         ink = float(self.stages.centred.sum())
         if ink == 0 or name not in self.probabilities:
             return Verdict.EMPTY
-        surest = round(float(self.probabilities[name].max()), 2)  # as it is written beside the verdict
+        surest = round(float(self.probabilities[name].max()), 2)  # rounded as it is displayed beside the verdict
         if surest < LIKELY or not LEAST_INK < ink < MOST_INK:
             return Verdict.UNSURE
         agreed = len({int(values.argmax()) for values in self.probabilities.values()}) == 1
@@ -75,12 +75,12 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
-    """Why a network answers as it does.
+    """Explanation of a network's answer for one image.
 
     Attributes:
-        saliency: (28, 28), what each pixel's ink speaks for the best answer against the second, -1 to 1.
+        saliency: (28, 28), evidence of each pixel's ink for the best answer against the second, -1 to 1.
         filters: the first layer's weights, (n, height, width), the most active ones first if there are many.
-        layers: what layers with values to see give: (n, height, width) of images, or (n,).
+        layers: outputs of the activation layers: feature maps (n, height, width), or values (n,).
 
     """
 
@@ -91,16 +91,16 @@ class Explanation:
 
 @dataclass
 class Reader:
-    """The two networks. One that can't be read is left out; `problems` says why, by name."""
+    """The loaded networks. One that can't be loaded is left out; `problems` says why, by name."""
 
     classifiers: dict[str, DigitClassifier] = field(default_factory=dict)
     sources: dict[str, Path] = field(default_factory=dict)
     problems: dict[str, str] = field(default_factory=dict)
 
     def load(self, name: str, *folders: Path) -> bool:
-        """Read a network from the first folder that has a sound one; `problems` then says what was wrong before.
+        """Load a network from the first folder with a sound one; `problems` tells what was wrong with earlier folders.
 
-        Never raises; false if there is none, and what was there stays.
+        Never raises. Returns False if no folder has one; a network loaded before then stays.
         """
         self.problems.pop(name, None)
         for folder in folders:
@@ -112,7 +112,7 @@ class Reader:
         return False
 
     def _load(self, name: str, folder: Path) -> str:
-        """Read one network, or return what is wrong with it."""
+        """Load one network; return what is wrong with it, empty if nothing."""
         from ai.digits.classifier import DigitClassifier
         from ai.nn import ModelFormatError
 
@@ -126,12 +126,12 @@ class Reader:
         return ""
 
     def read(self, seen: Stages, names: Iterable[str] | None = None) -> Reading:
-        """Let networks read a drawing that was prepared, all of them if none are named."""
+        """Read a preprocessed drawing with the named networks; with all of them if `names` is None."""
         wanted = self.classifiers if names is None else names
         return Reading(seen, {name: self.classifiers[name].predict(seen.centred)[0] for name in wanted})
 
     def explain(self, name: str, image: Image) -> Explanation:
-        """Return why a network answers as it does for an image (28, 28)."""
+        """Return the explanation of a network's answer for an image (28, 28)."""
         classifier = self.classifiers[name]
         shaped = classifier.shaped(image)
         outputs = classifier.network.activations(shaped)
@@ -146,13 +146,13 @@ class Reader:
 
 
 def _normalised(values: Numbers) -> Numbers:
-    """Return values within -1 to 1 by their roots, so that small ones are seen as well."""
+    """Return values scaled into -1 to 1 by signed square roots, so that small ones are visible too."""
     parts = values / max(float(np.abs(values).max()), 1e-9)
     return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)
 
 
 def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
-    """Return the first weights as images, each between -1 and 1."""
+    """Return the first layer's weights as images, each in -1 to 1."""
     from ai.nn import ConvolutionLayer
 
     number, first = next(pair for pair in enumerate(classifier.network.layers) if pair[1].parameters)
@@ -165,7 +165,7 @@ def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
 
 
 def _layers(classifier: DigitClassifier, outputs: list[Numbers]) -> list[Numbers]:
-    """Return what the activation layers give, those of images channel by channel, each layer within -1 to 1."""
+    """Return the outputs of the activation layers, feature maps channel by channel, each layer in -1 to 1."""
     from ai.nn import ActivationLayer
 
     values = [out[0] for layer, out in zip(classifier.network.layers, outputs, strict=True)

@@ -1,4 +1,4 @@
-"""One stroke of a pen: a smooth curve through where it was, thicker where it was slow."""
+"""Pen stroke: a smooth curve through the pen's positions, thicker where the pen was slow."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ PEN_WIDTH: Final = 28.0  # points, of a pen that moves at a middling speed
 _SLOW, _FAST = 1.12, 0.72  # times that width
 _FASTEST: Final = 40.0  # points from one event to the next
 _EASE: Final = 0.2
-_CHORD: Final = 7.0  # points: longer ways between two events are bent
-_CORNER: Final = 0.3  # cosine of a turn that is meant as a corner, and stays one
+_CHORD: Final = 7.0  # points: longer segments between two events are curved
+_CORNER: Final = 0.3  # cosine of a turn from which it counts as a corner, and stays sharp
 
 Point = tuple[float, float]
 
 
 class Stroke:
-    """Grows point by point; positions in points from the pad's upper left corner, at full precision.
+    """Stroke that grows point by point; positions in points from the pad's upper left corner, at full precision.
 
     Attributes:
-        path: the curve, as points close to each other; it goes through every point that was added.
-        widths: of the pen at each of those.
-        settled: up to which index of the path nothing will change any more.
+        path: the curve, as closely spaced points; it passes through every added point.
+        widths: width of the pen at each point of the path.
+        settled: index up to which the path is final.
 
     """
 
@@ -38,13 +38,13 @@ class Stroke:
 
     @property
     def points(self) -> npt.NDArray[np.float64]:
-        """The path as an array (n, 2). It is kept; do not write."""
+        """The path as an array (n, 2). Cached: do not modify."""
         if self._points is None:
             self._points = np.array(self.path)
         return self._points
 
     def add(self, point: Point) -> bool:
-        """Go on to a point: straight for now, and bent as soon as the next one is known; false if it is there."""
+        """Add a point: joined straight at first, curved once the next is known. Return False if it equals the last."""
         last = self._added[-1]
         if point == last:
             return False

@@ -1,1 +1,1 @@
-"""What a flight is flown as, besides flying: a challenge, a race, the tutorial; its ghost, captions and end."""
+"""Challenges, races and the tutorial, with the ghosts, captions and outcome cards of flights."""

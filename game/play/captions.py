@@ -1,4 +1,4 @@
-"""The words of a flight that is played: what is flown, how, and which keys lead on."""
+"""Captions of a flight that is played: its title, its controls, and key hints."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from game.play.challenge import Course
 from game.ui.hints import draw_hints, flight_hints
 from game.world.camera import Clear
 
-BELOW_OPENING: Final = Clear(head=196.0)  # where a craft hangs clear of the words that are said before it flies
+BELOW_OPENING: Final = Clear(head=196.0)  # keeps the waiting craft clear of the opening text
 
 
 def draw_title(
     canvas: Canvas, flight: Flight, course: Course | None, network: Network, hands: str, notice: str
 ) -> None:
-    """Say what is flown: a course by its own words, a free flight by who may take it; and why it will not count."""
+    """Draw the title of a course or of a free flight, and the reason if the flight will not count."""
     if course:
         hud.draw_corner(canvas, course.title, course.line, notice or course.goal)
     else:
@@ -39,7 +39,7 @@ def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: st
 
 
 def draw_opening(canvas: Canvas, controls: Controls, course: Course | None, forecast: bool) -> None:
-    """Say, while the craft hangs and waits, how it is flown, and what the dotted paths are."""
+    """Draw the controls and the legend of the dotted paths while the craft hangs and waits."""
     paths = [(texts.PATH_YOURS, HUMAN)]
     if forecast:
         paths.append((texts.PATH_NETWORK, NET))
@@ -47,7 +47,7 @@ def draw_opening(canvas: Canvas, controls: Controls, course: Course | None, fore
 
 
 def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, course: Course | None, leaves: bool) -> None:
-    """Name the keys that do something now; `leaves` is whether Escape goes straight back."""
+    """Draw hints of the keys that act now; `leaves` is whether Escape goes straight back."""
     word = controls.word
     hints = [(word(Command.PAUSE), texts.HINT_LEAVE if leaves else texts.HINT_PAUSE)]
     if not course:
@@ -61,7 +61,7 @@ def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, course: Course
 
 
 def card_keys(controls: Controls, good: bool, course: Course | None) -> list[tuple[str, str]]:
-    """Return the keys that lead on from a card, of a landing or not."""
+    """Return the key hints of an outcome card; `good` is whether it was a landing."""
     word = controls.word
     if course and course.fixed:
         first = texts.CARD_FIRST_FIXED[good]

@@ -1,4 +1,4 @@
-"""What can be flown other than free flights: against a rival, against a ghost of one's own, from another's midst."""
+"""Courses other than free flights: missions, races against ghosts, and flying on from a replay."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from game.input.controls import Controls
 from game.play.ghost import Ghost
 from game.world.camera import Clear, View
 
-_AFTER_OUTAGE: Final = 2.0  # seconds in which the speed of a fall without an engine can't be braked
+_AFTER_OUTAGE: Final = 2.0  # seconds after an engine failure in which the speed that it left can't be braked
 
 
 @dataclass(frozen=True)
 class Moment:
-    """What a course needs to know of the moment in which it draws over the world.
+    """Context in which a course draws over the world.
 
     Attributes:
-        alpha: how much of the way between two steps has passed.
-        controls: in whose words keys are named.
-        clear: where on the screen nothing else is said.
-        waiting: whether the craft hangs until something is touched.
-        stuck: whether it does so until something held is let go of first.
+        alpha: fraction of the current step that has passed, 0 to 1.
+        controls: the controls, which give the names of keys.
+        clear: the part of the screen that is free of other text.
+        waiting: whether the craft hangs until a control is touched.
+        stuck: whether a held control must first be released.
 
     """
 
@@ -45,19 +45,19 @@ class Moment:
 
 
 class Course:
-    """A start and what is asked there; it is flown as it is, whatever the player has chosen for free flights.
+    """A course: a start and a goal, independent of the player's choices for free flights.
 
     Attributes:
-        name: of a mission, as the logbook has it; empty for all else.
-        fixed: whether there is but the one start.
-        kept: whether its flights are written down.
-        bar: why its flights do not count as the person's own, a name of `texts.NOT_COUNTED`; empty if they may.
-        alone: whether nobody may help, or take the stick.
-        next_hint: what the key for what comes next does; empty where nothing does.
-        title, line: what is being flown, for the corner.
-        goal: what is asked of the flight, for the corner as well.
-        opening: what to say while the craft hangs and waits; empty to leave the middle free.
-        through: whether it makes way for free flights.
+        name: name of a mission in the logbook; empty for other courses.
+        fixed: whether there is only one start.
+        kept: whether its flights are recorded in the logbook.
+        bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
+        alone: whether the network may neither help nor take over.
+        next_hint: hint of the key for what comes next; empty where it does nothing.
+        title, line: name of the course, for the corner.
+        goal: goal of the flight, for the corner as well.
+        opening: text while the craft hangs and waits; empty to leave the middle free.
+        through: whether the course is finished and free flights follow.
 
     """
 
@@ -71,50 +71,50 @@ class Course:
     title = line = goal = opening = ""
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
-        """Begin it; `network` is whom to hand over to."""
+        """Begin a flight; `network` is the one to hand over to."""
         return Flight(seed, network)
 
     def ghost(self, seed: int, network: Flyer | None) -> Ghost | None:  # noqa: ARG002
-        """Begin what flies beside it."""
+        """Begin the ghost that flies beside it; None without one."""
         return None
 
     def card(self, card: Card, flight: Flight, credit: Credit) -> Card:  # noqa: ARG002
-        """Add to the card of a flight that is over."""
+        """Return the outcome card of a finished flight, with what this course adds to it."""
         return card
 
     def follow(self, flight: Flight) -> str:  # noqa: ARG002
-        """See what a step of the flight has brought; return the sound that tells of it, empty for none."""
+        """Follow a step of the flight; return the name of a sound to play, empty for none."""
         return ""
 
     def again(self) -> bool:
-        """Whether a flight that is over begins again by itself, without a card."""
+        """Whether a finished flight restarts by itself, without a card."""
         return False
 
     @property
     def waits(self) -> bool:
-        """Whether the craft hangs until the pilot touches something; or else only until all is let go of."""
+        """Whether the craft hangs until the pilot touches a control; otherwise, only until all are released."""
         return True
 
     def skip(self) -> None:
-        """Go on with what comes next, if anything does."""
+        """Skip to the next part of the course, if there is one."""
 
     def leave(self) -> None:
-        """Make way for free flights."""
+        """Leave the course for free flights."""
 
     def remember(self, settings: Settings) -> bool:  # noqa: ARG002
-        """Note in the settings what the pilot has come to; whether there was anything to be noted."""
+        """Store the pilot's progress in the settings; return whether there was any to store."""
         return False
 
     def draw(self, canvas: Canvas, view: View, flight: Flight, scene: Moment) -> None:
-        """Draw what belongs to it over the world."""
+        """Draw the course's own text and marks over the world."""
 
     def medal(self, flight: Flight) -> int:  # noqa: ARG002
-        """What a flight that is over earns if it counts: 3 for gold, 2, 1, 0 for none."""
+        """Return the medal of a finished flight if it counts: 3 for gold, 2 silver, 1 bronze, 0 none."""
         return 0
 
 
 class Duel(Course):
-    """Start after start against a rival."""
+    """Duel: one start after another against a rival."""
 
     fixed = False
     title = texts.DUEL
@@ -125,12 +125,12 @@ class Duel(Course):
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
     def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
-        """Let the rival begin there too."""
+        """Begin the rival at the same start."""
         return Ghost(Flight(seed, self._rival), self._name)
 
 
 class Race(Course):
-    """A recorded flight's own start, against its ghost."""
+    """Race: the start of a recorded flight, against its ghost."""
 
     title = texts.RACE
 
@@ -140,19 +140,19 @@ class Race(Course):
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
-        """Begin where that flight began, under its gravity."""
+        """Begin at the recorded start, under the recorded gravity."""
         recording = self._record.recording
         flight = _as_begun(recording, seed, network)
         flight.set_gravity(recording.gravity_at(0))
         return flight
 
     def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
-        """Let the recorded flight begin again."""
+        """Begin the recorded flight as the ghost."""
         return Ghost(Rerun(self._record.recording), self._name)
 
 
 class FlyOn(Course):
-    """From a moment of a recorded flight, its first part kept as it was flown; that flight goes on as a ghost."""
+    """Fly on from a moment of a recorded flight, whose own continuation flies beside as a ghost."""
 
     bar = "flown_on"
     title = texts.FLY_ON
@@ -165,25 +165,25 @@ class FlyOn(Course):
         self.line = texts.FLY_ON_LINE.format(seconds=tape.at / 60)
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
-        """Begin in its midst."""
+        """Begin at the chosen moment of the recorded flight."""
         flight = _as_begun(self._recording, seed, network)
         flight.put(self._moment, self._recording, self._step)
         return flight
 
     def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
-        """Let that flight go on as it did."""
+        """Begin the ghost of the recorded flight, from the same moment on."""
         rerun = Rerun(self._recording)
         rerun.put(self._moment, self._recording, self._step)
         return Ghost(rerun, self._name)
 
 
 def _as_begun(recording: Recording, seed: int, network: Flyer | None) -> Flight:
-    """Begin where a recorded flight began."""
+    """Return a flight at the start of a recorded one."""
     return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
 
 
 class Flown(Course):
-    """A mission of the campaign. What flies beside it is a recorded flight, or, without one, the network."""
+    """A mission of the campaign, beside a ghost: a recorded flight or, without one, the network."""
 
     title = texts.MISSION
 
@@ -194,23 +194,23 @@ class Flown(Course):
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
-        """Begin it."""
+        """Begin a flight of the mission."""
         return Flight(seed, network, mission=self.name)
 
     def ghost(self, seed: int, network: Flyer | None) -> Ghost | None:
-        """Let the rival fly it too."""
+        """Begin the rival on the same mission."""
         if self._rival:
             return Ghost(Rerun(self._rival.recording), self._rival_name)
         return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
 
     def medal(self, flight: Flight) -> int:
-        """Return what the flight earns if it counts."""
+        """Return the medal of the flight if it counts, 0 to 3."""
         if flight.outcome is not Outcome.LANDED:
             return 0
         return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
 
     def card(self, card: Card, flight: Flight, credit: Credit) -> Card:
-        """Name the medal in place of points, and say what was missing for the next; or why there is none."""
+        """Return the card with the medal in place of points, and what the next medal asks, or why there is none."""
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
         if not credit.counts:
@@ -228,7 +228,7 @@ class Flown(Course):
 
 
 def _advice(env: LanderEnv) -> str:
-    """Say what to do better about what is harder there than on the moon; nothing if that was not at fault."""
+    """Return advice on the mission's special condition; empty if that was not the cause of the crash."""
     conditions, time = env.conditions, float(env.time[0])
     if env.fuel[0] >= conditions.tank:
         return texts.ADVICE_TANK
@@ -240,7 +240,7 @@ def _advice(env: LanderEnv) -> str:
 
 
 class Daily(Course):
-    """The start that everybody has on this day, without a network to help."""
+    """Start of the day, the same for everybody, without a network to help."""
 
     name = "daily"
     alone = True
@@ -251,5 +251,5 @@ class Daily(Course):
         self.line, self.opening = f"{day:%Y-%m-%d}", texts.DAILY_BEGIN
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:  # noqa: ARG002
-        """Begin it, on three pads among hills."""
+        """Begin a flight with three pads among hills."""
         return Flight(self.seed, pads=3)

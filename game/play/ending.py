@@ -1,4 +1,4 @@
-"""How a flight ends: written down, then, after a moment, its card, while the camera draws back to all of it."""
+"""Ending of a flight: it is recorded, the camera pulls back to the whole path, and the outcome card appears."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from game.world.scenery import Scenery
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
 _CARD_RISE: Final = 16
-_CRASH_SEEN: Final = 6  # steps of a crash's slow motion before it can be cut short: a thrust may still be held
+_CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
 
 
 class Ending:
-    """Of one flight; `follow` once for every step of time since it is over.
+    """Ending of one flight; call `follow` once for every step since the flight is over.
 
     Attributes:
         calm: whether motion is reduced.
-        card: how it ended; None before, and where it is tried again at once.
+        card: the outcome card; None before the end, and where the flight restarts at once.
 
     """
 
@@ -45,12 +45,12 @@ class Ending:
 
     @property
     def due(self) -> bool:
-        """Whether the moment between the end and what follows it is over."""
+        """Whether the pause after the end is over."""
         return self._since > _CARD_AFTER
 
     @property
     def shown(self) -> float:
-        """How far the card has come in, 0 to 1."""
+        """Progress of the card's appearance, 0 to 1."""
         since = self._since - _CARD_AFTER
         if since <= 0:
             return 0.0
@@ -58,23 +58,23 @@ class Ending:
 
     @property
     def shot(self) -> Shot | None:
-        """What the camera is to show instead of the craft, if anything."""
+        """Shot for the camera instead of the craft; None to keep following the craft."""
         return self._whole if self.due else None
 
     def follow(self) -> None:
-        """Let a step pass; with the first one a crash goes into slow motion."""
+        """Advance by one step; the first step after a crash starts slow motion."""
         self._since += 1
         if self._since == 1 and self._flight.outcome is Outcome.CRASHED and not self.calm:
             self._pace.slow_down()
 
     def hurry(self) -> None:
-        """Cut slow motion short, and show the card."""
+        """End the slow motion early, and show the card."""
         if self._pace.slow and self._since > _CRASH_SEEN:
             self._pace.hurry()
             self._since = _CARD_AFTER
 
     def make_card(self, cockpit: Cockpit, course: Course | None, skill: Skill, scenery: Scenery) -> None:
-        """Say how it ended; the best score so far is that of free flights."""
+        """Make the outcome card; the best score to compare with is that of free flights."""
         self._whole = scenery.shot_of(cockpit.track.path)
         card = cockpit.card(0 if course and course.name else skill.best, self._whole.view(1.0))
         self.card = course.card(card, self._flight, cockpit.credit) if course else card
@@ -82,7 +82,7 @@ class Ending:
     def draw(
         self, canvas: Canvas, controls: Controls, course: Course | None, ghost: Ghost | None, advise: bool
     ) -> None:
-        """Draw the card, once there is one."""
+        """Draw the card, if there is one."""
         if self.card is None or self.shown == 0:
             return
         rival = ghost.row(self._flight.env) if ghost else None
@@ -94,7 +94,7 @@ def write_down(
     context: Context, flight: Flight, cockpit: Cockpit, course: Course | None,
     records: Records, skill: Skill, network: Network, hands: str,
 ) -> None:  # fmt: skip
-    """Keep a flight that is over, as an example too if wished, and count it; tell the player what went wrong."""
+    """Record a finished flight, save it as a demonstration if wished, and report failures to the player."""
     credit = cockpit.credit
     told = "" if course or credit.bar == "practice" else cockpit.keep_lesson(context.user_dir, hands)
     entry = records.keep(

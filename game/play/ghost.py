@@ -1,4 +1,4 @@
-"""A ghost: another pilot who flies the same start beside a flight, and touches nothing."""
+"""Ghost: another pilot's flight from the same start, shown beside the player's without touching it."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from game.world.flame import NET_PLUME, plume
 from game.world.landscape.sheet import fitted
 from game.world.paths import Trails
 
-_FIRE: Final = 0.5  # of full thrust: a ghost's flame must not be taken for one's own
-_BODY: Final = 0.30  # how much of a ghost covers what lies behind it, and of its rim
+_FIRE: Final = 0.5  # share of full thrust drawn, so that a ghost's flame is not mistaken for the player's
+_BODY: Final = 0.30  # opacity of a ghost's body, and of its rim
 _RIM: Final = 0.9
-_FADED: Final = 0.55  # of both, once it has crashed
+_FADED: Final = 0.55  # factor on both, once it has crashed
 _EDGE: Final = 18.0  # points from the edge of the view to the mark of a ghost that is beyond it
-_HIDDEN: Final = 24.0  # points beyond the edge from which on it is
+_HIDDEN: Final = 24.0  # points beyond the edge from which a ghost counts as beyond it
 _NO_SLOT: Final = np.zeros(1, bool)
 
 
 class Ghost:
-    """A flight that flies by itself, or by its network from the start; `step` once for every step of yours."""
+    """A rival's flight, replayed or flown by a network; call `step` once for every step of the player's."""
 
     def __init__(self, flight: Flight, name: str) -> None:
         self.flight, self.name = flight, name
@@ -41,7 +41,7 @@ class Ghost:
         self._trail = Trails(1, keep=1)
 
     def step(self) -> None:
-        """Let the rival fly 1/60 s."""
+        """Advance the rival by 1/60 s."""
         flight = self.flight
         was_over = flight.over
         flight.step(0)
@@ -49,17 +49,17 @@ class Ghost:
         self._trail.follow(flight.env.position, flight.env.outcome, _NO_SLOT, ended)
 
     def row(self, yours: LanderEnv) -> Rival:
-        """Return what the outcome card says of the rival beside a flight of yours that has ended."""
+        """Return the rival's row on the outcome card of the player's finished flight."""
         env = self.flight.env
         figures = {label: (value, unit) for label, value, unit in flight_figures(env)} if self.flight.over else {}
         return Rival(self.name, _result(yours, env), figures)
 
     def draw_way(self, canvas: Canvas, view: View) -> None:
-        """Draw the way it came, below the words at the head."""
+        """Draw the ghost's path so far, below the text at the top."""
         self._trail.draw(canvas, view, 0, Clear.head)
 
     def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
-        """Draw its shape, with a blue rim."""
+        """Draw the ghost as a translucent shape with a blue rim."""
         flight = self.flight
         pose = flight.poses.at(alpha)[0]
         if not flight.over and flight.env.fired[0] >= 3:
@@ -73,7 +73,7 @@ class Ghost:
 
 
 def _point_to(canvas: Canvas, x: float, y: float) -> None:
-    """Mark, at the edge of the view, the way to a ghost that the camera leaves out."""
+    """Draw a mark at the edge of the view, towards a ghost outside it."""
     edge = pygame.FRect(0, 0, *VIEW_SIZE).inflate(-2 * _EDGE, -2 * _EDGE)
     if not -_HIDDEN <= x <= VIEW_SIZE[0] + _HIDDEN or not -_HIDDEN <= y <= VIEW_SIZE[1] + _HIDDEN:
         spot = (min(max(x, edge.left), edge.right), min(max(y, edge.top), edge.bottom))
@@ -82,11 +82,11 @@ def _point_to(canvas: Canvas, x: float, y: float) -> None:
 
 
 def _result(yours: LanderEnv, theirs: LanderEnv) -> str:
-    """Say how the rival did, and where both have landed, who was first."""
+    """Describe the rival's result and, where both have landed, who was first."""
     outcome = Outcome(int(theirs.outcome[0]))
     if not (outcome is Outcome.LANDED and yours.outcome[0] == outcome):
         return texts.RIVAL_RESULTS[outcome.name]
-    behind = tenths(tenths(float(theirs.time[0])) - tenths(float(yours.time[0])))  # of the figures as they are printed
+    behind = tenths(tenths(float(theirs.time[0])) - tenths(float(yours.time[0])))  # of the rounded figures on the card
     if behind == 0:
         return texts.RIVAL_TOGETHER
     return (texts.RIVAL_AFTER if behind > 0 else texts.RIVAL_BEFORE).format(seconds=f"{abs(behind):.1f}")
@@ -105,7 +105,7 @@ def _draw_fire(canvas: Canvas, view: View, pose: Doubles, step: int) -> None:
 
 @lru_cache(maxsize=192)
 def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wrecked: bool) -> pygame.Surface:
-    """Return the lander as glass: its shades in blue, seen through, and a line of light around it."""
+    """Return a translucent picture of the lander in shades of blue, with a bright outline."""
     phantom = art.painted(pixels_per_metre, degrees, halves).copy()
     cover = pygame.surfarray.array_alpha(phantom)
     grown = cover.copy()
@@ -114,7 +114,7 @@ def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wre
         for to, of in ((np.s_[1:], np.s_[:-1]), (np.s_[:-1], np.s_[1:]), (np.s_[:, 1:], np.s_[:, :-1]),
                        (np.s_[:, :-1], np.s_[:, 1:])):  # fmt: skip
             np.maximum(grown[to], inner[of], out=grown[to])
-    rim = (grown - cover).astype(np.float32) / 255  # it has grown everywhere, if at all
+    rim = (grown - cover).astype(np.float32) / 255  # never negative, as the dilated mask contains the mask
     colour = pygame.surfarray.pixels3d(phantom)
     net = np.array(NET, np.float32)
     shade = np.float32(0.4) * colour + np.float32(0.6) * net

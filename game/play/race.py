@@ -1,4 +1,4 @@
-"""Flying against a recorded flight, or on from the midst of it."""
+"""Races against a recorded flight, and flying on from a moment of it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from game.play.challenge import Flown, FlyOn, Race
 
 
 def race(record: Record) -> Flown | Race:
-    """Fly a recorded flight's start against its ghost; a mission's as that mission, with what it asks and earns."""
+    """Return a race against a recorded flight; a mission's flight is raced as that mission, with its medals."""
     mission = MISSIONS.get(record.recording.mission)
     return Flown(mission, record, _name(record)) if mission else Race(record, _name(record))
 
 
 def fly_on(record: Record, tape: Tape) -> FlyOn:
-    """Fly on from the moment that a tape shows; the recorded flight goes on as a ghost."""
+    """Return a course that flies on from a replay's current moment, beside the recorded flight as a ghost."""
     return FlyOn(tape, _name(record))
 
 

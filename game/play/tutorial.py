@@ -1,8 +1,8 @@
-"""The first flight: one thing to do at a time, told beside the craft, each done when the player has done it.
+"""Tutorial, the first flight: one lesson at a time, written beside the craft, each complete once the player does it.
 
-It is flown like any other course and stops nobody: a step can be skipped, the whole of it left. After a crash the
-step begins again, with the craft hanging in the sky, and it is said why. Nothing ever stands still but for a key that
-the line beside the craft names.
+It is flown like any other course and never blocks the player: a lesson can be skipped, and the tutorial left. After a
+crash the lesson restarts with the craft hanging in the sky, and the reason is shown. Whenever the craft waits, the line
+beside it names the key that it waits for.
 """
 
 from __future__ import annotations
@@ -28,41 +28,41 @@ from game.input.controls import Controls
 from game.play.challenge import Course, Moment
 from game.world.camera import View
 
-_PRAISE: Final = 40  # steps that a thing done stays on the screen, with a tick
+_PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
 _HIGH: Final = (0.0, 17.0, 0.0, 0.0, 0.0, 0.0)
 _LOW: Final = (0.0, 8.0, 0.0, 0.0, 0.0, 0.0)
-_MIDWAY: Final = (0.0, 14.0, 0.0, 0.0, 0.0, 0.0)  # with room above for whoever fires for long
+_MIDWAY: Final = (0.0, 14.0, 0.0, 0.0, 0.0, 0.0)  # with room above for players who fire for long
 _LEANING: Final = (0.0, 17.0, 0.0, 0.0, 0.3, 0.0)
 _SINKING: Final = (0.0, 16.0, 0.0, -2.0, 0.0, 0.0)
 _LEAN: Final = 0.15  # rad
 _UPRIGHT: Final = (0.08, 0.15)  # rad, rad/s
 _SLOW: Final = 1.0  # m/s
-_RISING: Final = 0.3  # m/s, faster than which it is no longer braking
-_MARGIN: Final = 2.0, 1.4  # metres, and shares of the way to brake, within which that is more urgent than a lesson
-_NEAR: Final = 4.0  # metres above the pad, where one had better stand upright
-_TOLD_WHY: Final = 240  # steps that it is said why a lesson begins again, once it flies
-_AHEAD: Final = 0.9  # seconds ahead that a turn is to be stopped
-_SIDEWAYS: Final = 12.0  # metres from the pad, which is far
-_TOP: Final = 3.5  # metres below the top of the area, within which it is time to let go
-_BESIDE: Final = 1.6  # metres from the middle of a craft to the words beside it
+_RISING: Final = 0.3  # m/s upwards, above which the craft rises instead of braking
+_MARGIN: Final = 2.0, 1.4  # metres, and shares of the braking distance, within which braking is urgent
+_NEAR: Final = 4.0  # metres above the pad, below which the craft should be upright
+_TOLD_WHY: Final = 240  # steps in flight that the reason for a restart stays on the screen
+_AHEAD: Final = 0.9  # seconds of look-ahead for stopping a turn
+_SIDEWAYS: Final = 12.0  # metres from the pad that count as far
+_TOP: Final = 3.5  # metres below the top of the area, within which to release the engine
+_BESIDE: Final = 1.6  # metres from the middle of a craft to the text beside it
 _EDGE: Final = 24.0
 _SIZE: Final = TEXT + 2
-_WHY: Final = 22.0  # from what to do to why again
-_ROWS: Final = (104.0, 600.0)  # points, between which the words stay
+_WHY: Final = 22.0  # from the instruction to the reason for a restart
+_ROWS: Final = (104.0, 600.0)  # points, between which the text stays
 
 
 @dataclass(frozen=True)
 class Lesson:
-    """One thing to do.
+    """One lesson: something to do, and how to tell that it is done.
 
     Attributes:
-        name: of its line in `texts.TUTORIAL`.
-        done: whether it is being done in this step of a flight.
-        steps: how many steps it must be done, 60 a second; in a row if `held`.
-        start: where it begins again after a crash.
+        name: key of its line in `texts.TUTORIAL`.
+        done: predicate: whether the lesson's action is being done in this step of a flight.
+        steps: number of steps for which it must be done, 60 per second; consecutive if `held`.
+        start: state at which the lesson restarts after a crash.
         by: who must have the stick.
-        hands_off: whether it begins by letting go, and needs no touch.
-        back: how many lessons before this one to begin again with.
+        hands_off: whether it begins with all controls released, and needs no touch.
+        back: number of lessons to go back when it restarts.
 
     """
 
@@ -98,12 +98,12 @@ def _brakes(flight: Flight) -> bool:
 
 
 def _turned(env: LanderEnv) -> float:
-    """How far the craft will have turned in a moment, counter-clockwise in rad: whoever goes by that stops in time."""
+    """Return the predicted angle of the craft, counter-clockwise in rad, far enough ahead to stop a turn in time."""
     return float(env.angle[0] + _AHEAD * env.angular_velocity[0])
 
 
 def _falls_too_fast(env: LanderEnv) -> bool:
-    """Whether it is high time to brake."""
+    """Return whether the craft must brake now to land softly."""
     descent, allowed = -float(env.velocity[0, 1]), env.limits.touch_speed
     if descent < allowed or env.outcome[0] != Outcome.FLYING:
         return False
@@ -113,7 +113,7 @@ def _falls_too_fast(env: LanderEnv) -> bool:
 
 
 def _leaves_at_the_top(env: LanderEnv) -> bool:
-    """Whether it is high time to let go: the area ends above, and nothing tells where."""
+    """Return whether the craft must stop firing now, or it leaves the area at its invisible top."""
     rise, gravity = float(env.velocity[0, 1]), env.params.gravity
     room = env.limits.ceiling - _TOP - float(env.position[0, 1])
     return rise > 0 and rise**2 / (2 * gravity) > room and env.outcome[0] == Outcome.FLYING
@@ -132,12 +132,12 @@ LESSONS: Final = (
 
 
 class Tutorial(Course):
-    """The first flight.
+    """Tutorial course: the first flight.
 
     Attributes:
-        lesson: what is being done now.
-        through: whether all of it is done, or skipped.
-        flown: whether it was flown to its landing.
+        lesson: the current lesson.
+        through: whether all lessons are done or skipped.
+        flown: whether the last lesson was completed by a landing.
 
     """
 
@@ -147,41 +147,41 @@ class Tutorial(Course):
     def __init__(self) -> None:
         self._lessons = list(LESSONS)
         self._number = self._done_for = self._praise = 0
-        self._begun = 0  # how often the lesson was
-        self._why = ""  # it begins again
+        self._begun = 0  # number of times that the lesson was begun
+        self._why = ""  # reason why the lesson restarts
         self.through = self.flown = False
 
     @property
     def lesson(self) -> Lesson:
-        """What is being done now."""
+        """The current lesson."""
         return self._lessons[self._number]
 
     @property
     def fixed(self) -> bool:  # type: ignore[override]
-        """Whether there is but the one start: until free flights follow."""
+        """Whether there is only one start: until free flights follow."""
         return not self.through
 
     @property
     def line(self) -> str:  # type: ignore[override]
-        """How far it has come."""
+        """Progress through the lessons, in words."""
         return texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
 
     def flight(self, seed: int, network: Flyer | None) -> Flight:
-        """Begin the lesson, or one before it; without a network, those that need one are left out."""
+        """Begin a flight at the current lesson, or one before it; without a network, skip lessons that need one."""
         if network is None:
             self._do_without_network()
         self._number -= self.lesson.back
         self._begun += 1
         self._done_for = self._praise = self._flown_for = 0
         self._over = False
-        flight = Flight(seed, network, mission=FIRST.name, shares=False)  # a fall that is braked for you is not felt
+        flight = Flight(seed, network, mission=FIRST.name, shares=False)  # a co-pilot would brake the fall
         flight.env.place(np.ones(1, bool), np.array([self.lesson.start]))
         flight.observation = flight.env.observe()
         flight.rest()
         return flight
 
     def follow(self, flight: Flight) -> str:
-        """See whether what is asked has been done, which is heard as well."""
+        """Check whether the lesson is done; return the sound to play if so."""
         if self.through:
             return ""
         if flight.network is None:
@@ -204,18 +204,18 @@ class Tutorial(Course):
         return "" if self.through else "choose"  # a landing has a sound of its own
 
     def skip(self) -> None:
-        """Leave out the lesson, and those that begin with it."""
+        """Skip the lesson, and those that start with it."""
         left = self._lessons[self._number + 1 :]
         beyond = next((number for number, lesson in enumerate(left, 1) if not lesson.back), 0)
         self.through = not beyond
         self._begin_lesson(self._number + beyond)
 
     def leave(self) -> None:
-        """Leave out all of it."""
+        """Skip the whole tutorial."""
         self.through = True
 
     def remember(self, settings: Settings) -> bool:
-        """Note that it is through, so that it is offered no more, and whether it was flown."""
+        """Store that the tutorial is over, so that it is not offered again, and whether it was flown."""
         before = settings.tutored, settings.first_flown
         settings.tutored |= self.through
         settings.first_flown |= self.flown
@@ -223,15 +223,15 @@ class Tutorial(Course):
 
     @property
     def waits(self) -> bool:
-        """Whether a touch is needed to begin: not where what is asked is to touch nothing."""
+        """Whether a touch starts the flight; false for a lesson that asks for no touch."""
         return not self.lesson.hands_off
 
     def again(self) -> bool:
-        """Whether a flight that is over begins again: unless it was the landing that is asked for."""
+        """Whether a finished flight restarts: true unless it was the landing that the last lesson asks for."""
         return not self.through
 
     def card(self, card: Card, flight: Flight, credit: Credit) -> Card:  # noqa: ARG002
-        """Say that this was all; of who flies it once more and crashes, say that."""
+        """Return the final card: tutorial complete, or the crash of a player who flies it once more."""
         if not card.good:
             return replace(card, score="")
         return replace(card, title=texts.TUTORIAL_DONE, reason=texts.TUTORIAL_DONE_REASON, score="")
@@ -241,7 +241,7 @@ class Tutorial(Course):
         self._done_for = self._praise = self._begun = 0
 
     def _do_without_network(self) -> None:
-        """Leave out what needs one, wherever the pilot is."""
+        """Skip lessons that need a network, at any point of the tutorial."""
         if len(self._lessons) < len(LESSONS):
             return
         name = self.lesson.name
@@ -249,7 +249,7 @@ class Tutorial(Course):
         self._number = next((k for k, lesson in enumerate(self._lessons) if lesson.name == name), 5)
 
     def _reason(self, flight: Flight) -> str:
-        """Say why what is over begins again."""
+        """Return the reason why the lesson restarts."""
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
         if flight.hand is Hand.NETWORK:
@@ -259,10 +259,10 @@ class Tutorial(Course):
     # The picture
 
     def words(self, flight: Flight, controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
-        """Return what to say now, in the words of the device in use; `waiting` and `stuck` as in a `Moment`."""
+        """Return the instruction, in the key names of the device in use; `waiting` and `stuck` as in `Moment`."""
         left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
         turn = texts.TUTORIAL_EITHER.format(left=left, right=right)
-        if left == right:  # one button for both, which turns towards the pointer, or a stick
+        if left == right:  # one control for both: the mouse, which turns towards its pointer, or a stick
             turn, sign = left, left
             if controls.mouse_in_use:
                 left, right = (text.format(key=sign) for text in texts.TUTORIAL_POINT)
@@ -285,7 +285,7 @@ class Tutorial(Course):
             return texts.TUTORIAL_AGAIN
         if stuck:
             return told[0] if lesson.hands_off else texts.TUTORIAL_LET_GO
-        if waiting and lesson.name == "land":  # whose line names no key that would begin it
+        if waiting and lesson.name == "land":  # the lesson's own line names no key that starts the flight
             return texts.TUTORIAL_READY
         if flight.hand is Hand.HUMAN and (urgent := self._urgent(env)):
             return urgent
@@ -302,7 +302,7 @@ class Tutorial(Course):
         return told[1] if self._begun > 2 and told[1] else told[0]
 
     def _urgent(self, env: LanderEnv) -> str:
-        """Return what must be said before any lesson; empty if there is time for one."""
+        """Return an urgent warning, which precedes any lesson; empty if nothing is urgent."""
         if _falls_too_fast(env):
             return texts.TUTORIAL_TOO_FAST
         if _leaves_at_the_top(env):
@@ -313,15 +313,15 @@ class Tutorial(Course):
 
     @property
     def why(self) -> str:
-        """Say why the lesson begins again, until it has flown for a while; empty if it does not."""
+        """Return why the lesson restarts, until it has flown for a while; empty if it has not restarted."""
         return self._why if self._over or self._flown_for < _TOLD_WHY else ""
 
     def _why_beside(self, flight: Flight) -> str:
-        """Return what is said of it beside the craft: nothing while a wreck says it itself."""
+        """Return the reason written beside the craft; empty while the wreck has its own callout."""
         return "" if flight.outcome is Outcome.CRASHED else self.why
 
     def draw(self, canvas: Canvas, view: View, flight: Flight, scene: Moment) -> None:
-        """Write what to do beside the craft, below it why it is to be done again."""
+        """Draw the instruction beside the craft, and below it the reason for a restart."""
         if flight.over and self.through:
             return
         x, y, _ = flight.poses.at(scene.alpha)[0].tolist()

@@ -1,4 +1,4 @@
-"""Keys and buttons: press a row, then the key that shall do it from now on."""
+"""Key bindings screen: press a row, then the new key or button for it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _WORDS: Final = 628
 
 
 class Cell(Widget):
-    """The keys, or the buttons, of one meaning. Pressed, it waits for another; Escape, or a pad's Start, ends that."""
+    """Cell with the keys or buttons of one command. A press waits for a new one; Escape or Start cancels."""
 
     def __init__(
         self,
@@ -52,17 +52,17 @@ class Cell(Widget):
         self._on_change("")
 
     def stop(self) -> None:
-        """Wait no longer."""
+        """Stop waiting for a key."""
         if self.typing:
             self.typing = self._controls.listening = False
 
     def reset(self) -> None:
-        """Take back what the game comes with."""
+        """Restore the default binding."""
         self._bindings.reset(self._meaning)
         self._on_change(texts.BINDINGS_RESET.format(what=self.label))
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Take the next key or button; what is of the other device is passed over."""
+        """Bind the next key or button; events of the other device are ignored."""
         if not self.typing:
             if translate(event) is Command.RETRY or (event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE):
                 self.reset()
@@ -77,7 +77,7 @@ class Cell(Widget):
         return True
 
     def _bind(self, code: int) -> None:
-        """Take a key, or say why it can't be had, and wait for another."""
+        """Bind a key, or say why it can't be bound, and wait for another."""
         what = self._controls.pad_sign(code) if self._for_pads else key_name(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
@@ -104,7 +104,7 @@ class Cell(Widget):
             self.stop()
 
     def paint(self, canvas: Canvas) -> None:
-        """Write the keys, or that one is waited for."""
+        """Draw the keys, or the prompt for a new one."""
         if self.warmth > 0.02:
             colour = HUMAN if self.typing else INK
             canvas.outline(self.box.inflate(24, 0), 6, colour, 1, (0.9 if self.typing else 0.4) * self.warmth)
@@ -120,7 +120,7 @@ class Cell(Widget):
 
 
 class BindingsScene:
-    """A row for everything that can be changed: its keys, and a pad's buttons. Each change is kept at once."""
+    """Table of all commands with their keys and gamepad buttons. Each change is saved at once."""
 
     def enter(self, context: Context) -> None:
         """Build the table."""
@@ -136,11 +136,11 @@ class BindingsScene:
         form.add(Word(form.manager, (_KEYS, _WORDS, 240, 32), texts.BINDINGS_ALL, self._reset_all, size=18))
 
     def exit(self) -> None:
-        """Wait for no key any more: each change was saved as it was made."""
+        """Stop waiting for a key; every change is saved already."""
         self._controls.listening = False
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the cells."""
+        """Pass the event to the cells."""
         if event.type == pygame.CONTROLLERDEVICEREMOVED:
             for widget in self._form.widgets:
                 if isinstance(widget, Cell):
@@ -148,11 +148,11 @@ class BindingsScene:
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the cells ease."""
+        """Animate the cells."""
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the table, and what came of the last change."""
+        """Draw the table, and the result of the last change."""
         self._sky.draw(canvas)
         canvas.text(texts.BINDINGS_TITLE, (MARGIN, 88), size=34, weight="light")
         for text, left in ((texts.KEYS_KEYBOARD, _KEYS), (texts.KEYS_PAD, _BUTTONS)):

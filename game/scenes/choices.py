@@ -1,4 +1,4 @@
-"""Choices: how the next flights are flown, and how the player's own skill has grown."""
+"""Choices screen: options for the next flights, and a chart of the player's own skill."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ _CHART: Final = pygame.Rect(800, 152, 372, 176)
 
 
 class ChoicesScene:
-    """Stands over a flight. Each choice is kept the moment it is made; Escape, or Fly, goes back.
+    """Choices scene over a flight. Each choice is saved the moment it is made; Escape or Fly goes back.
 
-    In a course, most is as it is: there is less to choose.
+    A course fixes most options, so it offers fewer choices.
     """
 
     def __init__(self, below: Scene, skill: Skill, *, begun: bool, course: bool = False) -> None:
@@ -68,7 +68,7 @@ class ChoicesScene:
         form.add(Word(form.manager, (MARGIN, 624, 96, 32), texts.CHOICES_FLY, Pop, size=18))
 
     def _add_help(self) -> None:
-        """Add how much the network helps, and when."""
+        """Add the rows for how much the network helps, and when."""
         settings = self._context.settings
         word = self._context.controls.word
         keys = {"less": word(Command.SLOWER), "more": word(Command.FASTER)}
@@ -79,7 +79,7 @@ class ChoicesScene:
                      lambda: texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)])  # fmt: skip
 
     def _add_starts(self) -> None:
-        """Add where the next flight begins, and what its keys pass through."""
+        """Add the rows for the next flight's pads and for the handicap on its keys."""
         settings, hands = self._context.settings, list(HANDS)
         self._choice(texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
                      lambda index: self._changes("three_pads")(bool(index)),
@@ -90,18 +90,18 @@ class ChoicesScene:
                      lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))  # fmt: skip
 
     def exit(self) -> None:
-        """Nothing is held: every change was saved as it was made."""
+        """Do nothing: every change is saved already."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the rows; the key that opened this closes it too."""
+        """Pass the event to the rows; the key that opened this scene closes it too."""
         return Pop() if translate(event) is Command.CHOICES else self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the rows ease."""
+        """Animate the rows."""
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the flight below, out of focus, the rows and the curve."""
+        """Draw the blurred flight below, the rows and the skill chart."""
         self._behind.draw(canvas)
         canvas.text(texts.CHOICES_TITLE, (MARGIN, 96), size=34, weight="light")
         self._form.draw(canvas)
@@ -117,7 +117,7 @@ class ChoicesScene:
 
     @property
     def _box(self) -> tuple[int, int, int, int]:
-        """Where the next row goes."""
+        """Box of the next row."""
         return MARGIN, _FIRST + len(self._rows) * _ROW, _WIDTH, _ROW - 6
 
     def _add_slider(self, name: str, limits: tuple[float, float], label: str, help_: Callable[[], str]) -> None:

@@ -1,4 +1,4 @@
-"""Dialogs: a question over the scene that asks it, which stands still and dim meanwhile."""
+"""Dialogs: a question over the scene that asks it, which is paused and dimmed meanwhile."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _GAP: Final = 28.0  # between words
 
 
 class Dialog:
-    """What all of them share; each puts its widgets into the form in `build`. Escape closes it and does nothing."""
+    """Base of all dialogs; a subclass adds its widgets to the form in `build`. Escape closes without effect."""
 
     height = 164
 
@@ -49,20 +49,20 @@ class Dialog:
         self.build(self._form)
 
     def exit(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resources to release."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the form."""
+        """Pass the event to the form."""
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the form ease."""
+        """Animate the form."""
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
         self._below.draw(canvas, 1.0)
-        canvas.links.clear()  # the hints of what stands still below
+        canvas.links.clear()  # the hints of the paused scene below
         canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.8)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)
@@ -77,7 +77,7 @@ class Dialog:
         draw_hints(canvas, hints, (left, self.box.bottom + 24))
 
     def add_words(self, form: Form, words: Sequence[tuple[str, OnPress]]) -> None:
-        """Put words side by side along the lower edge."""
+        """Add buttons side by side along the lower edge."""
         x = float(self.box.left + _MARGIN)
         for label, press in words:
             width = typeface.width(label, TEXT, "regular")
@@ -86,7 +86,7 @@ class Dialog:
 
 
 class Asking(Dialog):
-    """Closes on any answer, and does what that stands for."""
+    """Dialog with a few answers: any of them closes it and runs its action."""
 
     def __init__(
         self, below: Scene, question: str, more: str, answers: Sequence[tuple[str, Callable[[], None]]]
@@ -95,14 +95,14 @@ class Asking(Dialog):
         self._answers = answers
 
     def build(self, form: Form) -> None:
-        """Put the answers side by side."""
+        """Add the answers side by side."""
         self.add_words(form, [(label, _closing(deed)) for label, deed in self._answers])
 
 
 class Naming(Dialog):
-    """Asks for a name, with a suggestion that can be taken as it is.
+    """Dialog that asks for a name, with a suggestion to accept or edit.
 
-    `on_name` is called with it, and says why it can't be had; if it says nothing, the dialog closes.
+    `on_name` is called with the name and returns why it is invalid; if it returns "", the dialog closes.
     """
 
     def __init__(self, below: Scene, question: str, suggestion: str, on_name: Callable[[str], str]) -> None:
@@ -110,7 +110,7 @@ class Naming(Dialog):
         self._suggestion, self._on_name = suggestion, on_name
 
     def build(self, form: Form) -> None:
-        """Put the line and two words below it."""
+        """Add the text field and two buttons below it."""
         line = (self.box.left + _MARGIN, self.box.top + 60, _ROOM, 32)
         self._entry = form.add(Entry(
             form.manager, line, "", self._suggestion, self._done, on_cancel=Pop, limit=LONGEST_NAME, fits=fitting,
@@ -132,7 +132,7 @@ class Naming(Dialog):
 
 
 class Picking(Dialog):
-    """Calls `on_pick` with the number of the row that was pressed, and closes."""
+    """Dialog with a list: a press on a row closes it and calls `on_pick` with the row's index."""
 
     height = 336
 
@@ -141,7 +141,7 @@ class Picking(Dialog):
         self._rows, self._on_pick = rows, on_pick
 
     def build(self, form: Form) -> None:
-        """Put the list."""
+        """Add the list."""
         box = (self.box.left + _MARGIN, self.box.top + 56, _ROOM, self.box.height - 84)
         form.add(Listing(form.manager, box, self._rows, on_press=self._pick, empty=texts.PICKING_EMPTY))
 

@@ -1,4 +1,4 @@
-"""Train it here: a network learns to read digits in a process of its own; the window shows it, and what is misread."""
+"""Digit training scene: a network learns in a process of its own; charts and confusion matrix show its progress."""
 
 from __future__ import annotations
 
@@ -43,21 +43,21 @@ if TYPE_CHECKING:
 
 _OFFERED: Final = {name: DIGIT_PRESETS[name] for name in texts.PUPIL_PRESETS}
 FAMILY: Final = Family(tuple(dials(DigitConfig)), _OFFERED, texts.PUPIL_PRESETS, "images")
-_WIDTH: Final = 836.0  # the panel has the rest
+_WIDTH: Final = 836.0  # of charts and matrix; the panel has the rest
 _LEFT: Final = 40.0
 _PANEL: Final = 868.0
 _KNOBS: Final = pygame.Rect(868, 20, 384, 436)
 _CHARTS: Final = {"loss": (40, 146, 372, 152), "accuracy": (440, 146, 372, 152)}
 _MATRIX: Final = pygame.Rect(70, 372, 320, 320)
 _CELL: Final = pygame.Rect(440, 346, 372, 346)
-_SAID: Final = 500.0  # where a problem is told of
+_SAID: Final = 500.0  # baseline of a problem's message
 _HINT: Final = pygame.Rect(868, 548, 384, 60)
 _EVERY: Final = 12  # frames between two drawings of the charts
 _BATCHES: Final = (MUTE, (2.0, 4.0))
 
 
 class DigitTrainingScene:
-    """The charts, the matrix, the knobs."""
+    """Digit training scene: charts, confusion matrix and knobs."""
 
     pupil: Pupil
 
@@ -75,11 +75,11 @@ class DigitTrainingScene:
         self._in_force_told: tuple[float, DigitConfig, InForce] | None = None
 
     def enter(self, context: Context) -> None:
-        """Build the screen; when a scene above has gone, the run goes on."""
+        """Build the screen; after a scene above has closed, resume the run."""
         if self._context is not None:
             if self._was_running:
                 self.pupil.resume()
-            if self._asked and self.pupil.alive:  # and the answer was to let it be
+            if self._asked and self.pupil.alive:  # and the player chose not to replace it
                 self.knobs.set_config(self.pupil.config, self.pupil.seed)
             self._asked = False
             return
@@ -101,18 +101,18 @@ class DigitTrainingScene:
         self._form.focus(self.start_word)
 
     def exit(self) -> None:
-        """Rest while another scene has the window."""
+        """Pause the run while another scene has the window."""
         self._was_running = self.pupil.state in (State.RUNNING, State.STARTING)
         self.pupil.pause()
 
     def close(self) -> None:
-        """End the run's process; what it has learnt is kept."""
+        """End the run's process; its latest network is kept."""
         if self._context is not None:
             self.pupil.close()
             self.pupil.collection.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Start, pause, stop, turn knobs, look closer."""
+        """Handle start, pause, stop, knobs and the matrix."""
         self.charts.follow(event)
         outcome = self._form.handle_event(event)
         if outcome is None and not self._form.used:
@@ -124,14 +124,14 @@ class DigitTrainingScene:
         return outcome
 
     def update(self) -> Transition | None:
-        """Listen to the worker, and let the picture ease."""
+        """Receive the worker's messages, and animate the screen."""
         assert self._context is not None
         for note in self.pupil.poll():
             self._context.note(note)
         if self.pupil.begun:
             self.pupil.begun = False
             self.knobs.set_config(self.pupil.config, self.pupil.seed)
-            self.pupil.call(self.knobs.name)  # of one that goes on, that is known only now
+            self.pupil.call(self.knobs.name)  # the name of a resumed run is known only now
         if self.pupil.alive != self._alive:
             self._alive = self.pupil.alive
             self.knobs.set_running(self._alive)
@@ -170,7 +170,7 @@ class DigitTrainingScene:
     # The run
 
     def _in_force(self) -> InForce | None:
-        """What acts now, as the run told last."""
+        """Values in force, as last reported by the run."""
         points, config = self.pupil.curves.points, self.pupil.config
         if not points:
             return None
@@ -203,7 +203,7 @@ class DigitTrainingScene:
         self._name_words()
 
     def _begin(self, config: DigitConfig, seed: int) -> None:
-        """Start a run; first ask what becomes of one that was never given a name."""
+        """Start a run; first ask whether to keep an unnamed earlier one."""
         if not self.pupil.nameless:
             self._run(config, seed)
             return
@@ -234,7 +234,7 @@ class DigitTrainingScene:
             self.knobs.set_config(config, seed)
 
     def _stop_or_go_on(self) -> None:
-        """Stop the run, or go on with the one that was not finished."""
+        """Stop the run, or resume the unfinished one."""
         if self.pupil.alive:
             self.pupil.stop()
         elif self.pupil.unfinished:
@@ -273,7 +273,7 @@ class DigitTrainingScene:
         return push("quiz", classifier) if classifier else None
 
     def _classifier(self) -> DigitClassifier | None:
-        """Return the network as it was last kept; if there is none, say so."""
+        """Return the network last saved by the run; if there is none, tell the player and return None."""
         from ai.digits.classifier import DigitClassifier
 
         if not self.pupil.kept:
@@ -375,7 +375,7 @@ def _turn_told(turn: Turned) -> str:
 
 
 def _batches(curves: Curves) -> Series:
-    """Return the accuracy of the batches as they are learnt from."""
+    """Return the curve of the training batches' accuracy."""
     colour, dash = _BATCHES
     return Series([point.seconds for point in curves.points], [100 * point.accuracy for point in curves.points],
                   texts.PUPIL_BATCHES, colour, dash)  # fmt: skip

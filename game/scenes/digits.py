@@ -1,4 +1,4 @@
-"""Draw a digit: a pad to draw on, what two networks read there as the pen moves, and how they know."""
+"""Digits scene: a drawing pad, the networks' live readings of it, and their explanation."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
 PAD: Final = pygame.Rect(40, 70, 520, 520)
-_TABS: Final = (LEFT, 26, 252, 24)  # the networks, above what the chosen one says
+_TABS: Final = (LEFT, 26, 252, 24)  # the row of networks, above the chosen one's answer
 _LONGEST_TAB: Final = 16  # letters
-_GAP: Final = 26.0  # between the words that lead to other screens
-_BELOW: Final = 602  # top of the words under the pad
+_GAP: Final = 26.0  # between the links to other screens
+_BELOW: Final = 602  # top of the buttons under the pad
 _RIGHT: Final = 1244.0
-_PROBLEMS: Final = 650.0  # the baseline of what is said of networks that can't be read, the last one first
+_PROBLEMS: Final = 650.0  # baseline of the problems of networks that can't be loaded, bottom line first
 _PROBLEM_LINES: Final = 4
 _DIGITS: Final = {
     **{pygame.K_0 + digit: digit for digit in range(10)},
@@ -54,11 +54,11 @@ _DIGITS: Final = {
 
 
 class Digits:
-    """Draw, and be read. `chosen` is the network that is looked into, by its name.
+    """Digits scene. `chosen` is the name of the network that is explained.
 
     Attributes:
-        pad: what is drawn on.
-        reading: the last look at it.
+        pad: the drawing pad.
+        reading: the latest reading of the drawing; None before the first.
 
     """
 
@@ -68,14 +68,14 @@ class Digits:
         self._context: Context | None = None
         self._switches = Switches()
         self._sight = Sight()
-        self._seen = -1  # the drawing, by its revision, that was looked at last
+        self._seen = -1  # revision of the drawing that was read last
         self._looking: Iterator[None] = iter(())
         self._why: Explanation | None = None
         self._unfix: Word | None = None
-        self._fix_of = -1  # the drawing, by its revision, that was put right last
+        self._fix_of = -1  # revision of the drawing that was fixed last
 
     def enter(self, context: Context) -> None:
-        """Read the networks and build the widgets, the first time; later see what has been trained meanwhile."""
+        """Load the networks and build the widgets the first time; later, refresh the list of networks."""
         if self._context is not None:
             self._see_networks()
             return
@@ -96,7 +96,7 @@ class Digits:
         self._offer_undo()
 
     def exit(self) -> None:
-        """Lift the pen."""
+        """End the current stroke."""
         self.pad.lift()
 
     def close(self) -> None:
@@ -112,12 +112,12 @@ class Digits:
 
     @property
     def probabilities(self) -> Numbers | None:
-        """How probable the chosen network finds each digit, (10,); None while nothing is drawn, or it can't be read."""
+        """The chosen network's probabilities (10,); None while nothing is drawn, or it can't be loaded."""
         self._catch_up()
         return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Draw, or do what a key, a button or a word means."""
+        """Handle drawing, keys, gamepad buttons and widgets."""
         if self.pad.handle_event(event) or (self._pen.focused and self._pen.take(event)):
             return None
         if event.type == pygame.KEYDOWN and event.key == pygame.K_z:
@@ -143,7 +143,7 @@ class Digits:
         return None
 
     def update(self) -> Transition | None:
-        """Look at what has been drawn since, and hear what was measured."""
+        """Read the drawing if it changed, and receive finished measurements."""
         if next(self._looking, True) and self._seen != self.pad.revision:
             self._looking = self._look()
             next(self._looking)
@@ -152,7 +152,7 @@ class Digits:
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the pad, the answer, and what led to it."""
+        """Draw the pad, the answer and its explanation."""
         self._sky.draw(canvas)
         canvas.text(texts.DIGITS_TITLE, (PAD.left, 45), size=TITLE)
         self.pad.draw(canvas)
@@ -166,14 +166,14 @@ class Digits:
     # Reading
 
     def _load(self, name: str) -> None:
-        """Read a network with what the player has taught it, or with less of that if some is damaged."""
+        """Load a network with the player's fixes, or with fewer of them if some are damaged."""
         if network := self._fixing.networks.get(name):
             self._reader.load(name, *network.versions())
 
     def _look(self) -> Iterator[None]:
-        """Draw what is on the pad anew, let the networks read it, and the chosen one say why.
+        """Preprocess the drawing, read it with all networks, and explain the chosen one's answer.
 
-        A part at a time: while the pen moves, all of it would be too much for one frame.
+        A generator that does a part at a time: while the pen moves, all of it would take too long for one frame.
         """
         self._seen = self.pad.revision
         strokes = redrawn(self.pad.strokes)
@@ -187,7 +187,7 @@ class Digits:
         yield
 
     def _catch_up(self) -> None:
-        """Bring to an end the look at what is on the pad now."""
+        """Finish reading the current drawing."""
         if self._seen != self.pad.revision:
             self._looking = self._look()
         deque(self._looking, maxlen=0)
@@ -206,21 +206,21 @@ class Digits:
 
     @property
     def _other(self) -> str:
-        """The network beside the chosen one: Modern, or Classic beside that; empty if neither can be read."""
+        """Name of the network to compare with: Modern, or Classic beside Modern; empty if it can't be loaded."""
         return next((name for name in NAMES if name != self.chosen and name in self._reader.classifiers), "")
 
     @property
     def _pair(self) -> list[str]:
         return [name for name in (self.chosen, self._other) if name in self._reader.classifiers]
 
-    # Steps of preprocessing, and what they are worth
+    # Preprocessing steps and their measured effect
 
     def _switch(self, step: str, on: bool) -> None:
         self._switches = replace(self._switches, **{step: on})
         self._look_anew()
         self._measuring.ask(self._switches)
 
-    # Putting it right
+    # Fixing a wrong answer
 
     def _correct(self, digit: int) -> None:
         """Teach the chosen network that what is drawn is this digit."""
@@ -239,14 +239,14 @@ class Digits:
             self._take_anew(self._fixing.name)
 
     def _take_anew(self, name: str) -> None:
-        """Go on with a network that is another one now."""
+        """Reload a network after a fix or its undo."""
         self._load(name)
         self._look_anew()
         self._offer_undo()
         self._measuring.anew(self._switches)
 
     def _offer_undo(self) -> None:
-        """Show the word that undoes a fix while there is one."""
+        """Show the button that undoes a fix while there is one."""
         wanted = self._fixing.count(self.chosen) > 0
         if wanted and self._unfix is None:
             box = (LEFT, FIX_TOP + 48, 96, 24)
@@ -277,7 +277,7 @@ class Digits:
             add(StageSwitch(manager, number, partial(self._switch, step)))
 
     def _make_tabs(self) -> Choice:
-        """Return a row of all networks; where the player has some, also with a list of them."""
+        """Return the row of networks; with networks of the player's own, it also leads to a list of all."""
         names = list(self._fixing.networks)
         words = [word if len(word) <= _LONGEST_TAB else word[:_LONGEST_TAB] + "…" for word in map(called, names)]
         index = names.index(self.chosen) if self.chosen in names else 0
@@ -287,7 +287,7 @@ class Digits:
         return Pick(self._form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT)
 
     def _see_networks(self) -> None:
-        """Look again at which networks there are."""
+        """Refresh the list of networks."""
         before = set(self._fixing.networks)
         self._fixing.refresh()
         if set(self._fixing.networks) == before:
@@ -300,7 +300,7 @@ class Digits:
         self._tabs = tabs
 
     def _choose(self, index: int) -> None:
-        """Look into another network; one that can't be read is named, and the last stays."""
+        """Choose another network; if it can't be loaded, say so and keep the last one."""
         names, before = list(self._fixing.networks), self._pair
         if names[index] not in self._reader.classifiers:
             self._load(names[index])
@@ -314,7 +314,7 @@ class Digits:
             self._measuring.anew(self._switches)
 
     def _turn(self, direction: int) -> None:
-        """Look into the next network that can be read."""
+        """Choose the next network that can be loaded."""
         index, count = self._tabs.index, len(self._tabs.options)
         for distance in range(1, count):
             self._tabs.choose((index + direction * distance) % count)
@@ -322,7 +322,7 @@ class Digits:
                 return
 
     def _pick(self) -> Transition:
-        """Show all networks in a list, with how well they read."""
+        """Open a list of all networks with their accuracy."""
         from game.scenes.dialog import Picking
 
         damaged = self._reader.problems
@@ -337,13 +337,13 @@ class Digits:
         return push("digit_training")
 
     def _dream(self) -> Transition | None:
-        """Dream of what was drawn."""
+        """Open the dream scene with the drawing."""
         seen = self.probabilities
         digit = 0 if seen is None else int(seen.argmax())
         return self._with_chosen(lambda classifier: push("dream", classifier, digit, self.reading.stages.centred))
 
     def _with_chosen(self, lead: Callable[[DigitClassifier], Transition]) -> Transition | None:
-        """Go to a screen that is about the chosen network, if it could be read."""
+        """Open a scene about the chosen network, if it could be loaded."""
         classifier = self._reader.classifiers.get(self.chosen)
         return lead(classifier) if classifier else None
 

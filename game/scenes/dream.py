@@ -1,4 +1,4 @@
-"""Dream: what a network thinks a digit looks like, drawn by the network itself."""
+"""Dream scene: images that maximise a network's output for a digit (activation maximisation)."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ _RIGHT: Final = 900.0
 _TILE: Final = 60
 _PITCH: Final = 71.0
 _COLUMNS: Final = 5
-_FAINTEST: Final = 0.3  # what is dimmer than that is not shown as if it were bright
+_FAINTEST: Final = 0.3  # least peak brightness for scaling: dimmer images stay dim
 _CALM: Final = 0.7
 
 
 class Tile(Widget):
-    """A small picture of one dream; pressing it brings it to the middle."""
+    """Thumbnail of one dream; a press shows it large."""
 
     def __init__(self, manager: PointsManager, digit: int, on_press: Callable[[int], None]) -> None:
         row, column = divmod(digit, _COLUMNS)
@@ -51,7 +51,7 @@ class Tile(Widget):
         self.image: Numbers | None = None
 
     def press(self) -> None:
-        """Look at it."""
+        """Show this dream large."""
         self._on_press(self.digit)
 
     def paint(self, canvas: Canvas) -> None:
@@ -68,11 +68,11 @@ class Tile(Widget):
 
 
 class Dream:
-    """Dreams of all ten digits, one of them large. `drawing` (28, 28) is one more thing that they may begin with.
+    """Dreams of all ten digits, one of them large. `drawing` (28, 28) is an optional starting image.
 
     Attributes:
-        digit: the one that is looked at.
-        dreams: of each digit; the one looked at comes first, then the others.
+        digit: the digit shown large.
+        dreams: one per digit; the one shown large is computed first, then the others.
 
     """
 
@@ -84,7 +84,7 @@ class Dream:
         self._context: Context | None = None
 
     def enter(self, context: Context) -> None:
-        """Build the widgets, and fall asleep."""
+        """Build the widgets, and start the dreams."""
         if self._context is not None:
             return
         self._context = context
@@ -94,10 +94,10 @@ class Dream:
         self.restart()
 
     def exit(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resources to release."""
 
     def restart(self) -> None:
-        """Begin all dreams anew."""
+        """Restart all dreams."""
         assert self._context is not None
         start = self._drawing if self._from_drawing else None
         seed = int(self._context.rng.integers(1 << 31))
@@ -108,12 +108,12 @@ class Dream:
         self._show()
 
     def choose(self, digit: int) -> None:
-        """Look at another digit."""
+        """Show another digit large."""
         self.digit = digit
         self._show()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Choose a digit by its key, dream again, or what a widget means."""
+        """Handle digit keys, restart and widgets."""
         if event.type == pygame.KEYDOWN and pygame.K_0 <= event.key <= pygame.K_9:
             self.choose(event.key - pygame.K_0)
             return None
@@ -129,7 +129,7 @@ class Dream:
         return None
 
     def update(self) -> Transition | None:
-        """Take one step: of the dream that is looked at, or of the next that is not over."""
+        """Take one step of the dream shown large or, once that is done, of the next unfinished one."""
         dream = next((each for each in (self.dreams[self.digit], *self.dreams) if not each.done), None)
         if dream is not None:
             dream.advance()
@@ -137,7 +137,7 @@ class Dream:
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the dream, what the network reads in it, and the others."""
+        """Draw the large dream, the network's reading of it, and the others."""
         self._sky.draw(canvas)
         dream = self.dreams[self.digit]
         canvas.text(texts.DREAM_TITLE.format(numeral=texts.NUMERALS[self.digit]), (_FRAME.left, 45), size=TITLE)
@@ -190,7 +190,7 @@ class Dream:
         self.restart()
 
     def _show(self) -> None:
-        """Let the widgets show how the dreams stand."""
+        """Update the widgets to the state of the dreams."""
         for tile, dream in zip(self._tiles, self.dreams, strict=True):
             tile.image, tile.chosen = dream.image, tile.digit == self.digit
         probabilities = self.dreams[self.digit].probabilities
@@ -211,5 +211,5 @@ class Dream:
 
 
 def _bright(image: Numbers) -> Numbers:
-    """Return an image as bright as it can be shown; one with hardly any ink stays dim."""
+    """Return an image scaled to full brightness; one with hardly any ink stays dim."""
     return np.asarray(image / max(float(image.max()), _FAINTEST), np.float32)

@@ -1,4 +1,4 @@
-"""What is shown when a scene has failed: what happened, and the way back."""
+"""Error screen after a scene has failed: what happened, and the way back."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from game.ui.context import Context
 
 
 class Fault:
-    """Stands over the menu after an error; any confirmation leads back to it."""
+    """Error screen over the menu; any confirmation returns to the menu."""
 
     def __init__(self, error: Exception, log: Path) -> None:
         self._reason = f"{type(error).__name__}: {error}"
         self._log = log
 
     def enter(self, context: Context) -> None:
-        """Remember how the keys are called."""
+        """Store the controls, which name the keys."""
         self._controls = context.controls
 
     def exit(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resources to release."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Go back to the menu on any confirmation."""
@@ -34,11 +34,11 @@ class Fault:
         return Pop() if wants_back or event.type == pygame.MOUSEBUTTONDOWN else None
 
     def update(self) -> Transition | None:
-        """Stand still."""
+        """Do nothing: the screen is static."""
         return None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Say what happened and what to do."""
+        """Draw what happened and what to do."""
         canvas.surface.fill(NIGHT0)
         canvas.text(texts.FAULT_TITLE, (MARGIN, 296), size=TITLE, weight="light")
         canvas.text(texts.FAULT_KEPT, (MARGIN, 336), colour=MUTE)

@@ -1,4 +1,4 @@
-"""The logbook: every flight in a list, what they add up to, and how the player's own skill has grown."""
+"""Logbook scene: the list of all flights, their totals, and charts of the player's skill."""
 
 from __future__ import annotations
 
@@ -43,23 +43,23 @@ _TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart t
 
 
 class Logbook:
-    """The flights on the left, newest first; skill, and what can be done with the chosen flight, on the right."""
+    """Logbook scene: flights on the left, newest first; skill and actions on the chosen flight on the right."""
 
     def __init__(self) -> None:
         self._context: Context | None = None
         self._shown: list[Entry] = []
 
     def enter(self, context: Context) -> None:
-        """Build the screen, or look again at what there is."""
+        """Build the screen, or reload the flights."""
         if self._context is None:
             self._build(context)
         self._reload()
 
     def exit(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resources to release."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the widgets; Delete throws a flight away, as elsewhere."""
+        """Pass the event to the widgets; the Delete key deletes a flight."""
         if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE and not self._form.typing:
             self._throw_away()
             return None
@@ -67,7 +67,7 @@ class Logbook:
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let widgets and charts ease."""
+        """Animate widgets and charts."""
         assert self._context is not None
         self._charts.update(self._context.settings.reduced_motion)
         return self._form.update()
@@ -76,7 +76,7 @@ class Logbook:
 
     @property
     def chosen(self) -> Entry | None:
-        """The flight that the list is at; None if there is none."""
+        """The flight selected in the list; None if there is none."""
         return self._shown[self._list.index] if self._shown else None
 
     @property
@@ -106,7 +106,7 @@ class Logbook:
         self._form.add(Pointer(manager, self._charts.box, self._charts.follow))
 
     def _reload(self) -> None:
-        """Look at the disk again."""
+        """Reload the flights from disk."""
         self._entries = self._records.entries()
         self._kept, self._thrown = self._records.kept(), self._records.thrown()
         self._line = self._records.problem or texts.LOGBOOK_PLACE.format(folder=self._records.folder)
@@ -115,7 +115,7 @@ class Logbook:
         self._fill()
 
     def _fill(self) -> None:
-        """Show the flights that the filter lets through, newest first; the best ones by what they came to."""
+        """List the flights that pass the filter, newest first, or the best flights by their score."""
         before = self.chosen
         chosen = [
             lambda: self._entries[::-1],
@@ -156,7 +156,7 @@ class Logbook:
     # What can be done
 
     def _read(self) -> Record | None:
-        """Read the chosen flight; a damaged one is named."""
+        """Read the chosen flight; if it is damaged, tell the player and return None."""
         assert self._context is not None
         if not self._replayable or self.chosen is None:
             return None
@@ -183,7 +183,7 @@ class Logbook:
             self._tell(self._records.bring_back(self.chosen.file), texts.LOGBOOK_BROUGHT_BACK)
 
     def _tell(self, done: bool, words: str) -> None:
-        """Say what was done, or why it could not be, and show what is there now."""
+        """Report what was done, or why it failed, and reload the list."""
         assert self._context is not None
         self._context.note(words if done else self._records.problem)
         self._reload()
@@ -244,7 +244,7 @@ def _row(entry: Entry) -> tuple[str, ...]:
 
 
 def _course(entry: Entry) -> str:
-    """Name where a flight was flown."""
+    """Return the name of the course that a flight was flown on."""
     if entry.course == "daily":
         return texts.DAILY
     return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")

@@ -1,4 +1,4 @@
-"""The menu: a title, a column of words, the moon behind them."""
+"""Main menu: a title and a column of entries, with the moon behind them."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _FIRST_WORD: Final = 300
 _LINE: Final = 38
 
 
-# A row a screen, by its route and its name in `texts.MENU`; the last one closes the game.
+# Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
 ROWS: Final = ("play", "missions", "watch", "train", "digits", "physics", "logbook", "settings", "quit")
 
 
 class Menu:
-    """The first screen."""
+    """Main menu, the first screen."""
 
     def __init__(self) -> None:
         self._vista = Vista()
@@ -50,14 +50,14 @@ class Menu:
             self._lines.append((self._form.add(word), line))
 
     def exit(self) -> None:
-        """Keep everything for the way back."""
+        """Do nothing: the state is kept for the return."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the column."""
+        """Pass the event to the column."""
         return self._column.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the column ease and the lander hover."""
+        """Animate the column and the background."""
         self._vista.update()
         return self._column.update()
 
@@ -88,7 +88,7 @@ class Menu:
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
     def _back(self) -> Transition | None:
-        """Escape goes to Quit first, and only from there out of the game."""
+        """Move the focus to Quit; if it is there already, leave the game."""
         last = self._column.widgets[-1]
         if self._column.focused is last:
             return Quit()

@@ -1,4 +1,4 @@
-"""What is seen behind the menu: the game's own moon, and a lander that the network flies, again and again."""
+"""Menu background: the moon, and a lander that the network lands again and again."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _REST_STEPS: Final = 110  # between a landing and the next ascent
 _CLIMB: Final = 3.2  # m/s
 _HIGH: Final = 7.5  # metres up to which it burns in an ascent, to coast from there until it falls
 _LEANS: Final = (0.30, -0.16, 0.08, -0.24, 0.18)  # radians, one for each ascent
-_SLACK: Final = 0.04  # radians off which an ascent does not mind
+_SLACK: Final = 0.04  # tolerance of an ascent's angle, in radians
 _LEFT, _RIGHT, _MAIN = 1, 2, 3
 
 
 class Vista:
-    """The view behind the menu; while it is `still`, the lander stands on its pad and nothing moves."""
+    """Background of the menu; while `still`, the lander stands on its pad and nothing moves."""
 
     def __init__(self) -> None:
         self.still = False
@@ -47,7 +47,7 @@ class Vista:
         self._begin()
 
     def enter(self, context: Context) -> None:
-        """Have the network read beside the first ascent, which needs none."""
+        """Load the network in the background of the first ascent, which needs none."""
         self.still = context.settings.reduced_motion
         if self.still:
             self._begin()
@@ -63,7 +63,7 @@ class Vista:
             Thread(target=read, daemon=True).start()
 
     def update(self) -> None:
-        """Let 1/60 s pass."""
+        """Advance by 1/60 s."""
         if self.still:
             return
         self._step += 1
@@ -94,7 +94,7 @@ class Vista:
         return bool(self._env.outcome[0] != Outcome.FLYING)
 
     def _begin(self) -> None:
-        """Stand on the pad, about to ascend."""
+        """Place the lander on the pad, ready to ascend."""
         self._stand(self._env.pad[0, 0])
         self._climbs, self._rested = True, 0
         self._poses, self._stage = Poses(self._env), Stage(self._env, np.random.default_rng(0))
@@ -104,7 +104,7 @@ class Vista:
         self._env.place(np.ones(1, bool), np.array([[x, self._env.pad[0, 1] + STAND, 0.0, 0.0, 0.0, 0.0]]))
 
     def _decide(self) -> None:
-        """Climb until it falls again and there is a pilot; then let that fly."""
+        """Return the next action: the ascent's until the lander falls and the network is loaded, then the network's."""
         env = self._env
         falls = env.position[0, 1] > _HIGH and env.velocity[0, 1] < 0
         if self._climbs and not (falls and self._pilot):
@@ -114,7 +114,7 @@ class Vista:
             self._action = self._pilot.act(env.observe(), held=env.actions)
 
     def _ascend(self) -> int:
-        """Lean to a side, and burn only as long as it is not fast yet: it shall not leave the picture."""
+        """Return the ascent's action: lean to a side, and fire only below a limit of speed, to stay in view."""
         env = self._env
         off = _LEANS[self._flights % len(_LEANS)] - float(env.angle[0]) - 0.9 * float(env.angular_velocity[0])
         steer = _LEFT if off > _SLACK else _RIGHT if off < -_SLACK else 0

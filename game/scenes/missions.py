@@ -1,4 +1,4 @@
-"""The campaign: missions in a list, what each asks, and the player's best there; the start of the day below them."""
+"""Missions scene: the campaign's missions with goals and best results, and the start of the day."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _LEFT: Final = 720
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
 _RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
 _RIVAL_LABEL: Final = 112.0
-_NETWORK: Final = 468.0  # baseline of how the network does there
+_NETWORK: Final = 468.0  # baseline of the network's result
 _VERB: Final = (_LEFT, 524.0, 200.0, 36.0)
 _FOOT: Final = 608
 _DAILY: Final = "daily"
@@ -45,14 +45,14 @@ _FLIGHTS: Final = "flights"  # in the game's own data
 
 
 class Missions:
-    """The missions on the left, in the order in which they teach; the chosen one on the right."""
+    """Missions scene: missions on the left, in teaching order; the chosen one on the right."""
 
     def __init__(self) -> None:
         self._context: Context | None = None
-        self._rival = ""  # what the player wants to fly beside; empty for what is best in each mission
+        self._rival = ""  # the player's choice of ghost; empty for the default of each mission
 
     def enter(self, context: Context) -> None:
-        """Build the screen, or look again at what was flown."""
+        """Build the screen, or reload the results."""
         first = self._context is None
         if first:
             self._context = context
@@ -74,19 +74,19 @@ class Missions:
         self._offer_rivals()
 
     def exit(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resources to release."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the widgets."""
+        """Pass the event to the widgets."""
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the widgets ease."""
+        """Animate the widgets."""
         return self._form.update()
 
     @property
     def chosen(self) -> str:
-        """Name of the mission on the right."""
+        """Name of the chosen mission."""
         return self._names[self._list.index]
 
     def _course(self) -> Course:
@@ -101,11 +101,11 @@ class Missions:
         course = self._course()
         return push("play", course.seed if isinstance(course, Daily) else 0, course=course)
 
-    # What flies beside
+    # Ghosts
 
     @property
     def _offered(self) -> list[str]:
-        """What can fly beside the player in the chosen mission."""
+        """Names of the ghosts available in the chosen mission."""
         if self.chosen not in MISSIONS:
             return []
         best = self._best.get(self.chosen)
@@ -113,13 +113,13 @@ class Missions:
 
     @property
     def _chosen_rival(self) -> str:
-        """The player's wish, if it can be had; else the network where it lands, or a recorded flight that does."""
+        """The player's choice of ghost if available; else the network where it lands, or a recorded landing."""
         if self._rival in self._offered:
             return self._rival
         return "network" if MISSIONS[self.chosen].network_lands else "recorded"
 
     def _offer_rivals(self) -> None:
-        """Let the player choose among what there is to fly beside in the chosen mission."""
+        """Offer the choice of ghosts for the chosen mission."""
         old, offered = self._rivals, self._offered
         self._rivals = []
         if offered:
@@ -136,7 +136,7 @@ class Missions:
         return choose
 
     def _rival_record(self) -> Record | None:
-        """Return the flight to race, unless that is the network's; one that can't be read is told of."""
+        """Return the recorded flight to race, None for the network; tell the player of one that can't be read."""
         assert self._context is not None
         try:
             if self._chosen_rival == "own":
@@ -225,12 +225,12 @@ _TOLD: Final = {
 
 
 def _network_words(name: str) -> str:
-    """Say how the network that comes with the game does in a mission."""
+    """Return the shipped network's result in a mission, in words."""
     return texts.MISSION_NETWORK_FAILS.get(name, texts.MISSION_NETWORK).format(landed=MISSIONS[name].landed)
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:
-    """Return the best landing by the person alone in each course that has a name, under the rules of now."""
+    """Return the player's best unaided landing in each named course, under the current rules."""
     own = (entry for entry in entries if entry.course and entry.alone)
     landings = [entry for entry in own if entry.landed and not entry.outdated]
     return {entry.course: entry for entry in sorted(landings, key=rank, reverse=True)}

@@ -1,4 +1,4 @@
-"""Pause: the scene below stands still, out of focus, with a few words over it."""
+"""Pause menu over a blurred scene that stands still."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _LINE: Final = 44
 
 
 class Pause:
-    """Stands over a scene until the player resumes it or leaves it.
+    """Pause menu over a scene, until the player resumes or leaves it.
 
     Args:
-        below: the scene to show; it is not advanced.
-        retry: begins the scene below anew; without it there is no such word.
-        retry_word: what that is called there.
-        more: gives further words, with what they do; asked each time that the column is built.
+        below: the paused scene.
+        retry: function that restarts the scene below; None for no such entry.
+        retry_word: label of that entry.
+        more: function that returns further entries and their actions; called each time the column is built.
 
     """
 
@@ -43,7 +43,7 @@ class Pause:
         self._below, self._retry, self._retry_word, self._more = below, retry, retry_word, more
 
     def enter(self, context: Context) -> None:
-        """Build the column of words."""
+        """Build the column of entries."""
         self._controls = context.controls
         self._form = Form(context, on_back=Pop)
         self._behind = Blurred(self._below)
@@ -56,18 +56,18 @@ class Pause:
             self._form.add(Word(self._form.manager, box, label, press, size=22, weight="light"))
 
     def exit(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resources to release."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the column."""
+        """Pass the event to the column."""
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the column ease."""
+        """Animate the column."""
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the scene below, out of focus, and the column."""
+        """Draw the blurred scene below, and the column."""
         self._behind.draw(canvas)
         canvas.text(texts.PAUSE_TITLE, (MARGIN, 256), size=44, weight="extralight")
         self._form.draw(canvas)
@@ -82,14 +82,14 @@ class Pause:
 
 
 class Blurred:
-    """A scene out of focus and `dimmed` by a share, painted once for each size of the window, and then only copied."""
+    """Blurred picture of a scene, `dimmed` by a share; painted once per window size, then copied."""
 
     def __init__(self, below: Scene, dimmed: float = 0.5) -> None:
         self._below, self._dimmed = below, dimmed
         self._picture: pygame.Surface | None = None
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw it over all of the window."""
+        """Draw the picture over the whole window."""
         if self._picture is None or self._picture.get_size() != canvas.surface.get_size():
             self._picture = self._paint(canvas)
         canvas.surface.blit(self._picture, (0, 0))

@@ -1,4 +1,4 @@
-"""The gallery of physics: small worlds to look into, take hold of, slow down and step through."""
+"""Physics gallery scene: exhibits to watch, grab with the mouse, slow down and step through."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from game.world.grip import Grip
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)
 _SPEED_WORDS: Final = ("×¼", "×½", "×1")
-_GROUND: Final = 604.0  # where y = 0 is seen, in points from the top
+_GROUND: Final = 604.0  # row of y = 0, in points from the top
 _TABS: Final = (MARGIN, 50.0)
 _ROWS: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices, and how far to the next
 _ROW_HEIGHT: Final = 17.0
@@ -49,7 +49,7 @@ _SMOOTHING: Final = 0.05
 
 
 class Physics:
-    """One exhibit at a time; `now` in seconds is what its steps are timed with."""
+    """Physics gallery, one exhibit at a time; `now` is the clock in seconds that times its steps."""
 
     def __init__(self, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
         self._names = list(EXHIBITS)
@@ -62,7 +62,7 @@ class Physics:
         self.grip: Grip | None = None
 
     def enter(self, context: Context) -> None:
-        """Build the choices and the first exhibit, or go on after a pause."""
+        """Build the choices and the first exhibit, or continue after a pause."""
         if self._context is not None:
             return
         self._context = context
@@ -80,11 +80,11 @@ class Physics:
         self.restart()
 
     def exit(self) -> None:
-        """Let go of what is held."""
+        """Release the gripped body."""
         self.grip = None
 
     def restart(self) -> None:
-        """Build the exhibit anew."""
+        """Rebuild the exhibit."""
         self.exhibit = EXHIBITS[self._names[self._chosen]](GRAVITIES[self._gravity])
         self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
@@ -94,7 +94,7 @@ class Physics:
         self._offer_gravity()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Take hold, stop, step, choose, pause."""
+        """Handle gripping, stopping, stepping, choices and pause."""
         if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             if self._point(event):
                 return None
@@ -136,7 +136,7 @@ class Physics:
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the room, what is in it, and the words around it."""
+        """Draw the exhibit and the text around it."""
         between = 1.0 if self.stopped else self._tempo.between(alpha)
         poses = self._poses_before + between * (self._poses - self._poses_before)
         view = self._view(canvas.scale)
@@ -171,7 +171,7 @@ class Physics:
         return self._view(1.0).metres(point)
 
     def _hovered(self) -> int | None:
-        """Body under the mouse, if the mouse is what is in use, or under what stands in for it."""
+        """Index of the body under the mouse, if that is in use, or under the virtual pointer."""
         assert self._context is not None
         if not self._context.controls.mouse_in_use and not self._hand.typing:
             return None
@@ -179,7 +179,7 @@ class Physics:
         return body.index if body else None
 
     def _point(self, event: pygame.event.Event) -> bool:
-        """Take hold of a body, pull it, let go; false if the mouse means something else."""
+        """Grip, pull or release a body; return False if the event means something else."""
         self._mouse = (float(event.pos[0]), float(event.pos[1]))
         if self.grip:
             self.grip.target = self._place(self._mouse)
@@ -203,7 +203,7 @@ class Physics:
     # Choices
 
     def _offer_gravity(self) -> None:
-        """Have a row of gravities where the exhibit has any."""
+        """Add a row of gravities, unless the exhibit is weightless."""
         if bool(self._gravities) is not self.exhibit.weightless:
             return
         row = partial(self._row, 0, texts.PHYSICS_GRAVITY, texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity)
@@ -269,7 +269,7 @@ class Physics:
         self._draw_state(canvas)
 
     def _draw_state(self, canvas: Canvas) -> None:
-        """Say on the right that time stands still, or else how to take hold of what is there."""
+        """Draw on the right that time is stopped, or else how to grab bodies."""
         assert self._context is not None
         right, controls = VIEW_SIZE[0] - MARGIN, self._context.controls
         keys = self._hand.focused and not controls.mouse_in_use
@@ -289,14 +289,14 @@ class Physics:
 
 
 def _stops(event: pygame.event.Event) -> bool:
-    """Whether the event stops time or lets it go on."""
+    """Return whether the event stops or resumes time."""
     if event.type == pygame.KEYDOWN:
         return bool(event.key == pygame.K_SPACE)
     return event.type == pygame.CONTROLLERBUTTONDOWN and translate(event) is Command.HANDOVER
 
 
 def _width(words: Sequence[str], size: float) -> float:
-    """Points that a row of words takes."""
+    """Return the width of a row of words, in points."""
     return sum(typeface.width(word, size, "regular") + _GAP for word in words) - _GAP
 
 

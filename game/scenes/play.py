@@ -1,4 +1,4 @@
-"""Play: fly, hand the stick to the network, take it back."""
+"""Play scene: fly, hand over to the network, take back control."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ from game.ui.widget import OnPress
 from game.world.path_preview import Outlook
 from game.world.scenery import Scenery
 
-# Going to full screen and back takes the window's focus away for a moment: that is no reason to pause.
+# Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
 
 
 class Play:
-    """One flight after another. `seed` fixes the first; the others are drawn from the context's chance.
+    """One flight after another. `seed` fixes the first; further seeds come from the context's random generator.
 
-    A `rival` flies the same starts beside the player, as a ghost that goes by `rival_name`. Any other `course` is
-    flown as it is, too.
+    A `rival` flies the same starts beside the player, as a ghost named `rival_name`. A `course` other than a duel sets
+    its own starts and rules.
 
     Attributes:
         flight: the flight on the screen.
-        credit: who flies it, and what it counts for.
-        ending: what follows its end.
-        waiting: whether it still hangs in the sky for the pilot's first touch.
+        credit: who flies it, and whether it counts as the player's own.
+        ending: the ending, with slow motion and outcome card.
+        waiting: whether the craft still hangs until the pilot's first touch.
 
     """
 
@@ -69,7 +69,7 @@ class Play:
         self._away = 0  # steps since the window was left; 0 while it is in use
 
     def enter(self, context: Context) -> None:
-        """Begin the first flight, or go on with the one that was paused, as far as choices made there let it."""
+        """Begin the first flight, or resume the paused one unless choices made meanwhile require a new one."""
         if self._context is not None:
             self._scenery.calm = self.ending.calm = context.settings.reduced_motion
             if self.ending.calm:
@@ -91,7 +91,7 @@ class Play:
         self._begin(self._new_seed() if self._seed is None else self._seed)
 
     def exit(self) -> None:
-        """Keep the flight for the way back, and what the dial was turned to."""
+        """Keep the flight for the return, and save the dial's setting."""
         assert self._context is not None
         self._mouse.release()
         self._context.apply_settings()
@@ -101,7 +101,7 @@ class Play:
         self._begin(self.flight.recording.seed)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Hand over, begin again, pause."""
+        """Handle handover, retry, pause and the dial."""
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         if self._cockpit.take(event):
@@ -130,7 +130,7 @@ class Play:
         return None
 
     def update(self) -> Transition | None:
-        """Let 1/60 s pass: fly a step, unless the craft waits, or time is slow and none is due."""
+        """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
         self._scenery.breathe()
         self._away += self._away > 0
         self._cockpit.ease()
@@ -169,7 +169,7 @@ class Play:
     # The flight
 
     def _fly(self) -> None:
-        """Fly a step; after the end, let one pass for all that still moves."""
+        """Fly a step; after the end, advance only what still moves."""
         flight = self.flight
         was_over = flight.over
         if not was_over:  # at the end, the figures stay those of the last moment before
@@ -192,7 +192,7 @@ class Play:
             self._end()
 
     def _end(self) -> None:
-        """Let a step pass after the flight: to its card, or at once to the next try."""
+        """Advance a step after the end: towards the card, or at once to the next try."""
         ending, course = self.ending, self._course
         ending.follow()
         if course and course.again():
@@ -246,17 +246,17 @@ class Play:
 
     @property
     def _guide(self) -> networks.Flyer | None:
-        """The network whose way ahead is shown: beside a ghost, one blue path is enough."""
+        """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
         return None if self._course else self._network.flyer
 
     def _chosen(self) -> tuple[int, str]:
-        """Return how many pads there are, and what hands fly, as the player wants it."""
+        """Return the number of pads and the handicap, as chosen by the player."""
         hands = self._settings.hands
         return 3 if self._settings.three_pads else 1, hands if hands in HANDS else OWN
 
     @property
     def _eased(self) -> bool:
-        """Whether the player wants other gravity or another pace than flights have: such say nothing of their skill."""
+        """Whether the player has changed gravity or pace; such flights do not count towards their skill."""
         return self._settings.gravity != 1 or self._settings.pace != 1
 
     def _load_network(self) -> None:
@@ -278,7 +278,7 @@ class Play:
             self._context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     def _name_what_lacks(self) -> None:
-        """Say why turning the dial does nothing, where it does nothing."""
+        """Tell the player why the dial has no effect, where it has none."""
         assert self._context is not None
         if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
             network = self._network
@@ -286,7 +286,7 @@ class Play:
             self._context.note(text.format(name=network.name, problem=network.problem))
 
     def _go_on(self) -> Transition | None:
-        """After a landing to a new start, or back from a course that has no other; after a crash to the same one."""
+        """Go to a new start after a landing (or leave a course with only one); after a crash, retry the same start."""
         if self.ending.card is None or not self.ending.card.good:
             self.retry()
         elif self._course and self._course.fixed:
@@ -304,13 +304,13 @@ class Play:
         self._begin(self.flight.recording.seed if self._course and self._course.fixed else self._new_seed())
 
     def _remember(self, course: Course) -> None:
-        """Keep what the pilot has come to in a course, as soon as they have."""
+        """Save the pilot's progress in a course as soon as it is made."""
         if course.remember(self._settings):
             assert self._context is not None
             self._context.apply_settings()
 
     def _leave_course(self) -> Transition:
-        """Go over to free flights, from a pause."""
+        """Leave the course for free flights, from the pause menu."""
         assert self._course is not None
         self._course.leave()
         self._remember(self._course)
@@ -320,7 +320,7 @@ class Play:
 
     @property
     def _leaves(self) -> bool:
-        """Whether Escape goes straight back: from a course that has not begun or is over, nothing is lost."""
+        """Whether Escape goes straight back: in a course that has not begun or is over, where nothing is lost."""
         return self._course is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
@@ -334,14 +334,14 @@ class Play:
         return [*words, (texts.PAUSE_CHOICES if self._course is None else texts.PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
-        """Let the player choose how the next flights are flown; a course is flown as it is, but for its pace."""
+        """Open the choices for the next flights; in a course, few can be changed."""
         return push("choices", self, self._skill, begun=not self.waiting, course=self._course is not None)
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self._choose_network)
 
     def _choose_network(self, name: str) -> None:
-        """Let another network be the one to hand over to, in the midst of a flight too."""
+        """Change the network to hand over to, also during a flight."""
         assert self._context is not None
         self._settings.model = name
         self._context.apply_settings()

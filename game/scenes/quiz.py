@@ -1,4 +1,4 @@
-"""Quiz: the game asks for digits to be drawn, shows others to be read, and keeps the score of both sides."""
+"""Quiz scene: the player draws digits for the network and reads strangers' digits; both sides score."""
 
 from __future__ import annotations
 
@@ -48,24 +48,24 @@ if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
 _PAD: Final = pygame.Rect(40, 86, 504, 504)
-_QUESTION: Final = 132.0  # the baselines of what is asked, and of what came of it
+_QUESTION: Final = 132.0  # baselines of the question and of the result
 _VERDICT: Final = 308.0
-_COLUMN: Final = 236.0  # width of what is said
+_COLUMN: Final = 236.0  # width of the text
 _DIGITS: Final = "0123456789"
-_KEYPAD: Final = (LEFT, 176.0)  # ten words to answer with
+_KEYPAD: Final = (LEFT, 176.0)  # ten buttons to answer with
 _WORDS: Final = 404.0
-_SCORES: Final = (900.0, 1082.0)  # where each side's figure stands
+_SCORES: Final = (900.0, 1082.0)  # left edges of both sides' scores
 _TILE: Final = 60.0
 _PITCH: Final = 71.0
-_TRACK: Final = (900.0, 250.0)  # of the rounds that are over
+_TRACK: Final = (900.0, 250.0)  # corner of the track of finished rounds
 
 
 class Quiz:
-    """A contest of ten rounds.
+    """Quiz scene: a contest of ten rounds.
 
     Attributes:
         contest: the questions, the answers and the score.
-        pad: what is drawn on.
+        pad: the drawing pad.
 
     """
 
@@ -77,7 +77,7 @@ class Quiz:
         self._context: Context | None = None
 
     def enter(self, context: Context) -> None:
-        """Find strangers' digits, and begin."""
+        """Load strangers' digits, and start the quiz."""
         if self._context is not None:
             return
         self._context = context
@@ -93,7 +93,7 @@ class Quiz:
         self.restart()
 
     def exit(self) -> None:
-        """Lift the pen."""
+        """End the current stroke."""
         self.pad.lift()
 
     @property
@@ -103,13 +103,13 @@ class Quiz:
         return self._context.in_window(self.pad.rect)
 
     def restart(self) -> None:
-        """Begin a new contest."""
+        """Start a new quiz."""
         assert self._context is not None
         self.contest = Contest(self._classifier, *self._strangers, self._context.rng)
         self._ask()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Draw, answer by a digit's key, or do what a word means."""
+        """Handle drawing, digit keys and widgets."""
         current = self.contest.round
         drawing = current is not None and current.kind == "draw" and current.answer is None
         if drawing and (self.pad.handle_event(event) or self._takes_pen(event)):
@@ -125,7 +125,7 @@ class Quiz:
         return None
 
     def _takes_pen(self, event: pygame.event.Event) -> bool:
-        """Let the pen have an event, if it is in focus."""
+        """Pass an event to the pen, if the pen is in focus."""
         pen = self._form.focused
         return isinstance(pen, Pointer) and pen.take(event)
 
@@ -140,7 +140,7 @@ class Quiz:
         return None
 
     def update(self) -> Transition | None:
-        """Let the words ease."""
+        """Animate the widgets."""
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -167,12 +167,12 @@ class Quiz:
     # The game
 
     def _ask(self) -> None:
-        """Make ready for the round that comes."""
+        """Prepare the next round."""
         self.pad = DrawingPad(_PAD)
         self._lay()
 
     def _go(self) -> None:
-        """Hand in the drawing, go to the next round, or begin anew."""
+        """Submit the drawing, advance to the next round, or restart."""
         current = self.contest.round
         if current is None:
             self.restart()
@@ -211,7 +211,7 @@ class Quiz:
         return Word(self._form.manager, (*place, width, size * 1.25 + 9), label, press, size=size, weight="light")
 
     def _lay(self) -> None:
-        """Offer the words that mean something now, in the place of those that did."""
+        """Replace the buttons by those of the current phase."""
         current = self.contest.round
         if current and current.kind == "read" and current.answer is None:
             label = _DIGITS
@@ -227,7 +227,7 @@ class Quiz:
         self._laid, self._shown = label, words
 
     def _keypad(self) -> list[Widget]:
-        """Return a word for each digit."""
+        """Return a button for each digit."""
         left, top = _KEYPAD
         return [
             self._word(digit, (left + 46 * (number % 5), top + 52 * (number // 5)), partial(self._read, number), FIGURE)

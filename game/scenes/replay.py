@@ -1,4 +1,4 @@
-"""Replay: a flight is seen again, at any pace and from any moment; from there it can be flown on."""
+"""Replay scene: a recorded flight at any speed and from any moment, from which the player can fly on."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _VERB: Final = 20.0
 
 
 class Replay:
-    """Flies a record again. `stopped` is whether time stands still."""
+    """Replay of a recorded flight. `stopped` is whether it is paused."""
 
     def __init__(self, record: Record) -> None:
         self.record = record
@@ -63,7 +63,7 @@ class Replay:
         self._export: Export | None = None
 
     def enter(self, context: Context) -> None:
-        """Begin with the first moment, or go on where it was left."""
+        """Start at the first moment, or resume where it was left."""
         if self._context is not None:
             self.stopped = True
             self._scenery.calm = context.settings.reduced_motion
@@ -77,15 +77,15 @@ class Replay:
         self._look()
 
     def exit(self) -> None:
-        """Keep everything for the way back."""
+        """Do nothing: the state is kept for the return."""
 
     def close(self) -> None:
-        """Leave a moving picture that is not done, and say so."""
+        """Cancel an unfinished film export, and tell the player."""
         if self._export:
             self._stop_export()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Stop, wind, choose; take over."""
+        """Handle pausing, seeking, choices and taking over."""
         pad = event.type == pygame.CONTROLLERBUTTONDOWN
         match translate(event):
             case Command.STEP:
@@ -111,7 +111,7 @@ class Replay:
         return None
 
     def update(self) -> Transition | None:
-        """Let as many steps pass as the chosen speed makes due, and look a little further ahead."""
+        """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
         assert self._context is not None
         self.tape.scout(1 if self.tape.touching else _SCOUT)
         self._strip.reached = self.tape.reached
@@ -155,7 +155,7 @@ class Replay:
         self._look()
 
     def _look(self) -> None:
-        """Read the figures; at the end they stay those of the last moment before."""
+        """Update the read-outs; at the end they keep the values of the last moment before."""
         self._strip.at = self.tape.at
         if not self.tape.flight.over:
             self._readouts = hud.flight_readouts(self.tape.flight.env)
@@ -208,7 +208,7 @@ class Replay:
         return push("play", self.record.recording.seed, course=race(self.record))
 
     def _begin_or_stop_export(self) -> Transition | None:
-        """Ask what kind of moving picture it shall be; or leave the one that is being made."""
+        """Ask for the film's format and start the export, or cancel the running one."""
         from game.scenes.dialog import Asking
 
         if self._export is None:
@@ -233,7 +233,7 @@ class Replay:
         self._export = Export(Replay, self.record, path, colour_safe=self._context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
-        """Say how far it has come, or what has become of it."""
+        """Show the progress of the export, or its result."""
         export.poll()
         self._export_word.label = texts.EXPORT_GOES_ON.format(percent=round(100 * export.share))
         if export.over:
@@ -295,7 +295,7 @@ class Replay:
 
 
 def _draw_way(canvas: Canvas, view: View, tape: Tape) -> None:
-    """Draw where it came from in the colour of who flew, and faintly where it goes."""
+    """Draw the path so far in the colour of who flew, and the path to come faintly."""
     path, hands = tape.path, tape.record.recording.hands
     at, head = min(tape.at, len(path) - 1), canvas.scale * _CLEAR.head
     if at + 4 < len(path):

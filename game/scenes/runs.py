@@ -1,4 +1,4 @@
-"""Your networks: the runs that were kept and those that came with the game, and what can be done with each."""
+"""Networks scene: saved runs and shipped networks, with the actions on each."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class Runs:
     """A list on the left; the chosen run, its figures and its verbs on the right.
 
     Args:
-        choose: hears the name of the network that is taken, and the scene closes. Without it, a run can be
-            watched, flown with and trained on from here.
-        train: what goes on training from a run's folder; a Train scene of its own by default.
+        choose: called with the name of the chosen network; the scene then closes. Without it, a run can be
+            watched, flown with and trained further from here.
+        train: function that resumes training from a run's folder; by default, a Train scene of its own.
 
     """
 
@@ -57,7 +57,7 @@ class Runs:
         self.runs: list[SavedRun] = []
 
     def enter(self, context: Context) -> None:
-        """Build the screen, or look again at what there is."""
+        """Build the screen, or reload the runs."""
         if self._context is not None:
             self._reload(self.shown.folder if self.shown else None)
             return
@@ -67,7 +67,7 @@ class Runs:
         self._reload(flies if self._choose else None)
 
     def exit(self) -> None:
-        """Nothing is held: every change was made on the disk at once."""
+        """Do nothing: every change is on disk already."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Leave it to the widgets; Delete and F2 do what they do elsewhere, and a folder can be dropped here."""
@@ -83,7 +83,7 @@ class Runs:
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the widgets ease."""
+        """Animate the widgets."""
         return self._form.update()
 
     # What there is
@@ -112,7 +112,7 @@ class Runs:
         self._foot: list[Widget] = []
 
     def _reload(self, shown: Path | None) -> None:
-        """Look at the disk again, and show that run, or the one that has taken its place in the list."""
+        """Reload from disk, and select that run, or the one now in its place in the list."""
         assert self._context is not None
         context = self._context
         own = self._library.runs()
@@ -130,7 +130,7 @@ class Runs:
         self._set_verbs()
 
     def _set_verbs(self) -> None:
-        """Put the words on the right that fit the chosen run, and those below the list."""
+        """Add the actions that fit the chosen run, and those below the list."""
         rows: list[tuple[str, OnPress]] = []
         run = self.shown
         if self._entry:
@@ -165,7 +165,7 @@ class Runs:
         self._set_verbs()
 
     def _press_row(self) -> Transition | None:
-        """Take a network where one is asked for; elsewhere go over to the verbs."""
+        """Choose the network where one is asked for; elsewhere, move the focus to the actions."""
         if self._choose:
             return self._take()
         if self._verbs:
@@ -216,7 +216,7 @@ class Runs:
         self._rename(self._entry.text.strip())
 
     def _rename(self, name: str) -> None:
-        """Take the new name; one that cannot be had is explained, and can be changed."""
+        """Rename the run; explain an invalid name and let the player edit it."""
         run, context = self.shown, self._context
         assert run is not None
         assert context is not None
@@ -272,7 +272,7 @@ class Runs:
         self._attempt(copy, "")
 
     def _attempt(self, deed: Callable[[str], str], name: str) -> None:
-        """Do something with the library and say how it went."""
+        """Perform an operation on the library, and report its result."""
         assert self._context is not None
         try:
             self._context.note(deed(name))

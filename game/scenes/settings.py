@@ -1,4 +1,4 @@
-"""Settings: each takes effect, and is saved, the moment it is changed."""
+"""Settings scene: each setting takes effect, and is saved, the moment it is changed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _TEXT: Final = _FIRST_ROW + len(ROWS) * _ROW + 8
 _SOUND: Final = 452  # top of the first volume
 _SOUND_ROW: Final = 36
 _BACK: Final = 624
-# What is heard when a volume is changed, beside the click of the slider itself and what goes on anyway.
+# Sample sound played when a volume is changed, besides the slider's click and sounds that play anyway.
 _SAMPLES: Final = {"effects": "touchdown", "altitude": altitude_key(9)}
 _KEYS_LEFT: Final = 704
 _KEYS_WORD: Final = 512
@@ -67,14 +67,14 @@ class SettingsScene:
         self._form.add(Word(self._form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
 
     def exit(self) -> None:
-        """Nothing is held: every change was saved as it was made."""
+        """Do nothing: every change is saved already."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the widgets."""
+        """Pass the event to the widgets."""
         return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
-        """Let the widgets ease, and follow what F11 changed."""
+        """Animate the widgets, and reflect a change of full screen by F11."""
         for name, toggle in zip(ROWS, self._form.widgets, strict=False):
             assert isinstance(toggle, Toggle)
             toggle.value = getattr(self._context.settings, name)

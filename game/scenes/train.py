@@ -1,4 +1,4 @@
-"""Train: a swarm learns to land in a process of its own; the window shows it, and every knob can be turned."""
+"""Train scene: a swarm learns to land in a process of its own; its charts are live, and so are the knobs."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
 class Train:
-    """The swarm, the charts, the knobs. With `resume`, a saved run goes on at once."""
+    """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
     student: Student
 
@@ -56,10 +56,10 @@ class Train:
         self._resume = resume
         self._context: Context | None = None
         self._was_running = self._alive = self._compared = False
-        self._left: SavedRun | None = None  # by the last visit, without a name
+        self._left: SavedRun | None = None  # run left unnamed by the last visit
 
     def enter(self, context: Context) -> None:
-        """Build the screen; after a flight against a checkpoint, the run goes on."""
+        """Build the screen; after a duel with a checkpoint, resume the run."""
         if self._context is not None:
             if self._was_running:
                 self.student.resume()
@@ -81,7 +81,7 @@ class Train:
             self._left = None
 
     def exit(self) -> None:
-        """Stand still while another scene has the window."""
+        """Pause the run while another scene has the window."""
         self._was_running = self.student.state in (State.RUNNING, State.STARTING)
         self.student.pause()
 
@@ -92,7 +92,7 @@ class Train:
             self.student.library.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Start, pause, step, turn knobs, look closer."""
+        """Handle start, pause, step, knobs and the large network."""
         if not self.inside.large:
             self.board.charts.follow(event)
         self.inside.follow(event)
@@ -112,7 +112,7 @@ class Train:
         return None
 
     def update(self) -> Transition | None:
-        """Listen to the worker, and let the picture ease."""
+        """Receive the worker's messages, and animate the screen."""
         if self._left:
             return self._ask_what_becomes_of(self._left)
         student = self.student
@@ -135,13 +135,13 @@ class Train:
             self._lay_beside(self.inside.large)
         self.swarm.update(still)
         self.inside.update(still)
-        # What takes a millisecond or two takes turns.
+        # Tasks that take a millisecond or two take turns, one per frame.
         self.board.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         self._start_word.label = start_word(student.state)
         return self._form.update()
 
     def _listen(self) -> bool:
-        """Take in what the worker has told; whether that was something of the network."""
+        """Receive the worker's messages; return whether one was about the network."""
         assert self._context is not None
         student = self.student
         sight, insight, points = student.sight, student.insight, len(student.history)
@@ -198,11 +198,11 @@ class Train:
             self.knobs.set_config(config, seed)
 
     def _go_on(self, folder: Path) -> None:
-        """Go on with a saved run, with its own settings."""
-        self._begin(Config(), 0, folder)  # its first word says what it really is made with
+        """Resume a saved run, with its own settings."""
+        self._begin(Config(), 0, folder)  # its first message brings its real configuration
 
     def _teach(self) -> None:
-        """Let the run learn from the player's landings as well, or begin one that does."""
+        """Add the player's landings to the run's training as demonstrations, or start a run with them."""
         assert self._context is not None
         folder = self._context.user_dir
         if not lessons(folder):
@@ -227,7 +227,7 @@ class Train:
         return Push(Naming(self, texts.NAMING, suggestion, self._save_as))
 
     def _save_as(self, name: str) -> str:
-        """Save under a name; returns why it can't be called so."""
+        """Save the run under a name; return why the name is invalid, empty if it is not."""
         assert self._context is not None
         try:
             if note := self.student.save(name):
@@ -281,7 +281,7 @@ class Train:
     # Checkpoints
 
     def _go_back(self, decisions: int) -> None:
-        """Let the run be what it was at its best."""
+        """Return the run to an earlier checkpoint."""
         checkpoint = self.student.history.checkpoint_at(decisions)
         if checkpoint is not None:
             self.student.revert(checkpoint)
@@ -321,7 +321,7 @@ class Train:
         return Word(self._form.manager, (x, y, width, 28), label, press)
 
     def _lay_beside(self, large: bool = False) -> None:
-        """Put the widgets there that go with the large network, or with the swarm and the charts."""
+        """Add the widgets of the large network, or of the swarm and the charts."""
         beside = self.inside.place(large)
         if not beside:
             words = ((texts.TRAIN_RUNS, self._open_runs), (texts.TRAIN_DUEL, self._duel),
@@ -369,7 +369,7 @@ class Train:
         draw_hints(canvas, hints, (_TITLE.right - 16, 46), from_right=True)
 
     def _draw_said(self, canvas: Canvas) -> None:
-        """Say what is wrong, or what to do first."""
+        """Draw the current problem, or what to do first."""
         if problem := self.student.problem:
             draw_problem(canvas, problem, (_SAID.left, _SAID.top + 17), _SAID.width, 3)
         else:

@@ -1,4 +1,4 @@
-"""Watch: a network flies, one lander or a swarm, and shows what it thinks on the way down."""
+"""Watch scene: a network flies one lander or a swarm; a panel shows the decisions of one lander."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
 
 class Watch:
-    """A swarm in the sky, the mind of one of its landers in a panel, choices on the ground line."""
+    """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line."""
 
     def __init__(self, count: int = 1, seed: int | None = None) -> None:
         self._count = COUNTS.index(count)
@@ -72,7 +72,7 @@ class Watch:
         self._stage: Stage
 
     def enter(self, context: Context) -> None:
-        """Read the networks and begin, or go on after a pause."""
+        """Load the networks and begin, or resume after a pause."""
         if self._context is not None:
             self._look_again()
             if self._stage.calm != self._settings.reduced_motion:
@@ -96,10 +96,10 @@ class Watch:
             self._begin()
 
     def exit(self) -> None:
-        """Keep everything for the way back."""
+        """Do nothing: the state is kept for the return."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Stop, step, choose, pause."""
+        """Handle stopping, stepping, choices and pause."""
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._pick(event.pos):
             return None
         pad = event.type == pygame.CONTROLLERBUTTONDOWN
@@ -174,7 +174,7 @@ class Watch:
         self.shown = min(self.shown, count - 1)
 
     def _set_up_camera(self) -> None:
-        """Go about with a single lander; with many, or with reduced motion, the camera rests and shows all."""
+        """Let the camera follow a single lander; with several, or reduced motion, it rests at the whole world."""
         self._camera, self._stage.calm = Camera(), self._settings.reduced_motion
         if self.swarm.env.num_envs == 1 and not self._stage.calm:
             self._camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
@@ -193,7 +193,7 @@ class Watch:
             framing.follow(self._camera, swarm.env, clear=_CLEAR)
 
     def _fly_to_the_next_decision(self) -> None:
-        """Fly until the shown lander has decided anew; where it rests after its flight, the others go on meanwhile."""
+        """Fly until the shown lander's next decision; the others fly on while it rests after a flight."""
         swarm, slot = self.swarm, self.shown
         alone = not np.delete(swarm.since_end == 0, slot).any()
         before = swarm.decided[slot]
@@ -206,7 +206,7 @@ class Watch:
         self.shown = slot
 
     def _pick(self, point: tuple[float, float]) -> bool:
-        """Show the mind of the lander at a point of the canvas, if there is one near it."""
+        """Show the decisions of the lander nearest to a point of the canvas, if one is close."""
         if COUNTS[self._count] == 1 or PANEL.collidepoint(point):
             return False
         place = self._camera.view(1.0).metres(point)
@@ -251,7 +251,7 @@ class Watch:
         return push("runs", choose=choose)
 
     def _look_again(self) -> None:
-        """Take what was chosen in the list, and note what came, went or has another name since."""
+        """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
         assert self._context is not None
         roster = networks.Roster(self._context.models_dir, self._context.user_dir)
         wanted, self._wanted = self._wanted or self._settings.model, ""
@@ -266,7 +266,7 @@ class Watch:
             self._choose_network(index)
 
     def _choose_network(self, index: int) -> None:
-        """Fly the same starts with another network; a damaged one is named, and the last good one flies on."""
+        """Fly the same starts with another network; report a damaged one, and keep the last good one flying."""
         network = self._roster[self._roster.names[index]]
         self.problem = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem) if network.problem else ""
         if network.flyer is None:
