@@ -919,7 +919,7 @@ CHOICES_ASSIST_HELP: Final = {
     True: "While you fly; let go of everything, and it flies. In flight: {less}, {more}, or the wheel.",
 }
 CHOICES_MODE: Final = "It steps in"
-CHOICES_MODES: Final = ("when the network's choice is clearly better", "only in need")
+CHOICES_MODES: Final = ("when its choice is clearly better", "only in need")
 CHOICES_MODES_HELP: Final = (
     "Tolerance: your action is flown if it is worth nearly as much as the best, or else the nearest that is.",
     "Guardian: your action is flown unless another is better by far, for every pad that you may mean.",
