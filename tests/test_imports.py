@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,7 @@ def modules(folder):
     return sorted(path for path in (ROOT / folder).rglob("*.py"))
 
 
+@cache
 def imports(path, everywhere=True, types=False):
     """Full names that a file imports: anywhere in it, or only when it is itself imported; those of types as well."""
     tree = ast.parse(path.read_text(encoding="utf-8"))

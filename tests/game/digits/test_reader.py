@@ -93,7 +93,7 @@ def test_the_digit_that_is_being_learnt_is_named(monkeypatch: pytest.MonkeyPatch
     fixing = Fixing(tmp_path, MODELS_DIR)
     written: list[str] = []
     monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.append(string) or pygame.FRect())
-    monkeypatch.setattr("game.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda: None))
+    monkeypatch.setattr("game.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda _: None))
     for digit in (7, 3):
         assert fixing.begin("modern", np.zeros((28, 28), np.float32), digit)
         written.clear()
