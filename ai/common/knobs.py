@@ -12,6 +12,8 @@ from typing import Any, Final, Self
 
 import numpy as np
 
+from ai.nn.files import brief
+
 SHOWN: Final = 80  # letters of a wrong value in a message
 
 
@@ -138,7 +140,7 @@ def shown(value: object) -> str:
         text = repr(value)
     except ValueError:  # an int of more than some 4,000 digits
         return "a number of very many digits"
-    return text if len(text) <= SHOWN else text[: SHOWN - 1] + "…"
+    return brief(text, SHOWN)
 
 
 def _plain(value: Any) -> Any:

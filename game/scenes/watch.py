@@ -12,6 +12,7 @@ import pygame
 from ai.common.decision import Decision
 from ai.common.environment import Bools, Doubles
 from ai.lander.environment import Outcome
+from ai.nn.files import brief
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
 from game.cockpit.decision_panel import PANEL, draw_mind
@@ -221,7 +222,12 @@ class Watch:
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        return [(texts.PAUSE_NETWORK.format(name=_shortened(self._wanted or self._network.name)), self._open_networks)]
+        return [
+            (
+                texts.PAUSE_NETWORK.format(name=brief(self._wanted or self._network.name, _LONGEST_NAME)),
+                self._open_networks,
+            )
+        ]
 
     # Choices
 
@@ -237,7 +243,7 @@ class Watch:
         return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
 
     def _network_row(self, index: int) -> Pick:
-        words = [_shortened(name) for name in self._roster.names]
+        words = [brief(name, _LONGEST_NAME) for name in self._roster.names]
         box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
         return Pick(
             self._form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
@@ -309,13 +315,17 @@ class Watch:
         crowd = texts.WATCH_ONE if count == 1 else texts.WATCH_MANY.format(count=count)
         hud.draw_corner(canvas, texts.WATCH_TITLE, crowd)
         scripted = self._network.name == networks.SCRIPTED
-        flies = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=_shortened(self._network.name))
+        flies = (
+            texts.WATCH_SCRIPTED
+            if scripted
+            else texts.WATCH_FLIES.format(name=brief(self._network.name, _LONGEST_NAME))
+        )
         said = texts.WATCH_STOPPED if self.stopped else flies
         hud.draw_hand(canvas, said, NET)
         self._draw_counts(canvas)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], (758, 880, 1002, 1124))
         if self.problem:
-            middle, problem = VIEW_SIZE[0] / 2, _shortened(self.problem, _LONGEST_PROBLEM)
+            middle, problem = VIEW_SIZE[0] / 2, brief(self.problem, _LONGEST_PROBLEM)
             box = canvas.text(problem, (middle, 84), size=SMALL, colour=canvas.palette.warn, align="centre")
             canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
         self._form.draw(canvas)
@@ -356,7 +366,3 @@ class Watch:
         canvas.text(texts.WATCH_LANDED, (figure.right + 6, 118), size=SMALL, colour=MUTE)
         counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
         canvas.text(counts, (MARGIN, 140), size=SMALL, colour=MUTE, tabular=True)
-
-
-def _shortened(text: str, most: int = _LONGEST_NAME) -> str:
-    return text if len(text) <= most else text[: most - 1] + "…"
