@@ -33,7 +33,7 @@ from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn.inspection import NetworkHealth
 from ai.training.history import Point
 from ai.training.sabotage import SABOTAGES, sabotaged
-from ai.training.session import Change, Insight, live
+from ai.training.session import ChangeSetting, NetworkState, live
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
@@ -113,7 +113,7 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
         told = next(going)
         while taken < case.decisions and time.process_time() - began < PATIENCE:
             for message in told:
-                if isinstance(message, Insight):
+                if isinstance(message, NetworkState):
                     network.values = message.values
                     network.gradients[:] = message.gradients
                     health.look(network, message.observation, config.gradient_clip)
@@ -123,7 +123,7 @@ def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
                     rows.append([*(getattr(message, name) for name in COLUMNS[:-2]), *shares])
             if turns and taken >= turns[0][0]:
                 for name, value in turns.pop(0)[1].items():
-                    going.send(Change(name, value))
+                    going.send(ChangeSetting(name, value))
                     done.append((taken, name, value))
             told = next(going)
     except FloatingPointError as error:

@@ -30,7 +30,7 @@ SHARE = 0.95
 PAUSE = {"modern": 1.0, "classic": 15.0}  # seconds between two looks at the network
 
 
-def student(config: Config, seed: int, lessons: list[Demonstration], pause: float) -> Iterator[Checkpoint]:
+def lander_run(config: Config, seed: int, lessons: list[Demonstration], pause: float) -> Iterator[Checkpoint]:
     """Train one without end; flying the demonstrations again counts as training."""
     training = Training(config, seed, evaluate_every=0)
     start = time.process_time()
@@ -70,7 +70,7 @@ def main() -> None:
         if config.success_pass:
             del ways["second pass"]
         for name, (settings, given) in ways.items():
-            runs = [reached(student(settings, seed, given, PAUSE[preset]), limit) for seed in range(arguments.seeds)]
+            runs = [reached(lander_run(settings, seed, given, PAUSE[preset]), limit) for seed in range(arguments.seeds)]
             seconds, decisions, shares = zip(*runs, strict=True)
             each = " ".join("–" if np.isinf(second) else f"{second:.0f}" for second in seconds)
             middle, flown = statistics.median(seconds), statistics.median(decisions)

@@ -28,7 +28,7 @@ import pygame
 
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.digits import Digits
+from game.scenes.digits import DigitsScene
 from game.shell.app import App
 from game.ui.context import Context
 
@@ -131,7 +131,7 @@ def _told(way: np.ndarray, haste: float, rate: float, tremor: np.ndarray) -> np.
     return told.round()
 
 
-def draw(scene: Digits, strokes: list[np.ndarray]) -> None:
+def draw(scene: DigitsScene, strokes: list[np.ndarray]) -> None:
     """Draw with the mouse's events."""
     scene.pad.clear()
     for stroke in strokes:
@@ -142,7 +142,7 @@ def draw(scene: Digits, strokes: list[np.ndarray]) -> None:
         scene.handle_event(pygame.event.Event(pygame.MOUSEBUTTONUP, pos=points[-1], button=1))
 
 
-def tile(scene: Digits, digit: int, drawn: list[np.ndarray]) -> pygame.Surface:
+def tile(scene: DigitsScene, digit: int, drawn: list[np.ndarray]) -> pygame.Surface:
     """Return a drawing with the mouse's places on it, what was seen, and what was read."""
     picture = pygame.Surface((360, 180))
     ink = pygame.surfarray.make_surface((scene.pad.ink.T[..., None] * [150, 150, 150]).astype(np.uint8))
@@ -169,7 +169,7 @@ def main() -> None:
     right: dict[str, list[bool]] = {"modern": [], "classic": []}
     tiles = []
     with TemporaryDirectory() as folder:
-        scene = Digits()
+        scene = DigitsScene()
         app = App(
             Context(Path(folder), Settings(), rng=rng),
             scene,

@@ -30,7 +30,7 @@ import pygame
 from benchmarks.digits_robustness import template_strokes
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.digits import Digits
+from game.scenes.digits import DigitsScene
 from game.shell.app import App
 from game.ui.context import Context
 
@@ -44,7 +44,7 @@ class Hand:
     def __init__(self, folder: Path) -> None:
         frames = count()
         context = Context(folder, Settings(), rng=np.random.default_rng(1))
-        self.scene = Digits()
+        self.scene = DigitsScene()
         self.app = App(context, self.scene, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
         self.app.tick()
         self.guesses: list[float] = []

@@ -47,11 +47,11 @@ from ai.nn.costs import CostFunctions
 from ai.training import demonstrations
 from ai.training.checkpoints import resume_run, snapshot
 from ai.training.demonstrations import Demonstration
-from ai.training.history import Alteration, Checkpoint, History, Point, Validation
+from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.loop import Training
 from game.core.settings import Settings, SettingsFile
 from game.flight import flight_file
-from game.flight.flight import Hand, Recording
+from game.flight.flight import Recording, StickHolder
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records
 from game.training.library import Library
@@ -118,7 +118,7 @@ def _run(folder: Path, version: int) -> None:
     history.append(Point(*[float(version)] * 10))
     history.append(Checkpoint(0.0, 0, 0.0, training.agent.network.values.copy(), None))
     history.append(Validation(0, 0.5, 1.0, best=True))
-    history.append(Alteration(0, "discount", 0.9, 0.99))
+    history.append(SettingChange(0, "discount", 0.9, 0.99))
     snapshot(training, history).save(folder / "models" / "run")
 
 
@@ -173,7 +173,7 @@ def _read_settings(folder: Path) -> Any:
 
 
 def _flight(folder: Path, version: int) -> None:
-    recording = Recording(version, "random", 1, [0, 3, 3, 1], [Hand.HUMAN] * 4)
+    recording = Recording(version, "random", 1, [0, 3, 3, 1], [StickHolder.HUMAN] * 4)
     entry = Entry(1e9, "CRASHED", 1.0, 0.5, 3.0, 1.0, network="modern", file=f"{version}.json")
     with suppress(FileExistsError):
         flight_file.write(folder / "flights" / entry.file, Record(recording, entry, (0.0, 1.0, 0.0)))

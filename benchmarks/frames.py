@@ -42,15 +42,15 @@ from benchmarks.tour import makers, scene_types, stock
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.exhibits import EXHIBITS
-from game.play.challenge import Flown
+from game.play.challenge import FlownMission
 from game.scenes import scene_of
-from game.scenes.dialog import Asking, Naming, Picking
-from game.scenes.error_screen import Fault
-from game.scenes.menu import Menu
-from game.scenes.pause import Pause
-from game.scenes.physics import Physics
-from game.scenes.play import Play
-from game.scenes.watch import COUNTS, Watch
+from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
+from game.scenes.error_screen import ErrorScene
+from game.scenes.menu import MenuScene
+from game.scenes.pause import PauseScene
+from game.scenes.physics import PhysicsScene
+from game.scenes.play import PlayScene
+from game.scenes.watch import COUNTS, WatchScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import Backdrop, landscape
@@ -75,9 +75,9 @@ class Row:
 def rows() -> dict[str, Row]:
     """Every scene of the game by name, those that fly in several ways."""
 
-    def over_play(make: Callable[[Play], Scene]) -> Callable[[Context], Scene]:
+    def over_play(make: Callable[[PlayScene], Scene]) -> Callable[[Context], Scene]:
         def made(context: Context) -> Scene:
-            below = Play(seed=4)
+            below = PlayScene(seed=4)
             below.enter(context)
             return make(below)
 
@@ -86,7 +86,7 @@ def rows() -> dict[str, Row]:
     def of_tour(name: str) -> Callable[[Context], Scene | None]:
         return lambda context: makers(context)[name]()
 
-    play, heap = Row(lambda _: Play(seed=4), FLOWN), lambda _: Physics("heap")
+    play, heap = Row(lambda _: PlayScene(seed=4), FLOWN), lambda _: PhysicsScene("heap")
     with TemporaryDirectory() as folder:
         others = makers(Context(Path(folder), Settings())).keys() - {"Play", "Watch", "Physics", "mission"}
     return {
@@ -94,18 +94,21 @@ def rows() -> dict[str, Row]:
         "play, network": Row(play.make, (pygame.K_r, pygame.K_TAB)),
         "play, shared": Row(play.make, FLOWN, SHARED),
         "play, three pads": Row(play.make, FLOWN, PADS),
-        **{f"mission, {name}": Row(lambda _, m=m: Play(0, course=Flown(m)), FLOWN) for name, m in MISSIONS.items()},
-        "pause": Row(over_play(Pause)),
-        "dialog": Row(over_play(lambda below: Asking(below, "?", "", [("a", print), ("b", print)]))),
-        "dialog, naming": Row(over_play(lambda below: Naming(below, "?", "name", lambda _: ""))),
-        "dialog, picking": Row(over_play(lambda below: Picking(below, "?", [("a",), ("b",)], print))),
+        **{
+            f"mission, {name}": Row(lambda _, m=m: PlayScene(0, challenge=FlownMission(m)), FLOWN)
+            for name, m in MISSIONS.items()
+        },
+        "pause": Row(over_play(PauseScene)),
+        "dialog": Row(over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)]))),
+        "dialog, naming": Row(over_play(lambda below: NameDialog(below, "?", "name", lambda _: ""))),
+        "dialog, picking": Row(over_play(lambda below: ListDialog(below, "?", [("a",), ("b",)], print))),
         "choices": Row(play.make, (pygame.K_c, pygame.K_DOWN)),
-        "fault": Row(lambda _: Fault(ValueError(), Path("log"))),
-        **{f"watch, {number}": Row(lambda _, n=number: Watch(n, seed=4)) for number in COUNTS},
-        **{f"physics, {name}": Row(lambda _, n=name: Physics(n)) for name in EXHIBITS},
+        "fault": Row(lambda _: ErrorScene(ValueError(), Path("log"))),
+        **{f"watch, {number}": Row(lambda _, n=number: WatchScene(n, seed=4)) for number in COUNTS},
+        **{f"physics, {name}": Row(lambda _, n=name: PhysicsScene(n)) for name in EXHIBITS},
         "physics, contacts": Row(heap, (pygame.K_c,)),
         **{name.lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN)) for name in sorted(others)},
-        "menu": Row(lambda _: Menu()),
+        "menu": Row(lambda _: MenuScene()),
         "train": Row(of_tour("Train"), (pygame.K_RETURN,)),
         "digittrainingscene": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
     }

@@ -37,9 +37,9 @@ from benchmarks.tour import makers, stock
 from game.core.scene import Pop, Push
 from game.core.settings import Settings
 from game.scenes import scene_of
-from game.scenes.digits import Digits
-from game.scenes.error_screen import Fault
-from game.scenes.quiz import Quiz
+from game.scenes.digits import DigitsScene
+from game.scenes.error_screen import ErrorScene
+from game.scenes.quiz import QuizScene
 from game.shell.app import App
 from game.ui.context import Context
 
@@ -98,12 +98,12 @@ class Player:
                     if key and frame in (0, _HELD):
                         kind = pygame.KEYUP if frame else pygame.KEYDOWN
                         pygame.event.post(pygame.event.Event(kind, key=key, mod=0, unicode="", scancode=0))
-                    if isinstance(scene, Digits | Quiz):
+                    if isinstance(scene, DigitsScene | QuizScene):
                         self._draw(frame, second)
                     if not self.app.tick():
                         raise RuntimeError(f"{name} has closed the game")
                     yield name
-            if isinstance(self.app.scenes.top, Fault):
+            if isinstance(self.app.scenes.top, ErrorScene):
                 raise RuntimeError(f"a fault in {name}")
             if (depth := len(self.app.scenes._stack)) > 1:
                 self.app.scenes.apply(Pop(depth - 1))

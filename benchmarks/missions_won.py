@@ -22,10 +22,10 @@ import numpy as np
 from ai.lander.environment import OBSERVATION_SCALE, LanderEnv, Outcome
 from ai.lander.missions import MISSIONS, Mission
 from game.core.assets import ASSETS_DIR
-from game.flight.flight import DECISION_STEPS, Hand, Recording
+from game.flight.flight import DECISION_STEPS, Recording, StickHolder
 from game.flight.flight_file import Record, write
 from game.flight.logbook import describe
-from game.flight.replay import Rerun
+from game.flight.replay import ReplayedFlight
 
 SLOTS = 320
 BEST = 32
@@ -104,7 +104,7 @@ def search(mission: Mission, generations: int, enough: float, steps: int, rng: n
 def keep(name: str, found: Found, steps: int) -> None:
     """Write a flight down as the game does, a decision being so many steps."""
     actions = [action for action in found.actions for _ in range(steps)]
-    flight = Rerun(Recording(0, "random", 1, actions, [Hand.NETWORK] * len(actions), name))
+    flight = ReplayedFlight(Recording(0, "random", 1, actions, [StickHolder.NETWORK] * len(actions), name))
     while not flight.over:
         flight.step(0)
     x, y, angle = flight.poses.now[0].tolist()

@@ -52,7 +52,7 @@ from game.core.assets import MODELS_DIR
 from game.core.scene import Pop, Push, Scene
 from game.core.settings import SettingsFile
 from game.scenes import scene_of
-from game.scenes.menu import Menu
+from game.scenes.menu import MenuScene
 from game.shell.app import App
 from game.ui.context import Context
 
@@ -60,7 +60,7 @@ LOOKS = 10  # times that it is looked whether anything is left behind
 GROWTH = 30.0  # megabytes from the third look to the last that are no leak
 _DEEPEST = 7  # scenes one above the other
 _JUMP, _JUMP_HOME = 0.015, 0.15  # how often it is put somewhere else, and from the menu, where it soon would quit
-_NO_SCREENS = ("Fault", "Dialog")  # what is not to be seen, and what is only a part of others
+_NO_SCREENS = ("ErrorScene", "Dialog")  # what is not to be seen, and what is only a part of others
 _TOLD = 25  # deeds before a fault that are told
 # What a training may say when its files are spoilt or its disk is full. It is shown to the player.
 _SAID = (OSError, ValueError, EOFError, MemoryError)
@@ -171,7 +171,7 @@ class Monkey:
     def _do_something(self) -> None:
         before = self.hands.posted
         try:
-            if self.rng.random() < (_JUMP_HOME if isinstance(self.app.scenes.top, Menu) else _JUMP):
+            if self.rng.random() < (_JUMP_HOME if isinstance(self.app.scenes.top, MenuScene) else _JUMP):
                 self.deeds.append(self._jump())
             else:
                 deed = list(DEEDS)[self.rng.choice(len(self._weights), p=self._weights)]

@@ -19,15 +19,15 @@ from game.core.scene import Scene
 from game.exhibits import EXHIBITS
 from game.flight.flight import Flight
 from game.flight.logbook import Records
-from game.play.challenge import Daily, Flown
+from game.play.challenge import DailyStart, FlownMission
 from game.play.race import race
-from game.scenes.dialog import Asking, Naming, Picking
-from game.scenes.dream import Dream
-from game.scenes.physics import Physics
-from game.scenes.play import Play
-from game.scenes.quiz import Quiz
-from game.scenes.replay import Replay
-from game.scenes.watch import COUNTS, Watch
+from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
+from game.scenes.dream import DreamScene
+from game.scenes.physics import PhysicsScene
+from game.scenes.play import PlayScene
+from game.scenes.quiz import QuizScene
+from game.scenes.replay import ReplayScene
+from game.scenes.watch import COUNTS, WatchScene
 from game.ui.context import Context
 
 FLIGHTS = 2
@@ -81,23 +81,23 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
 
     return {
         **plain,
-        "Watch": lambda: Watch(int(rng.choice(COUNTS))),
-        "Physics": lambda: Physics(str(rng.choice(list(EXHIBITS)))),
-        "mission": lambda: Play(0, course=Flown(missions[rng.integers(len(missions))])),
-        "daily": lambda: Play(1, course=Daily(date(2026, 1, 1))),
-        "race": lambda: replayed(lambda record: Play(record.recording.seed, course=race(record))),
-        "Replay": lambda: replayed(Replay),
-        "Dream": lambda: of_digits(Dream),
-        "Quiz": lambda: of_digits(Quiz),
+        "WatchScene": lambda: WatchScene(int(rng.choice(COUNTS))),
+        "PhysicsScene": lambda: PhysicsScene(str(rng.choice(list(EXHIBITS)))),
+        "mission": lambda: PlayScene(0, challenge=FlownMission(missions[rng.integers(len(missions))])),
+        "daily": lambda: PlayScene(1, challenge=DailyStart(date(2026, 1, 1))),
+        "race": lambda: replayed(lambda record: PlayScene(record.recording.seed, challenge=race(record))),
+        "ReplayScene": lambda: replayed(ReplayScene),
+        "DreamScene": lambda: of_digits(DreamScene),
+        "QuizScene": lambda: of_digits(QuizScene),
     }
 
 
 def dialogs(below: Scene) -> dict[str, Callable[[], Scene]]:
     """Return what makes each dialog over another scene; deep in scenes that train, they are seldom come by."""
     return {
-        "Asking": lambda: Asking(below, "?", "", [("yes", int), ("no", int)]),
-        "Naming": lambda: Naming(below, "?", "name", name_problem),
-        "Picking": lambda: Picking(below, "?", [("a",), ("b",)], int),
+        "QuestionDialog": lambda: QuestionDialog(below, "?", "", [("yes", int), ("no", int)]),
+        "NameDialog": lambda: NameDialog(below, "?", "name", name_problem),
+        "ListDialog": lambda: ListDialog(below, "?", [("a",), ("b",)], int),
     }
 
 

@@ -35,9 +35,9 @@ from ai.training.checkpoints import resume_run
 from ai.training.history import History
 from game.core.scene import Push
 from game.core.settings import Settings
-from game.core.worker import State
+from game.core.worker import WorkerState
 from game.scenes import scene_of
-from game.scenes.train import Train
+from game.scenes.train import TrainScene
 from game.shell.app import App
 from game.ui.context import Context
 
@@ -49,11 +49,11 @@ class Game:
 
     def __init__(self, folder: Path) -> None:
         self.app = App(Context(folder, Settings(), rng=np.random.default_rng(1)), scene_of=scene_of, capped=False)
-        self.scene = Train()
+        self.scene = TrainScene()
 
     def enter(self) -> None:
         """Come in from the menu."""
-        self.scene = Train()
+        self.scene = TrainScene()
         self.app.scenes.apply(Push(self.scene))
         self.scene.knobs.set_config(PRESETS["modern"], 0)
 
@@ -90,7 +90,7 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
     """Kill so many runs; return what went wrong."""
     problems, states = [], dict.fromkeys(("starting", "learning", "saving"), 0)
     game.enter()
-    student = game.scene.student
+    lander_run = game.scene.lander_run
     for number in range(rounds):
         if game.app.scenes.top is not game.scene:
             return [*problems, f"round {number}: {game.app.scenes.top} came up"]
@@ -100,23 +100,23 @@ def kill(game: Game, rounds: int, rng: np.random.Generator) -> list[str]:
             game.rest(rng.uniform(0.0, 1.0))
         else:
             state = "learning"
-            game.wait(lambda: student.sight)
+            game.wait(lambda: lander_run.sight)
             game.rest(rng.uniform(0.0, 1.5))
             if rng.random() < 0.7:
                 state = "saving"
-                student.save(f"run {number}")
+                lander_run.save(f"run {number}")
                 game.rest(rng.uniform(0.0, 2.5))
         states[state] += 1
         for child in active_children():
             child.kill()
-        if not game.wait(lambda: student.state is State.FAILED):
+        if not game.wait(lambda: lander_run.state is WorkerState.FAILED):
             problems.append(f"round {number}: nobody noticed")
-        if not student.problem:
+        if not lander_run.problem:
             problems.append(f"round {number}: no reason was given")
-        if student.library.rescued() and rng.random() < 0.5:
-            student.save(student.library.free_name(f"rescued {number}"))
+        if lander_run.library.rescued() and rng.random() < 0.5:
+            lander_run.save(lander_run.library.free_name(f"rescued {number}"))
     game.leave()
-    runs = student.library.runs()
+    runs = lander_run.library.runs()
     for run in runs:
         try:
             resume_run(run.folder)
@@ -139,7 +139,7 @@ def visit(game: Game, visits: int) -> list[str]:
         if game.wait(lambda: game.app.scenes.top is not game.scene, 0.1):  # it asks about the run left last time
             game.key(pygame.K_ESCAPE)
         game.key(pygame.K_RETURN)
-        game.wait(lambda: len(game.scene.student.history) >= 40)
+        game.wait(lambda: len(game.scene.lander_run.history) >= 40)
         game.leave()
         game.rest(0.2)
         if active_children():

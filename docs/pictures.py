@@ -26,27 +26,32 @@ from PIL import Image
 from ai.lander.missions import MISSIONS
 from game.core.scene import Scene
 from game.core.settings import Settings
-from game.play.challenge import Flown
+from game.play.challenge import FlownMission
 from game.scenes import scene_of
-from game.scenes.digits import Digits
-from game.scenes.menu import Menu
-from game.scenes.physics import Physics
-from game.scenes.play import Play
-from game.scenes.train import Train
-from game.scenes.watch import Watch
+from game.scenes.digits import DigitsScene
+from game.scenes.menu import MenuScene
+from game.scenes.physics import PhysicsScene
+from game.scenes.play import PlayScene
+from game.scenes.train import TrainScene
+from game.scenes.watch import WatchScene
 from game.shell.app import App
 from game.ui.context import Context
 
 IMAGES = Path(__file__).resolve().parent / "images"
 # Name, scene, and what is pressed at which frame until the picture is taken.
 PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
-    ("menu", Menu(), {}, 200),
-    ("cockpit", Play(seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
-    ("watch", Watch(64, seed=3), {}, 260),
-    ("train", Train(), {5: pygame.K_RETURN}, 30),
-    ("digits", Digits(), {}, 150),
-    ("physics", Physics("heap", time.process_time), {60: pygame.K_c}, 400),
-    ("mars", Play(0, course=Flown(MISSIONS["mars"])), {5: pygame.K_LEFT, 40: pygame.K_UP, 70: pygame.K_UP}, 110),
+    ("menu", MenuScene(), {}, 200),
+    ("cockpit", PlayScene(seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
+    ("watch", WatchScene(64, seed=3), {}, 260),
+    ("train", TrainScene(), {5: pygame.K_RETURN}, 30),
+    ("digits", DigitsScene(), {}, 150),
+    ("physics", PhysicsScene("heap", time.process_time), {60: pygame.K_c}, 400),
+    (
+        "mars",
+        PlayScene(0, course=FlownMission(MISSIONS["mars"])),
+        {5: pygame.K_LEFT, 40: pygame.K_UP, 70: pygame.K_UP},
+        110,
+    ),
 )
 HELD = 12  # frames that a key is held
 SHARP = 90
@@ -79,7 +84,7 @@ def film() -> None:
     def keep(seen: pygame.Surface) -> None:
         pictures.append(_picture(seen).resize(MOVING_SIZE, Image.Resampling.LANCZOS))
 
-    play(Play(seed=12), FLOWN, MOVING_FRAMES, CHOSEN["cockpit"], keep)
+    play(PlayScene(seed=12), FLOWN, MOVING_FRAMES, CHOSEN["cockpit"], keep)
     first, *others = pictures[::EVERY]
     # A whole picture at least every fourth time: what is only changed, over and over, smears where the camera moves.
     first.save(IMAGES / f"{MOVING}.webp", save_all=True, append_images=others, duration=round(1000 * EVERY / 60),
@@ -103,11 +108,11 @@ def play(
                 for kind, at in ((pygame.KEYDOWN, start), (pygame.KEYUP, stop)):
                     if at == frame:
                         pygame.event.post(pygame.event.Event(kind, key=key, mod=0))
-            if isinstance(scene, Digits):
+            if isinstance(scene, DigitsScene):
                 _move_pen(scene, frame)
             app.tick()
             look(app.canvas.surface)
-        while isinstance(scene, Train) and not _has_learnt(scene):  # it learns by a clock of its own
+        while isinstance(scene, TrainScene) and not _has_learnt(scene):  # it learns by a clock of its own
             app.tick()
             time.sleep(1 / 60)
         last = app.canvas.surface.copy()
@@ -119,7 +124,7 @@ def _picture(surface: pygame.Surface) -> Image.Image:
     return Image.frombytes("RGB", surface.get_size(), pygame.image.tobytes(surface, "RGB"))
 
 
-def _move_pen(scene: Digits, frame: int) -> None:
+def _move_pen(scene: DigitsScene, frame: int) -> None:
     """Draw a two by the mouse's events, one a frame."""
     arc = [(0.5 + 0.2 * np.cos(angle), 0.34 + 0.2 * np.sin(angle)) for angle in np.radians(np.arange(200, 401, 8))]
     base = [(0.3 + 0.04 * step, 0.8 + 0.01 * np.sin(step)) for step in range(11)]
@@ -131,7 +136,7 @@ def _move_pen(scene: Digits, frame: int) -> None:
         pygame.event.post(pygame.event.Event(kind, pos=place.tolist(), rel=(0, 0), button=1, buttons=(1, 0, 0)))
 
 
-def _has_learnt(scene: Train) -> bool:
+def _has_learnt(scene: TrainScene) -> bool:
     history = scene.student.history
     return bool(len(history) and history["success"][-1] > 0.9)
 

@@ -52,7 +52,7 @@ class Manifold:
             getattr(self, name)[rows] = getattr(other, name)
 
 
-class Placed(NamedTuple):
+class PlacedPolygons(NamedTuple):
     """n polygons in the world: where each edge starts and ends, and its outward normal, (n, corners, 2)."""
 
     start: Array
@@ -81,7 +81,7 @@ def collide(a: Shape, pose_a: Array, b: Shape, pose_b: Array, margin: float = 0.
     return collide_polygons(_place(a, pose_a), _place(b, pose_b), margin)
 
 
-def collide_polygons(a: Placed, b: Placed, margin: float) -> Manifold:
+def collide_polygons(a: PlacedPolygons, b: PlacedPolygons, margin: float) -> Manifold:
     """Contacts of n pairs of convex polygons."""
     gap_a, face_a = _deepest_face(a, b.start)
     gap_b, face_b = _deepest_face(b, a.start)
@@ -110,7 +110,7 @@ def collide_polygons(a: Placed, b: Placed, margin: float) -> Manifold:
     )
 
 
-def collide_polygon_circle(a: Placed, centre: Array, radius: Array, margin: float) -> Manifold:
+def collide_polygon_circle(a: PlacedPolygons, centre: Array, radius: Array, margin: float) -> Manifold:
     """Contacts of n convex polygons with n circles, `centre` (n, 2) and `radius` (n,)."""
     rows = np.arange(len(centre))
     face = np.argmax(dot(a.normal, centre[:, None] - a.start), axis=1)
@@ -138,7 +138,7 @@ def collide_circles(centre_a: Array, radius_a: Array, centre_b: Array, radius_b:
     return _single(normal, centre_a + normal * (radius_a - depth / 2)[:, None], depth, margin)
 
 
-def _deepest_face(a: Placed, corners: Array) -> tuple[Array, Ints]:
+def _deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
     """Largest gap between a face of `a` and all `corners`, (n,), below 0 for an overlap; and which face."""
     gaps = np.empty(a.normal.shape[:2])
     for first in range(0, len(gaps), _BLOCK):
@@ -159,7 +159,7 @@ def _lowest(normal: Array, corners: Array) -> Array:
     return lowest
 
 
-def _most_opposed(polygon: Placed, normal: Array) -> Ints:
+def _most_opposed(polygon: PlacedPolygons, normal: Array) -> Ints:
     """Return the face of each polygon whose normal is most opposed to `normal` (n, 2): (n,)."""
     faces: Ints = dot(polygon.normal, normal[:, None]).argmin(axis=1)
     return faces
@@ -197,7 +197,7 @@ def _centre(circle: Circle, pose: Array) -> Array:
     return rotate(circle.centroid, np.cos(pose[:, 2]), np.sin(pose[:, 2])) + pose[:, :2]
 
 
-def _place(polygon: Polygon, pose: Array) -> Placed:
+def _place(polygon: Polygon, pose: Array) -> PlacedPolygons:
     cos, sin = np.cos(pose[:, 2, None]), np.sin(pose[:, 2, None])
     start = rotate(polygon.vertices[None], cos, sin) + pose[:, None, :2]
-    return Placed(start, np.roll(start, -1, axis=1), rotate(polygon.normals[None], cos, sin))
+    return PlacedPolygons(start, np.roll(start, -1, axis=1), rotate(polygon.normals[None], cos, sin))

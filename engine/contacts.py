@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.broad_phase import BroadPhase
-from engine.collide import Manifold, Placed, collide_circles, collide_polygon_circle, collide_polygons
+from engine.collide import Manifold, PlacedPolygons, collide_circles, collide_polygon_circle, collide_polygons
 from engine.solver import Contacts, colour
 from engine.state import BodyParams, BodyState, ShapeTable
 from engine.vector import Array, Bools, Ints, rotate
@@ -20,7 +20,7 @@ MARGIN = 0.002
 
 
 @dataclass(frozen=True)
-class Memory:
+class WarmStart:
     """Impulses of the last step's k manifolds, sorted by world and pair, for a warm start."""
 
     key: Ints  # (k,) world · pairs + pair, rising
@@ -28,19 +28,19 @@ class Memory:
     impulse: Array  # (3, k)
 
     @classmethod
-    def of(cls, contacts: Contacts, pairs: int) -> Memory:
+    def of(cls, contacts: Contacts, pairs: int) -> WarmStart:
         """Return the features and impulses of a solved step."""
         key = contacts.world * pairs + contacts.pair
         rising = np.argsort(key)
         feature = contacts.manifold.feature * contacts.manifold.valid
         return cls(key[rising], feature[rising], contacts.impulse[:, rising])
 
-    def where(self, kept: Bools) -> Memory:
+    def where(self, kept: Bools) -> WarmStart:
         """Return the memory of these manifolds alone."""
-        return Memory(self.key[kept], self.feature[kept], self.impulse[:, kept])
+        return WarmStart(self.key[kept], self.feature[kept], self.impulse[:, kept])
 
 
-_NOTHING = Memory(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), np.zeros((3, 0)))
+_NOTHING = WarmStart(np.zeros(0, dtype=np.intp), np.zeros((0, 2), dtype=np.intp), np.zeros((3, 0)))
 
 
 class Detector:
@@ -84,13 +84,13 @@ class Detector:
 
     def remember(self, contacts: Contacts | None) -> None:
         """Keep the impulses of a step to warm-start the next one, and only that."""
-        self._memory = Memory.of(contacts, len(self.pairs)) if contacts else _NOTHING
+        self._memory = WarmStart.of(contacts, len(self.pairs)) if contacts else _NOTHING
 
-    def memory(self) -> Memory:
+    def memory(self) -> WarmStart:
         """Return the impulses that `remember` has kept, to be put back by `recall_memory`."""
         return self._memory
 
-    def recall_memory(self, memory: Memory) -> None:
+    def recall_memory(self, memory: WarmStart) -> None:
         """Put back the impulses that a call of `memory` returned."""
         self._memory = memory
         self.broad.forget_boxes()
@@ -135,7 +135,7 @@ class Detector:
         disc_a, disc_b = self.shapes.centres(state, world, a), self.shapes.centres(state, world, b)
         return collide_circles(disc_a, radius[a], disc_b, radius[b], MARGIN)
 
-    def _place(self, state: BodyState, world: Ints, shape: Ints) -> Placed:
+    def _place(self, state: BodyState, world: Ints, shape: Ints) -> PlacedPolygons:
         """Return polygons in their worlds, from their bodies' poses."""
         body = self.shapes.body[shape]
         cos, sin = state.cos[world, body, None], state.sin[world, body, None]
@@ -144,7 +144,7 @@ class Detector:
         start += position
         end = rotate(self.shapes.end[shape], cos, sin)
         end += position
-        return Placed(start, end, rotate(self.shapes.normal[shape], cos, sin))
+        return PlacedPolygons(start, end, rotate(self.shapes.normal[shape], cos, sin))
 
     def _recall(self, world: Ints, pair: Ints, manifold: Manifold) -> Array:
         """Return the last step's impulses (3, m) for points made by the same faces as then, 0 for others."""

@@ -8,7 +8,7 @@ from engine.state import BodyParams, BodyState, Span, span
 from engine.vector import Array, Bools
 
 
-class Movers:
+class MovingBodies:
     """Bodies that a step moves, as `chosen` (bodies,) marks them, with the parameters it needs gathered once."""
 
     def __init__(self, params: BodyParams, chosen: Bools) -> None:
@@ -22,7 +22,7 @@ class Movers:
         self.any_drag = self.fast_drag or bool(self.linear_drag.any())
 
 
-def integrate_velocity(state: BodyState, movers: Movers, gravity: Array, dt: float) -> None:
+def integrate_velocity(state: BodyState, movers: MovingBodies, gravity: Array, dt: float) -> None:
     """Apply gravity (2,) or (batch, 2), accumulated forces and drag to the velocities of `movers`, in place.
 
     Drag is the force -(linear + quadratic·|v|)·v, for translation and rotation apart. It is taken implicitly

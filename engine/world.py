@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.body import Body
 from engine.contacts import Detector
-from engine.integrate import Movers, integrate_position, integrate_velocity
+from engine.integrate import MovingBodies, integrate_position, integrate_velocity
 from engine.shapes import Point, Shape, mass_properties
 from engine.solver import Contacts, Solver
 from engine.state import BodyParams, BodyState, ShapeTable
@@ -46,7 +46,7 @@ class World:
         self.contacts: Contacts | None = None
         self._shape_bodies: list[int] = []
         self._detector: Detector | None = None
-        self._movers: Movers | None = None
+        self._movers: MovingBodies | None = None
 
     def add(
         self,
@@ -146,10 +146,10 @@ class World:
         return self._detector
 
     @property
-    def movers(self) -> Movers:
+    def movers(self) -> MovingBodies:
         """Bodies that a step may move: those that forces can move, and static ones that have a velocity."""
         if self._movers is None:
-            self._movers = Movers(self.params, self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
+            self._movers = MovingBodies(self.params, self.params.dynamic | self.state.velocity.any(axis=(0, 2)))
         return self._movers
 
     def moved(self, body: Body, worlds: Bools | None) -> None:

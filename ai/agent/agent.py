@@ -12,7 +12,7 @@ import numpy as np
 
 from ai.agent.config import Config
 from ai.agent.n_step import Episodes, NStep
-from ai.agent.normalizer import RunningScale
+from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
 from ai.agent.schedule import importance, learning_rate
 from ai.common.decision import Decision, decide
@@ -32,15 +32,15 @@ from ai.nn.activations import ACTIVATIONS
 from ai.nn.budget import WIDEST
 from ai.nn.costs import COSTS
 from ai.nn.files import brief, count_of, inside, read_arrays, read_json
-from ai.nn.folder import NETWORK, Kind
+from ai.nn.folder import NETWORK, FolderKind
 
 FORMAT: Final = "tranquility agent"
 VERSION: Final = 1
 AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
-_ALONE: Final = Kind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
-KIND: Final = Kind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
+_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
+KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 
 
@@ -95,7 +95,7 @@ class DeepQAgent:
         self.rng = rng or np.random.default_rng(0)
         self.symmetry = symmetry
         self.action_chances = action_chances
-        self.scale = RunningScale(num_features) if self.config.normalise_inputs else None
+        self.scale = Normalizer(num_features) if self.config.normalise_inputs else None
         self.online = build_network(num_features, num_actions, self.config, self.rng)
         self.target = self.online.copy()
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
@@ -210,7 +210,7 @@ class DeepQAgent:
             errors[batch] = self._update(cells.state[batch], cells.action[batch], targets[batch], weights[batch])
             if follow:
                 self._count()
-        memory.surprise(rows, errors)
+        memory.update_priorities(rows, errors)
         return float(np.abs(errors).mean()), float(values.mean())
 
     def _targets(self, cells: MemoryCell) -> tuple[Floats, Floats]:
@@ -257,7 +257,7 @@ class DeepQAgent:
         self.config = config
         self._n_step.discount = config.discount
 
-    def go_back(self, values: Floats, scale: RunningScale | None) -> None:
+    def go_back(self, values: Floats, scale: Normalizer | None) -> None:
         """Restore both networks to the parameters `values` (parameters,) with their `scale`; reset the optimizer."""
         self.online.values = self.target.values = values
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)

@@ -12,7 +12,7 @@ from ai.nn.files import count_of
 REACH: Final = 10.0  # standard deviations from the mean at which values are clipped
 
 
-class RunningScale:
+class Normalizer:
     """Running mean and standard deviation, which scale observations to mean 0 and standard deviation 1."""
 
     def __init__(self, num_features: int) -> None:

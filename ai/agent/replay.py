@@ -73,7 +73,7 @@ class ReplayBuffer:
         """Return the transitions that lie at `rows`, stacked."""
         return _fields(self.records.take(rows))
 
-    def surprise(self, rows: Ints, errors: Floats) -> None:
+    def update_priorities(self, rows: Ints, errors: Floats) -> None:
         """Take the errors (n,) of the transitions at `rows` as their priorities; without effect in uniform replay."""
 
     def _drop(self, count: int) -> None:
@@ -116,7 +116,7 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         weights = (chance * self.size) ** -self.importance
         return self.at(rows), rows, (weights / weights.max()).astype(np.float32)
 
-    def surprise(self, rows: Ints, errors: Floats) -> None:
+    def update_priorities(self, rows: Ints, errors: Floats) -> None:
         """Set the priorities of the transitions at `rows` by their errors (n,)."""
         priorities = (np.abs(errors).astype(float) + 1e-3) ** self.exponent
         self._largest = max(self._largest, float(priorities.max()))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ai.cli.command_line import EPISODES, REFUSED, SEEDS, fail, folder, out_of_range, reason
 
 if TYPE_CHECKING:
-    from ai.copilot.measurement import Row
+    from ai.copilot.measurement import AssistedFlights
 
 MODEL: Final = Path(__file__).parents[2] / "models" / "lander" / "modern"
 
@@ -45,7 +45,7 @@ def _table(arguments: argparse.Namespace) -> int:
     if agent.config.env != LANDER:
         return fail(f"the co-pilot flies the lander; this network is for {agent.config.env}")
     good: Pilot = ScriptedPilot() if arguments.good == "scripted" else agent
-    tables: dict[str, list[Row]] = {"one_pad": [], "three_pads": []}
+    tables: dict[str, list[AssistedFlights]] = {"one_pad": [], "three_pads": []}
     rows = len(PILOTS) * len(ONE_PAD) + 1 + len(WISHFUL) * len(THREE_PADS)
     with tqdm(total=rows, desc="flying", unit="row", disable=None) as bar:
         for name, fly in (("one_pad", one_pad), ("three_pads", three_pads)):
@@ -62,7 +62,7 @@ def _table(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _show(title: str, rows: list[Row], own: bool = False) -> None:
+def _show(title: str, rows: list[AssistedFlights], own: bool = False) -> None:
     print(f"\n{title}\n{'pilot':10}{'help':25}{'success':>8}{'crash':>8}{'gone':>8}{'time out':>9}{'return':>8}"
           f"{'overridden':>12}{'own pad':>9}"[: None if own else -9])  # fmt: skip
     for row in rows:

@@ -1,5 +1,5 @@
 """Co-pilot that shares control with a pilot, inference of the pad the pilot means, measurement of the help."""
 
-from ai.copilot.copilot import CoPilot, Mode, Rule, SharedDecision
+from ai.copilot.copilot import ActionSource, CoPilot, Mode, SharedDecision
 
-__all__ = ["CoPilot", "Mode", "Rule", "SharedDecision"]
+__all__ = ["ActionSource", "CoPilot", "Mode", "SharedDecision"]

@@ -13,7 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
-from ai.copilot.intent import Wishes, in_question
+from ai.copilot.intent import Intent, in_question
 from ai.lander.environment import NUM_ACTIONS
 from ai.lander.pilots import COAST
 
@@ -22,7 +22,7 @@ GUARDIAN_MARGIN: Final = 3.0
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
-class Valuer(Protocol):
+class QFunction(Protocol):
     """Protocol of a source of Q-values, such as a DeepQAgent."""
 
     def q_values(self, observation: Floats) -> Floats:
@@ -36,7 +36,7 @@ class Mode(StrEnum):
     GUARDIAN = "guardian"  # only where its own is better for every pad, by a margin
 
 
-class Rule(IntEnum):
+class ActionSource(IntEnum):
     """Source of the action that is flown, in the order in which the sources are tried."""
 
     PILOT = 0  # the pilot's, untouched
@@ -107,20 +107,20 @@ class CoPilot:
 
     def __init__(
         self,
-        agent: Valuer,
+        agent: QFunction,
         assist: float = 0.5,
         mode: Mode | str = Mode.TOLERANCE,
         *,
         reward_scale: float | None = None,
-        reads_wishes: bool = True,
+        reads_intent: bool = True,
     ) -> None:
         self.agent = agent
         self.assist = assist
         self.mode = Mode(mode)
         config = agent.config if isinstance(agent, DeepQAgent) else Config()
         self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
-        self.reads_wishes = reads_wishes
-        self._wishes = Wishes(self.reward_scale)
+        self.reads_intent = reads_intent
+        self._wishes = Intent(self.reward_scale)
 
     @property
     def assist(self) -> float:
@@ -167,14 +167,14 @@ class CoPilot:
         rows = np.arange(slots)
         rule = feasible[rows, candidates].argmax(axis=0)
         action = candidates[rule, rows]
-        rule[(pilot == COAST) & (action != pilot)] = Rule.HANDS_OFF
+        rule[(pilot == COAST) & (action != pilot)] = ActionSource.HANDS_OFF
         return SharedDecision(observation, action, pilot, best, rule, values, meant, feasible, likely,
                               self.assist, self.mode, self.reward_scale)  # fmt: skip
 
     def _read(self, values: Floats, pilot: Ints, away: Floats) -> tuple[Doubles, Floats]:
         """Return how likely each pad is meant, (n, pads), and the values with the likeliest's where a pad is not."""
         slots, pads, _ = values.shape
-        if pads == 1 or not self.reads_wishes:
+        if pads == 1 or not self.reads_intent:
             return np.full((slots, pads), 1.0 / pads), values
         likely = self._wishes.watch(values, pilot)
         likeliest = (likely - 1e-6 * away).argmax(axis=1)[:, None]  # among equals, the nearest

@@ -15,7 +15,7 @@ _MEMORY: Final = 0.98  # exponent on old evidence at each decision: people chang
 _DOUBT: Final = 0.1  # pads less likely than this share of the likeliest are ruled out
 
 
-class Wishes:
+class Intent:
     """Probability that each of several pads is meant, by Bayes' rule (Javdani, Srinivasa and Bagnell 2015).
 
     A pilot who heads for a pad is modelled to choose actions by their value on the way there (Boltzmann). Hands

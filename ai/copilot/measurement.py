@@ -42,7 +42,7 @@ THREE_PADS: Final[tuple[Help, ...]] = (
 
 
 @dataclass(frozen=True)
-class Row:
+class AssistedFlights:
     """Results of a number of flights of one pilot with one kind of help."""
 
     pilot: str
@@ -63,7 +63,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Crew:
+class AssistedPilot:
     """Pilot with the kind of help it gets."""
 
     name: str
@@ -73,7 +73,7 @@ class Crew:
     copilot: CoPilot | None = None
 
 
-def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[Row]:
+def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[AssistedFlights]:
     """Fly every pilot of the table with every help to a single pad; yield the rows as they are done.
 
     `agent` is the co-pilot, `good` the pilot that the imperfect ones are made of. All fly from the same starts,
@@ -81,10 +81,10 @@ def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Ite
     """
     for name in PILOTS:
         yield from _measure(_crews(agent, good, [name], ONE_PAD, seed), episodes, seed)
-    yield from _measure([Crew(COPILOT, agent)], episodes, seed)
+    yield from _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
 
 
-def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[Row]:
+def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[AssistedFlights]:
     """Fly pilots with one of three pads in mind, which the co-pilot isn't told; yield the rows.
 
     The flights are spread over several grounds, so `episodes` is rounded to a multiple of their number.
@@ -98,18 +98,24 @@ def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> 
     yield from (_mean(rows) for rows in zip(*parts, strict=True))
 
 
-def _crews(agent: DeepQAgent, good: Pilot, names: Sequence[str], helps: Sequence[Help], seed: int) -> list[Crew]:
+def _crews(
+    agent: DeepQAgent, good: Pilot, names: Sequence[str], helps: Sequence[Help], seed: int
+) -> list[AssistedPilot]:
     crews = []
     for name in names:
         for mode, assist in helps:
             copilot = None
             if mode != ALONE:
-                copilot = CoPilot(agent, assist, Mode.GUARDIAN if mode == OPEN else mode, reads_wishes=mode != OPEN)
-            crews.append(Crew(name, PILOTS[name](good, np.random.default_rng(seed)), str(mode), assist, copilot))
+                copilot = CoPilot(agent, assist, Mode.GUARDIAN if mode == OPEN else mode, reads_intent=mode != OPEN)
+            crews.append(
+                AssistedPilot(name, PILOTS[name](good, np.random.default_rng(seed)), str(mode), assist, copilot)
+            )
     return crews
 
 
-def _measure(crews: Sequence[Crew], episodes: int, seed: int, ground: Ground | None = None) -> list[Row]:
+def _measure(
+    crews: Sequence[AssistedPilot], episodes: int, seed: int, ground: Ground | None = None
+) -> list[AssistedFlights]:
     """Fly `episodes` flights of every crew, all at once and from the same starts."""
     env = LanderEnv(len(crews) * episodes, seed, ground=ground)
     for first in range(0, env.num_envs, episodes):
@@ -125,12 +131,12 @@ def _measure(crews: Sequence[Crew], episodes: int, seed: int, ground: Ground | N
         _, landed, crashed, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
         changed = float(overridden[mine].sum() / decisions[mine].sum())
         own = float((env.landed_on[mine] == wishes).mean())
-        rows.append(Row(crew.name, crew.mode, crew.assist, episodes, landed, crashed, gone, late,
+        rows.append(AssistedFlights(crew.name, crew.mode, crew.assist, episodes, landed, crashed, gone, late,
                         float(returns[mine].mean()), changed, own))  # fmt: skip
     return rows
 
 
-def _fly(env: LanderEnv, crews: Sequence[Crew]) -> tuple[Doubles, Doubles, Doubles]:
+def _fly(env: LanderEnv, crews: Sequence[AssistedPilot]) -> tuple[Doubles, Doubles, Doubles]:
     """Fly until all have ended; return every flight's return, overridden decisions, and decisions, (n,) each."""
     returns, overridden, decisions = np.zeros((3, env.num_envs))
     episodes = env.num_envs // len(crews)
@@ -147,8 +153,8 @@ def _fly(env: LanderEnv, crews: Sequence[Crew]) -> tuple[Doubles, Doubles, Doubl
     return returns, overridden, decisions
 
 
-def _mean(rows: Sequence[Row]) -> Row:
+def _mean(rows: Sequence[AssistedFlights]) -> AssistedFlights:
     """Return the mean of rows of as many flights each."""
     figures = {figure.name: float(np.mean([getattr(row, figure.name) for row in rows]))
-               for figure in fields(Row)[4:]}  # fmt: skip
+               for figure in fields(AssistedFlights)[4:]}  # fmt: skip
     return replace(rows[0], episodes=sum(row.episodes for row in rows), **figures)  # type: ignore[arg-type]

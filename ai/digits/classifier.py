@@ -14,7 +14,7 @@ from ai.digits.preprocessing import SIDE, Image, Stages, preprocess, preprocess_
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.costs import softmax
 from ai.nn.files import brief, inside, read_json
-from ai.nn.folder import CONFIG, Kind
+from ai.nn.folder import CONFIG, FolderKind
 from ai.nn.folder import NETWORK as NETWORK_KIND
 
 __all__ = [
@@ -26,7 +26,7 @@ DIGITS_FILE: Final = CONFIG  # of a classifier's folder; its network is in a fol
 NETWORK: Final = "network"
 FORMAT: Final = "tranquility digits"
 VERSION: Final = 1
-KIND: Final = Kind(FORMAT, ("training.json", "last.npz"), {NETWORK: NETWORK_KIND})
+KIND: Final = FolderKind(FORMAT, ("training.json", "last.npz"), {NETWORK: NETWORK_KIND})
 DIGITS: Final = 10
 _BATCH: Final = 250  # images that a large network reads at a time: more only need more memory
 

@@ -20,7 +20,7 @@ _SOFT: Final = 0.1  # how far each step blurs what is there
 _NOISE: Final = 0.1
 
 
-class Dream:
+class ActivationMaximisation:
     """Activation maximisation of one image towards a digit, a step at a time.
 
     Gradient ascent on the input (Erhan et al. 2009, Simonyan et al. 2014). Left to itself it finds what no person

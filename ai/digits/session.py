@@ -16,7 +16,7 @@ from ai.digits.config import DigitConfig
 from ai.digits.training import LIVE, DigitTraining
 from ai.nn import Array
 from ai.training.history import REVERTED
-from ai.training.messages import Change, Refused, Save
+from ai.training.messages import ChangeSetting, Refused, Save
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 KEEP_SECONDS: Final = 20.0
@@ -26,7 +26,7 @@ _SHARE: Final = 0.25  # of the time that goes into reading them
 
 
 @dataclass(frozen=True)
-class DigitsBegun:
+class DigitRunStarted:
     """First message of a run: its settings; of a resumed run, those it was begun with."""
 
     config: DigitConfig
@@ -51,7 +51,7 @@ class DigitPoint:
 
 
 @dataclass(frozen=True)
-class Score:
+class HeldOutScore:
     """Accuracy on the images held out, of the network as it would be kept now."""
 
     seconds: float
@@ -77,7 +77,7 @@ class Confusion:
 
 
 @dataclass(frozen=True)
-class Turned:
+class DigitSettingChanged:
     """Message that a knob was turned, or (REVERTED) the best network restored: `after` is then its accuracy."""
 
     seconds: float
@@ -86,7 +86,7 @@ class Turned:
 
 
 @dataclass(frozen=True)
-class Kept:
+class DigitRunSaved:
     """Message that the run has been saved, or why it has not.
 
     Attributes:
@@ -102,7 +102,7 @@ class Kept:
 
 
 @dataclass(frozen=True)
-class GoBack:
+class RestoreBest:
     """Command to restore the network that read the images held out best."""
 
 
@@ -111,8 +111,8 @@ class Finish:
     """Command to take no more steps: save the run, measure it, and end."""
 
 
-Message = DigitsBegun | DigitPoint | Score | Confusion | Turned | Kept | Refused
-Command = Change | Save | Finish | GoBack
+Message = DigitRunStarted | DigitPoint | HeldOutScore | Confusion | DigitSettingChanged | DigitRunSaved | Refused
+Command = ChangeSetting | Save | Finish | RestoreBest
 
 
 def live_digits(
@@ -120,16 +120,16 @@ def live_digits(
 ) -> Generator[list[Message], Command | None, None]:
     """Train to the last epoch; every turn is a learning step, and yields its messages.
 
-    The steps are those of `ai.digits.training.run_digits`. A turn that is sent a `Change` turns a live knob, a `Save`
-    writes the run to one more folder, without a step, and a `Finish` ends it early. The run keeps itself in `keep`
-    now and then, when it is over and when it is closed. With `resume`, it goes on from the run kept there, with its
-    settings. Raises what `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when training
+    The steps are those of `ai.digits.training.run_digits`. A turn that is sent a `ChangeSetting` turns a live knob, a
+    `Save` writes the run to one more folder, without a step, and a `Finish` ends it early. The run keeps itself in
+    `keep` now and then, when it is over and when it is closed. With `resume`, it goes on from the run kept there, with
+    its settings. Raises what `DigitTraining` and `resume_digit_run` raise, and FloatingPointError when training
     diverges.
     """
     early = yield []  # unpacking the images takes a while: show the caller first that the run is alive
     training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
     run = _LiveDigits(training, keep)
-    command = (yield [DigitsBegun(training.config, training.seed, training.step, training.steps)]) or early
+    command = (yield [DigitRunStarted(training.config, training.seed, training.step, training.steps)]) or early
     try:
         while not training.done and not isinstance(command, Finish):
             command = yield (run.advance() if command is None else run.carry_out(command))
@@ -159,7 +159,7 @@ class _HeldOut:
         """The network's parameters."""
         return self._classifier.network.values
 
-    def told(self, at: float) -> tuple[Score, Confusion]:
+    def told(self, at: float) -> tuple[HeldOutScore, Confusion]:
         """Return score and confusion matrix of the network, which had learnt for so many seconds."""
         labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
         table = np.zeros((DIGITS, DIGITS), np.int64)
@@ -170,7 +170,7 @@ class _HeldOut:
                                                       for kind in np.unique(kinds[wrong]))]))  # fmt: skip
         images = (self._images[chosen] * 255).astype(np.uint8)
         accuracy = float(table.trace() / len(labels))
-        return Score(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)
+        return HeldOutScore(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)
 
 
 class _LiveDigits:
@@ -213,10 +213,10 @@ class _LiveDigits:
     def carry_out(self, command: Command) -> list[Message]:
         """Turn a live knob, for which the answer is a refusal or nothing, or save."""
         if isinstance(command, Save):
-            return [Kept(command.folder, self._written(command.folder)[0])]
+            return [DigitRunSaved(command.folder, self._written(command.folder)[0])]
         if isinstance(command, Finish):
             return []
-        if isinstance(command, GoBack):
+        if isinstance(command, RestoreBest):
             return self._go_back()
         try:
             if command.name not in LIVE:
@@ -224,7 +224,7 @@ class _LiveDigits:
             self.training.change(self.training.config.changed(**{command.name: command.value}))
         except ValueError as error:
             return [Refused(command, str(error))]
-        return [Turned(self.training.seconds, command.name, command.value)]
+        return [DigitSettingChanged(self.training.seconds, command.name, command.value)]
 
     def _go_back(self) -> list[Message]:
         if self._best is None:
@@ -232,7 +232,7 @@ class _LiveDigits:
         accuracy, values = self._best
         self.training.go_back(values)
         self._reading = None  # it was reading for the network that is gone
-        return [Turned(self.training.seconds, REVERTED, accuracy)]
+        return [DigitSettingChanged(self.training.seconds, REVERTED, accuracy)]
 
     def finish(self, command: Command | None) -> Generator[list[Message], Command | None, None]:
         """Read all images held out once more, measure the test images, and save the run.
@@ -287,7 +287,7 @@ class _LiveDigits:
         if not problem:
             self._kept = self.training.step
         new, self._trouble = problem != self._trouble, problem
-        return [Kept(self._folder, problem, test, self.training.best_epoch)] if final or new else []
+        return [DigitRunSaved(self._folder, problem, test, self.training.best_epoch)] if final or new else []
 
     def _written(self, folder: Path, final: bool = False) -> tuple[str, float | None]:
         """Write the run; return what went wrong, and the accuracy on the test images if it is final."""

@@ -16,7 +16,7 @@ from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.lander.conditions import CALM, Conditions
 from ai.lander.craft import Craft
 from ai.lander.ground import Ground
-from ai.lander.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, Change, RewardWeights, Situation
+from ai.lander.rewards import FEET_STEPS_PAID, REWARDS, TILT_ALLOWED, RewardWeights, Situation, SituationChange
 from ai.lander.rules import (
     ACTION_NAMES,
     FEATURE_NAMES,
@@ -153,7 +153,7 @@ class LanderEnv(Craft):
             tilted += still_flying & (self.tilt > TILT_ALLOWED)
         ended = flying & (self.outcome != Outcome.FLYING)
         flown = self.steps - flown
-        change = Change(
+        change = SituationChange(
             before, self._situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
             switched=flying * engines_switched(held, self.actions),
             feet_down=np.minimum(self._feet_steps, FEET_STEPS_PAID) - np.minimum(feet, FEET_STEPS_PAID),

@@ -45,7 +45,7 @@ class Situation:
 
 
 @dataclass
-class Change:
+class SituationChange:
     """Change made by one decision: the situations before and after, and counts of its physics steps, each (n,)."""
 
     before: Situation
@@ -69,7 +69,7 @@ def _aligned(situation: Situation) -> Doubles:
     return aligned
 
 
-REWARDS: Final[dict[str, Callable[[Change, RewardWeights], Doubles]]] = {
+REWARDS: Final[dict[str, Callable[[SituationChange, RewardWeights], Doubles]]] = {
     "distance": lambda c, w: w.distance * 10.0 * (c.before.distance - c.after.distance),
     "speed": lambda c, w: w.speed * 10.0 * (c.before.speed - c.after.speed),
     "alignment": lambda c, w: w.alignment * (_aligned(c.after) - _aligned(c.before)),

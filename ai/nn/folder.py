@@ -26,7 +26,7 @@ _TRIES: Final = 5
 
 
 @dataclass(frozen=True)
-class Kind:
+class FolderKind:
     """Kind of a model's folder: its format, and what it may hold.
 
     Attributes:
@@ -38,7 +38,7 @@ class Kind:
 
     format: str
     files: tuple[str, ...] = ()
-    folders: Mapping[str, "Kind"] = field(default_factory=dict)
+    folders: Mapping[str, "FolderKind"] = field(default_factory=dict)
 
     def stranger(self, folder: Path) -> str:
         """Return a few words on what in a folder does not belong into one of this kind; empty if all of it does."""
@@ -58,11 +58,11 @@ class Kind:
         return ""
 
 
-NETWORK: Final = Kind("tranquility network", ("layer-*-*.npy",))
+NETWORK: Final = FolderKind("tranquility network", ("layer-*-*.npy",))
 
 
 @contextmanager
-def atomic_folder(target: str | Path, kind: Kind = NETWORK) -> Iterator[Path]:
+def atomic_folder(target: str | Path, kind: FolderKind = NETWORK) -> Iterator[Path]:
     """Yield a new empty folder that takes the place of `target` if the block succeeds.
 
     Until then, and if the block fails, `target` stays as it is and nothing is left beside it. A folder that is
@@ -87,13 +87,13 @@ def atomic_folder(target: str | Path, kind: Kind = NETWORK) -> Iterator[Path]:
             shutil.rmtree(old, ignore_errors=True)
 
 
-def check_folder(target: str | Path, kind: Kind = NETWORK) -> None:
+def check_folder(target: str | Path, kind: FolderKind = NETWORK) -> None:
     """Raise the OSError that `atomic_folder` would begin with, long before there is anything to write."""
     _begin(target, kind)[1].rmdir()
 
 
 @contextmanager
-def claimed_folder(target: str | Path, kind: Kind) -> Iterator[None]:
+def claimed_folder(target: str | Path, kind: FolderKind) -> Iterator[None]:
     """Lock a folder against training by other processes, game or command, while the block lasts.
 
     Raises, before there is anything to write, BlockingIOError if one does, and the OSError that `atomic_folder`
@@ -130,7 +130,7 @@ def aside_for(path: Path) -> str:
     return stem if dot and len(token) == 8 and set(token) <= set("0123456789abcdef") else name
 
 
-def _begin(target: str | Path, kind: Kind) -> tuple[Path, Path]:
+def _begin(target: str | Path, kind: FolderKind) -> tuple[Path, Path]:
     """Return the folder meant, with its links followed, and an empty one beside it, if it may be replaced."""
     recover_folder(target)
     path = Path(os.path.realpath(target))
@@ -146,7 +146,7 @@ def _begin(target: str | Path, kind: Kind) -> tuple[Path, Path]:
     return path, new
 
 
-def _check(target: Path, kind: Kind) -> None:
+def _check(target: Path, kind: FolderKind) -> None:
     """Raise FileExistsError unless nothing is lost if a target is replaced, OSError if that can't be seen."""
     if not target.name:
         raise FileExistsError(f"{target} is no place for a model")

@@ -18,7 +18,7 @@ from ai.nn.files import count_of, inside, number_of, read_json
 from ai.training.gym_task import gym_config
 from ai.training.history import History
 from ai.training.loop import Progress, Training
-from ai.training.statistics import Flights
+from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, Score
 
 TRAINING_FILE: Final = "training.json"
@@ -146,7 +146,7 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             training.best_values, training.best_scale = best.network.values.copy(), best.scale
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         training.seconds = float(number_of(described["seconds"], 0))
-        training.flights.load(described.get("flights", Flights(0).to_json()))  # older runs do not have them
+        training.flights.load(described.get("flights", EpisodeStatistics(0).to_json()))  # older runs do not have them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error

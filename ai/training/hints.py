@@ -56,7 +56,7 @@ class Hint:
     back_to: int | None = None
 
 
-class Recent:
+class RecentCurves:
     """Recent curves of a run, with the questions about them that several rules ask."""
 
     def __init__(
@@ -120,13 +120,13 @@ class Recent:
         return max(checkpoints, key=lambda each: each.success).decisions if checkpoints else None
 
 
-class Rule(NamedTuple):
+class HintRule(NamedTuple):
     """Rule for one fault; `back_to` is the moment to go back to, in decisions."""
 
     name: str
-    holds: Callable[[Recent], bool]
-    remedy: Callable[[Recent], Mapping[str, Any]] = lambda _: {}
-    back_to: Callable[[Recent], int | None] = lambda _: None
+    holds: Callable[[RecentCurves], bool]
+    remedy: Callable[[RecentCurves], Mapping[str, Any]] = lambda _: {}
+    back_to: Callable[[RecentCurves], int | None] = lambda _: None
 
 
 # Conditions
@@ -136,14 +136,14 @@ def _rate_too_high(config: Config, decisions: int) -> bool:
     return learning_rate(config, decisions) > _TOO_HIGH[config.optimizer]
 
 
-def _damaged(run: Recent) -> bool:
+def _damaged(run: RecentCurves) -> bool:
     """Whether steps were far too long at some time, and the network still shows the damage."""
     if run.damaged_at() is None or run.last("landed") > 0.5:
         return False
     return any(sign(run) for sign in (_loss_explodes, _q_runs_away, _dead_units, _collapsed, _crashes, _hovers))
 
 
-def _loss_explodes(run: Recent) -> bool:
+def _loss_explodes(run: RecentCurves) -> bool:
     """Whether the loss is ten times what it was, or infinite; NaN means that it is not known."""
     if np.isinf(run.history["loss"][-1]):
         return True
@@ -151,7 +151,7 @@ def _loss_explodes(run: Recent) -> bool:
     return run.count >= 60 and before > 0 and run.last("loss") > 10 * before
 
 
-def _q_runs_away(run: Recent) -> bool:
+def _q_runs_away(run: RecentCurves) -> bool:
     """Whether the mean Q-value is beyond twice what a flight could earn or lose."""
     if np.isinf(run.history["mean_q"][-1]):
         return True
@@ -159,51 +159,51 @@ def _q_runs_away(run: Recent) -> bool:
     return run.last("mean_q") < 2 * least or run.last("mean_q") > 2 * most
 
 
-def _target_stands(run: Recent) -> bool:
+def _target_stands(run: RecentCurves) -> bool:
     """Whether the target network lags far behind, and with it the targets, and the flights where it flies them."""
     return run.config.target_every / run.config.target_rate > _TARGET_STEPS
 
 
-def _short_sight(run: Recent) -> bool:
+def _short_sight(run: RecentCurves) -> bool:
     """Whether the discount makes a reward a second later, after fifteen decisions, count for little."""
     return run.is_late() and run.config.discount < 0.96 and run.last("landed") < 0.6
 
 
-def _no_guide(run: Recent) -> bool:
+def _no_guide(run: RecentCurves) -> bool:
     """Whether no part of the reward tells a lander on its way that it comes closer."""
     return run.is_late() and run.last("landed") < 0.6 and not any(getattr(run.config.weights, part) for part in _PARTS)
 
 
-def _dead_units(run: Recent) -> bool:
+def _dead_units(run: RecentCurves) -> bool:
     """Whether more than half of the units give 0 for every input: then they can no longer learn."""
     return run.config.activation == "relu" and (run.dead_share or 0.0) > 0.5
 
 
-def _collapsed(run: Recent) -> bool:
+def _collapsed(run: RecentCurves) -> bool:
     best = run.best()
     return best >= 0.6 and bool(run.by_hundreds()[-_COLLAPSE:].max() <= best - 0.4)
 
 
-def _crashes(run: Recent) -> bool:
+def _crashes(run: RecentCurves) -> bool:
     return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("landed") <= 0.1
 
 
-def _hovers(run: Recent) -> bool:
+def _hovers(run: RecentCurves) -> bool:
     return run.is_late() and run.last("timed_out") >= 0.5 and run.last("landed") <= 0.3
 
 
-def _plateau(run: Recent) -> bool:
+def _plateau(run: RecentCurves) -> bool:
     late = run.is_late() and run.last("decisions", 1) >= 1.5 * _ENOUGH
     return late and 0.05 < run.last("success") < 0.85 and abs(run.gained("success")) < 0.04
 
 
-def _overfed(run: Recent) -> bool:
+def _overfed(run: RecentCurves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
     return config.updates * config.batch_size > 500 * config.num_envs
 
 
-def _clipped(run: Recent) -> bool:
+def _clipped(run: RecentCurves) -> bool:
     """Whether most gradients are clipped to one length: then the size of an error no longer counts."""
     return (run.clipped_share or 0.0) > 0.6
 
@@ -221,20 +221,20 @@ def returns(config: Config) -> tuple[float, float]:
 # Remedies
 
 
-def _sane_rates(run: Recent) -> Mapping[str, Any]:
+def _sane_rates(run: RecentCurves) -> Mapping[str, Any]:
     sane = zip(_RATES, _SANE[run.config.optimizer], strict=True)
     return {name: rate for name, rate in sane if getattr(run.config, name) > 10 * rate}
 
 
-def _before_damage(run: Recent) -> int | None:
+def _before_damage(run: RecentCurves) -> int | None:
     checkpoint = run.history.checkpoint_at(run.damaged_at() or 0)
     return checkpoint.decisions if checkpoint else None
 
 
-def _slower(factor: float) -> Callable[[Recent], Mapping[str, Any]]:
+def _slower(factor: float) -> Callable[[RecentCurves], Mapping[str, Any]]:
     """Lower the learning rate, and what it falls to if that is higher."""
 
-    def remedy(run: Recent) -> Mapping[str, Any]:
+    def remedy(run: RecentCurves) -> Mapping[str, Any]:
         rate = max(1e-5, float(f"{run.config.learning_rate / factor:.1g}"))
         lower = {"learning_rate": rate}
         return lower | {"final_learning_rate": rate} if run.config.final_learning_rate > rate else lower
@@ -242,7 +242,7 @@ def _slower(factor: float) -> Callable[[Recent], Mapping[str, Any]]:
     return remedy
 
 
-def _calm_q(run: Recent) -> Mapping[str, Any]:
+def _calm_q(run: RecentCurves) -> Mapping[str, Any]:
     if not run.config.double:
         return {"double": True}
     if run.config.target_rate > 0.05 and run.config.target_every < 50:
@@ -250,7 +250,7 @@ def _calm_q(run: Recent) -> Mapping[str, Any]:
     return _slower(10)(run)
 
 
-def _for_crashes(run: Recent) -> Mapping[str, Any]:
+def _for_crashes(run: RecentCurves) -> Mapping[str, Any]:
     config = run.config
     if config.optimizer == "sgd" and config.learning_rate < 0.02:
         return {"optimizer": "adam"}
@@ -261,7 +261,7 @@ def _for_short_sight(config: Config) -> Mapping[str, Any]:
     return {"discount": 0.985} if config.discount < 0.96 else {}
 
 
-def _for_hovering(run: Recent) -> Mapping[str, Any]:
+def _for_hovering(run: RecentCurves) -> Mapping[str, Any]:
     config, paid = run.config, RewardWeights()
     if config.epsilon_end < 0.02:
         return {"epsilon_end": 0.05}
@@ -274,14 +274,14 @@ def _for_hovering(run: Recent) -> Mapping[str, Any]:
     return _for_short_sight(config) or {"weights.time": round(1.5 * config.weights.time, 3)}
 
 
-def _for_plateau(run: Recent) -> Mapping[str, Any]:
+def _for_plateau(run: RecentCurves) -> Mapping[str, Any]:
     config = run.config
     if config.n_step < 3:
         return {"n_step": 10}
     return _for_short_sight(config) or (_slower(3)(run) if config.learning_rate > 1e-4 else {})
 
 
-def _less_random(run: Recent) -> Mapping[str, Any]:
+def _less_random(run: RecentCurves) -> Mapping[str, Any]:
     config = run.config
     if config.epsilon_end > 0.2:
         return {"epsilon_end": 0.05}
@@ -290,22 +290,22 @@ def _less_random(run: Recent) -> Mapping[str, Any]:
     return {"epsilon_decisions": 40_000} if config.epsilon_decisions else {"epsilon_decay": 0.995}
 
 
-def _more_memory(run: Recent) -> Mapping[str, Any]:
+def _more_memory(run: RecentCurves) -> Mapping[str, Any]:
     return {"replay_size": max(10_000, 100 * run.config.batch_size)}
 
 
-def _nearer_target(run: Recent) -> Mapping[str, Any]:
+def _nearer_target(run: RecentCurves) -> Mapping[str, Any]:
     return {"target_every": 50} if run.config.target_rate > 0.5 else {"target_every": 1, "target_rate": 0.005}
 
 
-def _fewer_steps(run: Recent) -> Mapping[str, Any]:
+def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
     """Take fewer steps where there are many, or let more landers feed them."""
     config = run.config
     enough = 500 * config.num_envs // config.batch_size
     return {"updates": enough} if config.updates > 12 and enough else {"num_envs": 256}
 
 
-def _longer(run: Recent) -> Mapping[str, Any]:
+def _longer(run: RecentCurves) -> Mapping[str, Any]:
     """Let gradients be longer; where they already may be, let the steps be shorter."""
     clip = run.config.gradient_clip
     return {"gradient_clip": 10.0} if clip < 10.0 else _slower(3)(run)
@@ -313,23 +313,23 @@ def _longer(run: Recent) -> Mapping[str, Any]:
 
 # The most severe first.
 RULES: Final = (
-    Rule("rate_too_high", lambda run: _rate_too_high(run.config, int(run.last("decisions", 1))), _sane_rates,
+    HintRule("rate_too_high", lambda run: _rate_too_high(run.config, int(run.last("decisions", 1))), _sane_rates,
          _before_damage),
-    Rule("damaged", _damaged, back_to=_before_damage),
-    Rule("loss_explodes", _loss_explodes, _slower(10)),
-    Rule("q_runs_away", _q_runs_away, _calm_q),
-    Rule("dead_units", _dead_units, lambda _: {"activation": "leaky_relu"}),
-    Rule("collapsed", _collapsed, _slower(3), Recent.best_moment),
-    Rule("target_stands", _target_stands, _nearer_target),
-    Rule("short_sight", _short_sight, lambda _: {"discount": 0.985}),
-    Rule("no_guide", _no_guide, lambda _: {f"weights.{part}": getattr(RewardWeights(), part) for part in _PARTS}),
-    Rule("crashes", _crashes, _for_crashes),
-    Rule("hovers", _hovers, _for_hovering),
-    Rule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory),
-    Rule("overfed", _overfed, _fewer_steps),
-    Rule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
-    Rule("clipped", _clipped, _longer),
-    Rule("plateau", _plateau, _for_plateau),
+    HintRule("damaged", _damaged, back_to=_before_damage),
+    HintRule("loss_explodes", _loss_explodes, _slower(10)),
+    HintRule("q_runs_away", _q_runs_away, _calm_q),
+    HintRule("dead_units", _dead_units, lambda _: {"activation": "leaky_relu"}),
+    HintRule("collapsed", _collapsed, _slower(3), RecentCurves.best_moment),
+    HintRule("target_stands", _target_stands, _nearer_target),
+    HintRule("short_sight", _short_sight, lambda _: {"discount": 0.985}),
+    HintRule("no_guide", _no_guide, lambda _: {f"weights.{part}": getattr(RewardWeights(), part) for part in _PARTS}),
+    HintRule("crashes", _crashes, _for_crashes),
+    HintRule("hovers", _hovers, _for_hovering),
+    HintRule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory),
+    HintRule("overfed", _overfed, _fewer_steps),
+    HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
+    HintRule("clipped", _clipped, _longer),
+    HintRule("plateau", _plateau, _for_plateau),
 )  # fmt: skip
 
 
@@ -367,7 +367,7 @@ class Adviser:
         if now < self._now:
             self.reset()
         self._now = now
-        run = Recent(history, config, dead_share, clipped_share)
+        run = RecentCurves(history, config, dead_share, clipped_share)
         holding = {rule.name: rule for rule in RULES if rule.holds(run)}
         self._since = {name: self._since.get(name, now) for name in holding}
         if self.shown is not None and now - self._shown_since < STAY:
@@ -379,7 +379,7 @@ class Adviser:
         self._show(ripe[0] if ripe else None, run)
         return self.shown
 
-    def _show(self, rule: Rule | None, run: Recent) -> None:
+    def _show(self, rule: HintRule | None, run: RecentCurves) -> None:
         if rule is None:
             self.shown = None
             return

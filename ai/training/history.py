@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from ai.agent.normalizer import RunningScale
+from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
@@ -73,7 +73,7 @@ class Checkpoint:
 
 
 @dataclass(frozen=True)
-class Alteration:
+class SettingChange:
     """Change of a knob during the run.
 
     `amends` says that it replaces the last alteration of that name: the values that a drag passes through act only
@@ -97,7 +97,7 @@ class Validation:
     best: bool  # of the run so far
 
 
-Entry = Point | Checkpoint | Alteration | Validation
+Entry = Point | Checkpoint | SettingChange | Validation
 _NUMBERS: Final = (*COLUMNS, *SHARES)
 _COLUMN: Final = {name: column for column, name in enumerate((*_NUMBERS, *PARTS))}
 
@@ -115,7 +115,7 @@ class History:
 
     def __init__(self) -> None:
         self.checkpoints: list[Checkpoint] = []
-        self.alterations: list[Alteration] = []
+        self.alterations: list[SettingChange] = []
         self.validations: list[Validation] = []
         self.reward_scale = 1.0
         self._table: Doubles = np.empty((CAPACITY, len(_COLUMN)))
@@ -147,7 +147,7 @@ class History:
                 self._append_point(entry)
             case Checkpoint():
                 self._append_checkpoint(entry)
-            case Alteration():
+            case SettingChange():
                 self._append_alteration(entry)
             case Validation():
                 self.validations.append(entry)
@@ -163,7 +163,7 @@ class History:
         row[len(_NUMBERS) :] = point.parts
         self._told += 1
 
-    def _append_alteration(self, entry: Alteration) -> None:
+    def _append_alteration(self, entry: SettingChange) -> None:
         if entry.amends:
             last = next(each for each in reversed(self.alterations) if each.name == entry.name)
             self.alterations.remove(last)
@@ -274,18 +274,18 @@ def _checkpoint(told: dict[str, Any], values: Floats) -> Checkpoint:
     """Read what is said of a checkpoint; raises KeyError, TypeError or ValueError for nonsense."""
     scale = told["scale"]
     if scale is not None:
-        RunningScale(len(scale["mean"])).load(scale)
+        Normalizer(len(scale["mean"])).load(scale)
     return Checkpoint(
         float(number_of(told["seconds"])), count_of(told["decisions"]), float(number_of(told["success"])), values, scale
     )
 
 
-def _alteration(told: dict[str, Any]) -> Alteration:
+def _alteration(told: dict[str, Any]) -> SettingChange:
     if not isinstance(told["name"], str):
         raise ValueError(f"{brief(repr(told['name']), 40)} is no name of a knob")
     if not isinstance(told["after"], bool | int | float | str):
         raise ValueError(f"{brief(repr(told['after']), 40)} is no value of a knob")
-    return Alteration(count_of(told["decisions"]), told["name"], told["before"], told["after"])
+    return SettingChange(count_of(told["decisions"]), told["name"], told["before"], told["after"])
 
 
 def _validation(told: dict[str, Any]) -> Validation:
@@ -309,6 +309,6 @@ def _above_zero(scale: Any) -> float:
     return float(scale)
 
 
-def _written(alteration: Alteration) -> dict[str, Any]:
+def _written(alteration: SettingChange) -> dict[str, Any]:
     """Return an alteration as a file holds it: `amends` only matters before it is in a history."""
     return {name: value for name, value in asdict(alteration).items() if name != "amends"}

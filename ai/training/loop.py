@@ -13,11 +13,11 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
-from ai.agent.normalizer import RunningScale
+from ai.agent.normalizer import Normalizer
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
-from ai.training.statistics import Flights
+from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, VALIDATION_SEED, Score, Task
 from ai.training.tasks import task_of
 
@@ -60,7 +60,7 @@ class Training:
     env: Env = field(init=False)
     best: Score | None = None
     best_values: Floats | None = None
-    best_scale: RunningScale | None = None
+    best_scale: Normalizer | None = None
     seconds: float = 0.0  # spent, as the caller counts them
     clock: Callable[[], float] = time.monotonic
     witness: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
@@ -78,7 +78,7 @@ class Training:
         self.episodes = 0
         self._evaluated: int | None = None  # how many decisions the network had taken that was measured last
         self._moments: deque[float] = deque(maxlen=100)
-        self.flights = Flights(self.env.num_envs)
+        self.flights = EpisodeStatistics(self.env.num_envs)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
 
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None) -> DeepQAgent:

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from ai.agent.config import Config
 from ai.agent.schedule import InForce
 from ai.common.environment import Floats
-from ai.training.history import Alteration, Checkpoint, Point, Validation
+from ai.training.history import Checkpoint, Point, SettingChange, Validation
 
 
 @dataclass(frozen=True)
-class Begun:
+class RunStarted:
     """First message of a run: its settings; of a resumed run, those it was begun with."""
 
     config: Config
@@ -25,7 +25,7 @@ class Begun:
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
+class SwarmState:
     """Poses and outcomes of all landers after one decision, before ended flights begin anew."""
 
     newest_only: ClassVar = True
@@ -39,7 +39,7 @@ class Sight:
 
 
 @dataclass(frozen=True, eq=False)
-class Insight:
+class NetworkState:
     """Parameters and gradients of the network that learns, sent a few times a second."""
 
     newest_only: ClassVar = True
@@ -51,7 +51,7 @@ class Insight:
 
 
 @dataclass(frozen=True)
-class Change:
+class ChangeSetting:
     """Command to turn a live knob, by its field's name in Config; "weights.time" is one of the reward's weights."""
 
     name: str
@@ -66,14 +66,14 @@ class Save:
 
 
 @dataclass(frozen=True)
-class Revert:
+class RestoreCheckpoint:
     """Command to restore the networks from a checkpoint of the history; time does not go back."""
 
     decisions: int
 
 
 @dataclass(frozen=True)
-class Teach:
+class AddDemonstrations:
     """Command to learn from the demonstrations in a file as well, as far as this run has not done so yet."""
 
     path: Path
@@ -91,9 +91,11 @@ class Saved:
 class Refused:
     """Refusal of a command that could not be carried out, and why. Nothing has changed."""
 
-    command: Change | Revert | Teach
+    command: ChangeSetting | RestoreCheckpoint | AddDemonstrations
     problem: str
 
 
-Message = Begun | Sight | Insight | InForce | Point | Checkpoint | Validation | Alteration | Saved | Refused
-Command = Change | Save | Revert | Teach
+Message = (
+    RunStarted | SwarmState | NetworkState | InForce | Point | Checkpoint | Validation | SettingChange | Saved | Refused
+)
+Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations

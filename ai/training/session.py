@@ -15,7 +15,7 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
-from ai.agent.normalizer import RunningScale
+from ai.agent.normalizer import Normalizer
 from ai.agent.schedule import InForce, in_force
 from ai.common.environment import Ints, StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
@@ -25,21 +25,33 @@ from ai.training.history import (
     PARTS,
     REVERTED,
     TURNING_SECONDS,
-    Alteration,
     Checkpoint,
     Entry,
     History,
     Point,
+    SettingChange,
     Validation,
 )
 from ai.training.lander_task import Evaluation, trial
 from ai.training.loop import Progress, Training, passed
-from ai.training.messages import Begun, Change, Command, Insight, Message, Refused, Revert, Save, Saved, Sight, Teach
+from ai.training.messages import (
+    AddDemonstrations,
+    ChangeSetting,
+    Command,
+    Message,
+    NetworkState,
+    Refused,
+    RestoreCheckpoint,
+    RunStarted,
+    Save,
+    Saved,
+    SwarmState,
+)
 from ai.training.task import VALIDATION_SEED
 
 __all__ = [
-    "CAREFUL", "REVERTED", "TAUGHT", "Begun", "Change", "Insight", "Refused", "Revert", "Save", "Saved", "Sight",
-    "Teach", "agent_of", "live", "turned",
+    "CAREFUL", "REVERTED", "TAUGHT", "AddDemonstrations", "ChangeSetting", "NetworkState", "Refused",
+    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "agent_of", "live", "turned",
 ]  # fmt: skip
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
@@ -106,7 +118,7 @@ def turned(config: Config, name: str, value: Any) -> Config:
     return config.changed(**{name: replace(config.weights, **{part: value}) if part else value})
 
 
-class _Trial:
+class _ValidationFlights:
     """Validation flights of a network as it is at the start, a few decisions at a time."""
 
     def __init__(self, training: Training) -> None:
@@ -138,7 +150,7 @@ class _LiveRun:
         training.clock = clock
         training.witness = self._see
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
-        self._trial: _Trial | None = None
+        self._trial: _ValidationFlights | None = None
         self._sight = self._seen(self.env.outcome)
         self._folder = keep
         self._kept = training.agent.decisions
@@ -162,7 +174,7 @@ class _LiveRun:
     def begin(self) -> tuple[Message, ...]:
         """Say how the run begins."""
         training = self.training
-        self._told = [Begun(training.config, training.seed, training.agent.decisions), self._sight, *self._look()]
+        self._told = [RunStarted(training.config, training.seed, training.agent.decisions), self._sight, *self._look()]
         if not self.history.checkpoints:
             self._note(self._checkpoint(0.0))
         return self._flush()
@@ -192,11 +204,11 @@ class _LiveRun:
     def carry_out(self, command: Command) -> tuple[Message, ...]:
         """Carry out a command, without a decision; return the answer."""
         match command:
-            case Change():
+            case ChangeSetting():
                 self._change(command)
-            case Revert():
+            case RestoreCheckpoint():
                 self._revert(command)
-            case Teach():
+            case AddDemonstrations():
                 self._teach(command)
             case Save(folder):
                 self._finish_trial()
@@ -224,21 +236,21 @@ class _LiveRun:
     def _see(self, result: StepResult) -> None:
         self._sight = self._seen(result.outcome)
 
-    def _seen(self, outcome: Ints) -> Sight:
+    def _seen(self, outcome: Ints) -> SwarmState:
         env, training = self.env, self.training
-        return Sight(
+        return SwarmState(
             env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
             outcome.astype(np.int8), training.flights.earned.astype(np.float32), training.agent.decisions,
         )  # fmt: skip
 
-    def _insight(self) -> Insight:
+    def _insight(self) -> NetworkState:
         agent = self.training.agent
-        return Insight(
+        return NetworkState(
             agent.online.values.copy(), agent.online.gradients.copy(), self.training.observation[CAREFUL].copy(),
             agent.decisions,
         )  # fmt: skip
 
-    def _look(self) -> tuple[Insight, InForce]:
+    def _look(self) -> tuple[NetworkState, InForce]:
         """Return what is sent a few times a second, and whenever a command has changed it."""
         training = self.training
         return self._insight(), in_force(training.config, training.agent.decisions, training.episodes)
@@ -270,7 +282,7 @@ class _LiveRun:
         training = self.training
         if passed(before, training.agent.decisions, training.task.evaluate_every):
             self._finish_trial()
-            self._trial = _Trial(training)
+            self._trial = _ValidationFlights(training)
         elif self._trial is not None and self._trial.go_on(1 + self.env.num_envs // 256):
             self._finish_trial()
 
@@ -283,7 +295,7 @@ class _LiveRun:
         best = self.training.consider(trial.score, trial.agent)
         self._note(Validation(trial.agent.decisions, trial.score.success, trial.score.mean_return, best))
 
-    def _change(self, command: Change) -> None:
+    def _change(self, command: ChangeSetting) -> None:
         before = self.training.config
         try:
             self.training.change(turned(before, command.name, command.value))
@@ -296,7 +308,7 @@ class _LiveRun:
             self._alter(command.name, value(before), after, self._amends(command.name, after))
         self._told.append(self._look()[1])
 
-    def _teach(self, command: Teach) -> None:
+    def _teach(self, command: AddDemonstrations) -> None:
         agent = self.training.agent
         try:
             new = [lesson for lesson in read(command.path) if lesson not in self._lessons]
@@ -309,11 +321,11 @@ class _LiveRun:
             self._told.append(Refused(command, "there are no landings that this run has not learnt from already"))
             return
         if not self.training.config.success_pass:
-            self._change(Change("success_pass", taught(self.training.config).success_pass))
+            self._change(ChangeSetting("success_pass", taught(self.training.config).success_pass))
         self._alter(TAUGHT, None, used)
 
     def _alter(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
-        self._note(Alteration(self.training.agent.decisions, name, before, after, amends))
+        self._note(SettingChange(self.training.agent.decisions, name, before, after, amends))
 
     def _amends(self, name: str, after: Any) -> bool:
         """Whether a knob is still being turned: a moment after the last time, or without a decision in between."""
@@ -327,7 +339,7 @@ class _LiveRun:
             del self._turned_at[name]
         return amends
 
-    def _revert(self, command: Revert) -> None:
+    def _revert(self, command: RestoreCheckpoint) -> None:
         checkpoint = self.history.checkpoint_at(command.decisions)
         if checkpoint is None:
             self._told.append(Refused(command, "this run has no checkpoints yet"))
@@ -361,10 +373,10 @@ class _LiveRun:
         return _trouble(self._write(folder))
 
 
-def _scale_of(agent: DeepQAgent, checkpoint: Checkpoint) -> RunningScale | None:
+def _scale_of(agent: DeepQAgent, checkpoint: Checkpoint) -> Normalizer | None:
     if checkpoint.scale is None:
         return None
-    scale = RunningScale(agent.num_features)
+    scale = Normalizer(agent.num_features)
     try:
         scale.load(checkpoint.scale)
     except (KeyError, TypeError) as error:

@@ -14,7 +14,7 @@ RECENT: Final = 100
 OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is not counted
 
 
-class Flights:
+class EpisodeStatistics:
     """Episode statistics: sums over every slot's current episode, and the last hundred that ended."""
 
     def __init__(self, num_envs: int) -> None:

@@ -10,7 +10,7 @@ from ai.common.environment import Doubles
 from ai.lander.environment import LanderEnv, Outcome
 from game.audio.instruments import RUNGS, altitude_key
 from game.audio.mixer import Sound
-from game.core.pace import Pace
+from game.core.pace import SlowMotion
 
 _ENDS: Final = {
     Outcome.LANDED: "landed",
@@ -40,8 +40,8 @@ class FlightSound:
 
     """
 
-    def __init__(self, sound: Sound, env: LanderEnv, pace: Pace | None = None, *, warns: bool = True) -> None:
-        self._sound, self._env, self._pace, self._warns = sound, env, pace or Pace(), warns
+    def __init__(self, sound: Sound, env: LanderEnv, pace: SlowMotion | None = None, *, warns: bool = True) -> None:
+        self._sound, self._env, self._pace, self._warns = sound, env, pace or SlowMotion(), warns
         self._slot = -1
         self._time = 0.0
         self._outcome = Outcome.FLYING

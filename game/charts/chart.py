@@ -16,8 +16,8 @@ import pygame
 from game.charts import plotting
 from game.charts.curves import Axes, paint_run, trace_run
 from game.charts.plotting import Limits, Numbers
-from game.charts.series import RUN_STYLES, Run, Series, Tick, draw_legend
-from game.charts.tooltip import Row, draw_tooltip
+from game.charts.series import RUN_STYLES, SavedSeries, Series, Tick, draw_legend
+from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint import mix
@@ -67,7 +67,7 @@ class Chart:
         self._log, self._read = log, read
         self.fixed = limits
         self.redraws = 0  # number of times the sheet was drawn
-        self._runs: list[Run] = []
+        self._runs: list[SavedSeries] = []
         self._ticks: tuple[Tick, ...] = ()
         self._x_range: Limits = (0.0, 1.0)
         self._told: tuple[float, ...] = ()  # both ends of the x axis, or one if they are the same
@@ -103,7 +103,7 @@ class Chart:
 
     def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = ()) -> None:
         """Show these runs, the current one first. Call it when new numbers arrive; unchanged ones cost nothing."""
-        runs = [Run(each, log=self._log) for each in series]
+        runs = [SavedSeries(each, log=self._log) for each in series]
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
         span = (start, end) if end > start else (start, start + 1.0)
         if (
@@ -291,7 +291,7 @@ class Chart:
             point = run.nearest(x, slack)
             if point:
                 canvas.dot(self.place(*point), 3, run.series.colour)
-                rows.append(Row(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
+                rows.append(TooltipRow(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
         if self._pointed:
             tick = self._tick_at(across)
             draw_tooltip(canvas, (across, plot.top), self.box, [self.read_x(x), *([tick.text] if tick else [])], rows)

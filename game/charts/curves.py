@@ -9,7 +9,7 @@ import pygame
 
 from game.charts import plotting
 from game.charts.plotting import Bools, Limits, Numbers
-from game.charts.series import Run
+from game.charts.series import SavedSeries
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
 from game.drawing.tokens import Colour
@@ -38,7 +38,7 @@ class Axes(NamedTuple):
         return places
 
 
-def trace_run(run: Run, axes: Axes, columns: int) -> Numbers:
+def trace_run(run: SavedSeries, axes: Axes, columns: int) -> Numbers:
     """Return the value of a run's smoothed line in each pixel column (columns,), NaN for no line."""
     low, high = axes.goal
     room = _ROOM * (high - low)
@@ -47,7 +47,7 @@ def trace_run(run: Run, axes: Axes, columns: int) -> Numbers:
     return plotting.trace(run.x, kept, axes.x_range, columns, radius)
 
 
-def paint_run(sheet: Canvas, area: pygame.Rect, run: Run, values: Numbers, axes: Axes) -> None:
+def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Numbers, axes: Axes) -> None:
     """Draw a run into an area of the sheet, in pixels; `values` is its `trace_run`."""
     colour, scale, bleed = run.series.colour, sheet.scale, sheet.px(_BLEED)
     low, high = axes.shown
@@ -73,7 +73,7 @@ def paint_run(sheet: Canvas, area: pygame.Rect, run: Run, values: Numbers, axes:
     _paint_arrows(sheet, area, run, axes)
 
 
-def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: Run, axes: Axes) -> None:
+def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: SavedSeries, axes: Axes) -> None:
     """Draw arrows for values beyond the chart, also for a single one that smoothing hides."""
     (low, high), (start, end) = axes.goal, axes.x_range
     slack = _BEYOND * (high - low)

@@ -54,7 +54,7 @@ class Tick:
     kind: Literal["checkpoint", "knob"] = "checkpoint"
 
 
-class Run:
+class SavedSeries:
     """Series with its own copy of the numbers, so that later changes of the arrays do not matter.
 
     For a `log` axis, `y` is the logarithm to base 10, and NaN for values that are not positive.
@@ -70,7 +70,7 @@ class Run:
         y = y[:length][placed]
         self.y: Numbers = np.log10(np.where(y > 0, y, np.nan)) if log else y
 
-    def same(self, other: Run) -> bool:
+    def same(self, other: SavedSeries) -> bool:
         """Whether another run would be drawn the same."""
         same_x = self.look == other.look and np.array_equal(self.x, other.x)
         return same_x and np.array_equal(self.y, other.y, equal_nan=True)

@@ -20,7 +20,7 @@ _AFTER_SWATCH: Final = 7.0
 
 
 @dataclass(frozen=True)
-class Row:
+class TooltipRow:
     """Row of a tooltip: a word and its figure; with `dash`, also a piece of the line they belong to."""
 
     word: str
@@ -30,7 +30,7 @@ class Row:
 
 
 def draw_tooltip(
-    canvas: Canvas, point: Point, within: pygame.typing.RectLike, lines: Sequence[str], rows: Sequence[Row] = ()
+    canvas: Canvas, point: Point, within: pygame.typing.RectLike, lines: Sequence[str], rows: Sequence[TooltipRow] = ()
 ) -> pygame.FRect:
     """Draw the panel to the right of a point, or to its left, inside a box; return its box."""
     bounds = pygame.FRect(within)

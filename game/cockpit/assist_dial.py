@@ -11,7 +11,7 @@ from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
 from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
-from game.flight.credit import Stick
+from game.flight.credit import FlownBy
 from game.input.controls import Command, translate
 
 _MIDDLE: Final = VIEW_SIZE[0] / 2
@@ -23,7 +23,7 @@ _WHEEL_STEP: Final = 0.05
 _EASE: Final = 0.2
 
 
-class Dial:
+class AssistDial:
     """Dial for `settings.assist`; the handle moves to the network's end while the network has the stick."""
 
     def __init__(self, settings: Settings) -> None:
@@ -50,14 +50,14 @@ class Dial:
                 self._turn(self._settings.assist + (_KEY_STEP if command is Command.FASTER else -_KEY_STEP))
         return True
 
-    def follow(self, stick: Stick) -> None:
+    def follow(self, stick: FlownBy) -> None:
         """Advance the handle by 1/60 s towards the assist in force, which is 0 where the stick can't be shared."""
-        assist = self._settings.assist if stick is Stick.BOTH else 0.0
-        wanted = 1.0 if stick is Stick.NETWORK else assist
+        assist = self._settings.assist if stick is FlownBy.BOTH else 0.0
+        wanted = 1.0 if stick is FlownBy.NETWORK else assist
         at_once = self._settings.reduced_motion or self._dragged
         self._shown += (1.0 if at_once else _EASE) * (wanted - self._shown)
 
-    def draw(self, canvas: Canvas, text: str, stick: Stick, lamp: tuple[Shape, Colour, float]) -> None:
+    def draw(self, canvas: Canvas, text: str, stick: FlownBy, lamp: tuple[Shape, Colour, float]) -> None:
         """Write who flies, after a lamp of that shape, colour and glow, and draw the slider."""
         draw_title(canvas, text, lamp)
         left, right = _TRACK
@@ -68,7 +68,7 @@ class Dial:
         if reach >= 1:
             canvas.pill((left, _LINE - 1, reach, 2), NET)
         handle = (left + reach, _LINE)
-        canvas.dot(handle, 5 + self._dragged, HUMAN if stick is Stick.PERSON else INK)
+        canvas.dot(handle, 5 + self._dragged, HUMAN if stick is FlownBy.PERSON else INK)
 
     def _drag(self, x: float) -> None:
         share = (x - _TRACK[0]) / (_TRACK[1] - _TRACK[0])

@@ -10,11 +10,11 @@ import pygame
 
 from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
-from game.cockpit.assist_dial import Dial, draw_title
-from game.cockpit.copilot_panel import PADS_HIGH, PANEL, Insight
+from game.cockpit.assist_dial import AssistDial, draw_title
+from game.cockpit.copilot_panel import PADS_HIGH, PANEL, CopilotPanel
 from game.cockpit.hud import CARD
 from game.cockpit.overrides import Overrides
-from game.cockpit.track import Track
+from game.cockpit.track import FlownPath
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
@@ -23,9 +23,9 @@ from game.flight.credit import Credit
 from game.flight.demonstrations import keep_lesson
 from game.flight.flight import Flight
 from game.flight.handicap import OWN
-from game.flight.outcomes import Card, outcome_card
+from game.flight.outcomes import OutcomeCard, outcome_card
 from game.input.controls import Command, translate
-from game.world.camera import Clear, View
+from game.world.camera import ClearArea, View
 
 MODES: Final = ("tolerance", "guardian")
 _CRAFT: Final = 1.5  # metres from the middle of a craft to its ends
@@ -41,10 +41,10 @@ class Cockpit:
 
     def __init__(self, flight: Flight, settings: Settings, credit: Credit) -> None:
         self._flight, self._settings, self.credit = flight, settings, credit
-        self._dial = Dial(settings)
+        self._dial = AssistDial(settings)
         self.overrides = Overrides()
-        self.track = Track(flight)
-        self._insight = Insight(flight.env.ground)
+        self.track = FlownPath(flight)
+        self._copilot_panel = CopilotPanel(flight.env.ground)
         if settings.copilot not in MODES:
             settings.copilot = MODES[0]
         self.help()
@@ -66,7 +66,7 @@ class Cockpit:
         """Update the displays after a step."""
         stepped_in = self.overrides.follow(self._flight)
         self.track.follow(self._flight, stepped_in)
-        self._insight.follow(self._flight)
+        self._copilot_panel.follow(self._flight)
         self.credit.follow()
 
     def keep_lesson(self, folder: Path, hands: str) -> str:
@@ -79,7 +79,7 @@ class Cockpit:
         except (OSError, ValueError) as error:
             return texts.NOT_TAUGHT.format(reason=error)
 
-    def card(self, best: int, view: View) -> Card:
+    def card(self, best: int, view: View) -> OutcomeCard:
         """Return the outcome card of the finished flight; `best` is the score to beat without help."""
         credit, card = self.credit, outcome_card(self._flight.env, self._flight.share)
         card = replace(card, score=credit.score(best), reason=credit.reason(card.reason))
@@ -93,18 +93,18 @@ class Cockpit:
         self._dial.follow(self.credit.stick)
 
     @property
-    def clear(self) -> Clear:
+    def clear(self) -> ClearArea:
         """The part of the screen for the flight, beside the panel that explains it."""
-        return Clear(right=PANEL.left - 16.0) if self._explains else Clear()
+        return ClearArea(right=PANEL.left - 16.0) if self._explains else ClearArea()
 
     @property
     def _explains(self) -> bool:
-        return self._settings.explain and self._insight.shown and not self._flight.over
+        return self._settings.explain and self._copilot_panel.shown and not self._flight.over
 
     def draw_panel(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Draw the panel that explains the flight; hide it while the craft flies behind it."""
         if self._explains and not self._meets(view, pose):
-            self._insight.draw(canvas, self._flight.share)
+            self._copilot_panel.draw(canvas, self._flight.share)
 
     def _meets(self, view: View, pose: Doubles) -> bool:
         """Return whether the craft is behind the panel, which happens only where the camera can't keep it clear."""

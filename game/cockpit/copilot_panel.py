@@ -16,8 +16,8 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, VIEW_SIZE
-from game.flight.flight import Flight, Hand
-from game.flight.networks import Thinker
+from game.flight.flight import Flight, StickHolder
+from game.flight.networks import QPolicy
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_q_values
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ _STAYS: Final = 50  # steps that the message on an override stays, to be read
 Why = tuple[str, str, str]  # a title, and two lines
 
 
-class Insight:
+class CopilotPanel:
     """Co-pilot panel of a flight that is shared or flown by a network; `shown` while it has something to explain.
 
     Attributes:
@@ -62,7 +62,7 @@ class Insight:
         self._stays = max(0, self._stays - 1)
         if not self._stays:
             self._override = None
-        alone = flight.hand is Hand.NETWORK and isinstance(flight.network, Thinker)
+        alone = flight.hand is StickHolder.NETWORK and isinstance(flight.network, QPolicy)
         decision = flight.alone if alone else flight.decision if flight.shared else None
         self.shown = decision is not None
         if decision is None or decision is self._seen:
@@ -77,14 +77,14 @@ class Insight:
 
     def _explain(self, decision: SharedDecision, pad: int) -> None:
         """Show a shared decision by its Q-values for one of the pads as the goal."""
-        from ai.copilot.copilot import Rule
+        from ai.copilot.copilot import ActionSource
 
         self._likely = decision.likely[0].tolist()
         self.values = shared_values(decision, pad)
         self.why = why(decision, self.values)
         if self.values.asked is None:
             self._override = None
-        elif int(decision.rule[0]) != Rule.PILOT:
+        elif int(decision.rule[0]) != ActionSource.PILOT:
             self._override, self._stays = self.why, _STAYS
 
     def draw(self, canvas: Canvas, share: float) -> None:
@@ -137,11 +137,11 @@ def shared_values(decision: SharedDecision, pad: int) -> QValues:
 
 def why(decision: SharedDecision, values: QValues) -> Why:
     """Explain whose action is flown, and why, by the figures that decided it."""
-    from ai.copilot.copilot import Mode, Rule
+    from ai.copilot.copilot import ActionSource, Mode
 
-    rule, asked = Rule(int(decision.rule[0])), values.asked
+    rule, asked = ActionSource(int(decision.rule[0])), values.asked
     if asked is None:
-        return texts.INSIGHT_WHY[Rule.HANDS_OFF.name]
+        return texts.INSIGHT_WHY[ActionSource.HANDS_OFF.name]
     title, *lines = texts.INSIGHT_WHY[rule.name]
     if not values.readable:
         return title, *texts.VALUES_DAMAGED
@@ -149,12 +149,12 @@ def why(decision: SharedDecision, values: QValues) -> Why:
     if decision.mode is Mode.GUARDIAN:
         return title, *_guarded(decision, name)
     loss, allowed = values.loss(asked), values.allowed or 0.0
-    if rule is Rule.PILOT and loss == 0.0:
+    if rule is ActionSource.PILOT and loss == 0.0:
         return title, texts.INSIGHT_SAME.format(asked=name), ""
-    if rule is Rule.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
+    if rule is ActionSource.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
         return title, texts.INSIGHT_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.INSIGHT_ANOTHER
     less, most = _told_apart(loss, allowed)
-    if rule is Rule.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
+    if rule is ActionSource.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
         lines[1] = texts.INSIGHT_EVERY_PAD
     flown = ACTION_NAMES[values.flown]
     first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)

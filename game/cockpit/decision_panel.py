@@ -24,7 +24,7 @@ _PITCH: Final = 18
 _FIGURE: Final = 52  # room for an input's figure
 
 
-def draw_mind(canvas: Canvas, decision: Decision) -> None:
+def draw_decision(canvas: Canvas, decision: Decision) -> None:
     """Draw the decision of one lander exactly as it was made: nothing is recomputed or eased."""
     left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
     canvas.panel(PANEL, _COVER)

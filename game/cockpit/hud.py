@@ -15,7 +15,7 @@ from ai.lander.environment import LanderEnv
 from ai.lander.rules import tenths
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
-from game.drawing.paint_cache import Kept
+from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import (
     FAINT,
     FIGURE,
@@ -34,7 +34,7 @@ from game.drawing.tokens import (
     VIEW_SIZE,
     Colour,
 )
-from game.flight.outcomes import Card, Rival
+from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.ui.hints import draw_hints, hints_width
 
 # Four columns on the left, two on the right: the pad stands in the middle.
@@ -48,7 +48,7 @@ _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
 _ASIDE, _ABOVE = 4.0, 16.0
 _WORDS: Final = (180.0, 66.0)
-_FIGURES: Final = Kept(64)
+_FIGURES: Final = PaintCache(64)
 _LITTLE_TIME: Final = 5.0
 _PLENTY_OF_TIME: Final = 120.0
 
@@ -205,11 +205,11 @@ _RIVAL_ROWS: Final = 60
 
 def draw_card(
     canvas: Canvas,
-    card: Card,
+    card: OutcomeCard,
     keys: list[tuple[str, str]],
     shown: float,
     advise: bool,
-    rival: Rival | None = None,
+    rival: RivalOutcome | None = None,
 ) -> None:
     """Draw the outcome card, `shown` 0 to 1 of the way in, with its advice if wanted, and a rival's figures."""
     drop = 10 * (1 - shown)
@@ -245,7 +245,7 @@ def draw_card(
     draw_hints(canvas, keys, (left, top + 244), room=width)
 
 
-def _draw_rival(canvas: Canvas, rival: Rival, labels: Sequence[str], corner: Point, width: float) -> None:
+def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corner: Point, width: float) -> None:
     """Draw a rival's name, result and figures, in the columns of the player's own."""
     left, top = corner
     canvas.dot((left + 4, top - 4), 4, NET)

@@ -13,9 +13,9 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.shapes import Shape
 from game.drawing.tokens import HUMAN, NET, SMALL, VIEW_SIZE, Colour
-from game.flight.flight import DECISION_STEPS, Flight, Hand
+from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.world import lander as art
-from game.world.camera import Clear, View
+from game.world.camera import ClearArea, View
 
 _LASTS: Final = 40  # steps that a message stays after the last override: long enough to be read
 _FADES: Final = 14
@@ -53,7 +53,7 @@ class Overrides:
             self._now = _CHANGED
         self.times += begins
         if len(flight.recording.actions) % DECISION_STEPS == 0 and not flight.over:
-            yours = flight.flown_by is Hand.HUMAN
+            yours = flight.flown_by is StickHolder.HUMAN
             self._line.append(_CHANGED if self._now == _CHANGED else _YOURS if yours else _HANDED)
             self._now = _YOURS
         return begins
@@ -65,11 +65,11 @@ class Overrides:
 
     def lamp(self, flight: Flight) -> tuple[Shape, Colour, float]:
         """Return shape, colour and glow: disc for who has the stick, ring for hands off, diamond for an override."""
-        if flight.hand is Hand.NETWORK:
+        if flight.hand is StickHolder.NETWORK:
             return "circle", NET, 0.8
         if self._since < _FADES:
             return "diamond", NET, 1.6
-        if flight.shared and flight.flown_by is Hand.NETWORK and flight.asked == COAST:
+        if flight.shared and flight.flown_by is StickHolder.NETWORK and flight.asked == COAST:
             return "ring", NET, 0.5
         return "circle", HUMAN, 0.8
 
@@ -85,7 +85,7 @@ class Overrides:
             canvas.fill(canvas.rect(x, middle - height / 2, max(length, 1.0), height), colour, alpha)
             x += length
 
-    def draw_word(self, canvas: Canvas, view: View, pose: Doubles, clear: Clear) -> None:
+    def draw_word(self, canvas: Canvas, view: View, pose: Doubles, clear: ClearArea) -> None:
         """Write the override beside the craft, where it is `clear`, and draw suppressed flames as dots."""
         strength = self.strength
         if strength <= 0:

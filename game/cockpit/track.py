@@ -12,8 +12,8 @@ import pygame
 from ai.common.environment import Doubles
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET
-from game.flight.flight import Flight, Hand
-from game.world.camera import Clear, View
+from game.flight.flight import Flight, StickHolder
+from game.world.camera import ClearArea, View
 from game.world.paths import draw_faint
 
 _STRIDE: Final = 4  # steps between points
@@ -21,19 +21,19 @@ _MOST_MARKS: Final = 24
 _DIM: Final = 0.62  # dimmed, as the past must not outshine the present
 
 
-class Track:
+class FlownPath:
     """Path of one flight, recorded step by step and drawn once the flight is over."""
 
     def __init__(self, flight: Flight) -> None:
         self._points: list[Doubles] = [flight.env.position[0].copy()]
-        self._hands: list[Hand] = []
-        self.moments: list[Doubles] = []
+        self._hands: list[StickHolder] = []
+        self.callouts: list[Doubles] = []
 
     def follow(self, flight: Flight, stepped_in: bool) -> None:
         """Record a step, and whether the co-pilot stepped in with it."""
         here = flight.env.position[0]
         if stepped_in:
-            self.moments.append(here.copy())
+            self.callouts.append(here.copy())
         if len(flight.recording.actions) % _STRIDE == 0 or flight.over:
             self._points.append(here.copy())
             self._hands.append(flight.flown_by)
@@ -61,15 +61,15 @@ class Track:
         for _, run in groupby(self._hands[:last]):
             ends.append(ends[-1] + len(list(run)))
         for start, end in pairwise(ends):
-            colour = HUMAN if self._hands[start] is Hand.HUMAN else NET
-            draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * Clear.head)
+            colour = HUMAN if self._hands[start] is StickHolder.HUMAN else NET
+            draw_faint(canvas.surface, pixels[start : end + 1], colour, _DIM, canvas.scale * ClearArea.head)
         if shown >= 1:
             for place in self._marked():
                 spot = view.points(place).tolist()
-                if spot[1] > Clear.head:
+                if spot[1] > ClearArea.head:
                     canvas.marker("diamond", spot, 8, NET)
 
     def _marked(self) -> list[Doubles]:
         """Return the places of interventions, thinned out where they are too close to tell apart."""
-        every = max(1, -(-len(self.moments) // _MOST_MARKS))
-        return self.moments[::every]
+        every = max(1, -(-len(self.callouts) // _MOST_MARKS))
+        return self.callouts[::every]

@@ -32,7 +32,7 @@ class FixedStep:
         return steps
 
 
-class Tempo:
+class TimeScale:
     """Time scale of a scene: how many of its steps are due in an update of 1/60 s.
 
     Attributes:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Final
 
-from game.core.clock import Tempo
+from game.core.clock import TimeScale
 
 _SLOW: Final = 0.35  # time scale in slow motion, as a share of the pace
 _HELD: Final = 40  # updates of 1/60 s at full slow motion
 _BACK: Final = 22  # updates in which the pace returns to normal
 
 
-class Pace(Tempo):
+class SlowMotion(TimeScale):
     """Time scale with slow motion. No step is left out; steps only come later."""
 
     def __init__(self, rate: float = 1.0) -> None:

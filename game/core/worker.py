@@ -18,7 +18,7 @@ from threading import Thread
 from typing import Any, Final
 
 from game.core import texts
-from game.core.worker_process import CREDIT, Bundle, Function, serve
+from game.core.worker_process import CREDIT, Function, MessageBatch, serve
 
 PATIENCE: Final = 30.0  # seconds without an answer after which a process counts as hung
 STOP_SECONDS: Final = 3.0  # seconds to end after a request to stop
@@ -27,7 +27,7 @@ _LONGEST_BUNDLE: Final = 1 << 29  # bytes; only a faulty process sends more at o
 _log = logging.getLogger("tranquility")
 
 
-class State(Enum):
+class WorkerState(Enum):
     """State of a worker."""
 
     STARTING = auto()
@@ -53,11 +53,11 @@ class Worker:
         self.clock: Callable[[], float] = time.monotonic
         self._paused = self._heard = self._lost = False
         self._wanted = CREDIT  # bundles requested but not yet received; the process starts with the first request
-        self._over: State | None = None
+        self._over: WorkerState | None = None
         self._deadline: float | None = None  # deadline for it to end by itself
         self._silence = 0.0
         self._polled = self.clock()
-        self._inbox: SimpleQueue[Bundle | Exception | None] = SimpleQueue()
+        self._inbox: SimpleQueue[MessageBatch | Exception | None] = SimpleQueue()
         self._orders: SimpleQueue[bytes | None] = SimpleQueue()
         context = get_context("spawn")
         payload = pickle.dumps((function, args, kwargs))
@@ -82,13 +82,13 @@ class Worker:
             thread.start()
 
     @property
-    def state(self) -> State:
+    def state(self) -> WorkerState:
         """State as of the last `poll`."""
         if self._over is not None:
             return self._over
         if not self._heard:
-            return State.STARTING
-        return State.PAUSED if self._paused else State.RUNNING
+            return WorkerState.STARTING
+        return WorkerState.PAUSED if self._paused else WorkerState.RUNNING
 
     @property
     def gone(self) -> bool:
@@ -144,7 +144,7 @@ class Worker:
         """End the process for certain, after waiting at most `grace` seconds for it to end by itself."""
         if self._over is None:
             self._order("stop")
-            self._over = State.ENDED
+            self._over = WorkerState.ENDED
         if self._release.alive:
             self._process.join(grace)
             self._let_go()
@@ -158,9 +158,9 @@ class Worker:
         if self._over is None:
             self._orders.put(pickle.dumps((name, value)))
 
-    def _hear(self, told: Bundle | Exception | None) -> list[Any]:
+    def _hear(self, told: MessageBatch | Exception | None) -> list[Any]:
         """Handle one bundle, or a reading error, from the process; None means that the connection has closed."""
-        if isinstance(told, Bundle):
+        if isinstance(told, MessageBatch):
             self._wanted, self._heard, self._silence = self._wanted - 1, True, 0.0
             if told.ended and self._over is None:
                 if told.trace:
@@ -191,11 +191,11 @@ class Worker:
 
     def _fail(self, problem: str, grace: float = 0.0) -> None:
         self._finish(grace)
-        self._over, self.problem = State.FAILED, problem
+        self._over, self.problem = WorkerState.FAILED, problem
 
     def _finish(self, grace: float = 0.0) -> None:
         """Mark the worker as ended; its process has `grace` seconds to exit."""
-        self._over, self._deadline = State.ENDED, self.clock() + grace
+        self._over, self._deadline = WorkerState.ENDED, self.clock() + grace
 
     def _clear_up(self, now: float) -> None:
         """Release the process, its threads and its connection, without waiting."""
@@ -211,7 +211,7 @@ class Worker:
         atexit.unregister(self._release)
 
 
-def _read(connection: Connection, inbox: SimpleQueue[Bundle | Exception | None]) -> None:
+def _read(connection: Connection, inbox: SimpleQueue[MessageBatch | Exception | None]) -> None:
     """Receive in a thread: half a message from a process suspended in the middle of it would block the window."""
     try:
         while True:
@@ -220,12 +220,12 @@ def _read(connection: Connection, inbox: SimpleQueue[Bundle | Exception | None])
         inbox.put(None)
 
 
-def _understood(message: bytes) -> Bundle | Exception:
+def _understood(message: bytes) -> MessageBatch | Exception:
     try:
         bundle = pickle.loads(message)
     except Exception as error:  # corrupt bytes can raise any exception
         return error
-    return bundle if isinstance(bundle, Bundle) else TypeError(f"{type(bundle).__name__}")
+    return bundle if isinstance(bundle, MessageBatch) else TypeError(f"{type(bundle).__name__}")
 
 
 def _write(connection: Connection, orders: SimpleQueue[bytes | None]) -> None:

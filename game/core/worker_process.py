@@ -33,7 +33,7 @@ Function = Callable[..., Turns]
 
 
 @dataclass
-class Bundle:
+class MessageBatch:
     """Messages that a worker's process sends at once. An end without `problem` is a success."""
 
     messages: list[Any] = field(default_factory=list)
@@ -42,7 +42,7 @@ class Bundle:
     trace: str = ""  # for the log
 
 
-class Waiting:
+class MessageQueue:
     """Queue of messages not yet fetched.
 
     Of a class with `newest_only`, only the latest is kept. Of those with `may_thin`, every other one is dropped when
@@ -82,7 +82,7 @@ def serve(connection: Connection, payload: bytes) -> None:
     _settle()
     service = _Service(connection)
     signal.signal(signal.SIGTERM, lambda *_: service.terminate())
-    bundle = Bundle(ended=True)
+    bundle = MessageBatch(ended=True)
     try:
         function, args, kwargs = pickle.loads(payload)
         service.run(function(*args, **kwargs))
@@ -98,7 +98,7 @@ def serve(connection: Connection, payload: bytes) -> None:
             bundle.messages = service.waiting.take()
             connection.send(bundle)
         except Exception as error:  # one of the messages cannot be pickled
-            connection.send(Bundle([], True, bundle.problem or _in_words(error), bundle.trace))
+            connection.send(MessageBatch([], True, bundle.problem or _in_words(error), bundle.trace))
 
 
 def _settle() -> None:
@@ -124,7 +124,7 @@ class _Service:
     """Loop that advances a generator at the requested pace, and answers the window between turns."""
 
     def __init__(self, connection: Connection) -> None:
-        self.waiting = Waiting()
+        self.waiting = MessageQueue()
         self._connection = connection
         self._orders: SimpleQueue[Order] = SimpleQueue()
         self.terminated = self._stopped = self._paused = False
@@ -167,7 +167,7 @@ class _Service:
         if self._wanted and (self.waiting or time.monotonic() - self._since >= HEARTBEAT):
             self._wanted -= 1
             self._since = time.monotonic()
-            self._connection.send(Bundle(self.waiting.take(MOST_AT_ONCE)))
+            self._connection.send(MessageBatch(self.waiting.take(MOST_AT_ONCE)))
 
     def _follow_orders(self, turns: Turns) -> None:
         """Carry out all pending orders of the window; wait for one until the next turn is due."""

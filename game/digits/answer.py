@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from game.core import texts
-from game.digits.fixing import Fixing
+from game.digits.fixing import FixRunner
 from game.digits.reader import LEAST_INK, Numbers, Reading, Verdict
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
@@ -129,7 +129,7 @@ def _draw_other(canvas: Canvas, reading: Reading, name: str) -> None:
     canvas.text(words, (RIGHT, 205), size=SMALL, colour=MUTE, align="right", tabular=True)
 
 
-def draw_fix(canvas: Canvas, fixing: Fixing, *, same: bool) -> None:
+def draw_fix(canvas: Canvas, fixing: FixRunner, *, same: bool) -> None:
     """Draw how to correct an answer, or a fix's progress or result; `same`: whether its drawing is unchanged."""
     first, second = _fix_lines(fixing, same)
     canvas.text(first, (LEFT, FIX_TOP), size=SMALL, colour=HUMAN)
@@ -137,7 +137,7 @@ def draw_fix(canvas: Canvas, fixing: Fixing, *, same: bool) -> None:
         canvas.text(line, (LEFT, FIX_TOP + 20 + 16 * number), size=SMALL, colour=MUTE)
 
 
-def _fix_lines(fixing: Fixing, same: bool) -> tuple[str, str]:
+def _fix_lines(fixing: FixRunner, same: bool) -> tuple[str, str]:
     step, fixed = fixing.step, fixing.fixed
     if fixing.busy:
         now = percent(step.probability) if step else ""

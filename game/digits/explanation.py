@@ -48,7 +48,7 @@ class StageSwitch(Toggle):
         draw_switch(canvas, (box.centerx - width / 2, box.centery - height / 2, width, height), self._slid)
 
 
-class Sight:
+class ExplanationView:
     """View of a reading and its explanation; its pictures are cached until these change."""
 
     def __init__(self) -> None:

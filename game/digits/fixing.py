@@ -12,13 +12,13 @@ from ai.digits.fix import Fixed, FixStep, fix
 from ai.digits.preprocessing import Image
 from ai.nn.files import read_json
 from game.core import texts
-from game.core.worker import State, Worker
+from game.core.worker import Worker, WorkerState
 from game.training.digit_models import PATIENCE, shelf
 
 _UNDONE: Final = ".undone"  # suffix of an undone fix's folder until it is removed
 
 
-class Fixing:
+class FixRunner:
     """Runs one fix at a time; call `poll` once a frame. Networks have their names in `game.training.digit_models`.
 
     Every fix has a folder of its own, which only `undo` removes.
@@ -84,7 +84,7 @@ class Fixing:
                 self.fixed = done = told
             else:
                 self.step = told
-        if done or self._worker.state in (State.ENDED, State.FAILED):
+        if done or self._worker.state in (WorkerState.ENDED, WorkerState.FAILED):
             self.problem = self._worker.problem or (texts.FIX_NOT_KEPT.format(problem=done.problem)
                                                     if done and done.problem else "")  # fmt: skip
             self._let_go(0.0)  # it has said all it had to say: the window goes on

@@ -22,7 +22,7 @@ _COLUMNS: Final = 4  # of misread digits
 _GAP: Final = 8.0
 
 
-class Matrix(Widget):
+class ConfusionMatrix(Widget):
     """Confusion matrix: ten true digits (rows) by ten read ones (columns). Mouse and arrows choose a cell.
 
     Attributes:

@@ -8,13 +8,13 @@ from pathlib import Path
 
 from ai.digits.ablation import StageAccuracy, stage_accuracy
 from game.core import texts
-from game.core.worker import State, Worker
+from game.core.worker import Worker, WorkerState
 from game.digits.answer import percent
 from game.digits.reader import Switches
 from game.training.digit_models import PATIENCE, called
 
 
-class Measuring:
+class AccuracyMeasurement:
     """Measures the accuracy for each setting of the switches once; call `listen` once a frame.
 
     `folders` gives networks by name.
@@ -57,7 +57,7 @@ class Measuring:
             return texts.DIGITS_HINT
         told = self.found.get(switches)
         if told is None:
-            failed = self._worker.state is State.FAILED
+            failed = self._worker.state is WorkerState.FAILED
             return texts.DIGITS_NOT_MEASURED.format(problem=self._worker.problem) if failed else texts.DIGITS_MEASURING
         reads = ", ".join(
             texts.DIGITS_READS_AS.format(name=called(name), percent=percent(part)) for name, part in told.read.items()

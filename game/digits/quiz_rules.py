@@ -18,7 +18,7 @@ _LOOKED_AT: Final = 300  # number of strangers' digits from which the hardest to
 
 
 @dataclass
-class Round:
+class QuizRound:
     """One round of the quiz.
 
     Attributes:
@@ -42,7 +42,7 @@ class Round:
         return self.answer == self.digit
 
 
-class Contest:
+class QuizGame:
     """A quiz of ten rounds. Strangers' digits come from `images` and `labels`; without them, all rounds are drawn.
 
     Attributes:
@@ -66,12 +66,12 @@ class Contest:
         for number in range(ROUNDS):
             if number % 2 and strangers:
                 image, digit = strangers.pop()
-                self.rounds.append(Round("read", digit, image, probabilities=classifier.predict(image)[0]))
+                self.rounds.append(QuizRound("read", digit, image, probabilities=classifier.predict(image)[0]))
             else:
-                self.rounds.append(Round("draw", int(wanted[number])))
+                self.rounds.append(QuizRound("draw", int(wanted[number])))
 
     @property
-    def round(self) -> Round | None:
+    def round(self) -> QuizRound | None:
         """The current round; None when all are over."""
         return self.rounds[self.place] if self.place < len(self.rounds) else None
 

@@ -126,6 +126,6 @@ def _quantise(colour: Picture, rng: np.random.Generator) -> npt.NDArray[np.uint8
     grain = np.tile(grain, (1, -(-width // _GRAIN_SIDE), 1))[:, :width]
     levels = np.empty(colour.shape, np.uint8)
     for top in range(0, height, _GRAIN_SIDE):
-        strip = colour[top : top + _GRAIN_SIDE]
-        levels[top : top + _GRAIN_SIDE] = np.clip(strip + grain[: len(strip)], 0, 255)
+        reward_bar = colour[top : top + _GRAIN_SIDE]
+        levels[top : top + _GRAIN_SIDE] = np.clip(reward_bar + grain[: len(reward_bar)], 0, 255)
     return levels

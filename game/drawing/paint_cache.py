@@ -10,7 +10,7 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 
 
-class Kept:
+class PaintCache:
     """Paint cache: pictures, such as the text of a panel, repainted only when their contents change.
 
     The last `most` pictures are kept, by their contents.

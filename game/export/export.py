@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from game.core.worker import State, Worker
+from game.core.worker import Worker, WorkerState
 from game.export.film import Filmed, film
 from game.export.kinds import unfinished
 from game.flight.flight_file import Record
@@ -44,7 +44,7 @@ class Export:
     @property
     def over(self) -> bool:
         """Whether the export has ended, with or without success."""
-        return self._worker.state in (State.ENDED, State.FAILED)
+        return self._worker.state in (WorkerState.ENDED, WorkerState.FAILED)
 
     @property
     def problem(self) -> str:

@@ -20,7 +20,7 @@ from game.core.clock import STEP
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import COLOUR_SAFE, PALETTE
-from game.export.kinds import KINDS, Kind, unfinished
+from game.export.kinds import KINDS, VideoKind, unfinished
 from game.flight.flight_file import Record
 from game.ui.context import Context
 
@@ -32,7 +32,7 @@ _SAMPLE: Final = 40  # steps between the frames sampled for the palette
 
 
 @dataclass(frozen=True)
-class Drawn:
+class FrameDrawn:
     """Progress message: the share of the frames drawn, 0 to 1."""
 
     newest_only = True
@@ -60,7 +60,7 @@ class _Writer(Protocol):
 
 def film(
     make: Callable[[Record], Filmed], record: Record, path: Path, colour_safe: bool = False
-) -> Generator[list[Drawn], None, None]:
+) -> Generator[list[FrameDrawn], None, None]:
     """Write a flight, drawn by the scene from `make`, to a video file, whole or not at all; yield after each frame.
 
     The suffix of the path selects the kind of file.
@@ -76,11 +76,11 @@ def film(
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         with _writer(temporary, kind, frames(make(record), kind, range(0, last, _SAMPLE), colour_safe)) as writer:
-            yield [Drawn(0.0)]
+            yield [FrameDrawn(0.0)]
             shown = frames(make(record), kind, steps, colour_safe)
             for number, frame in enumerate(shown, 1):
                 writer.add(frame)
-                yield [Drawn(number / (len(steps) + 1))]
+                yield [FrameDrawn(number / (len(steps) + 1))]
             for _ in range(0, _LINGER, kind.every):
                 writer.add(frame)
         temporary.replace(path)
@@ -88,7 +88,7 @@ def film(
         temporary.unlink(missing_ok=True)
 
 
-def frames(scene: Filmed, kind: Kind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
+def frames(scene: Filmed, kind: VideoKind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
     """Yield the frames at these rising update numbers of a replay; one update is one step, up to the flight's end."""
     _need_no_screen()
     settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)
@@ -103,7 +103,7 @@ def frames(scene: Filmed, kind: Kind, steps: Iterable[int], colour_safe: bool = 
         yield np.frombuffer(pygame.image.tobytes(canvas.surface, "RGB"), np.uint8).reshape(*kind.size[::-1], 3)
 
 
-def _writer(path: Path, kind: Kind, sample: Iterable[Frame]) -> AbstractContextManager[_Writer]:
+def _writer(path: Path, kind: VideoKind, sample: Iterable[Frame]) -> AbstractContextManager[_Writer]:
     seconds = kind.every * STEP
     if kind is KINDS[".mp4"]:
         from game.export.mp4 import Mp4Writer

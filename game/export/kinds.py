@@ -9,7 +9,7 @@ from typing import Final
 
 
 @dataclass(frozen=True)
-class Kind:
+class VideoKind:
     """Kind of video file.
 
     Attributes:
@@ -31,7 +31,7 @@ class Kind:
         return find_spec(self.needs) is None
 
 
-KINDS: Final = {".gif": Kind("PIL", (640, 360), 3, True), ".mp4": Kind("av", (1280, 720), 1, False)}
+KINDS: Final = {".gif": VideoKind("PIL", (640, 360), 3, True), ".mp4": VideoKind("av", (1280, 720), 1, False)}
 
 
 def unfinished(path: Path) -> Path:

@@ -11,12 +11,12 @@ from typing import Protocol
 from ai.lander.environment import Outcome
 from game.core import texts
 from game.flight.difficulty import Difficulty
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.outcomes import landing_score
 
 
-class Challenge(Protocol):
+class CreditRules(Protocol):
     """Challenge of a flight, as far as it decides what counts; implemented in `game.play.challenge`."""
 
     @property
@@ -35,7 +35,7 @@ class Challenge(Protocol):
         """Return the medal of a flight that is over: 3 for gold, 2, 1, and 0 for none."""
 
 
-class Stick(Enum):
+class FlownBy(Enum):
     """Holder of the stick."""
 
     PERSON = auto()
@@ -59,12 +59,12 @@ class Credit:
         self,
         flight: Flight,
         difficulty: Difficulty,
-        course: Challenge | None = None,
+        challenge: CreditRules | None = None,
         hands: str = OWN,
         *,
         check: bool = False,
     ) -> None:
-        self._flight, self._difficulty, self._course, self._hands = flight, difficulty, course, hands
+        self._flight, self._difficulty, self._challenge, self._hands = flight, difficulty, challenge, hands
         self._check = check
         self._shared = False
 
@@ -75,12 +75,12 @@ class Credit:
     # Who flies
 
     @property
-    def stick(self) -> Stick:
+    def stick(self) -> FlownBy:
         """Present holder of the stick, or the last one after the flight."""
         flight = self._flight
-        if flight.hand is Hand.NETWORK:
-            return Stick.NETWORK
-        return Stick.BOTH if flight.shared else Stick.PERSON
+        if flight.hand is StickHolder.NETWORK:
+            return FlownBy.NETWORK
+        return FlownBy.BOTH if flight.shared else FlownBy.PERSON
 
     @property
     def helped(self) -> bool:
@@ -90,7 +90,7 @@ class Credit:
     @property
     def alone(self) -> bool:
         """Whether the person must fly alone: in a check flight, and in some challenges."""
-        return self._check or (self._course is not None and self._course.alone)
+        return self._check or (self._challenge is not None and self._challenge.alone)
 
     @property
     def header(self) -> str:
@@ -98,8 +98,10 @@ class Credit:
         flight, stick = self._flight, self.stick
         if flight.over:
             return who_flew(flight.share)
-        words = {Stick.PERSON: texts.YOU_FLY, Stick.BOTH: texts.YOU_SHARE, Stick.NETWORK: texts.NETWORK_FLIES}[stick]
-        if stick is Stick.BOTH and flight.copilot:
+        words = {FlownBy.PERSON: texts.YOU_FLY, FlownBy.BOTH: texts.YOU_SHARE, FlownBy.NETWORK: texts.NETWORK_FLIES}[
+            stick
+        ]
+        if stick is FlownBy.BOTH and flight.copilot:
             assist = round(100 * flight.copilot.assist)
             return texts.DIAL_JOIN.join((words, texts.DIAL_ASSISTS[flight.copilot.mode].format(percent=assist)))
         if not self.alone:
@@ -114,13 +116,13 @@ class Credit:
     def bar(self) -> str:
         """Reason why it does not count as the person's own, a key of `texts.NOT_COUNTED`; empty while it does."""
         flight = self._flight
-        if self._course and self._course.bar:
-            return self._course.bar
+        if self._challenge and self._challenge.bar:
+            return self._challenge.bar
         if self._hands != OWN:
             return "hands"
         if self.helped:
             return "helped"
-        if flight.share < 1.0 or flight.hand is Hand.NETWORK:
+        if flight.share < 1.0 or flight.hand is StickHolder.NETWORK:
             return "handed_over"
         return "practice" if self._difficulty.practice else ""
 
@@ -134,12 +136,12 @@ class Credit:
         """Text that says why it does not count, and what is changed; empty if it counts, or never could."""
         if self._difficulty.words:
             return self._difficulty.words
-        return texts.NOT_COUNTED[self.bar] if self.bar and (self._course is None or self._course.kept) else ""
+        return texts.NOT_COUNTED[self.bar] if self.bar and (self._challenge is None or self._challenge.kept) else ""
 
     @property
     def medal(self) -> int:
         """Medal of a flight that is over: 3 for gold, 2, 1, 0 for none."""
-        return self._course.medal(self._flight) if self._course and self.counts else 0
+        return self._challenge.medal(self._flight) if self._challenge and self.counts else 0
 
     def score(self, best: int) -> str:
         """Return the text for the score of a flight that is over; `best` is the score to beat, 0 for none."""

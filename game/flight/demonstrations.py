@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from game.core.lock import held
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.flight.outcomes import landing_score
 
 FILE_NAME: Final = "demonstrations.json"
@@ -25,7 +25,7 @@ def keep_lesson(flight: Flight, folder: Path) -> bool:
     pad = int(env.landed_on[0])
     if pad < 0 or landing_score(env) < _LEAST_SCORE * env.ground.pads[pad].factor:
         return False
-    begins = takeover([hand is Hand.HUMAN for hand in recording.hands])
+    begins = takeover([hand is StickHolder.HUMAN for hand in recording.hands])
     if len(recording.hands) - begins < _LEAST_STEPS:
         return False
     ground = recording.seed if recording.pads > 1 else None

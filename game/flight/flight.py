@@ -15,8 +15,8 @@ from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import Ground, hilly
 from ai.lander.missions import STARTS
 from ai.lander.pilots import COAST
-from game.flight.handicap import OWN, Hands
-from game.flight.networks import Flyer, Thinker, decide
+from game.flight.handicap import OWN, Handicap
+from game.flight.networks import Policy, QPolicy, decide
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
@@ -29,7 +29,7 @@ _PROFILE_REACH: Final = 30.0  # metres to both sides for which the ground's heig
 _PROFILE_STEP: Final = 0.02
 
 
-class Hand(Enum):
+class StickHolder(Enum):
     """Holder of the stick."""
 
     HUMAN = "human"
@@ -71,7 +71,7 @@ class Recording:
     spawn: str
     pads: int = 1
     actions: list[int] = field(default_factory=list)
-    hands: list[Hand] = field(default_factory=list)
+    hands: list[StickHolder] = field(default_factory=list)
     mission: str = ""
     gravity: list[tuple[int, float]] = field(default_factory=list)
 
@@ -104,7 +104,7 @@ class Flight:
     def __init__(
         self,
         seed: int,
-        network: Flyer | None = None,
+        network: Policy | None = None,
         spawn: str = "random",
         *,
         pads: int = 1,
@@ -118,13 +118,13 @@ class Flight:
             self.env = LanderEnv(1, seed, spawn, frame_skip=1, ground=ground_of(seed, pads))
             self.env.reset()
         self.observation: Floats = self.env.observe()
-        self.hand, self.shares = Hand.HUMAN, shares
+        self.hand, self.shares = StickHolder.HUMAN, shares
         self.recording = Recording(seed, spawn, pads, mission=mission)
         self.poses = Poses(self.env)
         self.asked, self.overridden = COAST, False
         self.decision: SharedDecision | None = None
         self.alone: Decision | None = None
-        self._hands = Hands(hands, seed, DECISION_STEPS)
+        self._hands = Handicap(hands, seed, DECISION_STEPS)
         self._held_for = self._yours = 0
         self.copilot: CoPilot | None = None
         self.change_network(network)
@@ -141,7 +141,7 @@ class Flight:
         return self.outcome is not Outcome.FLYING
 
     @property
-    def flown_by(self) -> Hand:
+    def flown_by(self) -> StickHolder:
         """Who chose the action of the last step."""
         return self.recording.hands[-1] if self.recording.hands else self.hand
 
@@ -153,7 +153,7 @@ class Flight:
     @property
     def shared(self) -> bool:
         """Whether the person shares the stick with the co-pilot."""
-        return self.hand is Hand.HUMAN and self.copilot is not None and self.copilot.assist > 0
+        return self.hand is StickHolder.HUMAN and self.copilot is not None and self.copilot.assist > 0
 
     def put(self, moment: dict[str, Any], source: Recording, step: int) -> None:
         """Restore a snapshot `moment` of the environment after `step` steps of a flight from the same start."""
@@ -161,7 +161,7 @@ class Flight:
         self.observation = self.env.observe()
         self.recording.actions[:] = source.actions[:step]
         self.recording.hands[:] = source.hands[:step]
-        self._yours = self.recording.hands.count(Hand.HUMAN)
+        self._yours = self.recording.hands.count(StickHolder.HUMAN)
         self.recording.gravity[:] = [change for change in source.gravity if change[0] <= step]
         self._pull(self.recording.gravity_at(step))
         self.rest()
@@ -185,14 +185,14 @@ class Flight:
         self.poses.take()
         self.poses.take()
 
-    def change_network(self, network: Flyer | None) -> None:
+    def change_network(self, network: Policy | None) -> None:
         """Set the network that can take or share the stick from now on; with None, the person has the stick."""
         self.network = network
         self._held_for, self.decision, self.alone = 0, None, None
         if network is None:
-            self.hand = Hand.HUMAN
+            self.hand = StickHolder.HUMAN
         before, self.copilot = self.copilot, None
-        if self.shares and isinstance(network, Thinker):
+        if self.shares and isinstance(network, QPolicy):
             from ai.copilot.copilot import CoPilot, Mode
 
             self.copilot = CoPilot(network, before.assist if before else 0.0, before.mode if before else Mode.TOLERANCE)
@@ -204,9 +204,9 @@ class Flight:
 
     def hand_over(self) -> bool:
         """Hand the stick over between person and network. False without a network, or after the flight."""
-        if self.over or (self.network is None and self.hand is Hand.HUMAN):
+        if self.over or (self.network is None and self.hand is StickHolder.HUMAN):
             return False
-        self.hand = Hand.NETWORK if self.hand is Hand.HUMAN else Hand.HUMAN
+        self.hand = StickHolder.NETWORK if self.hand is StickHolder.HUMAN else StickHolder.HUMAN
         self._held_for, self.decision, self.alone = 0, None, None  # the new pilot decides at once
         return True
 
@@ -221,26 +221,26 @@ class Flight:
         self.observation = self.env.observe()
         self.recording.actions.append(action)
         self.recording.hands.append(by)
-        self._yours += by is Hand.HUMAN
+        self._yours += by is StickHolder.HUMAN
         self.poses.take()
         if self.outcome is Outcome.LANDED:
             self.env.target = self.env.landed_on
 
-    def _choose(self, held: int) -> tuple[int, Hand]:
+    def _choose(self, held: int) -> tuple[int, StickHolder]:
         """Return the action of the next step, and who chose it."""
-        if self.hand is Hand.NETWORK:
+        if self.hand is StickHolder.NETWORK:
             self.asked = COAST
-            return self._ask_network(), Hand.NETWORK
+            return self._ask_network(), StickHolder.NETWORK
         self.asked = self._hands.ask(held, self.observation)
         if not self.shared:
             self.decision = None
             if self._held_for == 0:
                 self._aim()
             self._held_for = (self._held_for + 1) % DECISION_STEPS
-            return self.asked, Hand.HUMAN
+            return self.asked, StickHolder.HUMAN
         action = self._ask_copilot()
         self.overridden = self.asked not in (COAST, action)
-        return action, Hand.HUMAN if action == self.asked != COAST else Hand.NETWORK
+        return action, StickHolder.HUMAN if action == self.asked != COAST else StickHolder.NETWORK
 
     def _ask_network(self) -> int:
         if self.alone is None or self._held_for == 0:
@@ -284,15 +284,15 @@ class Swarm:
 
     """
 
-    def __init__(self, count: int, seed: int, flyer: Flyer, spawn: str = "random") -> None:
+    def __init__(self, count: int, seed: int, policy: Policy, spawn: str = "random") -> None:
         self.env = LanderEnv(count, seed, spawn, frame_skip=1)
         self.observation: Floats = self.env.reset()
-        self.flyer = flyer
+        self.policy = policy
         self.poses = Poses(self.env)
         self.since_end: Ints = np.zeros(count, dtype=np.intp)
         self.landed = self.lost = 0
         self.fresh: Bools = np.ones(count, dtype=bool)
-        self.decision = decide(flyer, self.observation, np.zeros(count, dtype=np.intp))
+        self.decision = decide(policy, self.observation, np.zeros(count, dtype=np.intp))
         self.decided: Ints = np.ones(count, dtype=np.intp)
         self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; staggered at first
         self._step = 0
@@ -323,7 +323,7 @@ class Swarm:
         if not len(due):
             return
         held = np.where(self.fresh, COAST, self.decision.action)[due]
-        self.decision = self.decision.updated(due, decide(self.flyer, self.observation[due], held))
+        self.decision = self.decision.updated(due, decide(self.policy, self.observation[due], held))
         self.decided[due] += 1
         self._age[due] = 0
 

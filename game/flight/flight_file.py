@@ -21,7 +21,7 @@ from ai.lander.spawns import SPAWNS
 from ai.nn.files import brief, parse_json, read_text, write_text
 from game.core import texts
 from game.core.settings import GRAVITY_SHARES
-from game.flight.flight import Hand, Recording
+from game.flight.flight import Recording, StickHolder
 
 FORMAT: Final = "tranquility flight"
 VERSION: Final = 4
@@ -118,9 +118,9 @@ class Entry:
         return self.outcome == Outcome.LANDED.name
 
 
-def rules_of(course: str) -> int:
+def rules_of(challenge: str) -> int:
     """Return the present version of a mission's rules."""
-    return MISSIONS[course].rules if course in MISSIONS else 0
+    return MISSIONS[challenge].rules if challenge in MISSIONS else 0
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ def from_text(text: str) -> Record:
     if mission and mission not in MISSIONS:
         raise ValueError(texts.FLIGHT_MISSION.format(name=mission))
     actions = [int(word) for word in _unpacked(values["actions"])]
-    hands = [Hand(word) for word in _unpacked(values["hands"])]
+    hands = [StickHolder(word) for word in _unpacked(values["hands"])]
     if len(actions) != len(hands) or not all(0 <= action < NUM_ACTIONS for action in actions):
         raise ValueError(texts.FLIGHT_ACTIONS)
     x, y, angle = (float(number) for number in values["end"])

@@ -19,7 +19,7 @@ from ai.lander.ground import Ground
 from engine import DT
 from engine.integrate import integrate_velocity
 from game.flight.flight import DECISION_STEPS, surface_height
-from game.flight.networks import Flyer
+from game.flight.networks import Policy
 
 # Metres above the ground at which to stop: the touchdown itself is not predicted.
 _CLEAR: Final = 0.3
@@ -59,9 +59,9 @@ class Forecast:
 
     """
 
-    def __init__(self, flyer: Flyer, ground: Ground | None = None) -> None:
+    def __init__(self, policy: Policy, ground: Ground | None = None) -> None:
         self.path: Doubles = np.empty((0, 2))
-        self._flyer = flyer
+        self._policy = policy
         self._ahead = LanderEnv(1, 0, frame_skip=DECISION_STEPS, ground=ground)
         self._observation: Floats = self._ahead.reset()
         self._places: list[Doubles] = []
@@ -78,7 +78,7 @@ class Forecast:
             if self._arrived():
                 self.path, self._places = np.array(self._places), []
                 continue
-            self._observation = ahead.glide(self._flyer.act(self._observation, held=ahead.actions))
+            self._observation = ahead.glide(self._policy.act(self._observation, held=ahead.actions))
         self._leave_behind(env.position[0])
 
     def _arrived(self) -> bool:

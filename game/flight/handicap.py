@@ -43,7 +43,7 @@ HANDS: Final[dict[str, Callable[[Pilot, np.random.Generator], Pilot]]] = {
 }
 
 
-class Hands:
+class Handicap:
     """Handicap by name, applied to the keys; any but the player's own hands choose anew every `every` steps.
 
     The same seed and keys give the same mistakes.

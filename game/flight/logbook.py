@@ -187,12 +187,12 @@ def best(entries: Iterable[Entry], most: int = BEST) -> list[Entry]:
     Landings under other rules are ranked separately, like another mission.
     """
 
-    def course(entry: Entry) -> tuple[str, int, int]:
+    def challenge(entry: Entry) -> tuple[str, int, int]:
         return entry.course, entry.pads, entry.rules
 
     own = (entry for entry in entries if entry.landed and entry.alone and not entry.practice)
-    landings = sorted((entry for entry in own if entry.file), key=course)
-    return [entry for _, group in groupby(landings, course) for entry in sorted(group, key=rank)[:most]]
+    landings = sorted((entry for entry in own if entry.file), key=challenge)
+    return [entry for _, group in groupby(landings, challenge) for entry in sorted(group, key=rank)[:most]]
 
 
 def rank(entry: Entry) -> tuple[float, ...]:

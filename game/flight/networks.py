@@ -21,7 +21,7 @@ PARTS: Final = ("config.json", "online", "target")  # a folder with none of thes
 _log = logging.getLogger("tranquility")
 
 
-class Flyer(Protocol):
+class Policy(Protocol):
     """Policy that chooses actions for a batch of landers."""
 
     def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
@@ -29,7 +29,7 @@ class Flyer(Protocol):
 
 
 @runtime_checkable
-class Thinker(Flyer, Protocol):
+class QPolicy(Policy, Protocol):
     """Flyer that also gives its Q-values and decisions."""
 
     def q_values(self, observation: Floats) -> Floats:
@@ -39,11 +39,11 @@ class Thinker(Flyer, Protocol):
         """Return the decisions of `act`, with the values they are based on."""
 
 
-def decide(flyer: Flyer, observation: Floats, held: Ints) -> Decision:
+def decide(policy: Policy, observation: Floats, held: Ints) -> Decision:
     """Return a flyer's decisions for observations (n, 9), `held` (n,) the previous actions, to fly and to show."""
-    if isinstance(flyer, Thinker):
-        return flyer.decide(observation, held=held)
-    action = flyer.act(observation, held=held)
+    if isinstance(policy, QPolicy):
+        return policy.decide(observation, held=held)
+    action = policy.act(observation, held=held)
     return Decision(observation, action, action)
 
 
@@ -52,7 +52,7 @@ class Network:
     """Network by name. `flyer` is None if it could not be read, and `problem` then says why."""
 
     name: str
-    flyer: Flyer | None = None
+    policy: Policy | None = None
     problem: str = ""
 
 
@@ -105,7 +105,7 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
     return _missing(models_dir)
 
 
-class Roster:
+class Policies:
     """All flyers by name, the scripted pilot last. A network is read on first use."""
 
     def __init__(self, models_dir: Path, user_dir: Path) -> None:
@@ -123,7 +123,7 @@ class Roster:
 
     def first_fit(self) -> Network:
         """Return the first network that can fly; the scripted pilot always can."""
-        return next(network for name in self.names if (network := self[name]).flyer)
+        return next(network for name in self.names if (network := self[name]).policy)
 
     def _load(self, name: str) -> Network:
         from ai.lander.pilots import ScriptedPilot

@@ -11,7 +11,7 @@ from game.core import texts
 
 
 @dataclass(frozen=True)
-class Card:
+class OutcomeCard:
     """Contents of an outcome card: good or not, the reason, figures as label, value, unit, and advice.
 
     For a shared flight, `stepped_in` is how often the co-pilot intervened. `medal` is 3 for gold, 2, 1, 0 for none.
@@ -31,7 +31,7 @@ class Card:
 
 
 @dataclass(frozen=True)
-class Rival:
+class RivalOutcome:
     """Outcome of a rival from the same start; a figure it does not have is left out."""
 
     name: str
@@ -39,7 +39,7 @@ class Rival:
     figures: dict[str, tuple[str, str]]  # value and unit by label
 
 
-def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
+def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> OutcomeCard:
     """Return the outcome card of a flight that has ended; `human` is the person's share of the steps, 0 to 1."""
     outcome = Outcome(int(env.outcome[slot]))
     title, reason = texts.OUTCOMES[outcome.name]
@@ -50,7 +50,7 @@ def outcome_card(env: LanderEnv, human: float, slot: int = 0) -> Card:
     elif outcome is Outcome.TIMED_OUT:
         reason = reason.format(limit=f"{env.limits.time:.0f}")
     advice = texts.ADVICE.get(Cause(int(env.cause[slot])).name, "")
-    return Card(outcome is Outcome.LANDED, title, reason, flight_figures(env, slot), human, advice)
+    return OutcomeCard(outcome is Outcome.LANDED, title, reason, flight_figures(env, slot), human, advice)
 
 
 def _where_left(env: LanderEnv, slot: int) -> str:

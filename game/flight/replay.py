@@ -8,14 +8,14 @@ import numpy as np
 
 from ai.common.environment import Doubles
 from ai.lander.pilots import COAST
-from game.flight.flight import DECISION_STEPS, Flight, Hand, Recording
+from game.flight.flight import DECISION_STEPS, Flight, Recording, StickHolder
 from game.flight.flight_file import Record
 
 _EVERY: Final = 20  # steps between the snapshots that seeking starts from
 _EXACT: Final = 1e-6  # tolerance of the end pose in metres and radians, for rounding on other processors
 
 
-class Rerun(Flight):
+class ReplayedFlight(Flight):
     """Flight that repeats recorded actions and ignores the keys; it stops at the end of the flight or recording."""
 
     def __init__(self, source: Recording) -> None:
@@ -28,23 +28,25 @@ class Rerun(Flight):
         return len(self.recording.actions)
 
     @property
-    def flown_by(self) -> Hand:
+    def flown_by(self) -> StickHolder:
         """Who chose the action of the last step; before the first step, that of the first."""
         hands = self._source.hands
         return hands[min(max(self.at - 1, 0), len(hands) - 1)] if hands else self.hand
 
-    def _choose(self, held: int) -> tuple[int, Hand]:  # noqa: ARG002
+    def _choose(self, held: int) -> tuple[int, StickHolder]:  # noqa: ARG002
         """Return the recorded action of the next step, and who chose it."""
         if self.at >= len(self._source.actions):
             return COAST, self.flown_by
         self.hand = self._source.hands[self.at]
         self.set_gravity(self._source.gravity_at(self.at))
-        if self.hand is Hand.HUMAN and self.at % DECISION_STEPS == 0:  # the read-outs were aimed at a pad then, too
+        if (
+            self.hand is StickHolder.HUMAN and self.at % DECISION_STEPS == 0
+        ):  # the read-outs were aimed at a pad then, too
             self._aim()
         return self._source.actions[self.at], self.hand
 
 
-class Tape:
+class FlightReplay:
     """Replay of a record at any step, while a second flight, the scout, runs ahead and notes the path.
 
     Attributes:
@@ -57,7 +59,7 @@ class Tape:
     def __init__(self, record: Record) -> None:
         self.record = record
         self.length = len(record.recording.actions)
-        self.flight, self._scout = Rerun(record.recording), Rerun(record.recording)
+        self.flight, self._scout = ReplayedFlight(record.recording), ReplayedFlight(record.recording)
         self._moments = [self._scout.env.snapshot()]
         self._places = np.empty((self.length + 1, 2))
         self._places[0] = self._scout.env.position[0]

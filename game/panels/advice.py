@@ -14,9 +14,9 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.tokens import HUMAN, LABEL, SMALL
-from game.training.dials import told
+from game.training.knob_descriptions import told
 from game.ui.form import Form
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 
 _WORD: Final = 62.0  # from one word to the next
 _LINE: Final = 16.0
@@ -43,7 +43,7 @@ class Advice:
         self._hint: Hint | None = None
         self.done = ""  # what the last remedy did
         self._quiet = False
-        self._words: list[Word] = []
+        self._words: list[TextButton] = []
 
     @property
     def shown(self) -> bool:
@@ -103,8 +103,10 @@ class Advice:
             return
         box = self._box
         words = [
-            Word(self._form.manager, (box.right - _WORD * (len(wanted) - number), box.top + 2, _WORD - 14, 22), label,
-                 press, size=SMALL)
+            TextButton(
+                self._form.manager, (box.right - _WORD * (len(wanted) - number), box.top + 2, _WORD - 14, 22), label,
+                press, size=SMALL,
+            )
             for number, (label, press) in enumerate(wanted)
         ]  # fmt: skip
         self._form.replace(self._words, words)

@@ -19,11 +19,11 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
-from game.training.dials import Dial, figure
+from game.training.knob_descriptions import KnobDescription, figure
 from game.ui.entry import Entry, digits, draw_line
 from game.ui.widget import PointsManager, Widget, mix
 from game.ui.widgets import draw_switch
-from game.ui.words import WordRow
+from game.ui.words import TextButtonRow
 
 MARGIN: Final = 16  # left of the label, for the dot
 _TRACK: Final = (142.0, 62.0)  # from the label to the track, from the track to the right end
@@ -52,12 +52,12 @@ class Knob(Widget):
         self,
         manager: PointsManager,
         box: pygame.typing.RectLike,
-        dial: Dial,
-        turn: Callable[[Dial, Any], None],
+        description: KnobDescription,
+        turn: Callable[[KnobDescription, Any], None],
         enter: Callable[[], None] = lambda: None,
     ) -> None:
-        super().__init__(manager, box, dial.label)
-        self.dial, self.help = dial, dial.help
+        super().__init__(manager, box, description.label)
+        self.description, self.help = description, description.help
         self.value: Any = None
         self.home: Any = None
         self.waits = False
@@ -71,12 +71,12 @@ class Knob(Widget):
         self.value, self.home, self.waits, self.idle = value, home, waits, idle
         rounded = None if now is None else float(f"{now:.3g}")
         self.now = None if rounded is None or figure(rounded) == figure(value) else rounded
-        self.help = idle or self.dial.help
+        self.help = idle or self.description.help
 
     @property
     def live(self) -> bool:
         """Whether the knob may change while a run goes on."""
-        return self.dial.live
+        return self.description.live
 
     @property
     def changed(self) -> bool:
@@ -96,7 +96,7 @@ class Knob(Widget):
     def turn(self, value: Any) -> None:
         """Request another value from the panel."""
         if value != self.value:
-            self._turn(self.dial, value)
+            self._turn(self.description, value)
 
     def take(self, event: pygame.event.Event) -> bool:
         """Restore the preset's value on the key for it."""
@@ -135,11 +135,11 @@ class SliderKnob(Knob):
 
     def _at(self, value: Any) -> float:
         """Return the place of a value along the track, 0 to 1."""
-        return _along(self.dial.stops, value)
+        return _along(self.description.stops, value)
 
     def _places(self) -> dict[float, Any]:
         """Map places along the track to values: the stops, and the preset's value."""
-        return {self._at(value): value for value in (*self.dial.stops, self.home)}
+        return {self._at(value): value for value in (*self.description.stops, self.home)}
 
     def shift(self, direction: int) -> bool:
         """Go to the next stop."""
@@ -235,16 +235,16 @@ class WordsKnob(Knob):
     """A choice among a few words."""
 
     values: tuple[Any, ...] = ()
-    row: WordRow
+    row: TextButtonRow
 
     def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
         """Show what the panel says; a value without a word gets one made for it."""
         super().display(value, home, waits=waits, now=now, idle=idle)
-        own = [extra for extra in (home, value) if extra not in self.dial.stops]
-        values = (*self.dial.stops, *dict.fromkeys(own))
+        own = [extra for extra in (home, value) if extra not in self.description.stops]
+        values = (*self.description.stops, *dict.fromkeys(own))
         if values != self.values:
             self.values = values
-            self.row = WordRow([figure(each) for each in values], self.track[0], self.box.right, SMALL, _GAP)
+            self.row = TextButtonRow([figure(each) for each in values], self.track[0], self.box.right, SMALL, _GAP)
 
     def press(self) -> None:
         """Take the word under the mouse; without one, the next."""

@@ -12,8 +12,8 @@ from game.drawing.prose import wrapped
 from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL, Colour
 from game.input.controls import Command, Controls
 from game.panels.knob import Knob, SeedKnob
-from game.training.dials import figure, label
-from game.training.run_settings import Tuning
+from game.training.knob_descriptions import figure, label
+from game.training.run_settings import RunSettings
 from game.ui.hints import draw_hints
 from game.ui.widget import Widget
 
@@ -26,26 +26,34 @@ _EXPLAINED: Final = 78.0  # height of the text above it, from the first baseline
 
 
 def draw_foot(
-    canvas: Canvas, box: pygame.Rect, tuning: Tuning, focused: Widget | None, controls: Controls, *, picking: bool
+    canvas: Canvas,
+    box: pygame.Rect,
+    run_settings: RunSettings,
+    focused: Widget | None,
+    controls: Controls,
+    *,
+    picking: bool,
 ) -> None:
     """Draw the most important message into the panel's box; `focused` is the panel's widget in focus."""
     first = box.bottom - HEIGHT + 22.0
-    if tuning.problem:
+    if run_settings.problem:
         canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
-        _write(canvas, tuning.problem, (box.left + 18, first), box.width - 18, canvas.palette.warn)
-    elif tuning.waiting:
+        _write(canvas, run_settings.problem, (box.left + 18, first), box.width - 18, canvas.palette.warn)
+    elif run_settings.waiting:
         if picking:
-            told = (focused and focused.help) or "\n".join(tuning.family.sabotages.get(tuning.named[1], ("",))[1:])
+            told = (focused and focused.help) or "\n".join(
+                run_settings.run_kind.sabotages.get(run_settings.named[1], ("",))[1:]
+            )
             _write_parts(canvas, told, (box.left, box.bottom - _NOTICE - _EXPLAINED), box.width)
         heading = texts.KNOBS_STARTS_ANEW
-        if tuning.named != tuning.holds:
-            heading = texts.KNOBS_STARTS_ANEW_AS.format(name=tuning.family.word(tuning.named))
-        _draw_notice(canvas, box, heading, _listed(tuning.waiting))
-    elif tuning.put_aside:
-        line = texts.KNOBS_PUT_ASIDE_LINE.format(name=tuning.family.word(tuning.named))
+        if run_settings.named != run_settings.holds:
+            heading = texts.KNOBS_STARTS_ANEW_AS.format(name=run_settings.run_kind.word(run_settings.named))
+        _draw_notice(canvas, box, heading, _listed(run_settings.waiting))
+    elif run_settings.put_aside:
+        line = texts.KNOBS_PUT_ASIDE_LINE.format(name=run_settings.run_kind.word(run_settings.named))
         _draw_notice(canvas, box, texts.KNOBS_PUT_ASIDE, line)
     else:
-        told = (focused and focused.help) or tuning.family.sentence(tuning.named)
+        told = (focused and focused.help) or run_settings.run_kind.sentence(run_settings.named)
         _write_parts(canvas, told, (box.left, first - (_ABOVE if picking else 0.0)), box.width)
         if isinstance(focused, Knob | SeedKnob):
             _draw_marks(canvas, box, focused, controls)

@@ -15,11 +15,11 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
 from game.panels import knob_foot
 from game.panels.knob import MARGIN, Knob, SeedKnob, SliderKnob, SwitchKnob, WordsKnob
-from game.training.dials import Configuration, Dial, label, pages
-from game.training.run_settings import LANDER, SEED, Family, Named, Tuning
+from game.training.knob_descriptions import Configuration, KnobDescription, label, pages
+from game.training.run_settings import LANDER, SEED, Named, RunKind, RunSettings
 from game.ui.form import Form
 from game.ui.widget import PointsManager, Widget, mix
-from game.ui.widgets import Choice, Word
+from game.ui.widgets import Choice, TextButton
 
 _KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
 _HEAD: Final = 34  # from the top to the line under the presets
@@ -29,7 +29,7 @@ _PITCH: Final = 26  # of the rows, where there is room
 _TAB_GAP: Final = 13.0
 
 
-class Knobs:
+class KnobsPanel:
     """Panel of knobs, as widgets of a form in a box of about 384 by 360 points; the scene draws its background.
 
     A knob that may change during a run takes effect at once. One that takes a new run waits, says so, and is applied
@@ -43,7 +43,7 @@ class Knobs:
         on_change: called with the name and value of every knob that changes; during a run, only of those that may.
             Names are those of the configuration ("weights.time" for a part of the reward, "seed" for the seed).
         on_restart: called with a configuration and seed for a new run, once the player has applied them.
-        family: the kind of run, with its presets and knobs.
+        run_kind: the kind of run, with its presets and knobs.
 
     """
 
@@ -55,11 +55,11 @@ class Knobs:
         seed: int,
         on_change: Callable[[str, Any], None],
         on_restart: Callable[[Configuration, int], None],
-        family: Family = LANDER,
+        run_kind: RunKind = LANDER,
     ) -> None:
-        self._form, self._box, self._family = form, pygame.Rect(box), family
-        self._tuning = Tuning(config, seed, on_change, on_restart, family)
-        self._pages = pages(self._tuning.dials.values())
+        self._form, self._box, self._run_kind = form, pygame.Rect(box), run_kind
+        self._run_settings = RunSettings(config, seed, on_change, on_restart, run_kind)
+        self._pages = pages(self._run_settings.knob_descriptions.values())
         self._page = 0
         self._picking = False
         self._sections: dict[str, tuple[Hashable, list[Widget]]] = {}
@@ -69,49 +69,49 @@ class Knobs:
     @property
     def config(self) -> Configuration:
         """The configuration in force, without changes that wait to be applied."""
-        return self._tuning.config
+        return self._run_settings.config
 
     @property
     def seed(self) -> int:
         """The seed of the configuration in force."""
-        return self._tuning.seed
+        return self._run_settings.seed
 
     @property
     def name(self) -> str:
         """Displayed name of the preset or sabotage that this configuration is, or began as."""
-        return self._family.word(self._tuning.holds)
+        return self._run_kind.word(self._run_settings.holds)
 
     @property
     def changed(self) -> bool:
         """Whether the configuration in force differs from the preset or sabotage of that name."""
-        return self._tuning.changed
+        return self._run_settings.changed
 
     @property
     def waiting(self) -> list[str]:
         """Names of the knobs that wait for a new run."""
-        return self._tuning.waiting
+        return self._run_settings.waiting
 
     def set_running(self, running: bool) -> None:
         """Set whether a run goes on; without one, every knob takes effect at once."""
-        if running != self._tuning.running:
-            self._tuning.set_running(running)
+        if running != self._run_settings.running:
+            self._run_settings.set_running(running)
             self._lay()
 
     def show_in_force(self, in_force: InForce | None) -> None:
         """Show the values in force at this moment of a run beside the settings; None for none."""
-        if in_force is not self._tuning.in_force:
-            self._tuning.in_force = in_force
+        if in_force is not self._run_settings.in_force:
+            self._run_settings.in_force = in_force
             self._lay()
 
     def set_config(self, config: Configuration, seed: int) -> None:
         """Show a configuration from elsewhere, such as a loaded run, without calling `on_change` or `on_restart`."""
-        self._tuning.set_config(config, seed)
+        self._run_settings.set_config(config, seed)
         self._picking = False
         self._lay()
 
     def turn(self, name: str, value: Any) -> None:
         """Set a knob by its name, as if by hand; for an invalid value, the panel says why it is refused."""
-        self._tuning.turn(name, value)
+        self._run_settings.turn(name, value)
         self._lay()
 
     def draw(self, canvas: Canvas) -> None:
@@ -121,10 +121,10 @@ class Knobs:
         if self.changed:
             self._draw_changed(canvas)
         if self._picking:
-            heading = texts.SABOTAGE_HEADING.format(name=self._family.word((self._tuning.named[0], ""))).upper()
+            heading = texts.SABOTAGE_HEADING.format(name=self._run_kind.word((self._run_settings.named[0], ""))).upper()
             canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
         focused = self._form.focused if self._form.focused in self._widgets else None
-        knob_foot.draw_foot(canvas, self._box, self._tuning, focused, self._form.controls, picking=self._picking)
+        knob_foot.draw_foot(canvas, self._box, self._run_settings, focused, self._form.controls, picking=self._picking)
 
     def _draw_changed(self, canvas: Canvas) -> None:
         """Mark that knobs were changed: by a word, or by a dot where there is no room for it."""
@@ -139,10 +139,10 @@ class Knobs:
 
     def _lay(self) -> None:
         """Lay out the widgets of the current page, and show the current values in them."""
-        tuning, picking = self._tuning, self._picking
-        answer = "apply" if tuning.waiting else "undo" if tuning.put_aside else ""
+        run_settings, picking = self._run_settings, self._picking
+        answer = "apply" if run_settings.waiting else "undo" if run_settings.put_aside else ""
         sections: dict[str, tuple[Hashable, Callable[[], list[Widget]]]] = {
-            "head": ((tuning.holds, picking), self._make_head),
+            "head": ((run_settings.holds, picking), self._make_head),
             "tabs": (picking, lambda: [] if picking else [self._make_tabs()]),
             "body": ((picking, self._page), self._make_picks if picking else self._make_rows),
             "answers": (answer, lambda: self._make_answers(answer)),
@@ -154,33 +154,33 @@ class Knobs:
         if widgets != self._widgets:
             self._form.replace(self._widgets, widgets)
             self._widgets = widgets
-        waiting = tuning.waiting
+        waiting = run_settings.waiting
         for widget in widgets:
             if isinstance(widget, Knob):
-                dial = widget.dial
+                name, read = widget.description.name, widget.description.read
                 widget.display(
-                    dial.read(tuning.draft), dial.read(tuning.home), waits=dial.name in waiting,
-                    now=tuning.now(dial.name), idle=tuning.idle(dial.name),
+                    read(run_settings.draft), read(run_settings.home), waits=name in waiting,
+                    now=run_settings.now(name), idle=run_settings.idle(name),
                 )  # fmt: skip
             elif isinstance(widget, SeedKnob):
-                widget.display(tuning.draft_seed, waits=SEED in waiting)
+                widget.display(run_settings.draft_seed, waits=SEED in waiting)
 
     def _make_head(self) -> list[Widget]:
         """Make the head: the chosen preset large on the left (a press restores it), the others on the right."""
-        box, named, manager = self._box, self._tuning.holds, self._form.manager
+        box, named, manager = self._box, self._run_settings.holds, self._form.manager
         top = box.top + 5
         chosen = _Title(manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named))
         others: list[tuple[str, Callable[[], None]]] = [
-            (self._family.word((base, "")), self._loads((base, "")))
-            for base in self._family.presets
+            (self._run_kind.word((base, "")), self._loads((base, "")))
+            for base in self._run_kind.presets
             if (base, "") != named
         ]
-        if self._family.sabotages:
+        if self._run_kind.sabotages:
             others.append((texts.SABOTAGE_LEAVE, self._leave) if self._picking else (texts.SABOTAGE, self._pick))
         right, made = float(box.right), []
         for name, press in reversed(others):
             width = _width(name, SMALL)
-            made.append(Word(manager, (right - width, top, width, 24), name, press, size=SMALL))
+            made.append(TextButton(manager, (right - width, top, width, 24), name, press, size=SMALL))
             right -= width + 14
         return [chosen, *reversed(made)]
 
@@ -192,31 +192,33 @@ class Knobs:
     def _make_rows(self) -> list[Widget]:
         page, manager = self._pages[self._page], self._form.manager
         rows: list[Widget] = []
-        for dial in self._tuning.dials.values():
-            if dial.page == page:
-                rows.append(_KINDS[dial.kind](manager, self._row(len(rows)), dial, self._turned, self._seek))
-        if page == self._family.seed_page:
+        for description in self._run_settings.knob_descriptions.values():
+            if description.page == page:
+                rows.append(
+                    _KINDS[description.kind](manager, self._row(len(rows)), description, self._turned, self._seek)
+                )
+        if page == self._run_kind.seed_page:
             rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), self._seeded))
         return rows
 
     def _row(self, number: int) -> pygame.Rect:
         """Return the box of a row; the longest page sets the distance between rows."""
-        box, dials = self._box, self._tuning.dials.values()
-        longest = max(sum(dial.page == page for dial in dials) for page in self._pages)
+        box, knob_descriptions = self._box, self._run_settings.knob_descriptions.values()
+        longest = max(sum(description.page == page for description in knob_descriptions) for page in self._pages)
         pitch = min(_PITCH, (box.height - _HEAD - _TABS - knob_foot.HEIGHT) // longest)
         return pygame.Rect(box.left - MARGIN, box.top + _HEAD + _TABS + number * pitch, box.width + MARGIN, pitch)
 
     def _make_picks(self) -> list[Widget]:
         """Make the list of sabotages, in two columns."""
-        base, (left, top) = self._tuning.named[0], self._box.topleft
-        sabotages = self._family.sabotages
+        base, (left, top) = self._run_settings.named[0], self._box.topleft
+        sabotages = self._run_kind.sabotages
         half = (len(sabotages) + 1) // 2
         picks: list[Widget] = []
         for number, name in enumerate(sabotages):
             column, row = divmod(number, half)
             box = (left + column * self._box.width // 2, top + _HEAD + 38 + row * _PITCH, 160, _PITCH)
-            pick = Word(
-                self._form.manager, box, self._family.word((base, name)), self._loads((base, name)), size=SMALL + 1
+            pick = TextButton(
+                self._form.manager, box, self._run_kind.word((base, name)), self._loads((base, name)), size=SMALL + 1
             )
             told = sabotages[name][1:] if base == MEASURED else sabotages[name][1:2]
             pick.help = "\n".join(told)
@@ -240,8 +242,8 @@ class Knobs:
 
     # What the widgets ask for
 
-    def _turned(self, dial: Dial, value: Any) -> None:
-        self.turn(dial.name, value)
+    def _turned(self, description: KnobDescription, value: Any) -> None:
+        self.turn(description.name, value)
 
     def _seeded(self, seed: int) -> None:
         self.turn(SEED, seed)
@@ -265,8 +267,8 @@ class Knobs:
 
     def _loads(self, named: Named) -> Callable[[], None]:
         def load() -> None:
-            self._tuning.load(named)
-            self._picking = bool(named[1] and self._tuning.waiting)  # a sabotage's help stays as long as it waits
+            self._run_settings.load(named)
+            self._picking = bool(named[1] and self._run_settings.waiting)  # a sabotage's help stays as long as it waits
             self._lay()
             self._focus("answers" if self._picking else "head")
 
@@ -284,18 +286,18 @@ class Knobs:
 
     def _apply(self) -> None:
         self._picking = False
-        self._tuning.apply()
+        self._run_settings.apply()
         self._lay()
         self._focus("tabs")
 
     def _undo(self) -> None:
         self._picking = False
-        self._tuning.undo()
+        self._run_settings.undo()
         self._lay()
         self._focus("tabs")
 
 
-class _Title(Word):
+class _Title(TextButton):
     """Name of the chosen preset: large, with a line under it."""
 
     def __init__(
@@ -311,7 +313,7 @@ class _Title(Word):
         canvas.line((box.left, box.top + 30), (box.left + box.width, box.top + 30), NET, 2)
 
 
-class _Answer(Word):
+class _Answer(TextButton):
     """Button that applies or undoes; amber, the player's colour."""
 
     def __init__(

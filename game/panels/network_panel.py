@@ -14,18 +14,18 @@ from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.nn import NeuralNetwork
 from ai.nn.inspection import NetworkHealth
 from ai.training.history import PARTS, History
-from ai.training.messages import Insight
+from ai.training.messages import NetworkState
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import MUTE, SMALL, TITLE
 from game.panels.network_plan import Show
-from game.panels.network_view import NetView
-from game.panels.reward_bar import Strip
+from game.panels.network_view import NetworkView
+from game.panels.reward_bar import RewardBar
 from game.ui.form import Form
-from game.ui.virtual_pointer import Pointer
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
-from game.ui.widgets import Choice, Word
+from game.ui.widgets import Choice, TextButton
 
 SHOWN: Final[tuple[Show, ...]] = get_args(Show)
 _NETWORK, _PAID = 0, 1
@@ -36,7 +36,7 @@ _LARGE: Final = pygame.Rect(48, 144, 740, 548)
 _LEFT: Final = 40.0
 
 
-class Inside:
+class NetworkPanel:
     """Panel that shows the network or the reward bar; the network also large, where the scene makes room for it.
 
     Attributes:
@@ -48,16 +48,16 @@ class Inside:
     def __init__(self, form: Form, on_closer: Callable[[], None]) -> None:
         self.large = False
         self._form = form
-        self._view = NetView(_SMALL, texts.INPUTS, ACTION_NAMES)
-        self._strip = Strip(_STRIP)
+        self._view = NetworkView(_SMALL, texts.INPUTS, ACTION_NAMES)
+        self._reward_bar = RewardBar(_STRIP)
         self._picture = _NETWORK
         width = typeface.width(texts.TRAIN_CLOSER, SMALL, "regular")
         self._on_closer = on_closer
         self._heading = form.add(Choice(form.manager, (_ROW.left, _ROW.top, _ROW.width - width - 20, _ROW.height), "",
                         texts.TRAIN_INSIDE, 0, self._turn, size=SMALL))  # fmt: skip
-        self._closer = form.add(Word(form.manager, (_ROW.right - width, _ROW.top, width, _ROW.height),
+        self._closer = form.add(TextButton(form.manager, (_ROW.right - width, _ROW.top, width, _ROW.height),
                                      texts.TRAIN_CLOSER, on_closer, size=SMALL))  # fmt: skip
-        form.add(Pointer(form.manager, _SMALL, self.follow))
+        form.add(VirtualPointer(form.manager, _SMALL, self.follow))
         self.clear()
 
     def clear(self) -> None:
@@ -85,30 +85,30 @@ class Inside:
         if not large:
             return []
         return [Choice(self._form.manager, box, "", texts.NET_SHOWS, index, self._show),
-                Pointer(self._form.manager, _LARGE, self.follow)]  # fmt: skip
+                VirtualPointer(self._form.manager, _LARGE, self.follow)]  # fmt: skip
 
-    def take(self, insight: Insight, config: Config) -> None:
+    def take(self, network_state: NetworkState, config: Config) -> None:
         """Show the network that a run reports."""
-        if self._network is None or self._network.values.shape != insight.values.shape:
+        if self._network is None or self._network.values.shape != network_state.values.shape:
             self._network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
         network = self._network
-        if network.values.shape != insight.values.shape:
+        if network.values.shape != network_state.values.shape:
             return  # it belongs to a run that has just been replaced
-        network.values = insight.values
-        network.gradients[:] = insight.gradients
+        network.values = network_state.values
+        network.gradients[:] = network_state.gradients
         self._view.output_scale = config.reward_scale
-        self._view.set(network, insight.observation)
-        self.health.look(network, insight.observation, config.gradient_clip)
+        self._view.set(network, network_state.observation)
+        self.health.look(network, network_state.observation, config.gradient_clip)
 
     def pay(self, history: History) -> None:
         """Show the reward of the latest flights, part by part."""
-        self._strip.set(PARTS, history.parts[-1])
+        self._reward_bar.set(PARTS, history.parts[-1])
 
     def follow(self, event: pygame.event.Event) -> None:
         """Follow the mouse or the virtual pointer; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
             self._view.hover(event.pos if self._shows_network else None)
-            self._strip.hover(None if self._shows_network and not self.large else event.pos)
+            self._reward_bar.hover(None if self._shows_network and not self.large else event.pos)
 
     def covers(self, point: Point) -> bool:
         """Whether a point is on the small picture of the network."""
@@ -117,7 +117,7 @@ class Inside:
     def update(self, at_once: bool) -> None:
         """Advance by 1/60 s."""
         self._view.update(at_once=at_once)
-        self._strip.update(at_once=at_once)
+        self._reward_bar.update(at_once=at_once)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the panel's picture, and the large network with its title beside it."""
@@ -127,7 +127,7 @@ class Inside:
         if self._shows_network:
             self._view.draw(canvas)
         if self.large or self._picture == _PAID:
-            self._strip.draw(canvas)
+            self._reward_bar.draw(canvas)
 
     def _turn(self, index: int) -> None:
         self._picture = index

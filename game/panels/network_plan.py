@@ -79,7 +79,7 @@ def strongest_edges(matrix: Numbers, column: int, most: int) -> list[Edge]:
     ]
 
 
-class Plan:
+class NetworkPlan:
     """Snapshot of a network for drawing: columns of shown units, and the weights of the links between them.
 
     At most `most` units of a layer are shown: the most important by their weights and recent activity, with a
@@ -87,7 +87,7 @@ class Plan:
     """
 
     def __init__(
-        self, network: NeuralNetwork, observation: npt.ArrayLike | None, most: int, before: Plan | None = None
+        self, network: NeuralNetwork, observation: npt.ArrayLike | None, most: int, before: NetworkPlan | None = None
     ) -> None:
         found = links(network)
         sizes = [len(found[0].weights), *(len(link.bias) for link in found)] if found else []

@@ -17,12 +17,12 @@ import pygame
 
 from ai.nn import NeuralNetwork
 from game.charts import plotting
-from game.charts.tooltip import Row, draw_tooltip
+from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
-from game.panels.network_plan import Column, Edge, Plan, Show
+from game.panels.network_plan import Column, Edge, NetworkPlan, Show
 
 Sheets = tuple[Canvas, Canvas]  # additive light, and the signs above it
 
@@ -41,14 +41,14 @@ _CHUNK: Final = 9_000.0  # pixels of edges drawn in one step: about a millisecon
 _GLOWING: Final = 0.55  # units lit more than this shine on what is around them
 
 
-class NetView:
+class NetworkView:
     """View of a network in a box of any size, in points. `inputs` and `outputs` are the names of its ends."""
 
     def __init__(self, box: pygame.typing.RectLike, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> None:
         self.box = pygame.FRect(box)
         self.inputs, self.outputs = tuple(inputs), tuple(outputs)
         self.output_scale = 1.0  # one point of reward, in units of the network's outputs
-        self.plan: Plan | None = None
+        self.plan: NetworkPlan | None = None
         self.edges: list[Edge] = []
         self.redraws = 0  # number of times that the sheets were painted
         self._show: Show = "weights"
@@ -85,7 +85,7 @@ class NetView:
     def set(self, network: NeuralNetwork, observation: npt.ArrayLike | None = None) -> None:
         """Show a network's current state, and its activations for an observation (inputs,) already normalised."""
         self._given = network, observation
-        self.plan = Plan(network, observation, self._most_units, self.plan)
+        self.plan = NetworkPlan(network, observation, self._most_units, self.plan)
         self._centres = self._lay_out()
         if self._hovered and self._hovered not in self._places():
             self._hovered = None
@@ -346,9 +346,9 @@ class NetView:
         column = self.columns[number]
         unit, last = self._unit(number), number == len(self.columns) - 1
         words = texts.NET_POINTS if last and self.outputs else texts.NET_VALUE
-        rows = [Row(words, plotting.compact(float(column.values[place]) / unit))]
+        rows = [TooltipRow(words, plotting.compact(float(column.values[place]) / unit))]
         if column.bias is not None:
-            rows.append(Row(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
+            rows.append(TooltipRow(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
         head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
         draw_tooltip(canvas, self._centres[number][place], self.box, [head], rows)
 

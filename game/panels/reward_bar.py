@@ -42,7 +42,7 @@ _MARGIN: Final = 6.0  # of the sheet around the box
 
 
 @dataclass(frozen=True)
-class Piece:
+class RewardPiece:
     """Place of a part in the bar, in points."""
 
     name: str
@@ -52,7 +52,7 @@ class Piece:
     colour: Colour
 
 
-class Strip:
+class RewardBar:
     """Bar of the reward's parts: positive parts to the right of zero, negative ones to the left.
 
     A mark stands at the sum. Hovering a part explains it.
@@ -109,7 +109,7 @@ class Strip:
         low, high = self._limits.tolist()
         return float(self.box.x + self.box.width * (value - low) / (high - low))
 
-    def pieces(self) -> list[Piece]:
+    def pieces(self) -> list[RewardPiece]:
         """Return the parts at their current places: outwards from zero, always in the same order."""
         sums = {False: 0.0, True: 0.0}
         pieces = []
@@ -118,10 +118,10 @@ class Strip:
             sums[value > 0] = end = start + value
             left, right = sorted((self._across(start), self._across(end)))
             colour = PART_COLOURS.get(name) or _OTHERS[number % len(_OTHERS)]
-            pieces.append(Piece(name, float(self._values[number]), left, right, colour))
+            pieces.append(RewardPiece(name, float(self._values[number]), left, right, colour))
         return pieces
 
-    def piece_at(self, point: Point) -> Piece | None:
+    def piece_at(self, point: Point) -> RewardPiece | None:
         """Return the part under a point of the canvas."""
         if not self.box.collidepoint(point):
             return None
@@ -141,7 +141,7 @@ class Strip:
         corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
         canvas.surface.blit(self._sheet.surface, corner)
 
-    def _paint(self, sheet: Canvas, pieces: Sequence[Piece], hovered: Piece | None) -> None:
+    def _paint(self, sheet: Canvas, pieces: Sequence[RewardPiece], hovered: RewardPiece | None) -> None:
         left, right, top = _MARGIN, _MARGIN + self.box.width, _MARGIN + _BAR_TOP
         self._paint_header(sheet, hovered)
         if not self._values.any():
@@ -160,7 +160,7 @@ class Strip:
         else:
             self._paint_names(sheet, pieces)
 
-    def _paint_header(self, sheet: Canvas, hovered: Piece | None) -> None:
+    def _paint_header(self, sheet: Canvas, hovered: RewardPiece | None) -> None:
         y = _MARGIN + 12
         title, colour = (_word(hovered.name), hovered.colour) if hovered else (self.label, MUTE)
         sheet.text(title, (_MARGIN, y), size=LABEL, colour=colour, weight="medium")
@@ -169,7 +169,7 @@ class Strip:
             right = (_MARGIN + self.box.width, y + 1)
             sheet.text(signed(figure), right, size=TEXT, colour=colour, align="right", tabular=True)
 
-    def _paint_names(self, sheet: Canvas, pieces: Sequence[Piece]) -> None:
+    def _paint_names(self, sheet: Canvas, pieces: Sequence[RewardPiece]) -> None:
         """Name the parts below them, the widest first, as far as there is room."""
         taken: list[tuple[float, float]] = []
         for piece in sorted(pieces, key=lambda piece: piece.left - piece.right):
@@ -195,7 +195,7 @@ def signed(value: float) -> str:
     return "0" if float(text) == 0 else text.replace("-", "−")
 
 
-def _paint_piece(sheet: Canvas, piece: Piece, shift: float, top: float, *, faded: bool) -> None:
+def _paint_piece(sheet: Canvas, piece: RewardPiece, shift: float, top: float, *, faded: bool) -> None:
     if piece.right - piece.left < _LEAST:
         return
     area = sheet.rect(piece.left - shift, top, piece.right - piece.left, _BAR_HEIGHT)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from game.core import texts
-from game.core.worker import State
+from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas, Point
 from game.drawing.prose import wrapped
 from game.drawing.tokens import FIGURE, INK, MUTE, SMALL, TITLE, Colour, Palette
@@ -13,11 +13,11 @@ from game.drawing.tokens import FIGURE, INK, MUTE, SMALL, TITLE, Colour, Palette
 _LEADING: Final = 17.0
 
 
-def start_word(state: State | None) -> str:
+def start_word(state: WorkerState | None) -> str:
     """Return the label of the button that starts, pauses and resumes a run."""
-    if state in (State.RUNNING, State.STARTING):
+    if state in (WorkerState.RUNNING, WorkerState.STARTING):
         return texts.TRAIN_PAUSE
-    return texts.TRAIN_RESUME if state is State.PAUSED else texts.TRAIN_START
+    return texts.TRAIN_RESUME if state is WorkerState.PAUSED else texts.TRAIN_START
 
 
 def rate_colour(palette: Palette, percent: float) -> Colour:
@@ -25,7 +25,7 @@ def rate_colour(palette: Palette, percent: float) -> Colour:
     return palette.good if percent > 50 else INK
 
 
-def draw_standing(
+def draw_run_status(
     canvas: Canvas, corner: Point, title: str, line: str, figure: str, words: str, *, drop: float, room: float
 ) -> None:
     """Draw a title with its baseline at `corner`, a line below it and, `drop` further down, a figure with words."""

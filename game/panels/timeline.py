@@ -8,9 +8,9 @@ from typing import Final, TypeVar
 
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import Kept
+from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, Colour
-from game.flight.flight import Hand
+from game.flight.flight import StickHolder
 from game.ui.widget import PointsManager, Widget, mix
 
 V = TypeVar("V")
@@ -20,7 +20,7 @@ _BAR: Final = 3.0
 _TOP: Final = 6.0  # of the strip, from the upper edge
 _STEP: Final = 6  # physics steps per press of an arrow key
 _LIT: Final = mix(MUTE, INK, 0.5)
-_COLOURS: Final = {Hand.HUMAN: HUMAN, Hand.NETWORK: NET}
+_COLOURS: Final = {StickHolder.HUMAN: HUMAN, StickHolder.NETWORK: NET}
 
 
 class Timeline(Widget):
@@ -32,12 +32,12 @@ class Timeline(Widget):
         box: tuple[float, float, float, float],
         words: Sequence[str],
         actions: Sequence[int],
-        hands: Sequence[Hand],
+        hands: Sequence[StickHolder],
         on_seek: Callable[[int], None],
         on_press: Callable[[], None],
     ) -> None:
         super().__init__(manager, box, "")
-        self._still = Kept()
+        self._still = PaintCache()
         self._words, self._on_seek, self._on_press = words, on_seek, on_press
         self.length = max(1, len(actions))
         self.at = self.reached = 0

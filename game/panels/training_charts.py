@@ -10,14 +10,14 @@ import numpy as np
 
 from ai.common.decision import in_points
 from ai.common.environment import Doubles
-from ai.training.history import Alteration, Checkpoint, History
+from ai.training.history import Checkpoint, History, SettingChange
 from ai.training.session import REVERTED, TAUGHT
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.training.dials import told
-from game.training.training_run import Beside
+from game.training.knob_descriptions import told
+from game.training.training_run import EarlierRun
 
 _TURNS: Final = 12  # frames in a round: in every second one, one chart reads the history, which spreads the load
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
@@ -35,7 +35,7 @@ _CHARTS: Final = (
 )
 
 
-class Board:
+class TrainingCharts:
     """Six charts over one axis: seconds, decisions, or each run from its beginning to its end.
 
     Attributes:
@@ -69,7 +69,7 @@ class Board:
         self._told = [-1] * len(_CHARTS)
         self._mark()
 
-    def look(self, history: History, beside: Sequence[Beside[History]]) -> None:
+    def look(self, history: History, beside: Sequence[EarlierRun[History]]) -> None:
         """Read new points of the current run and of those beside it; call it once a frame."""
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
@@ -77,7 +77,7 @@ class Board:
         if odd or number >= len(_CHARTS) or self._told[number] == points:
             return
         self._told[number] = points
-        runs = [Beside(texts.TRAIN_THIS, history, 0), *beside]
+        runs = [EarlierRun(texts.TRAIN_THIS, history, 0), *beside]
         series = [self._series(_CHARTS[number][0], each) for each in runs if len(each.run)]
         end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
         ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in _ticks(history)] if number == 0 else ()
@@ -85,7 +85,7 @@ class Board:
         if number == 0:
             self._legend = series if len(series) > 1 else []
 
-    def _series(self, name: str, beside: Beside[History]) -> Series:
+    def _series(self, name: str, beside: EarlierRun[History]) -> Series:
         run, (colour, dash) = beside.run, RUN_STYLES[beside.style]
         x = run["decisions" if self.axis == 1 else "seconds"]
         if self.axis == 2:
@@ -154,7 +154,7 @@ def _listed(words: Sequence[str]) -> str:
     return few if len(words) <= _FEW else texts.TRAIN_TURNED_MORE.format(few=few, count=len(words) - _FEW)
 
 
-def _told(turn: Alteration) -> str:
+def _told(turn: SettingChange) -> str:
     if turn.name == TAUGHT:
         return texts.TRAIN_TAUGHT_TICK.format(count=turn.after)
     return texts.TRAIN_REVERTED if turn.name == REVERTED else told({turn.name: turn.after})

@@ -9,23 +9,23 @@ from game.cockpit.surroundings import draw_surroundings
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, MARGIN, NET, VIEW_SIZE
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
 from game.flight.networks import Network
 from game.input.controls import Command, Controls
-from game.play.challenge import Course
+from game.play.challenge import Challenge
 from game.ui.hints import draw_hints, flight_hints
-from game.world.camera import Clear
+from game.world.camera import ClearArea
 
-BELOW_OPENING: Final = Clear(head=196.0)  # keeps the waiting craft clear of the opening text
+BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of the opening text
 
 
 def draw_title(
-    canvas: Canvas, flight: Flight, course: Course | None, network: Network, hands: str, notice: str
+    canvas: Canvas, flight: Flight, challenge: Challenge | None, network: Network, hands: str, notice: str
 ) -> None:
     """Draw the title of a course or of a free flight, and the reason if the flight will not count."""
-    if course:
-        hud.draw_corner(canvas, course.title, course.line, notice or course.goal)
+    if challenge:
+        hud.draw_corner(canvas, challenge.title, challenge.line, notice or challenge.goal)
     else:
         _draw_free_title(canvas, flight, network, hands, notice)
     draw_surroundings(canvas, flight.env)
@@ -38,32 +38,32 @@ def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: st
     hud.draw_corner(canvas, texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown, notice)
 
 
-def draw_opening(canvas: Canvas, controls: Controls, course: Course | None, forecast: bool) -> None:
+def draw_opening(canvas: Canvas, controls: Controls, challenge: Challenge | None, forecast: bool) -> None:
     """Draw the controls and the legend of the dotted paths while the craft hangs and waits."""
     paths = [(texts.PATH_YOURS, HUMAN)]
     if forecast:
         paths.append((texts.PATH_NETWORK, NET))
-    hud.draw_opening(canvas, flight_hints(controls), course.opening if course else texts.BEGIN, paths)
+    hud.draw_opening(canvas, flight_hints(controls), challenge.opening if challenge else texts.BEGIN, paths)
 
 
-def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, course: Course | None, leaves: bool) -> None:
+def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, challenge: Challenge | None, leaves: bool) -> None:
     """Draw hints of the keys that act now; `leaves` is whether Escape goes straight back."""
     word = controls.word
     hints = [(word(Command.PAUSE), texts.HINT_LEAVE if leaves else texts.HINT_PAUSE)]
-    if not course:
+    if not challenge:
         hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
-    elif course.next_hint:
-        hints.insert(0, (word(Command.NEXT), course.next_hint))
+    elif challenge.next_hint:
+        hints.insert(0, (word(Command.NEXT), challenge.next_hint))
     if flight.network and not flight.over:
-        taken = flight.hand is Hand.NETWORK
+        taken = flight.hand is StickHolder.NETWORK
         hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
     draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
 
 
-def card_keys(controls: Controls, good: bool, course: Course | None) -> list[tuple[str, str]]:
+def card_keys(controls: Controls, good: bool, challenge: Challenge | None) -> list[tuple[str, str]]:
     """Return the key hints of an outcome card; `good` is whether it was a landing."""
     word = controls.word
-    if course and course.fixed:
+    if challenge and challenge.fixed:
         first = texts.CARD_FIRST_FIXED[good]
         other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.PAUSE, texts.HINT_LEAVE)
     else:

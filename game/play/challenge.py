@@ -14,18 +14,18 @@ from game.drawing.canvas import Canvas
 from game.flight.credit import Credit
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Record
-from game.flight.networks import Flyer
-from game.flight.outcomes import Card
-from game.flight.replay import Rerun, Tape
+from game.flight.networks import Policy
+from game.flight.outcomes import OutcomeCard
+from game.flight.replay import FlightReplay, ReplayedFlight
 from game.input.controls import Controls
 from game.play.ghost import Ghost
-from game.world.camera import Clear, View
+from game.world.camera import ClearArea, View
 
 _AFTER_OUTAGE: Final = 2.0  # seconds after an engine failure in which the speed that it left can't be braked
 
 
 @dataclass(frozen=True)
-class Moment:
+class DrawnFlight:
     """Context in which a course draws over the world.
 
     Attributes:
@@ -39,12 +39,12 @@ class Moment:
 
     alpha: float
     controls: Controls
-    clear: Clear
+    clear: ClearArea
     waiting: bool = False
     stuck: bool = False
 
 
-class Course:
+class Challenge:
     """A course: a start and a goal, independent of the player's choices for free flights.
 
     Attributes:
@@ -70,15 +70,15 @@ class Course:
     next_hint = ""
     title = line = goal = opening = ""
 
-    def flight(self, seed: int, network: Flyer | None) -> Flight:
+    def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight; `network` is the one to hand over to."""
         return Flight(seed, network)
 
-    def ghost(self, seed: int, network: Flyer | None) -> Ghost | None:  # noqa: ARG002
+    def ghost(self, seed: int, network: Policy | None) -> Ghost | None:  # noqa: ARG002
         """Begin the ghost that flies beside it; None without one."""
         return None
 
-    def card(self, card: Card, flight: Flight, credit: Credit) -> Card:  # noqa: ARG002
+    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:  # noqa: ARG002
         """Return the outcome card of a finished flight, with what this course adds to it."""
         return card
 
@@ -105,7 +105,7 @@ class Course:
         """Store the pilot's progress in the settings; return whether there was any to store."""
         return False
 
-    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: Moment) -> None:
+    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
         """Draw the course's own text and marks over the world."""
 
     def medal(self, flight: Flight) -> int:  # noqa: ARG002
@@ -113,23 +113,23 @@ class Course:
         return 0
 
 
-class Duel(Course):
+class Duel(Challenge):
     """Duel: one start after another against a rival."""
 
     fixed = False
     title = texts.DUEL
 
-    def __init__(self, rival: Flyer, name: str) -> None:
+    def __init__(self, rival: Policy, name: str) -> None:
         self._rival, self._name = rival, name
         self.line = texts.DUEL_RIVAL.format(name=name)
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
-    def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
+    def ghost(self, seed: int, network: Policy | None) -> Ghost:  # noqa: ARG002
         """Begin the rival at the same start."""
         return Ghost(Flight(seed, self._rival), self._name)
 
 
-class Race(Course):
+class Race(Challenge):
     """Race: the start of a recorded flight, against its ghost."""
 
     title = texts.RACE
@@ -139,50 +139,50 @@ class Race(Course):
         self.line = texts.DUEL_RIVAL.format(name=name)
         self.opening = texts.DUEL_BEGIN.format(name=name)
 
-    def flight(self, seed: int, network: Flyer | None) -> Flight:
+    def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin at the recorded start, under the recorded gravity."""
         recording = self._record.recording
         flight = _as_begun(recording, seed, network)
         flight.set_gravity(recording.gravity_at(0))
         return flight
 
-    def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
+    def ghost(self, seed: int, network: Policy | None) -> Ghost:  # noqa: ARG002
         """Begin the recorded flight as the ghost."""
-        return Ghost(Rerun(self._record.recording), self._name)
+        return Ghost(ReplayedFlight(self._record.recording), self._name)
 
 
-class FlyOn(Course):
+class ContinuedFlight(Challenge):
     """Fly on from a moment of a recorded flight, whose own continuation flies beside as a ghost."""
 
     bar = "flown_on"
     title = texts.FLY_ON
     opening = texts.FLY_ON_BEGIN
 
-    def __init__(self, tape: Tape, name: str) -> None:
-        self._recording, self._step, self._name = tape.record.recording, tape.at, name
-        self._moment = tape.flight.env.snapshot()
-        self.name = tape.record.recording.mission or tape.record.entry.course
-        self.line = texts.FLY_ON_LINE.format(seconds=tape.at / 60)
+    def __init__(self, flight_replay: FlightReplay, name: str) -> None:
+        self._recording, self._step, self._name = flight_replay.record.recording, flight_replay.at, name
+        self._moment = flight_replay.flight.env.snapshot()
+        self.name = flight_replay.record.recording.mission or flight_replay.record.entry.course
+        self.line = texts.FLY_ON_LINE.format(seconds=flight_replay.at / 60)
 
-    def flight(self, seed: int, network: Flyer | None) -> Flight:
+    def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin at the chosen moment of the recorded flight."""
         flight = _as_begun(self._recording, seed, network)
         flight.put(self._moment, self._recording, self._step)
         return flight
 
-    def ghost(self, seed: int, network: Flyer | None) -> Ghost:  # noqa: ARG002
+    def ghost(self, seed: int, network: Policy | None) -> Ghost:  # noqa: ARG002
         """Begin the ghost of the recorded flight, from the same moment on."""
-        rerun = Rerun(self._recording)
+        rerun = ReplayedFlight(self._recording)
         rerun.put(self._moment, self._recording, self._step)
         return Ghost(rerun, self._name)
 
 
-def _as_begun(recording: Recording, seed: int, network: Flyer | None) -> Flight:
+def _as_begun(recording: Recording, seed: int, network: Policy | None) -> Flight:
     """Return a flight at the start of a recorded one."""
     return Flight(seed, network, recording.spawn, pads=recording.pads, mission=recording.mission)
 
 
-class Flown(Course):
+class FlownMission(Challenge):
     """A mission of the campaign, beside a ghost: a recorded flight or, without one, the network."""
 
     title = texts.MISSION
@@ -193,14 +193,14 @@ class Flown(Course):
         self.line, self.opening = texts.MISSIONS[mission.name]
         self.goal = texts.MISSION_GOAL.format(fuel=mission.gold[0], seconds=mission.gold[1])
 
-    def flight(self, seed: int, network: Flyer | None) -> Flight:
+    def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight of the mission."""
         return Flight(seed, network, mission=self.name)
 
-    def ghost(self, seed: int, network: Flyer | None) -> Ghost | None:
+    def ghost(self, seed: int, network: Policy | None) -> Ghost | None:
         """Begin the rival on the same mission."""
         if self._rival:
-            return Ghost(Rerun(self._rival.recording), self._rival_name)
+            return Ghost(ReplayedFlight(self._rival.recording), self._rival_name)
         return Ghost(Flight(seed, network, mission=self.name), self._rival_name) if network else None
 
     def medal(self, flight: Flight) -> int:
@@ -209,7 +209,7 @@ class Flown(Course):
             return 0
         return self.mission.medal(float(flight.env.fuel[0]), float(flight.env.time[0]))
 
-    def card(self, card: Card, flight: Flight, credit: Credit) -> Card:
+    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:
         """Return the card with the medal in place of points, and what the next medal asks, or why there is none."""
         if not card.good:
             return replace(card, advice=_advice(flight.env) or card.advice)
@@ -239,7 +239,7 @@ def _advice(env: LanderEnv) -> str:
     return texts.ADVICE_WIND if conditions.pushes and env.cause[0] == Cause.TERRAIN else ""
 
 
-class Daily(Course):
+class DailyStart(Challenge):
     """Start of the day, the same for everybody, without a network to help."""
 
     name = "daily"
@@ -250,6 +250,6 @@ class Daily(Course):
         self.seed = day.toordinal()
         self.line, self.opening = f"{day:%Y-%m-%d}", texts.DAILY_BEGIN
 
-    def flight(self, seed: int, network: Flyer | None) -> Flight:  # noqa: ARG002
+    def flight(self, seed: int, network: Policy | None) -> Flight:  # noqa: ARG002
         """Begin a flight with three pads among hills."""
         return Flight(self.seed, pads=3)

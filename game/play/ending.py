@@ -8,7 +8,7 @@ from typing import Final
 from ai.lander.environment import Outcome
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
-from game.core.pace import Pace
+from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.flight import outcomes
 from game.flight.flight import Flight
@@ -17,10 +17,10 @@ from game.flight.networks import Network
 from game.flight.skill import Skill
 from game.input.controls import Controls
 from game.play import captions as flight_words
-from game.play.challenge import Course
+from game.play.challenge import Challenge
 from game.play.ghost import Ghost
 from game.ui.context import Context
-from game.world.camera import Shot
+from game.world.camera import CameraTarget
 from game.world.scenery import Scenery
 
 _CARD_AFTER: Final = 45  # steps from the end of a flight to its card
@@ -28,7 +28,7 @@ _CARD_RISE: Final = 16
 _CRASH_SEEN: Final = 6  # steps of slow motion before a key can cut it short: thrust may still be held
 
 
-class Ending:
+class FlightEnding:
     """Ending of one flight; call `follow` once for every step since the flight is over.
 
     Attributes:
@@ -37,11 +37,11 @@ class Ending:
 
     """
 
-    def __init__(self, flight: Flight, pace: Pace, reduced_motion: bool) -> None:
+    def __init__(self, flight: Flight, pace: SlowMotion, reduced_motion: bool) -> None:
         self._flight, self._pace, self.calm = flight, pace, reduced_motion
         self._since = 0
-        self._whole: Shot | None = None
-        self.card: outcomes.Card | None = None
+        self._whole: CameraTarget | None = None
+        self.card: outcomes.OutcomeCard | None = None
 
     @property
     def due(self) -> bool:
@@ -57,7 +57,7 @@ class Ending:
         return 1.0 if self.calm else 1 - (1 - min(1.0, since / _CARD_RISE)) ** 3
 
     @property
-    def shot(self) -> Shot | None:
+    def shot(self) -> CameraTarget | None:
         """Shot for the camera instead of the craft; None to keep following the craft."""
         return self._whole if self.due else None
 
@@ -73,37 +73,37 @@ class Ending:
             self._pace.hurry()
             self._since = _CARD_AFTER
 
-    def make_card(self, cockpit: Cockpit, course: Course | None, skill: Skill, scenery: Scenery) -> None:
+    def make_card(self, cockpit: Cockpit, challenge: Challenge | None, skill: Skill, scenery: Scenery) -> None:
         """Make the outcome card; the best score to compare with is that of free flights."""
         self._whole = scenery.shot_of(cockpit.track.path)
-        card = cockpit.card(0 if course and course.name else skill.best, self._whole.view(1.0))
-        self.card = course.card(card, self._flight, cockpit.credit) if course else card
+        card = cockpit.card(0 if challenge and challenge.name else skill.best, self._whole.view(1.0))
+        self.card = challenge.card(card, self._flight, cockpit.credit) if challenge else card
 
     def draw(
-        self, canvas: Canvas, controls: Controls, course: Course | None, ghost: Ghost | None, advise: bool
+        self, canvas: Canvas, controls: Controls, challenge: Challenge | None, ghost: Ghost | None, advise: bool
     ) -> None:
         """Draw the card, if there is one."""
         if self.card is None or self.shown == 0:
             return
         rival = ghost.row(self._flight.env) if ghost else None
-        keys = flight_words.card_keys(controls, self.card.good, course)
+        keys = flight_words.card_keys(controls, self.card.good, challenge)
         hud.draw_card(canvas, self.card, keys, self.shown, advise, rival)
 
 
 def write_down(
-    context: Context, flight: Flight, cockpit: Cockpit, course: Course | None,
+    context: Context, flight: Flight, cockpit: Cockpit, challenge: Challenge | None,
     records: Records, skill: Skill, network: Network, hands: str,
 ) -> None:  # fmt: skip
     """Record a finished flight, save it as a demonstration if wished, and report failures to the player."""
     credit = cockpit.credit
-    told = "" if course or credit.bar == "practice" else cockpit.keep_lesson(context.user_dir, hands)
+    told = "" if challenge or credit.bar == "practice" else cockpit.keep_lesson(context.user_dir, hands)
     entry = records.keep(
         flight,
         time.time(),
         alone=credit.counts,
         barred=credit.bar,
-        network=network.name if network.flyer else "",
-        course=course.name if course else "",
+        network=network.name if network.policy else "",
+        course=challenge.name if challenge else "",
         medal=credit.medal,
         pace=credit.pace,
     )

@@ -16,9 +16,9 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import NET, VIEW_SIZE
 from game.flight.flight import Flight
-from game.flight.outcomes import Rival, flight_figures
+from game.flight.outcomes import RivalOutcome, flight_figures
 from game.world import lander as art
-from game.world.camera import Clear, View
+from game.world.camera import ClearArea, View
 from game.world.flame import NET_PLUME, plume
 from game.world.landscape.sheet import fitted
 from game.world.paths import Trails
@@ -48,15 +48,15 @@ class Ghost:
         ended = np.array([flight.over and not was_over])
         self._trail.follow(flight.env.position, flight.env.outcome, _NO_SLOT, ended)
 
-    def row(self, yours: LanderEnv) -> Rival:
+    def row(self, yours: LanderEnv) -> RivalOutcome:
         """Return the rival's row on the outcome card of the player's finished flight."""
         env = self.flight.env
         figures = {label: (value, unit) for label, value, unit in flight_figures(env)} if self.flight.over else {}
-        return Rival(self.name, _result(yours, env), figures)
+        return RivalOutcome(self.name, _result(yours, env), figures)
 
     def draw_way(self, canvas: Canvas, view: View) -> None:
         """Draw the ghost's path so far, below the text at the top."""
-        self._trail.draw(canvas, view, 0, Clear.head)
+        self._trail.draw(canvas, view, 0, ClearArea.head)
 
     def draw(self, canvas: Canvas, view: View, alpha: float) -> None:
         """Draw the ghost as a translucent shape with a blue rim."""

@@ -7,19 +7,19 @@ import time
 from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.flight.flight_file import Record
-from game.flight.replay import Tape
-from game.play.challenge import Flown, FlyOn, Race
+from game.flight.replay import FlightReplay
+from game.play.challenge import ContinuedFlight, FlownMission, Race
 
 
-def race(record: Record) -> Flown | Race:
+def race(record: Record) -> FlownMission | Race:
     """Return a race against a recorded flight; a mission's flight is raced as that mission, with its medals."""
     mission = MISSIONS.get(record.recording.mission)
-    return Flown(mission, record, _name(record)) if mission else Race(record, _name(record))
+    return FlownMission(mission, record, _name(record)) if mission else Race(record, _name(record))
 
 
-def fly_on(record: Record, tape: Tape) -> FlyOn:
+def fly_on(record: Record, flight_replay: FlightReplay) -> ContinuedFlight:
     """Return a course that flies on from a replay's current moment, beside the recorded flight as a ghost."""
-    return FlyOn(tape, _name(record))
+    return ContinuedFlight(flight_replay, _name(record))
 
 
 def _name(record: Record) -> str:

@@ -20,12 +20,12 @@ from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MUTE, SMALL, TEXT
 from game.flight.credit import Credit
-from game.flight.flight import Flight, Hand
-from game.flight.networks import Flyer
-from game.flight.outcomes import Card, outcome_card
+from game.flight.flight import Flight, StickHolder
+from game.flight.networks import Policy
+from game.flight.outcomes import OutcomeCard, outcome_card
 from game.input.bindings import Command, Held
 from game.input.controls import Controls
-from game.play.challenge import Course, Moment
+from game.play.challenge import Challenge, DrawnFlight
 from game.world.camera import View
 
 _PRAISE: Final = 40  # steps that a finished lesson stays on the screen, with a tick
@@ -71,7 +71,7 @@ class Lesson:
     steps: int
     start: tuple[float, float, float, float, float, float] = _HIGH
     held: bool = True
-    by: Hand = Hand.HUMAN
+    by: StickHolder = StickHolder.HUMAN
     back: int = 0
     hands_off: bool = False
 
@@ -125,13 +125,13 @@ LESSONS: Final = (
     Lesson("brake", _brakes, 50, _SINKING),
     Lesson("lean", _leans, 1),
     Lesson("upright", _stands_upright, 20, _LEANING),
-    Lesson("hand_over", lambda _: True, 1, by=Hand.NETWORK),
+    Lesson("hand_over", lambda _: True, 1, by=StickHolder.NETWORK),
     Lesson("take_back", lambda _: True, 1, back=1),
     Lesson("land", lambda flight: flight.outcome is Outcome.LANDED, 1, _LOW),
 )
 
 
-class Tutorial(Course):
+class Tutorial(Challenge):
     """Tutorial course: the first flight.
 
     Attributes:
@@ -166,7 +166,7 @@ class Tutorial(Course):
         """Progress through the lessons, in words."""
         return texts.TUTORIAL_STEP.format(number=self._number + 1, count=len(self._lessons))
 
-    def flight(self, seed: int, network: Flyer | None) -> Flight:
+    def flight(self, seed: int, network: Policy | None) -> Flight:
         """Begin a flight at the current lesson, or one before it; without a network, skip lessons that need one."""
         if network is None:
             self._do_without_network()
@@ -230,7 +230,7 @@ class Tutorial(Course):
         """Whether a finished flight restarts: true unless it was the landing that the last lesson asks for."""
         return not self.through
 
-    def card(self, card: Card, flight: Flight, credit: Credit) -> Card:  # noqa: ARG002
+    def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:  # noqa: ARG002
         """Return the final card: tutorial complete, or the crash of a player who flies it once more."""
         if not card.good:
             return replace(card, score="")
@@ -252,14 +252,14 @@ class Tutorial(Course):
         """Return the reason why the lesson restarts."""
         if flight.outcome is not Outcome.LANDED:
             return outcome_card(flight.env, flight.share).reason
-        if flight.hand is Hand.NETWORK:
+        if flight.hand is StickHolder.NETWORK:
             return texts.TUTORIAL_NETWORK_LANDED
         return texts.TUTORIAL_LANDED_EARLY
 
     # The picture
 
     def words(self, flight: Flight, controls: Controls, *, waiting: bool = False, stuck: bool = False) -> str:
-        """Return the instruction, in the key names of the device in use; `waiting` and `stuck` as in `Moment`."""
+        """Return the instruction, in the key names of the device in use; `waiting` and `stuck` as in `DrawnFlight`."""
         left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
         turn = texts.TUTORIAL_EITHER.format(left=left, right=right)
         if left == right:  # one control for both: the mouse, which turns towards its pointer, or a stick
@@ -287,11 +287,11 @@ class Tutorial(Course):
             return told[0] if lesson.hands_off else texts.TUTORIAL_LET_GO
         if waiting and lesson.name == "land":  # the lesson's own line names no key that starts the flight
             return texts.TUTORIAL_READY
-        if flight.hand is Hand.HUMAN and (urgent := self._urgent(env)):
+        if flight.hand is StickHolder.HUMAN and (urgent := self._urgent(env)):
             return urgent
         if self._praise:
             return texts.TUTORIAL_GOOD[lesson.name]
-        if flight.hand is Hand.NETWORK:
+        if flight.hand is StickHolder.NETWORK:
             return texts.TUTORIAL["take_back"][0]
         if lesson.name not in ("lean", "fall") and abs(float(env.position[0, 0])) > _SIDEWAYS:
             return texts.TUTORIAL_AWAY
@@ -320,7 +320,7 @@ class Tutorial(Course):
         """Return the reason written beside the craft; empty while the wreck has its own callout."""
         return "" if flight.outcome is Outcome.CRASHED else self.why
 
-    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: Moment) -> None:
+    def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
         """Draw the instruction beside the craft, and below it the reason for a restart."""
         if flight.over and self.through:
             return

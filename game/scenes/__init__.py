@@ -10,12 +10,13 @@ from game.core.scene import Route, Scene
 
 # The name of each scene that another may lead to: the module in this package, and the class in that.
 ROUTES: Final = {
-    "menu": "menu.Menu", "play": "play.Play", "missions": "missions.Missions", "watch": "watch.Watch",
-    "train": "train.Train", "runs": "runs.Runs", "digits": "digits.Digits",
-    "digit_training": "digit_training.DigitTrainingScene", "dream": "dream.Dream", "quiz": "quiz.Quiz",
-    "physics": "physics.Physics", "logbook": "logbook.Logbook", "replay": "replay.Replay",
-    "settings": "settings.SettingsScene", "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene",
-    "pause": "pause.Pause", "error_screen": "error_screen.Fault",
+    "menu": "menu.MenuScene", "play": "play.PlayScene", "missions": "missions.MissionsScene",
+    "watch": "watch.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
+    "digits": "digits.DigitsScene", "digit_training": "digit_training.DigitTrainingScene",
+    "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
+    "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "settings.SettingsScene",
+    "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "pause": "pause.PauseScene",
+    "error_screen": "error_screen.ErrorScene",
 }  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.widget import PointsManager, Widget, mix
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 
 _FIRST: Final = 144
 _ROW: Final = 31
@@ -28,7 +28,7 @@ _CELL: Final = 352
 _WORDS: Final = 628
 
 
-class Cell(Widget):
+class BindingCell(Widget):
     """Cell with the keys or buttons of one command. A press waits for a new one; Escape or Start cancels."""
 
     def __init__(
@@ -131,9 +131,9 @@ class BindingsScene:
         for row, meaning in enumerate(self._controls.keys.table):
             for left, bindings in ((_KEYS, self._controls.keys), (_BUTTONS, self._controls.buttons)):
                 box = (left, _FIRST + row * _ROW + 2, _CELL, _ROW - 3)
-                form.add(Cell(form.manager, box, self._controls, bindings, meaning, self._changed))
-        form.add(Word(form.manager, (MARGIN, _WORDS, 96, 32), texts.BACK, Pop, size=18))
-        form.add(Word(form.manager, (_KEYS, _WORDS, 240, 32), texts.BINDINGS_ALL, self._reset_all, size=18))
+                form.add(BindingCell(form.manager, box, self._controls, bindings, meaning, self._changed))
+        form.add(TextButton(form.manager, (MARGIN, _WORDS, 96, 32), texts.BACK, Pop, size=18))
+        form.add(TextButton(form.manager, (_KEYS, _WORDS, 240, 32), texts.BINDINGS_ALL, self._reset_all, size=18))
 
     def exit(self) -> None:
         """Stop waiting for a key; every change is saved already."""
@@ -143,7 +143,7 @@ class BindingsScene:
         """Pass the event to the cells."""
         if event.type == pygame.CONTROLLERDEVICEREMOVED:
             for widget in self._form.widgets:
-                if isinstance(widget, Cell):
+                if isinstance(widget, BindingCell):
                     widget.stop()
         return self._form.handle_event(event)
 

@@ -19,12 +19,12 @@ from game.flight.handicap import HANDS
 from game.flight.logbook import RECENT_OWN
 from game.flight.skill import Skill
 from game.input.controls import Command, translate
-from game.scenes.pause import Blurred
+from game.scenes.pause import BlurredPicture
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.widget import Widget
-from game.ui.widgets import Choice, Slider, Toggle, Word
+from game.ui.widgets import Choice, Slider, TextButton, Toggle
 
 _WIDTH: Final = 560
 _LABELS: Final = 142
@@ -42,30 +42,30 @@ class ChoicesScene:
     A course fixes most options, so it offers fewer choices.
     """
 
-    def __init__(self, below: Scene, skill: Skill, *, begun: bool, course: bool = False) -> None:
-        self._below, self._skill, self._begun, self._course = below, skill, begun, course
+    def __init__(self, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False) -> None:
+        self._below, self._skill, self._begun, self._challenge = below, skill, begun, challenge
 
     def enter(self, context: Context) -> None:
         """Build the rows."""
         self._context = context
-        self._behind = Blurred(self._below, dimmed=0.7)
+        self._behind = BlurredPicture(self._below, dimmed=0.7)
         self._taught = lessons(context.user_dir)
         self._form = form = Form(context, on_back=Pop)
         self._rows: dict[Widget, Callable[[], str]] = {}
-        if not self._course:
+        if not self._challenge:
             self._add_help()
             self._add_starts()
             self._add_slider("gravity", GRAVITY_SHARES, texts.CHOICES_GRAVITY, lambda: texts.CHOICES_GRAVITY_HELP)
         self._add_slider("pace", PACES, texts.PACE, lambda: texts.CHOICES_PACE_HELP)
         toggles = {"check_flights": texts.CHOICES_CHECK, "teach": texts.CHOICES_TEACH, "explain": texts.CHOICES_EXPLAIN}
-        if self._course:
+        if self._challenge:
             toggles = {"explain": texts.CHOICES_EXPLAIN}
         top = _FIRST + len(self._rows) * _ROW + _TOGGLES
         for row, (name, (label, hint)) in enumerate(toggles.items()):
             box = (MARGIN, top + row * _TOGGLE_ROW, _WIDTH, 52)
             value = getattr(context.settings, name)
             form.add(Toggle(form.manager, box, label, value, self._changes(name), hint=hint))
-        form.add(Word(form.manager, (MARGIN, 624, 96, 32), texts.CHOICES_FLY, Pop, size=18))
+        form.add(TextButton(form.manager, (MARGIN, 624, 96, 32), texts.CHOICES_FLY, Pop, size=18))
 
     def _add_help(self) -> None:
         """Add the rows for how much the network helps, and when."""
@@ -108,7 +108,7 @@ class ChoicesScene:
         if self._form.focused in self._rows:
             y = _FIRST + len(self._rows) * _ROW + _HELP
             canvas.text(self._rows[self._form.focused](), (MARGIN, y), size=SMALL, colour=MUTE)
-        if self._begun and not self._course:
+        if self._begun and not self._challenge:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
         self._draw_skill(canvas)
         word = self._context.controls.word

@@ -21,7 +21,7 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, Row
 from game.ui.widget import OnPress
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 
 _LEFT, _WIDTH = 400, 480
 _MARGIN: Final = 32
@@ -81,11 +81,11 @@ class Dialog:
         x = float(self.box.left + _MARGIN)
         for label, press in words:
             width = typeface.width(label, TEXT, "regular")
-            form.add(Word(form.manager, (x, self.box.bottom - 52, width, 28), label, press))
+            form.add(TextButton(form.manager, (x, self.box.bottom - 52, width, 28), label, press))
             x += width + _GAP
 
 
-class Asking(Dialog):
+class QuestionDialog(Dialog):
     """Dialog with a few answers: any of them closes it and runs its action."""
 
     def __init__(
@@ -99,7 +99,7 @@ class Asking(Dialog):
         self.add_words(form, [(label, _closing(deed)) for label, deed in self._answers])
 
 
-class Naming(Dialog):
+class NameDialog(Dialog):
     """Dialog that asks for a name, with a suggestion to accept or edit.
 
     `on_name` is called with the name and returns why it is invalid; if it returns "", the dialog closes.
@@ -131,7 +131,7 @@ class Naming(Dialog):
         return None
 
 
-class Picking(Dialog):
+class ListDialog(Dialog):
     """Dialog with a list: a press on a row closes it and calls `on_pick` with the row's index."""
 
     height = 336

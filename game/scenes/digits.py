@@ -15,10 +15,10 @@ from ai.digits.preprocessing import redrawn
 from game.core import texts
 from game.core.scene import Pop, Push, Transition, push
 from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
-from game.digits.explanation import LEFT as SIGHT_LEFT
-from game.digits.explanation import STEPS, Sight, StageSwitch
-from game.digits.fixing import Fixing
-from game.digits.measuring import Measuring
+from game.digits.explanation import LEFT as EXPLANATION_LEFT
+from game.digits.explanation import STEPS, ExplanationView, StageSwitch
+from game.digits.fixing import FixRunner
+from game.digits.measuring import AccuracyMeasurement
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
 from game.digits.reader import Explanation, Numbers, Reader, Switches, Verdict
@@ -32,8 +32,8 @@ from game.training.digit_models import NAMES, called
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.pick import Pick
-from game.ui.widgets import Choice, Word
+from game.ui.pick import ChoiceOrList
+from game.ui.widgets import Choice, TextButton
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -53,7 +53,7 @@ _DIGITS: Final = {
 }
 
 
-class Digits:
+class DigitsScene:
     """Digits scene. `chosen` is the name of the network that is explained.
 
     Attributes:
@@ -67,11 +67,11 @@ class Digits:
         self.pad = DrawingPad(PAD)
         self._context: Context | None = None
         self._switches = Switches()
-        self._sight = Sight()
+        self._sight = ExplanationView()
         self._seen = -1  # revision of the drawing that was read last
         self._looking: Iterator[None] = iter(())
         self._why: Explanation | None = None
-        self._unfix: Word | None = None
+        self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
 
     def enter(self, context: Context) -> None:
@@ -81,9 +81,9 @@ class Digits:
             return
         self._context = context
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
-        self._fixing = Fixing(context.user_dir, context.models_dir)
+        self._fixing = FixRunner(context.user_dir, context.models_dir)
         self._reader = Reader()
-        self._measuring = Measuring(lambda: {name: self._reader.sources[name] for name in self._pair})
+        self._measuring = AccuracyMeasurement(lambda: {name: self._reader.sources[name] for name in self._pair})
         for name in dict.fromkeys((*NAMES, self.chosen)):
             self._load(name)
         if self.chosen not in self._reader.classifiers:
@@ -250,7 +250,7 @@ class Digits:
         wanted = self._fixing.count(self.chosen) > 0
         if wanted and self._unfix is None:
             box = (LEFT, FIX_TOP + 48, 96, 24)
-            self._unfix = Word(self._form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
+            self._unfix = TextButton(self._form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
             self._form.replace([], [self._unfix])
         elif self._unfix and not wanted:
             self._form.replace([self._unfix], [])
@@ -261,7 +261,7 @@ class Digits:
     def _add_words(self) -> None:
         manager, add = self._form.manager, self._form.add
         self._under = [
-            add(Word(manager, (PAD.left + 80 * number, _BELOW, 56, 24), word, press, size=SMALL + 1))
+            add(TextButton(manager, (PAD.left + 80 * number, _BELOW, 56, 24), word, press, size=SMALL + 1))
             for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)))
         ]
         elsewhere = (
@@ -270,7 +270,7 @@ class Digits:
         widths = [typeface.width(word, TEXT, "medium") for word, _ in elsewhere]
         left = PAD.right - sum(widths) - _GAP * (len(widths) - 1)
         for (word, press), width in zip(elsewhere, widths, strict=True):
-            add(Word(manager, (left, 24, width, 28), word, press, size=TEXT, weight="medium"))
+            add(TextButton(manager, (left, 24, width, 28), word, press, size=TEXT, weight="medium"))
             left += width + _GAP
         self._rows = [add(DigitRow(manager, digit, self._correct)) for digit in range(10)]
         for number, step in enumerate(STEPS):
@@ -284,7 +284,9 @@ class Digits:
         if len(names) == len(NAMES):
             return Choice(self._form.manager, _TABS, "", words, index, self._choose)
         everything = texts.DIGITS_ALL.format(count=len(names))
-        return Pick(self._form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT)
+        return ChoiceOrList(
+            self._form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT
+        )
 
     def _see_networks(self) -> None:
         """Refresh the list of networks."""
@@ -323,12 +325,12 @@ class Digits:
 
     def _pick(self) -> Transition:
         """Open a list of all networks with their accuracy."""
-        from game.scenes.dialog import Picking
+        from game.scenes.dialog import ListDialog
 
         damaged = self._reader.problems
         rows = [(called(name), texts.SHELF_DAMAGED if name in damaged else network.said)
                 for name, network in self._fixing.networks.items()]  # fmt: skip
-        return Push(Picking(self, texts.DIGITS_PICK, rows, self._tabs.choose))
+        return Push(ListDialog(self, texts.DIGITS_PICK, rows, self._tabs.choose))
 
     def _quiz(self) -> Transition | None:
         return self._with_chosen(partial(push, "quiz"))
@@ -358,9 +360,9 @@ class Digits:
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
             draw_fix(canvas, self._fixing, same=self._fix_of == self.pad.revision)
         for number, line in enumerate(
-            wrapped(canvas, self._measuring.words(self._switches), LABEL, _RIGHT - SIGHT_LEFT)
+            wrapped(canvas, self._measuring.words(self._switches), LABEL, _RIGHT - EXPLANATION_LEFT)
         ):
-            canvas.text(line, (SIGHT_LEFT, 184 + 15 * number), size=LABEL, colour=MUTE)
+            canvas.text(line, (EXPLANATION_LEFT, 184 + 15 * number), size=LABEL, colour=MUTE)
         problems = [texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
                     for name, problem in self._reader.problems.items()]  # fmt: skip
         lines = [line for words in reversed(problems) for line in wrapped(canvas, words, SMALL, _TABS[2])]

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.digits.dream import STEPS
-from ai.digits.dream import Dream as Image
+from ai.digits.dream import STEPS, ActivationMaximisation
 from ai.digits.preprocessing import SIDE
 from game.core import texts
 from game.core.scene import Pop, Transition
@@ -25,7 +24,7 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.widget import PointsManager, Widget
-from game.ui.widgets import Choice, Slider, Word
+from game.ui.widgets import Choice, Slider, TextButton
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -40,7 +39,7 @@ _FAINTEST: Final = 0.3  # least peak brightness for scaling: dimmer images stay 
 _CALM: Final = 0.7
 
 
-class Tile(Widget):
+class DreamTile(Widget):
     """Thumbnail of one dream; a press shows it large."""
 
     def __init__(self, manager: PointsManager, digit: int, on_press: Callable[[int], None]) -> None:
@@ -67,7 +66,7 @@ class Tile(Widget):
                     colour=INK if self.chosen else self.tint())  # fmt: skip
 
 
-class Dream:
+class DreamScene:
     """Dreams of all ten digits, one of them large. `drawing` (28, 28) is an optional starting image.
 
     Attributes:
@@ -102,7 +101,7 @@ class Dream:
         start = self._drawing if self._from_drawing else None
         seed = int(self._context.rng.integers(1 << 31))
         self.dreams = [
-            Image(self._classifier, digit, np.random.default_rng((seed, digit)), start, self._calm)
+            ActivationMaximisation(self._classifier, digit, np.random.default_rng((seed, digit)), start, self._calm)
             for digit in range(_DIGITS)
         ]
         self._show()
@@ -169,7 +168,7 @@ class Dream:
     def _add_widgets(self) -> None:
         manager, add = self._form.manager, self._form.add
         self._rows = [add(DigitRow(manager, digit, self.choose)) for digit in range(_DIGITS)]
-        self._tiles = [add(Tile(manager, digit, self.choose)) for digit in range(_DIGITS)]
+        self._tiles = [add(DreamTile(manager, digit, self.choose)) for digit in range(_DIGITS)]
         self._slider = add(Slider(manager, (_RIGHT, 258, 344, 28), texts.DREAM_CALM, self._calm, (0.0, 1.0),
                                   self._set_calm, step=0.1, label_width=90, figure_width=40,
                                   figure="{:.1f}".format))  # fmt: skip
@@ -178,7 +177,7 @@ class Dream:
                        label_width=110))  # fmt: skip
         width = typeface.width(texts.DREAM_AGAIN, TEXT, "regular")
         top = 372 if self._drawing is None else 416
-        add(Word(manager, (_RIGHT, top, width, 28), texts.DREAM_AGAIN, self.restart))
+        add(TextButton(manager, (_RIGHT, top, width, 28), texts.DREAM_AGAIN, self.restart))
         self._form.focus(self._tiles[self.digit])
 
     def _set_calm(self, calm: float) -> None:

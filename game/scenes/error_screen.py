@@ -14,7 +14,7 @@ from game.input.controls import Command, translate
 from game.ui.context import Context
 
 
-class Fault:
+class ErrorScene:
     """Error screen over the menu; any confirmation returns to the menu."""
 
     def __init__(self, error: Exception, log: Path) -> None:

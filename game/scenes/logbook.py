@@ -25,9 +25,9 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
-from game.ui.virtual_pointer import Pointer
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
-from game.ui.widgets import Choice, Word
+from game.ui.widgets import Choice, TextButton
 
 _LIST: Final = pygame.Rect(MARGIN, 252, 672, 336)
 _PITCH: Final = 28
@@ -42,7 +42,7 @@ _FOOT: Final = 612
 _TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
 
 
-class Logbook:
+class LogbookScene:
     """Logbook scene: flights on the left, newest first; skill and actions on the chosen flight on the right."""
 
     def __init__(self) -> None:
@@ -103,7 +103,7 @@ class Logbook:
             Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
                   read_x=texts.LOGBOOK_FLIGHT.format),
         ])  # fmt: skip
-        self._form.add(Pointer(manager, self._charts.box, self._charts.follow))
+        self._form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
 
     def _reload(self) -> None:
         """Reload the flights from disk."""
@@ -146,10 +146,10 @@ class Logbook:
             rows = [(texts.LOGBOOK_BRING_BACK, self._bring_back)]
         manager = self._form.manager
         new: list[Widget] = [
-            Word(manager, (_LEFT, _FIRST_VERB + number * _LINE, 220, _LINE), label, press, size=18)
+            TextButton(manager, (_LEFT, _FIRST_VERB + number * _LINE, 220, _LINE), label, press, size=18)
             for number, (label, press) in enumerate(rows)
         ]
-        new.append(Word(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, Pop, size=18))
+        new.append(TextButton(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, Pop, size=18))
         self._form.replace(self._verbs, new)
         self._verbs = new
 
@@ -172,7 +172,7 @@ class Logbook:
 
     def _race(self) -> Transition | None:
         record = self._read()
-        return push("play", record.recording.seed, course=race(record)) if record else None
+        return push("play", record.recording.seed, challenge=race(record)) if record else None
 
     def _throw_away(self) -> None:
         if self.chosen and self._replayable:
@@ -237,13 +237,13 @@ def _draw_totals(canvas: Canvas, sums: Totals) -> None:
 
 def _row(entry: Entry) -> tuple[str, ...]:
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
-    course = _course(entry)
+    challenge = _challenge(entry)
     points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score) if entry.landed else "–"
     by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
-    return when, course, texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s", points, by
+    return when, challenge, texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s", points, by
 
 
-def _course(entry: Entry) -> str:
+def _challenge(entry: Entry) -> str:
     """Return the name of the course that a flight was flown on."""
     if entry.course == "daily":
         return texts.DAILY

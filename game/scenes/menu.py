@@ -12,11 +12,11 @@ from game.core.scene import Quit, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
 from game.input.controls import Command
-from game.scenes.menu_background import Vista
+from game.scenes.menu_background import MenuBackground
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 
 _TITLE_SIZE: Final = 88.0
 _WORD_SIZE: Final = 22.0
@@ -28,25 +28,25 @@ _LINE: Final = 38
 ROWS: Final = ("play", "missions", "watch", "train", "digits", "physics", "logbook", "settings", "quit")
 
 
-class Menu:
+class MenuScene:
     """Main menu, the first screen."""
 
     def __init__(self) -> None:
-        self._vista = Vista()
+        self._background = MenuBackground()
         self._form: Form | None = None
 
     def enter(self, context: Context) -> None:
         """Build the column once; the focus stays where it was when coming back."""
-        self._vista.enter(context)
+        self._background.enter(context)
         if self._form is not None:
             return
         self._controls = context.controls
         self._form = Form(context, on_back=self._back)
-        self._lines: list[tuple[Word, str]] = []
+        self._lines: list[tuple[TextButton, str]] = []
         for number, name in enumerate(ROWS):
             label, line = texts.MENU[name]
             box = (MARGIN, _FIRST_WORD + number * _LINE, 160, _LINE)
-            word = Word(self._form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
+            word = TextButton(self._form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
             self._lines.append((self._form.add(word), line))
 
     def exit(self) -> None:
@@ -58,12 +58,12 @@ class Menu:
 
     def update(self) -> Transition | None:
         """Animate the column and the background."""
-        self._vista.update()
+        self._background.update()
         return self._column.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moon, the title, the column and the hints."""
-        self._vista.draw(canvas, alpha)
+        self._background.draw(canvas, alpha)
         canvas.text(texts.GAME, (MARGIN - 2, 208), size=_TITLE_SIZE, weight="extralight")
         canvas.text(texts.MENU_LINE, (MARGIN, 248), size=TEXT, colour=MUTE)
         self._column.draw(canvas)

@@ -11,15 +11,15 @@ from ai.lander.environment import LanderEnv, Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS, Poses
-from game.flight.networks import Flyer
+from game.flight.networks import Policy
 from game.ui.context import Context
-from game.world.camera import Camera, Shot
+from game.world.camera import Camera, CameraTarget
 from game.world.craft import STAND
 from game.world.landscape.backdrop import landscape
 from game.world.landscape.ground import draw_ground
 from game.world.stage import Stage
 
-_ASIDE: Final = Shot(-8.0)  # the words are on the left, so the pad is on the right
+_ASIDE: Final = CameraTarget(-8.0)  # the words are on the left, so the pad is on the right
 _EARTH: Final = (824.0, 168.0)
 _REST_STEPS: Final = 110  # between a landing and the next ascent
 _CLIMB: Final = 3.2  # m/s
@@ -29,7 +29,7 @@ _SLACK: Final = 0.04  # tolerance of an ascent's angle, in radians
 _LEFT, _RIGHT, _MAIN = 1, 2, 3
 
 
-class Vista:
+class MenuBackground:
     """Background of the menu; while `still`, the lander stands on its pad and nothing moves."""
 
     def __init__(self) -> None:
@@ -38,7 +38,7 @@ class Vista:
         self._camera.cut(_ASIDE)
         self._env = LanderEnv(1, 0, frame_skip=1)
         self._env.reset()
-        self._pilot: Flyer | None = None
+        self._pilot: Policy | None = None
         self._step = self._flights = 0
         self._action = np.zeros(1, np.intp)
         self._rested: int  # steps since a landing
@@ -57,7 +57,7 @@ class Vista:
             from game.flight import networks
 
             network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
-            self._pilot = network.flyer or ScriptedPilot()
+            self._pilot = network.policy or ScriptedPilot()
 
         if self._pilot is None:
             Thread(target=read, daemon=True).start()

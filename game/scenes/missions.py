@@ -21,13 +21,13 @@ from game.flight import flight_file
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
 from game.input.controls import Command
-from game.play.challenge import Course, Daily, Flown
+from game.play.challenge import Challenge, DailyStart, FlownMission
 from game.play.tutorial import Tutorial
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing
-from game.ui.widgets import Choice, Word
+from game.ui.widgets import Choice, TextButton
 
 _LIST: Final = pygame.Rect(MARGIN, 164, 560, 416)
 _PITCH: Final = 32
@@ -44,7 +44,7 @@ _DAILY: Final = "daily"
 _FLIGHTS: Final = "flights"  # in the game's own data
 
 
-class Missions:
+class MissionsScene:
     """Missions scene: missions on the left, in teaching order; the chosen one on the right."""
 
     def __init__(self) -> None:
@@ -63,8 +63,8 @@ class Missions:
             self._list = self._form.add(Listing(manager, _LIST, [], on_press=lambda _: self._fly(), columns=_COLUMNS,
                                                 on_choose=lambda _: self._offer_rivals(), pitch=_PITCH))  # fmt: skip
             self._rivals: list[Choice] = []
-            self._verb = self._form.add(Word(manager, _VERB, texts.MISSION_FLY, self._fly, size=18))
-            self._form.add(Word(manager, (MARGIN, _FOOT, 72, 36), texts.BACK, Pop, size=18))
+            self._verb = self._form.add(TextButton(manager, _VERB, texts.MISSION_FLY, self._fly, size=18))
+            self._form.add(TextButton(manager, (MARGIN, _FOOT, 72, 36), texts.BACK, Pop, size=18))
         self._records = Records(context.user_dir)
         self._best = _best_by_course(self._records.entries())
         if self._records.problem:
@@ -89,17 +89,19 @@ class Missions:
         """Name of the chosen mission."""
         return self._names[self._list.index]
 
-    def _course(self) -> Course:
+    def _challenge(self) -> Challenge:
         if self.chosen == FIRST.name:
             return Tutorial()
         if self.chosen == _DAILY:
-            return Daily(datetime.date.today())
+            return DailyStart(datetime.date.today())
         mission, record = MISSIONS[self.chosen], self._rival_record()
-        return Flown(mission, record, texts.MISSION_GHOSTS[self._chosen_rival]) if record else Flown(mission)
+        return (
+            FlownMission(mission, record, texts.MISSION_GHOSTS[self._chosen_rival]) if record else FlownMission(mission)
+        )
 
     def _fly(self) -> Transition:
-        course = self._course()
-        return push("play", course.seed if isinstance(course, Daily) else 0, course=course)
+        challenge = self._challenge()
+        return push("play", challenge.seed if isinstance(challenge, DailyStart) else 0, challenge=challenge)
 
     # Ghosts
 

@@ -16,13 +16,13 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.widget import OnPress
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 
 _FIRST_WORD: Final = 304
 _LINE: Final = 44
 
 
-class Pause:
+class PauseScene:
     """Pause menu over a scene, until the player resumes or leaves it.
 
     Args:
@@ -46,14 +46,14 @@ class Pause:
         """Build the column of entries."""
         self._controls = context.controls
         self._form = Form(context, on_back=Pop)
-        self._behind = Blurred(self._below)
+        self._behind = BlurredPicture(self._below)
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop)]
         if self._retry:
             rows.append((self._retry_word, self._begin_anew))
         rows += [*self._more(), (texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
         for number, (label, press) in enumerate(rows):
             box = (MARGIN, _FIRST_WORD + number * _LINE, 420, _LINE)
-            self._form.add(Word(self._form.manager, box, label, press, size=22, weight="light"))
+            self._form.add(TextButton(self._form.manager, box, label, press, size=22, weight="light"))
 
     def exit(self) -> None:
         """Do nothing: no resources to release."""
@@ -81,7 +81,7 @@ class Pause:
         return Pop()
 
 
-class Blurred:
+class BlurredPicture:
     """Blurred picture of a scene, `dimmed` by a share; painted once per window size, then copied."""
 
     def __init__(self, below: Scene, dimmed: float = 0.5) -> None:

@@ -14,7 +14,7 @@ import pygame
 from engine.vector import Array
 from game.cockpit import hud
 from game.core import texts
-from game.core.clock import Tempo
+from game.core.clock import TimeScale
 from game.core.scene import Pop, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -26,7 +26,7 @@ from game.input.controls import Command, translate
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.virtual_pointer import Pointer
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widgets import Choice
 from game.world.bodies import Outlines, draw_contacts, draw_grip
 from game.world.camera import POINTS_PER_METRE, WORLD_WIDTH, View
@@ -48,7 +48,7 @@ _GAUGE: Final = 64.0
 _SMOOTHING: Final = 0.05
 
 
-class Physics:
+class PhysicsScene:
     """Physics gallery, one exhibit at a time; `now` is the clock in seconds that times its steps."""
 
     def __init__(self, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
@@ -56,7 +56,7 @@ class Physics:
         self._chosen = self._names.index(exhibit)
         self._now = now
         self._context: Context | None = None
-        self._gravity, self._tempo = 0, Tempo()
+        self._gravity, self._tempo = 0, TimeScale()
         self._mouse = (-1.0, -1.0)
         self.stopped = self.contacts_drawn = False
         self.grip: Grip | None = None
@@ -72,7 +72,7 @@ class Physics:
         manager = self._form.manager
         tabs = pygame.Rect(*_TABS, math.ceil(_width(words, TEXT)), 24)
         self._tabs = self._form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
-        self._hand = self._form.add(Pointer(manager, _ROOM, self._point, hold=texts.POINTER_GRIP))
+        self._hand = self._form.add(VirtualPointer(manager, _ROOM, self._point, hold=texts.POINTER_GRIP))
         self._gravities: list[Choice] = []  # one, or none where there is no gravity
         speeds = self._row(1, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
         contacts = self._row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)

@@ -10,31 +10,31 @@ from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
 from game.core import texts
-from game.core.pace import Pace
+from game.core.pace import SlowMotion
 from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
 from game.flight.logbook import Records
 from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.input.mouse import MouseStick
 from game.play import captions as flight_words
-from game.play.challenge import Course, Duel, Moment
-from game.play.ending import Ending, write_down
+from game.play.challenge import Challenge, DrawnFlight, Duel
+from game.play.ending import FlightEnding, write_down
 from game.ui.context import Context
 from game.ui.widget import OnPress
-from game.world.path_preview import Outlook
+from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
 
 
-class Play:
+class PlayScene:
     """One flight after another. `seed` fixes the first; further seeds come from the context's random generator.
 
     A `rival` flies the same starts beside the player, as a ghost named `rival_name`. A `course` other than a duel sets
@@ -51,18 +51,18 @@ class Play:
     def __init__(
         self,
         seed: int | None = None,
-        rival: networks.Flyer | None = None,
+        rival: networks.Policy | None = None,
         rival_name: str = "",
-        course: Course | None = None,
+        challenge: Challenge | None = None,
     ) -> None:
         self._seed = seed
-        self._course = Duel(rival, rival_name) if rival else course
+        self._challenge = Duel(rival, rival_name) if rival else challenge
         self._context: Context | None = None
         self.flight: Flight
         self.credit: Credit
-        self.ending: Ending
+        self.ending: FlightEnding
         self._scenery: Scenery
-        self._pace: Pace
+        self._pace: SlowMotion
         self.waiting, self._let_go = True, False
         self._hands = OWN
         self._mouse = MouseStick()
@@ -74,16 +74,16 @@ class Play:
             self._scenery.calm = self.ending.calm = context.settings.reduced_motion
             if self.ending.calm:
                 self._pace.hurry()
-            if self.waiting and not self._course and self._chosen() != (self.flight.recording.pads, self._hands):
+            if self.waiting and not self._challenge and self._chosen() != (self.flight.recording.pads, self._hands):
                 self.retry()
             return
         self._context = context
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
-        if self._course is None and self._seed is None and not context.settings.tutored:
+        if self._challenge is None and self._seed is None and not context.settings.tutored:
             from game.play.tutorial import Tutorial
 
-            self._course = Tutorial()
+            self._challenge = Tutorial()
         self._records = Records(context.user_dir)
         self._skill = Skill(self._records.entries())
         if self._records.problem:
@@ -138,7 +138,7 @@ class Play:
             return self._pause()
         self._pace.rate = self._settings.pace
         if self._waits():
-            self._outlook.follow(waiting=True)
+            self._path_preview.follow(waiting=True)
             return None
         if self._pace.steps():
             self._fly()
@@ -154,17 +154,17 @@ class Play:
             self._ghost.draw_way(canvas, view)
         if flight.over:
             self._cockpit.track.draw(canvas, view)
-        self._outlook.draw(canvas, view, self._scenery.clear.head)
+        self._path_preview.draw(canvas, view, self._scenery.clear.head)
         if self._ghost:
             self._ghost.draw(canvas, view, alpha)
         self._scenery.draw_craft(canvas, alpha, words=self.ending.shown == 0)
         pose = flight.poses.at(alpha)[0]
         self._cockpit.draw_panel(canvas, view, pose)
         self._cockpit.draw_beside(canvas, view, pose)
-        if self._course:
-            self._course.draw(canvas, view, flight, self._moment(alpha))
+        if self._challenge:
+            self._challenge.draw(canvas, view, flight, self._moment(alpha))
         self._draw_words(canvas)
-        self.ending.draw(canvas, self._controls, self._course, self._ghost, self._settings.show_hints)
+        self.ending.draw(canvas, self._controls, self._challenge, self._ghost, self._settings.show_hints)
 
     # The flight
 
@@ -179,30 +179,30 @@ class Play:
         flight.step(self._held)
         if self._ghost:
             self._ghost.step()
-        self._outlook.follow(waiting=False)
+        self._path_preview.follow(waiting=False)
         if not was_over:
             self._cockpit.follow()
         self._scenery.clear = self._cockpit.clear
         self._scenery.follow(flight.over and not was_over, self.ending.shot)
-        if self._course:
-            if told := self._course.follow(flight):
+        if self._challenge:
+            if told := self._challenge.follow(flight):
                 self._sound.play(told)
-            self._remember(self._course)
+            self._remember(self._challenge)
         if flight.over:
             self._end()
 
     def _end(self) -> None:
         """Advance a step after the end: towards the card, or at once to the next try."""
-        ending, course = self.ending, self._course
+        ending, challenge = self.ending, self._challenge
         ending.follow()
-        if course and course.again():
+        if challenge and challenge.again():
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            ending.make_card(self._cockpit, course, self._skill, self._scenery)
-            if course is None or course.kept:
+            ending.make_card(self._cockpit, challenge, self._skill, self._scenery)
+            if challenge is None or challenge.kept:
                 assert self._context is not None
-                write_down(self._context, self.flight, self._cockpit, course, self._records, self._skill,
+                write_down(self._context, self.flight, self._cockpit, challenge, self._records, self._skill,
                            self._network, self._hands)  # fmt: skip
 
     @property
@@ -215,39 +215,41 @@ class Play:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         action = self._held
         self._let_go = self._let_go or not action
-        touched = bool(action) or (self._course is not None and not self._course.waits)
-        if self.flight.hand is Hand.NETWORK or (touched and self._let_go):
+        touched = bool(action) or (self._challenge is not None and not self._challenge.waits)
+        if self.flight.hand is StickHolder.NETWORK or (touched and self._let_go):
             self.waiting = False
         return self.waiting
 
     def _begin(self, seed: int) -> None:
         self.waiting, self._let_go = True, False
-        course = self._course
-        pads, self._hands = (1, OWN) if course else self._chosen()
-        check = course is None and self._settings.check_flights and self._skill.check_due and not self._eased
+        challenge = self._challenge
+        pads, self._hands = (1, OWN) if challenge else self._chosen()
+        check = challenge is None and self._settings.check_flights and self._skill.check_due and not self._eased
         if check:
             self._hands = OWN
-        alone = check or (course is not None and course.alone)
-        network = None if alone else self._network.flyer
-        self.flight = course.flight(seed, network) if course else Flight(seed, network, pads=pads, hands=self._hands)
-        self._difficulty = Difficulty(self._settings, self.flight, free=not course)
-        self.credit = Credit(self.flight, self._difficulty, course, self._hands, check=check)
+        alone = check or (challenge is not None and challenge.alone)
+        network = None if alone else self._network.policy
+        self.flight = (
+            challenge.flight(seed, network) if challenge else Flight(seed, network, pads=pads, hands=self._hands)
+        )
+        self._difficulty = Difficulty(self._settings, self.flight, free=not challenge)
+        self.credit = Credit(self.flight, self._difficulty, challenge, self._hands, check=check)
         self._cockpit = Cockpit(self.flight, self._settings, self.credit)
-        self._ghost = course.ghost(seed, network) if course else None
-        told = not course or bool(course.opening)
+        self._ghost = challenge.ghost(seed, network) if challenge else None
+        told = not challenge or bool(challenge.opening)
         self._scenery = Scenery(
             self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
         )
-        self._pace = Pace()
+        self._pace = SlowMotion()
         self._heard = FlightSound(self._sound, self.flight.env, self._pace)
-        self.ending = Ending(self.flight, self._pace, self._settings.reduced_motion)
+        self.ending = FlightEnding(self.flight, self._pace, self._settings.reduced_motion)
         self._readouts = hud.flight_readouts(self.flight.env)
-        self._outlook = Outlook(self.flight, None if alone else self._guide)
+        self._path_preview = PathPreview(self.flight, None if alone else self._guide)
 
     @property
-    def _guide(self) -> networks.Flyer | None:
+    def _guide(self) -> networks.Policy | None:
         """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
-        return None if self._course else self._network.flyer
+        return None if self._challenge else self._network.policy
 
     def _chosen(self) -> tuple[int, str]:
         """Return the number of pads and the handicap, as chosen by the player."""
@@ -272,7 +274,7 @@ class Play:
 
     def _hand_over(self) -> None:
         if self.flight.hand_over():
-            self._sound.play("to_network" if self.flight.hand is Hand.NETWORK else "to_human")
+            self._sound.play("to_network" if self.flight.hand is StickHolder.NETWORK else "to_human")
         elif self.flight.network is None and not self.flight.over and self._context is not None:
             problem = texts.NO_NETWORK.format(problem=self._network.problem)
             self._context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
@@ -282,46 +284,46 @@ class Play:
         assert self._context is not None
         if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
             network = self._network
-            text = texts.DIAL_NEEDS if network.flyer else texts.NO_NETWORK
+            text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
             self._context.note(text.format(name=network.name, problem=network.problem))
 
     def _go_on(self) -> Transition | None:
         """Go to a new start after a landing (or leave a course with only one); after a crash, retry the same start."""
         if self.ending.card is None or not self.ending.card.good:
             self.retry()
-        elif self._course and self._course.fixed:
+        elif self._challenge and self._challenge.fixed:
             return Pop()
         else:
             self._begin_elsewhere()
         return None
 
     def _begin_elsewhere(self) -> None:
-        if self._course:
-            self._course.skip()
-            self._remember(self._course)
-            if self._course.through:
-                self._course = None
-        self._begin(self.flight.recording.seed if self._course and self._course.fixed else self._new_seed())
+        if self._challenge:
+            self._challenge.skip()
+            self._remember(self._challenge)
+            if self._challenge.through:
+                self._challenge = None
+        self._begin(self.flight.recording.seed if self._challenge and self._challenge.fixed else self._new_seed())
 
-    def _remember(self, course: Course) -> None:
+    def _remember(self, challenge: Challenge) -> None:
         """Save the pilot's progress in a course as soon as it is made."""
-        if course.remember(self._settings):
+        if challenge.remember(self._settings):
             assert self._context is not None
             self._context.apply_settings()
 
     def _leave_course(self) -> Transition:
         """Leave the course for free flights, from the pause menu."""
-        assert self._course is not None
-        self._course.leave()
-        self._remember(self._course)
-        self._course = None
+        assert self._challenge is not None
+        self._challenge.leave()
+        self._remember(self._challenge)
+        self._challenge = None
         self._begin(self._new_seed())
         return Pop()
 
     @property
     def _leaves(self) -> bool:
         """Whether Escape goes straight back: in a course that has not begun or is over, where nothing is lost."""
-        return self._course is not None and (self.waiting or self.flight.over)
+        return self._challenge is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
         self._away = 0
@@ -329,13 +331,13 @@ class Play:
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
-        if self._course and self._course.next_hint:
+        if self._challenge and self._challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_course))
-        return [*words, (texts.PAUSE_CHOICES if self._course is None else texts.PACE, self._choose)]
+        return [*words, (texts.PAUSE_CHOICES if self._challenge is None else texts.PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a course, few can be changed."""
-        return push("choices", self, self._skill, begun=not self.waiting, course=self._course is not None)
+        return push("choices", self, self._skill, begun=not self.waiting, challenge=self._challenge is not None)
 
     def _open_networks(self) -> Transition:
         return push("runs", choose=self._choose_network)
@@ -347,24 +349,24 @@ class Play:
         self._context.apply_settings()
         self._load_network()
         if not self.credit.alone:
-            self.flight.change_network(self._network.flyer)
-            self._outlook.ask(self._guide)
+            self.flight.change_network(self._network.policy)
+            self._path_preview.ask(self._guide)
 
     # The picture
 
-    def _moment(self, alpha: float) -> Moment:
+    def _moment(self, alpha: float) -> DrawnFlight:
         stuck = self.waiting and not self._let_go
-        return Moment(alpha, self._controls, self._cockpit.clear, self.waiting, stuck)
+        return DrawnFlight(alpha, self._controls, self._cockpit.clear, self.waiting, stuck)
 
     def _draw_words(self, canvas: Canvas) -> None:
-        course = self._course
+        challenge = self._challenge
         self._cockpit.draw_top(canvas)
-        flight_words.draw_title(canvas, self.flight, course, self._network, self._hands, self.credit.notice)
+        flight_words.draw_title(canvas, self.flight, challenge, self._network, self._hands, self.credit.notice)
         hud.draw_readouts(canvas, self._readouts)
-        if self.waiting and not (course and not course.opening):
-            flight_words.draw_opening(canvas, self._controls, course, self._outlook.asks)
+        if self.waiting and not (challenge and not challenge.opening):
+            flight_words.draw_opening(canvas, self._controls, challenge, self._path_preview.asks)
         if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
-            flight_words.draw_keys(canvas, self._controls, self.flight, course, self._leaves)
+            flight_words.draw_keys(canvas, self._controls, self.flight, challenge, self._leaves)
 
 
 def _is_space(event: pygame.event.Event) -> bool:

@@ -16,7 +16,7 @@ from game.digits.answer import LEFT, percent
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
 from game.digits.pictures import picture
-from game.digits.quiz_rules import ROUNDS, Contest, Round
+from game.digits.quiz_rules import ROUNDS, QuizGame, QuizRound
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
@@ -40,9 +40,9 @@ from game.input.controls import Command, translate
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.virtual_pointer import Pointer
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -60,7 +60,7 @@ _PITCH: Final = 71.0
 _TRACK: Final = (900.0, 250.0)  # corner of the track of finished rounds
 
 
-class Quiz:
+class QuizScene:
     """Quiz scene: a contest of ten rounds.
 
     Attributes:
@@ -69,7 +69,7 @@ class Quiz:
 
     """
 
-    contest: Contest
+    contest: QuizGame
 
     def __init__(self, classifier: DigitClassifier) -> None:
         self._classifier = classifier
@@ -105,7 +105,7 @@ class Quiz:
     def restart(self) -> None:
         """Start a new quiz."""
         assert self._context is not None
-        self.contest = Contest(self._classifier, *self._strangers, self._context.rng)
+        self.contest = QuizGame(self._classifier, *self._strangers, self._context.rng)
         self._ask()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -127,7 +127,7 @@ class Quiz:
     def _takes_pen(self, event: pygame.event.Event) -> bool:
         """Pass an event to the pen, if the pen is in focus."""
         pen = self._form.focused
-        return isinstance(pen, Pointer) and pen.take(event)
+        return isinstance(pen, VirtualPointer) and pen.take(event)
 
     def _obey(self, event: pygame.event.Event) -> Transition | None:
         match translate(event):
@@ -206,9 +206,9 @@ class Quiz:
 
     # Words
 
-    def _word(self, label: str, place: tuple[float, float], press: OnPress, size: float = TEXT) -> Word:
+    def _word(self, label: str, place: tuple[float, float], press: OnPress, size: float = TEXT) -> TextButton:
         width = max(typeface.width(label, size, "regular"), 28)
-        return Word(self._form.manager, (*place, width, size * 1.25 + 9), label, press, size=size, weight="light")
+        return TextButton(self._form.manager, (*place, width, size * 1.25 + 9), label, press, size=size, weight="light")
 
     def _lay(self) -> None:
         """Replace the buttons by those of the current phase."""
@@ -236,7 +236,7 @@ class Quiz:
 
     # The picture
 
-    def _draw_question(self, canvas: Canvas, current: Round) -> None:
+    def _draw_question(self, canvas: Canvas, current: QuizRound) -> None:
         number = texts.QUIZ_ROUND.format(number=self.contest.place + 1, count=ROUNDS)
         canvas.text(number, (LEFT, _QUESTION - 40), size=LABEL, colour=MUTE, weight="medium", tabular=True)
         draws = current.kind == "draw"
@@ -303,7 +303,7 @@ class Quiz:
         draw_hints(canvas, self._form.hints or hints, (_PAD.left, VIEW_SIZE[1] - 40))
 
 
-def _draw_tile(canvas: Canvas, each: Round, place: tuple[float, float], *, current: bool) -> None:
+def _draw_tile(canvas: Canvas, each: QuizRound, place: tuple[float, float], *, current: bool) -> None:
     """Draw what was read in a round, and whether rightly; of one that is to come, only its place."""
     area = canvas.rect(*place, _TILE, _TILE)
     edge: Colour = INK if current else LINE

@@ -16,16 +16,16 @@ from game.cockpit import hud
 from game.core import texts
 from game.core.clock import STEP
 from game.core.collection import LONGEST_NAME, exports_dir, fitting, free_path
-from game.core.pace import Pace
+from game.core.pace import SlowMotion
 from game.core.scene import Pop, Push, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
 from game.export.export import Export
 from game.export.kinds import KINDS
-from game.flight.flight import Hand
+from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
-from game.flight.replay import Tape
+from game.flight.replay import FlightReplay
 from game.input.controls import Command, translate
 from game.panels.timeline import Timeline, runs
 from game.play.race import fly_on, race
@@ -33,9 +33,9 @@ from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.widget import OnPress
-from game.ui.widgets import Choice, Word
+from game.ui.widgets import Choice, TextButton
 from game.ui.words import GAP
-from game.world.camera import Clear, View
+from game.world.camera import ClearArea, View
 from game.world.paths import draw_faint
 from game.world.scenery import Scenery
 
@@ -46,11 +46,11 @@ _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
 _FIGURE: Final = 88.0  # half of what the seconds take, and who flies
 _VERBS: Final = 149.0
-_CLEAR: Final = Clear(head=194.0)  # below the verbs
+_CLEAR: Final = ClearArea(head=194.0)  # below the verbs
 _VERB: Final = 20.0
 
 
-class Replay:
+class ReplayScene:
     """Replay of a recorded flight. `stopped` is whether it is paused."""
 
     def __init__(self, record: Record) -> None:
@@ -58,7 +58,7 @@ class Replay:
         self._context: Context | None = None
         self._scenery: Scenery
         self.stopped = False
-        self._pace = Pace()
+        self._pace = SlowMotion()
         self._warned = False
         self._export: Export | None = None
 
@@ -69,10 +69,10 @@ class Replay:
             self._scenery.calm = context.settings.reduced_motion
             return
         self._context = context
-        self.tape = Tape(self.record)
-        self.tape.scout(1)
-        self._scenery = Scenery(self.tape.flight, context.settings.reduced_motion, _CLEAR)
-        self._heard = FlightSound(context.sound, self.tape.flight.env, self._pace, warns=False)
+        self.flight_replay = FlightReplay(self.record)
+        self.flight_replay.scout(1)
+        self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
+        self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
         self._build(context)
         self._look()
 
@@ -100,12 +100,12 @@ class Replay:
                 self._speeds.shift(1)
             case Command.HANDOVER:
                 return self._take_over()
-            case Command.NEXT | Command.PREVIOUS as command if pad or self._form.focused is self._strip:
-                self.seek(self.tape.at + (60 if command is Command.NEXT else -60))
+            case Command.NEXT | Command.PREVIOUS as command if pad or self._form.focused is self._reward_bar:
+                self.seek(self.flight_replay.at + (60 if command is Command.NEXT else -60))
             case _ if event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE:
                 self._stop_or_go()
             case _ if event.type == pygame.KEYDOWN and event.key in (pygame.K_HOME, pygame.K_END):
-                self.seek(0 if event.key == pygame.K_HOME else self.tape.length)
+                self.seek(0 if event.key == pygame.K_HOME else self.flight_replay.length)
             case _:
                 return self._form.handle_event(event)
         return None
@@ -113,11 +113,11 @@ class Replay:
     def update(self) -> Transition | None:
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
         assert self._context is not None
-        self.tape.scout(1 if self.tape.touching else _SCOUT)
-        self._strip.reached = self.tape.reached
+        self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
+        self._reward_bar.reached = self.flight_replay.reached
         if self._export:
             self._follow_export(self._export)
-        if self.tape.complete and not self.tape.faithful and not self._warned:
+        if self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
             self._warned = True
             self._context.note(texts.REPLAY_OTHER_RULES)
         if not self.stopped:
@@ -131,7 +131,7 @@ class Replay:
 
     def seek(self, step: int) -> None:
         """Show another moment."""
-        self.tape.seek(step)
+        self.flight_replay.seek(step)
         self._scenery.wind_to()
         self._pace.begin()
         self._look()
@@ -139,15 +139,15 @@ class Replay:
     @property
     def ended(self) -> bool:
         """Whether the last moment is shown."""
-        return self.tape.complete and self.tape.at >= self.tape.reached
+        return self.flight_replay.complete and self.flight_replay.at >= self.flight_replay.reached
 
     def _fly(self) -> None:
         """Show the next moment, with fire and dust."""
         if self.ended:
-            self.tape.flight.rest()
-        flight = self.tape.flight
+            self.flight_replay.flight.rest()
+        flight = self.flight_replay.flight
         was_over = flight.over
-        self.tape.step()
+        self.flight_replay.step()
         ended = flight.over and not was_over
         if ended and flight.outcome is Outcome.CRASHED and self._pace.rate == 1 and not self._scenery.calm:
             self._pace.slow_down()
@@ -156,9 +156,9 @@ class Replay:
 
     def _look(self) -> None:
         """Update the read-outs; at the end they keep the values of the last moment before."""
-        self._strip.at = self.tape.at
-        if not self.tape.flight.over:
-            self._readouts = hud.flight_readouts(self.tape.flight.env)
+        self._reward_bar.at = self.flight_replay.at
+        if not self.flight_replay.flight.over:
+            self._readouts = hud.flight_readouts(self.flight_replay.flight.env)
 
     def _stop_or_go(self) -> None:
         if self.ended:
@@ -172,7 +172,7 @@ class Replay:
     def _build(self, context: Context) -> None:
         self._form = Form(context, on_back=Pop)
         manager, recording = self._form.manager, self.record.recording
-        self._strip = self._form.add(Timeline(
+        self._reward_bar = self._form.add(Timeline(
             manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
         ))  # fmt: skip
         width = 84 + sum(typeface.width(word, SMALL, "regular") + GAP for word in _SPEED_WORDS)
@@ -187,7 +187,7 @@ class Replay:
         words = []
         for word, press in rows:
             wide = typeface.width(word, SMALL, "regular")
-            words.append(Word(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
+            words.append(TextButton(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
             self._form.add(words[-1])
             x += wide + 28
         self._export_word = words[2]
@@ -199,17 +199,17 @@ class Replay:
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
         assert self._context is not None
-        if self.tape.flight.over:
+        if self.flight_replay.flight.over:
             self._context.note(texts.REPLAY_OVER)
             return None
-        return push("play", self.record.recording.seed, course=fly_on(self.record, self.tape))
+        return push("play", self.record.recording.seed, challenge=fly_on(self.record, self.flight_replay))
 
     def _race(self) -> Transition:
-        return push("play", self.record.recording.seed, course=race(self.record))
+        return push("play", self.record.recording.seed, challenge=race(self.record))
 
     def _begin_or_stop_export(self) -> Transition | None:
         """Ask for the film's format and start the export, or cancel the running one."""
-        from game.scenes.dialog import Asking
+        from game.scenes.dialog import QuestionDialog
 
         if self._export is None:
             answers: list[tuple[str, Callable[[], None]]] = [
@@ -217,7 +217,7 @@ class Replay:
                 for suffix, kind in KINDS.items() if not kind.missing
             ]  # fmt: skip
             more = texts.EXPORT_GIF_ONLY if KINDS[".mp4"].missing else texts.EXPORT_MORE
-            return Push(Asking(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
+            return Push(QuestionDialog(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
         self._stop_export()
         return None
 
@@ -230,7 +230,7 @@ class Replay:
         assert self._context is not None
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
         path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
-        self._export = Export(Replay, self.record, path, colour_safe=self._context.settings.colour_safe)
+        self._export = Export(ReplayScene, self.record, path, colour_safe=self._context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
         """Show the progress of the export, or its result."""
@@ -258,7 +258,7 @@ class Replay:
         """Draw the moment that is shown, the way there and on, and its figures."""
         between = 1.0 if self.stopped else self._pace.between(alpha)
         self._scenery.draw_land(canvas, between, _EARTH)
-        _draw_way(canvas, self._scenery.view(canvas.scale, between), self.tape)
+        _draw_way(canvas, self._scenery.view(canvas.scale, between), self.flight_replay)
         self._scenery.draw_craft(canvas, between)
         hud.draw_readouts(canvas, self._readouts)
 
@@ -270,11 +270,11 @@ class Replay:
         title = texts.REPLAY_MISSION.format(mission=mission[0]) if mission else texts.REPLAY_TITLE
         hud.draw_corner(canvas, title, texts.REPLAY_LINE.format(
             end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when))  # fmt: skip
-        flight = self.tape.flight
-        seconds = f"{self.tape.at * STEP:.2f}"
+        flight = self.flight_replay.flight
+        seconds = f"{self.flight_replay.at * STEP:.2f}"
         middle = VIEW_SIZE[0] / 2
         figure = canvas.text(f"{seconds} s", (middle, 58), size=22, weight="light", align="centre", tabular=True)
-        by = texts.YOU_FLEW if flight.flown_by is Hand.HUMAN else texts.NETWORK_FLEW
+        by = texts.YOU_FLEW if flight.flown_by is StickHolder.HUMAN else texts.NETWORK_FLEW
         if self.ended:
             by = texts.OUTCOMES[flight.outcome.name][0] if flight.over else by
         canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre")
@@ -294,13 +294,13 @@ class Replay:
         draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=middle - MARGIN - _FIGURE)
 
 
-def _draw_way(canvas: Canvas, view: View, tape: Tape) -> None:
+def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay) -> None:
     """Draw the path so far in the colour of who flew, and the path to come faintly."""
-    path, hands = tape.path, tape.record.recording.hands
-    at, head = min(tape.at, len(path) - 1), canvas.scale * _CLEAR.head
+    path, hands = flight_replay.path, flight_replay.record.recording.hands
+    at, head = min(flight_replay.at, len(path) - 1), canvas.scale * _CLEAR.head
     if at + 4 < len(path):
         draw_faint(canvas.surface, view.pixels(path[at::4]), MUTE, 0.35, head)
     for start, stop, hand in runs(hands[:at]):
         if stop - start > 1:
             stretch = path[start : stop + 1 : 4] if stop - start > 8 else path[start : stop + 1]
-            draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is Hand.HUMAN else NET, 0.6, head)
+            draw_faint(canvas.surface, view.pixels(stretch), HUMAN if hand is StickHolder.HUMAN else NET, 0.6, head)

@@ -24,7 +24,7 @@ from game.ui.form import Form
 from game.ui.hints import draw_hints
 from game.ui.listing import Listing, shortened
 from game.ui.widget import OnPress, Widget
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 
 _LIST: Final = pygame.Rect(MARGIN, 168, 672, 408)
 _PITCH: Final = 34
@@ -36,7 +36,7 @@ _LINE: Final = 36
 _FOOT: Final = 608
 
 
-class Runs:
+class NetworksScene:
     """A list on the left; the chosen run, its figures and its verbs on the right.
 
     Args:
@@ -147,13 +147,13 @@ class Runs:
                          (texts.RUN_DELETE, self._delete)]  # fmt: skip
         manager = self._form.manager
         verbs: list[Widget] = [
-            Word(manager, (_LEFT, _FIRST_WORD + number * _LINE, 200, _LINE), label, press, size=18)
+            TextButton(manager, (_LEFT, _FIRST_WORD + number * _LINE, 200, _LINE), label, press, size=18)
             for number, (label, press) in enumerate(rows)
         ]
-        foot: list[Widget] = [Word(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, self._back, size=18)]
+        foot: list[Widget] = [TextButton(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, self._back, size=18)]
         if deleted := self._library.last_deleted:
             label = texts.RUN_RESTORE.format(name=deleted)
-            foot.append(Word(manager, (MARGIN + 120, _FOOT, 520, _LINE), label, self._restore, size=18))
+            foot.append(TextButton(manager, (MARGIN + 120, _FOOT, 520, _LINE), label, self._restore, size=18))
         new = ([self._entry] if self._entry else []) + verbs + foot
         self._form.replace(self._verbs + self._foot, new)
         self._verbs, self._foot = new[: len(new) - len(foot)], foot

@@ -17,7 +17,7 @@ from game.input.controls import Command, Held, names
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.widgets import Choice, Slider, Toggle, Word
+from game.ui.widgets import Choice, Slider, TextButton, Toggle
 
 ROWS: Final = ("full_screen", "reduced_motion", "colour_safe", "show_hints")
 _WIDTH: Final = 416
@@ -60,11 +60,11 @@ class SettingsScene:
         ))  # fmt: skip
         for number, group in enumerate(GROUPS):
             self._form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
-        self._form.add(Word(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
+        self._form.add(TextButton(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
         keys = (_KEYS_LEFT, _KEYS_WORD, 240, 32)
-        self._form.add(Word(self._form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
+        self._form.add(TextButton(self._form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
         first = (_KEYS_LEFT, _KEYS_WORD + 44, 240, 32)
-        self._form.add(Word(self._form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
+        self._form.add(TextButton(self._form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
 
     def exit(self) -> None:
         """Do nothing: every change is saved already."""
@@ -150,7 +150,7 @@ def _loudness(volume: float) -> str:
 def _fly_first_flight() -> Transition:
     from game.play.tutorial import Tutorial
 
-    return push("play", 0, course=Tutorial())
+    return push("play", 0, challenge=Tutorial())
 
 
 def _open_bindings() -> Transition:

@@ -15,24 +15,24 @@ from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.collection import LibraryError
 from game.core.scene import Pop, Push, Transition, push
-from game.core.worker import State
+from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
 from game.flight.demonstrations import FILE_NAME, lessons
 from game.input.controls import Command, translate
 from game.panels.advice import Advice
-from game.panels.knobs import Knobs
-from game.panels.network_panel import Inside
-from game.panels.run_status import draw_problem, draw_standing, start_word
-from game.panels.training_charts import Board
-from game.training.lander_run import PACES, Student
+from game.panels.knobs import KnobsPanel
+from game.panels.network_panel import NetworkPanel
+from game.panels.run_status import draw_problem, draw_run_status, start_word
+from game.panels.training_charts import TrainingCharts
+from game.training.lander_run import PACES, LanderRun
 from game.training.library import Library, SavedRun
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.virtual_pointer import Pointer
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
-from game.ui.widgets import Choice, Word
+from game.ui.widgets import Choice, TextButton
 from game.world.swarm import LearningSwarm
 
 _WIDTH: Final = 836.0  # of the swarm and the charts; the panel has the rest
@@ -47,10 +47,10 @@ _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class Train:
+class TrainScene:
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
-    student: Student
+    lander_run: LanderRun
 
     def __init__(self, resume: Path | None = None) -> None:
         self._resume = resume
@@ -62,18 +62,18 @@ class Train:
         """Build the screen; after a duel with a checkpoint, resume the run."""
         if self._context is not None:
             if self._was_running:
-                self.student.resume()
+                self.lander_run.resume()
             return
         self._context, self._settings = context, context.settings
-        self.student = Student(Library(context.user_dir))
-        self._left = self.student.library.claim()
+        self.lander_run = LanderRun(Library(context.user_dir))
+        self._left = self.lander_run.library.claim()
         self.swarm = LearningSwarm(_WIDTH / VIEW_SIZE[0])
-        self.board = Board()
+        self.training_charts = TrainingCharts()
         self._form = Form(context, on_back=self._back)
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
-        self.inside = Inside(self._form, self._look_closer)
-        self.knobs = Knobs(self._form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
+        self.inside = NetworkPanel(self._form, self._look_closer)
+        self.knobs = KnobsPanel(self._form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
         self._advice = Advice(self._form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
         if self._resume is not None:
@@ -82,19 +82,19 @@ class Train:
 
     def exit(self) -> None:
         """Pause the run while another scene has the window."""
-        self._was_running = self.student.state in (State.RUNNING, State.STARTING)
-        self.student.pause()
+        self._was_running = self.lander_run.state in (WorkerState.RUNNING, WorkerState.STARTING)
+        self.lander_run.pause()
 
     def close(self) -> None:
         """End the run's process."""
         if self._context is not None:
-            self.student.close()
-            self.student.library.release()
+            self.lander_run.close()
+            self.lander_run.library.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, step, knobs and the large network."""
         if not self.inside.large:
-            self.board.charts.follow(event)
+            self.training_charts.charts.follow(event)
         self.inside.follow(event)
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.inside.covers(event.pos):
             self._look_closer()
@@ -104,7 +104,7 @@ class Train:
             return outcome
         match translate(event):
             case Command.STEP:
-                self.student.step()
+                self.lander_run.step()
             case Command.SLOWER | Command.FASTER as command:
                 self._pace_choice.shift(1 if command is Command.FASTER else -1)
             case Command.HANDOVER:
@@ -115,48 +115,48 @@ class Train:
         """Receive the worker's messages, and animate the screen."""
         if self._left:
             return self._ask_what_becomes_of(self._left)
-        student = self.student
+        lander_run = self.lander_run
         looked = self._listen()
-        if student.begun:
-            student.begun = False
-            self.knobs.set_config(student.config, student.seed)
-            student.call(self.knobs.name)  # of one that goes on, that is known only now
+        if lander_run.begun:
+            lander_run.begun = False
+            self.knobs.set_config(lander_run.config, lander_run.seed)
+            lander_run.call(self.knobs.name)  # of one that goes on, that is known only now
         self._advice.hush(bool(self.knobs.waiting))
-        if student.alive:
-            self.knobs.show_in_force(student.in_force)
-        if student.alive != self._alive:
-            self._alive = student.alive
+        if lander_run.alive:
+            self.knobs.show_in_force(lander_run.in_force)
+        if lander_run.alive != self._alive:
+            self._alive = lander_run.alive
             self._advice.clear()
             self.knobs.set_running(self._alive)
         still = self._settings.reduced_motion
-        self.board.look(student.history, student.earlier)
-        if bool(student.earlier) != self._compared:
-            self._compared = bool(student.earlier)
+        self.training_charts.look(lander_run.history, lander_run.earlier)
+        if bool(lander_run.earlier) != self._compared:
+            self._compared = bool(lander_run.earlier)
             self._lay_beside(self.inside.large)
         self.swarm.update(still)
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
-        self.board.charts.update(at_once=still, turn=not (looked or self.inside.busy))
-        self._start_word.label = start_word(student.state)
+        self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
+        self._start_word.label = start_word(lander_run.state)
         return self._form.update()
 
     def _listen(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
         assert self._context is not None
-        student = self.student
-        sight, insight, points = student.sight, student.insight, len(student.history)
-        for note in student.poll():
+        lander_run = self.lander_run
+        swarm_state, network_state, points = lander_run.swarm_state, lander_run.network_state, len(lander_run.history)
+        for note in lander_run.poll():
             self._context.note(note)
-        if student.sight is not None and student.sight is not sight:
-            self.swarm.take(student.sight)
-        if len(student.history) != points:
-            self.inside.pay(student.history)
-        if student.insight is None or student.insight is insight:
+        if lander_run.swarm_state is not None and lander_run.swarm_state is not swarm_state:
+            self.swarm.take(lander_run.swarm_state)
+        if len(lander_run.history) != points:
+            self.inside.pay(lander_run.history)
+        if lander_run.network_state is None or lander_run.network_state is network_state:
             return False
-        self.inside.take(student.insight, student.config)
-        if student.alive and len(student.history):
+        self.inside.take(lander_run.network_state, lander_run.config)
+        if lander_run.alive and len(lander_run.history):
             health = self.inside.health
-            self._advice.follow(student.history, student.config, health.dead_share, health.clipped_share)
+            self._advice.follow(lander_run.history, lander_run.config, health.dead_share, health.clipped_share)
         return True
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -164,11 +164,11 @@ class Train:
         if self.inside.large:
             canvas.fill(canvas.rect(0, 0, _WIDTH, VIEW_SIZE[1]), NIGHT0)
         else:
-            self.swarm.draw(canvas, alpha, paused=self.student.state is State.PAUSED)
+            self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
             canvas.fill(canvas.rect(0, _FLOOR, _WIDTH, VIEW_SIZE[1] - _FLOOR), NIGHT0)
             canvas.line((0, _FLOOR), (_WIDTH, _FLOOR), LINE)
             self._draw_title(canvas)
-            self.board.draw(canvas)
+            self.training_charts.draw(canvas)
         canvas.fill(canvas.rect(_WIDTH, 0, VIEW_SIZE[0] - _WIDTH, VIEW_SIZE[1]), PANEL)
         self.inside.draw(canvas)
         self.knobs.draw(canvas)
@@ -178,21 +178,21 @@ class Train:
     # The run
 
     def _toggle(self) -> None:
-        state = self.student.state
-        if state is State.PAUSED:
-            self.student.resume()
-        elif self.student.alive:
-            self.student.pause()
+        state = self.lander_run.state
+        if state is WorkerState.PAUSED:
+            self.lander_run.resume()
+        elif self.lander_run.alive:
+            self.lander_run.pause()
         else:
             self._begin(self.knobs.config, self.knobs.seed)
 
     def _begin(self, config: Config, seed: int, resume: Path | None = None) -> None:
         assert self._context is not None
-        if note := self.student.begin(config, seed, resume, self.knobs.name):
+        if note := self.lander_run.begin(config, seed, resume, self.knobs.name):
             self._context.note(note)
         self.swarm.clear()
         self._advice.clear()
-        self.board.clear()
+        self.training_charts.clear()
         self.inside.clear()
         if resume is None:
             self.knobs.set_config(config, seed)
@@ -208,29 +208,29 @@ class Train:
         if not lessons(folder):
             self._context.note(texts.TRAIN_NO_LESSONS)
             return
-        if not self.student.alive:
+        if not self.lander_run.alive:
             self._begin(self.knobs.config, self.knobs.seed)
-        self.student.teach(folder / FILE_NAME)
+        self.lander_run.teach(folder / FILE_NAME)
 
     def _change(self, name: str, value: object) -> None:
-        self.student.change(name, value)
+        self.lander_run.change(name, value)
 
     def _save(self) -> Transition | None:
-        from game.scenes.dialog import Naming
+        from game.scenes.dialog import NameDialog
 
         assert self._context is not None
-        if not self.student.kept:
+        if not self.lander_run.kept:
             self._context.note(texts.TRAIN_NOTHING)
             return None
-        name = texts.TRAIN_TAUGHT_NAME if self.student.lessons else texts.TRAIN_NAME
-        suggestion = self.student.library.free_name(name.format(preset=self.knobs.name))
-        return Push(Naming(self, texts.NAMING, suggestion, self._save_as))
+        name = texts.TRAIN_TAUGHT_NAME if self.lander_run.lessons else texts.TRAIN_NAME
+        suggestion = self.lander_run.library.free_name(name.format(preset=self.knobs.name))
+        return Push(NameDialog(self, texts.NAMING, suggestion, self._save_as))
 
     def _save_as(self, name: str) -> str:
         """Save the run under a name; return why the name is invalid, empty if it is not."""
         assert self._context is not None
         try:
-            if note := self.student.save(name):
+            if note := self.lander_run.save(name):
                 self._context.note(note)
         except LibraryError as error:
             return str(error)
@@ -245,7 +245,7 @@ class Train:
 
     def _ask_what_becomes_of(self, left: SavedRun) -> Transition:
         """Offer the run that was left without a name by the last visit, or by a game that ended too early."""
-        from game.scenes.dialog import Asking
+        from game.scenes.dialog import QuestionDialog
 
         self._left = None
         more = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
@@ -253,12 +253,12 @@ class Train:
         answers = [(texts.TRAIN_LEFT_DISCARD, partial(self._discard, left.name))]
         if left.resumable:
             answers.insert(0, (texts.TRAIN_LEFT_GO_ON, partial(self._go_on, left.folder)))
-        return Push(Asking(self, texts.TRAIN_LEFT, more, answers))
+        return Push(QuestionDialog(self, texts.TRAIN_LEFT, more, answers))
 
     def _discard(self, name: str) -> None:
         assert self._context is not None
         try:
-            self.student.library.discard_rescued()
+            self.lander_run.library.discard_rescued()
         except LibraryError as error:
             self._context.note(str(error))
         else:
@@ -266,39 +266,39 @@ class Train:
 
     def _compare(self) -> Transition:
         """Ask for a saved run whose curves shall be seen beside these."""
-        from game.scenes.dialog import Picking
+        from game.scenes.dialog import ListDialog
 
-        runs = self.student.library.runs()
+        runs = self.lander_run.library.runs()
 
         def put(number: int) -> None:
             assert self._context is not None
-            if note := self.student.compare(runs[number].name, runs[number].folder):
+            if note := self.lander_run.compare(runs[number].name, runs[number].folder):
                 self._context.note(note)
-            self.board.clear()
+            self.training_charts.clear()
 
-        return Push(Picking(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
+        return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
 
     # Checkpoints
 
     def _go_back(self, decisions: int) -> None:
         """Return the run to an earlier checkpoint."""
-        checkpoint = self.student.history.checkpoint_at(decisions)
+        checkpoint = self.lander_run.history.checkpoint_at(decisions)
         if checkpoint is not None:
-            self.student.revert(checkpoint)
+            self.lander_run.revert(checkpoint)
 
     def _scrub_to(self, place: float | int) -> None:
-        self.board.choose(place, self.student.history.checkpoints)
+        self.training_charts.choose(place, self.lander_run.history.checkpoints)
 
     def _duel(self) -> Transition | None:
         """Fly against the chosen checkpoint, or the latest."""
         assert self._context is not None
-        found = self.student.history.checkpoints
-        checkpoint = self.board.chosen or (found[-1] if found else None)
+        found = self.lander_run.history.checkpoints
+        checkpoint = self.training_charts.chosen or (found[-1] if found else None)
         if checkpoint is None:
             self._context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
         try:
-            rival = agent_of(self.student.config, checkpoint)
+            rival = agent_of(self.lander_run.config, checkpoint)
         except ValueError as error:
             self._context.note(str(error))
             return None
@@ -310,15 +310,15 @@ class Train:
     def _add_controls(self) -> None:
         left, top = _CONTROLS.topleft
         self._start_word = self._form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
-        self._step_word = self._form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.student.step))
+        self._step_word = self._form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
         self._pace_choice = self._form.add(Choice(
             self._form.manager, (left + 144, top, 148, 28), "", texts.TRAIN_PACES, len(PACES) - 1,
-            self.student.set_pace, gap=14,
+            self.lander_run.set_pace, gap=14,
         ))  # fmt: skip
         self._save_word = self._form.add(self._word(left + 316, top, 68, texts.TRAIN_SAVE, self._save))
 
-    def _word(self, x: float, y: float, width: float, label: str, press: OnPress) -> Word:
-        return Word(self._form.manager, (x, y, width, 28), label, press)
+    def _word(self, x: float, y: float, width: float, label: str, press: OnPress) -> TextButton:
+        return TextButton(self._form.manager, (x, y, width, 28), label, press)
 
     def _lay_beside(self, large: bool = False) -> None:
         """Add the widgets of the large network, or of the swarm and the charts."""
@@ -329,40 +329,40 @@ class Train:
             beside = [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
-            charts = self.board.charts
-            beside += [Pointer(self._form.manager, charts.box, charts.follow),
+            charts = self.training_charts.charts
+            beside += [VirtualPointer(self._form.manager, charts.box, charts.follow),
                        Scrubber(self._form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
             if self._compared:
-                beside.append(Choice(self._form.manager, _AXES, "", texts.TRAIN_AXES, self.board.axis,
-                                     self.board.measure_by, size=SMALL, gap=14))  # fmt: skip
+                beside.append(Choice(self._form.manager, _AXES, "", texts.TRAIN_AXES, self.training_charts.axis,
+                                     self.training_charts.measure_by, size=SMALL, gap=14))  # fmt: skip
         self._form.replace(self._beside, beside)
         self._beside = beside
 
     def _look_closer(self) -> None:
         self._lay_beside(large=not self.inside.large)
-        self.board.charts.hover(None)
+        self.training_charts.charts.hover(None)
 
     def _back(self) -> Transition | None:
         assert self._context is not None
         if not self.inside.large:
-            if self.student.alive and len(self.student.history):
+            if self.lander_run.alive and len(self.lander_run.history):
                 self._context.note(texts.TRAIN_KEPT)
             return Pop()
         self._look_closer()
         return None
 
     def _draw_title(self, canvas: Canvas) -> None:
-        history, sight = self.student.history, self.student.sight
-        height, line, share = 66, texts.TRAIN_BEGINS if self.student.alive else texts.TRAIN_LINE, ""
-        if len(history) and sight is not None:
+        history, swarm_state = self.lander_run.history, self.lander_run.swarm_state
+        height, line, share = 66, texts.TRAIN_BEGINS if self.lander_run.alive else texts.TRAIN_LINE, ""
+        if len(history) and swarm_state is not None:
             line = texts.TRAIN_FIGURES.format(
-                count=len(sight.outcome), seconds=history.points[-1][0], decisions=int(sight.decisions)
+                count=len(swarm_state.outcome), seconds=history.points[-1][0], decisions=int(swarm_state.decisions)
             )
             height, landed = _TITLE.height, history["success"][-1]
             share = "" if np.isnan(landed) else f"{100 * landed:.0f}"
         for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
             canvas.panel(box, _COVER)
-        draw_standing(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
+        draw_run_status(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
         assert self._context is not None
         hints = self._form.hints[-1:] or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
@@ -370,7 +370,7 @@ class Train:
 
     def _draw_said(self, canvas: Canvas) -> None:
         """Draw the current problem, or what to do first."""
-        if problem := self.student.problem:
+        if problem := self.lander_run.problem:
             draw_problem(canvas, problem, (_SAID.left, _SAID.top + 17), _SAID.width, 3)
         else:
             self._advice.draw(canvas)

@@ -15,9 +15,9 @@ from ai.lander.environment import Outcome
 from ai.nn.files import brief
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
-from game.cockpit.decision_panel import PANEL, draw_mind
+from game.cockpit.decision_panel import PANEL, draw_decision
 from game.core import texts
-from game.core.clock import STEP, Tempo
+from game.core.clock import STEP, TimeScale
 from game.core.scene import Pop, Transition, push
 from game.core.settings import Settings
 from game.drawing import typeface
@@ -30,12 +30,12 @@ from game.panels.run_status import rate_colour
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.hints import draw_hints
-from game.ui.pick import Pick
+from game.ui.pick import ChoiceOrList
 from game.ui.widget import OnPress
 from game.ui.widgets import Choice
 from game.ui.words import GAP
 from game.world import framing
-from game.world.camera import Camera, Clear, View
+from game.world.camera import Camera, ClearArea, View
 from game.world.landscape.backdrop import landscape
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
@@ -50,7 +50,7 @@ _ROW: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices,
 _ROW_HEIGHT: Final = 17.0
 _LABEL_WIDTH: Final = 84.0
 _WIDEST: Final = 452.0  # of a row: the pad begins there
-_CLEAR: Final = Clear(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
+_CLEAR: Final = ClearArea(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
 _LONGEST_NAME: Final = 24
 _LONGEST_PROBLEM: Final = 110
 _CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
@@ -58,14 +58,14 @@ _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
 
-class Watch:
+class WatchScene:
     """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line."""
 
     def __init__(self, count: int = 1, seed: int | None = None) -> None:
         self._count = COUNTS.index(count)
         self._seed = seed
         self._context: Context | None = None
-        self._tempo, self._time = Tempo(), 0.0
+        self._tempo, self._time = TimeScale(), 0.0
         self.stopped = False
         self.shown = 0
         self.problem = self._wanted = ""
@@ -80,8 +80,8 @@ class Watch:
                 self._set_up_camera()
             return
         self._context, self._settings = context, context.settings
-        self._roster = networks.Roster(context.models_dir, context.user_dir)
-        names = self._roster.names
+        self._policies = networks.Policies(context.models_dir, context.user_dir)
+        names = self._policies.names
         wanted = names.index(context.settings.model) if context.settings.model in names else 0
         self._form = Form(context, on_back=Pop)
         self._model_choice = self._form.add(self._network_row(wanted))
@@ -93,7 +93,7 @@ class Watch:
             self._seed = int(context.rng.integers(2**31))
         self._choose_network(wanted)
         if self.problem:
-            self._network = self._roster.first_fit()
+            self._network = self._policies.first_fit()
             self._begin()
 
     def exit(self) -> None:
@@ -150,7 +150,7 @@ class Watch:
         self._stage.draw_swarm(canvas, view, poses, others, self._size)
         self._draw_shown(canvas, view, poses[self.shown])
         self._stage.draw_dust(canvas, view, between)
-        draw_mind(canvas, self.decision)
+        draw_decision(canvas, self.decision)
         self._draw_words(canvas)
 
     # What flies
@@ -161,11 +161,11 @@ class Watch:
         return self.swarm.decision.of(self.shown)
 
     def _begin(self) -> None:
-        assert self._network.flyer is not None
+        assert self._network.policy is not None
         assert self._seed is not None
         assert self._context is not None
         count = COUNTS[self._count]
-        self.swarm = Swarm(count, self._seed, self._network.flyer)
+        self.swarm = Swarm(count, self._seed, self._network.policy)
         self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed))
         self._stage.blue[:] = 1.0
         self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
@@ -242,10 +242,10 @@ class Watch:
         width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
         return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
 
-    def _network_row(self, index: int) -> Pick:
-        words = [brief(name, _LONGEST_NAME) for name in self._roster.names]
+    def _network_row(self, index: int) -> ChoiceOrList:
+        words = [brief(name, _LONGEST_NAME) for name in self._policies.names]
         box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
-        return Pick(
+        return ChoiceOrList(
             self._form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
             everything, label_width=_LABEL_WIDTH,
         )  # fmt: skip
@@ -259,23 +259,23 @@ class Watch:
     def _look_again(self) -> None:
         """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
         assert self._context is not None
-        roster = networks.Roster(self._context.models_dir, self._context.user_dir)
+        policies = networks.Policies(self._context.models_dir, self._context.user_dir)
         wanted, self._wanted = self._wanted or self._settings.model, ""
-        if roster.names == self._roster.names and wanted == self._network.name:
+        if policies.names == self._policies.names and wanted == self._network.name:
             return
-        self._roster = roster
-        index = next((roster.names.index(name) for name in (wanted, self._network.name) if name in roster.names), 0)
+        self._policies = policies
+        index = next((policies.names.index(name) for name in (wanted, self._network.name) if name in policies.names), 0)
         row = self._network_row(index)
         self._form.replace([self._model_choice], [row])
         self._model_choice = row
-        if roster.names[index] != self._network.name:
+        if policies.names[index] != self._network.name:
             self._choose_network(index)
 
     def _choose_network(self, index: int) -> None:
         """Fly the same starts with another network; report a damaged one, and keep the last good one flying."""
-        network = self._roster[self._roster.names[index]]
+        network = self._policies[self._policies.names[index]]
         self.problem = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem) if network.problem else ""
-        if network.flyer is None:
+        if network.policy is None:
             return
         self._network = network
         self._settings.model = network.name

@@ -24,7 +24,7 @@ from game.drawing.tokens import COLOUR_SAFE, PALETTE, TEXT_SIZES
 from game.input.controls import Command, translate
 from game.shell.scene_manager import SceneManager
 from game.shell.window import GameWindow
-from game.ui.notes import Notes
+from game.ui.notes import Note
 
 if TYPE_CHECKING:
     from game.core.scene import Scene
@@ -64,7 +64,7 @@ class App:
         self._now, self._capped = now, capped
         self._clock = pygame.time.Clock()
         self._steps = FixedStep()
-        self._notes = Notes()
+        self._notes = Note()
         self._mouse: tuple[tuple[int, int], ...] = ()  # the mouse's last position, in the window and on the desktop
         self._settled = 0.0  # time at which the window has kept its size long enough for a redraw
         self.settings_writer = SettingsWriter(context.settings_file, context.settings)

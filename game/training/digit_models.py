@@ -22,7 +22,7 @@ PARTS: Final = (DIGITS_FILE, NETWORK, TRAINING_FILE)  # a folder with any of the
 
 
 @dataclass(frozen=True)
-class Shelved:
+class SavedDigitModel:
     """Folders of a network and of its fixes, the latter numbered."""
 
     folder: Path
@@ -57,17 +57,19 @@ def runs_dir(user_dir: Path) -> Path:
     return user_dir / FOLDER / RUNS
 
 
-def shelf(models_dir: Path, user_dir: Path) -> dict[str, Shelved]:
+def shelf(models_dir: Path, user_dir: Path) -> dict[str, SavedDigitModel]:
     """Return all digit networks by name, damaged ones too; the player's own come last.
 
     A player's network with the name of a shipped one gets a distinct name, and is not left out.
     """
-    found = {name: Shelved(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
+    found = {name: SavedDigitModel(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
     with suppress(OSError):
         for path in sorted(runs_dir(user_dir).iterdir(), key=lambda path: path.name.casefold()):
             if claims(path, PARTS):
                 taken = path.name.casefold() in NAMES
-                found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = Shelved(path, path / FIXES)
+                found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = SavedDigitModel(
+                    path, path / FIXES
+                )
     return found
 
 

@@ -9,7 +9,17 @@ from typing import Final
 
 from ai.digits.checkpoints import LAST_FILE, TRAINING_FILE
 from ai.digits.config import DigitConfig
-from ai.digits.session import Confusion, DigitPoint, DigitsBegun, Finish, GoBack, Kept, Score, Turned, live_digits
+from ai.digits.session import (
+    Confusion,
+    DigitPoint,
+    DigitRunSaved,
+    DigitRunStarted,
+    DigitSettingChanged,
+    Finish,
+    HeldOutScore,
+    RestoreBest,
+    live_digits,
+)
 from ai.nn.files import brief, read_json
 from ai.nn.folder import CONFIG
 from ai.training.history import REVERTED, TURNING_SECONDS
@@ -18,19 +28,19 @@ from game.core import texts
 from game.core.collection import LONGEST_NAME, Collection, LibraryError
 from game.core.worker import Worker
 from game.training.digit_models import PARTS, PATIENCE
-from game.training.training_run import EARLIER, Beside, Learner, put_beside
+from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
 
 FALLEN: Final = 0.15  # drop of validation accuracy below its best at which a return to the best is offered
 _MOST_POINTS: Final = 4000
 
 
 @dataclass
-class Curves:
+class DigitCurves:
     """Learning curves of a run."""
 
     points: list[DigitPoint] = field(default_factory=list)
-    scores: list[Score] = field(default_factory=list)
-    turns: list[Turned] = field(default_factory=list)
+    scores: list[HeldOutScore] = field(default_factory=list)
+    turns: list[DigitSettingChanged] = field(default_factory=list)
 
     @property
     def fallen(self) -> tuple[float, float] | None:
@@ -40,15 +50,15 @@ class Curves:
         best = max((score.accuracy for score in self.scores), default=0.0)
         return (best, read[-1]) if read and best - read[-1] > FALLEN else None
 
-    def append(self, told: DigitPoint | Score | Turned) -> None:
+    def append(self, told: DigitPoint | HeldOutScore | DigitSettingChanged) -> None:
         """Append a message; beyond a limit, every other point is dropped.
 
         Changes of one knob in quick succession count as one, with the last value.
         """
-        if isinstance(told, Score):
+        if isinstance(told, HeldOutScore):
             self.scores.append(told)
             return
-        if isinstance(told, Turned):
+        if isinstance(told, DigitSettingChanged):
             last = self.turns[-1] if self.turns else None
             if last and last.name == told.name != REVERTED and told.seconds - last.seconds < TURNING_SECONDS:
                 self.turns.pop()
@@ -64,7 +74,7 @@ class Curves:
         return self.points[-1].seconds if self.points else 0.0
 
 
-class Pupil(Learner):
+class DigitRun(TrainingRun):
     """Digit training runs, one after another, each in its own child process; call `poll` once a frame.
 
     A run saves itself in the player's folder without a name, until `save` names it.
@@ -87,11 +97,11 @@ class Pupil(Learner):
         self.collection = Collection(folder, PARTS)
         self.config, self.seed, self.steps = DigitConfig(), 0, 0
         self.begun = False
-        self.curves = Curves()
+        self.curves = DigitCurves()
         self.confusion: Confusion | None = None
         self.test: float | None = None
         self.kept_epoch: int | None = None
-        self.earlier: list[Beside[Curves]] = []
+        self.earlier: list[EarlierRun[DigitCurves]] = []
         self.stopping = False
         self._saving: list[Path] = []  # folders it was asked to save to, without an answer yet
 
@@ -140,7 +150,7 @@ class Pupil(Learner):
         if self.curves.points:
             gone = put_beside(self.earlier, self.name, self.curves)
             note = texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
-        self.curves, self.confusion, self.test, self.kept_epoch = Curves(), None, None, None
+        self.curves, self.confusion, self.test, self.kept_epoch = DigitCurves(), None, None, None
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
@@ -159,7 +169,7 @@ class Pupil(Learner):
     def go_back(self) -> None:
         """Revert the network to its best checkpoint."""
         if not self.stopping:
-            self._send(GoBack())
+            self._send(RestoreBest())
 
     def stop(self) -> None:
         """End the run, save its network and test it. A second call ends it without the test."""
@@ -191,17 +201,17 @@ class Pupil(Learner):
         """Handle all messages of the worker; return notes for the player."""
         notes: list[str] = []
         for told in self._worker.poll() if self._worker else ():
-            if self.waiting and not isinstance(told, Kept):  # from the previous run, only where it was saved
+            if self.waiting and not isinstance(told, DigitRunSaved):  # from the previous run, only where it was saved
                 continue
             match told:
-                case DigitPoint() | Score() | Turned():
+                case DigitPoint() | HeldOutScore() | DigitSettingChanged():
                     self.curves.append(told)
                     self.config = _turned(self.config, told)
                 case Confusion():
                     self.confusion = told
-                case DigitsBegun(config, seed, _, steps):
+                case DigitRunStarted(config, seed, _, steps):
                     self.config, self.seed, self.steps, self.begun = config, seed, steps, True
-                case Kept():
+                case DigitRunSaved():
                     notes += filter(None, [self._hear_of(told)])
                 case Refused(_, problem):
                     notes.append(problem)
@@ -212,7 +222,7 @@ class Pupil(Learner):
             notes.append(note)
         return notes
 
-    def _hear_of(self, kept: Kept) -> str:
+    def _hear_of(self, kept: DigitRunSaved) -> str:
         """Handle a report on where the run was saved, or why not; return a note for the player, or ""."""
         if kept.folder == self.unsaved and kept.test is not None and not self.waiting:
             self.test, self.kept_epoch = kept.test, kept.epoch
@@ -240,8 +250,8 @@ class Pupil(Learner):
         return ""
 
 
-def _turned(config: DigitConfig, told: DigitPoint | Score | Turned) -> DigitConfig:
+def _turned(config: DigitConfig, told: DigitPoint | HeldOutScore | DigitSettingChanged) -> DigitConfig:
     """Return the configuration of a run after one of its messages."""
-    if not isinstance(told, Turned) or told.name == REVERTED:
+    if not isinstance(told, DigitSettingChanged) or told.name == REVERTED:
         return config
     return config.changed(**{told.name: told.after})

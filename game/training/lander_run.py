@@ -8,19 +8,31 @@ from typing import Any, Final
 from ai.agent.config import Config
 from ai.agent.schedule import InForce
 from ai.nn import ModelFormatError
-from ai.training.history import Alteration, Checkpoint, History, Point, Validation
-from ai.training.session import TAUGHT, Begun, Insight, Refused, Revert, Save, Saved, Sight, Teach, live, turned
+from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
+from ai.training.session import (
+    TAUGHT,
+    AddDemonstrations,
+    NetworkState,
+    Refused,
+    RestoreCheckpoint,
+    RunStarted,
+    Save,
+    Saved,
+    SwarmState,
+    live,
+    turned,
+)
 from game.core import texts
 from game.core.collection import LibraryError
 from game.core.worker import Worker
 from game.training.library import Library
-from game.training.training_run import EARLIER, Beside, Learner, put_beside
+from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
 
 # Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
 PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
 
 
-class Student(Learner):
+class LanderRun(TrainingRun):
     """Lander training runs, one after another, each in its own child process; call `poll` once a frame.
 
     A run saves itself in the library without a name, until `save` names it.
@@ -39,10 +51,10 @@ class Student(Learner):
         self.library = library
         self.config, self.seed = Config(), 0
         self.history = History()
-        self.sight: Sight | None = None
-        self.insight: Insight | None = None
+        self.swarm_state: SwarmState | None = None
+        self.network_state: NetworkState | None = None
         self.in_force: InForce | None = None
-        self.earlier: list[Beside[History]] = []
+        self.earlier: list[EarlierRun[History]] = []
         self.begun = False  # whether a run has reported its configuration since this was last set to False
         self.pace = len(PACES) - 1
 
@@ -60,7 +72,7 @@ class Student(Learner):
         note = self._put_beside(self.name, self.history) if len(self.history) else ""
         self.history = History()
         self.config, self.seed = config, seed
-        self.sight = self.insight = self.in_force = None
+        self.swarm_state = self.network_state = self.in_force = None
         self.runs += 1
         self._named = resume is not None and resume != self.library.unsaved
         self.name = resume.name if resume else ""
@@ -88,7 +100,7 @@ class Student(Learner):
 
     def teach(self, demonstrations: Path) -> None:
         """Let the run also learn from a file of demonstrations; `poll` reports it."""
-        self._send(Teach(demonstrations))
+        self._send(AddDemonstrations(demonstrations))
 
     def set_pace(self, index: int) -> None:
         """Choose one of `PACES` by its index."""
@@ -97,7 +109,7 @@ class Student(Learner):
 
     def revert(self, checkpoint: Checkpoint) -> None:
         """Revert the network to a checkpoint."""
-        self._send(Revert(checkpoint.decisions))
+        self._send(RestoreCheckpoint(checkpoint.decisions))
 
     def save(self, name: str) -> str:
         """Name the run in the library; raises LibraryError if that fails.
@@ -121,20 +133,20 @@ class Student(Learner):
     def _hear(self, message: Any) -> str:
         """Handle one message of the worker; return a note for the player, or ""."""
         match message:
-            case Sight():
-                self.sight = message
-            case Insight():
-                self.insight = message
+            case SwarmState():
+                self.swarm_state = message
+            case NetworkState():
+                self.network_state = message
             case InForce():
                 self.in_force = message
             case Point() | Checkpoint() | Validation():
                 self.history.append(message)
-            case Alteration(_, name, _, after):
+            case SettingChange(_, name, _, after):
                 self.history.append(message)
                 self.config = _turned(self.config, name, after)
                 if name == TAUGHT:
                     return texts.TRAIN_TAUGHT.format(count=after)
-            case Begun(config, seed, _):
+            case RunStarted(config, seed, _):
                 self.config, self.seed, self.begun = config, seed, True
                 self.history.reward_scale = config.reward_scale
             case Saved(folder, problem) if problem:

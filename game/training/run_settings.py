@@ -15,18 +15,18 @@ from ai.agent.schedule import InForce, idle
 from ai.common.knobs import Knobs
 from ai.training.sabotage import SABOTAGES, sabotaged
 from game.core import texts
-from game.training.dials import Configuration, Dial, dials, figure, label
+from game.training.knob_descriptions import Configuration, KnobDescription, figure, knob_descriptions, label
 
 SEED: Final = "seed"
 Named = tuple[str, str]  # a preset, and a sabotage or ""
 
 
 @dataclass(frozen=True)
-class Family:
+class RunKind:
     """Choices for one kind of run: knobs, presets and sabotages.
 
     Attributes:
-        dials: every knob.
+        knob_descriptions: every knob.
         presets: configurations by name.
         words: label of each preset, and a sentence about it, by its name.
         sabotages: the same for each part that can be taken away from a preset.
@@ -35,7 +35,7 @@ class Family:
 
     """
 
-    dials: tuple[Dial, ...]
+    knob_descriptions: tuple[KnobDescription, ...]
     presets: Mapping[str, Configuration]
     words: Mapping[str, tuple[str, str]]
     seed_page: str
@@ -69,12 +69,17 @@ class Family:
         return self.sabotages[sabotage][1] if sabotage else self.words.get(base, ("", ""))[1]
 
 
-LANDER: Final = Family(
-    tuple(dials()), PRESETS, texts.PRESETS, "lander", {name: texts.SABOTAGES[name] for name in SABOTAGES}, idle
+LANDER: Final = RunKind(
+    tuple(knob_descriptions()),
+    PRESETS,
+    texts.PRESETS,
+    "lander",
+    {name: texts.SABOTAGES[name] for name in SABOTAGES},
+    idle,
 )
 
 
-class Tuning:
+class RunSettings:
     """Configuration and seed that the player can change.
 
     `on_change` is called with the name and value of each setting that changes in effect; `on_restart` with the
@@ -98,20 +103,20 @@ class Tuning:
         seed: int,
         on_change: Callable[[str, Any], None],
         on_restart: Callable[[Configuration, int], None],
-        family: Family = LANDER,
+        run_kind: RunKind = LANDER,
     ) -> None:
-        self.family = family
-        self.dials = {dial.name: dial for dial in family.dials}
+        self.run_kind = run_kind
+        self.knob_descriptions = {knob.name: knob for knob in run_kind.knob_descriptions}
         self._on_change, self._on_restart = on_change, on_restart
         self.running = False
         self.in_force: InForce | None = None
-        self.named, self.draft = family.nearest(config), config
+        self.named, self.draft = run_kind.nearest(config), config
         self.set_config(config, seed)
 
     def set_config(self, config: Configuration, seed: int) -> None:
         """Set the configuration and the seed, without calling `on_change`."""
         if config != self.draft:
-            self.named = self.family.nearest(config)
+            self.named = self.run_kind.nearest(config)
         self._named_held = self.named
         self.config = self.draft = config
         self.seed = self.draft_seed = seed
@@ -127,7 +132,7 @@ class Tuning:
     @property
     def home(self) -> Configuration:
         """Configuration of the preset that the draft started from."""
-        return self.family.presets[self.named[0]]
+        return self.run_kind.presets[self.named[0]]
 
     @property
     def holds(self) -> Named:
@@ -137,7 +142,7 @@ class Tuning:
     @property
     def changed(self) -> bool:
         """Whether the settings in effect differ from their preset or sabotage."""
-        return bool((self.config if self.waiting else self.draft) != self.family.config_of(self.holds))
+        return bool((self.config if self.waiting else self.draft) != self.run_kind.config_of(self.holds))
 
     @property
     def waiting(self) -> list[str]:
@@ -153,14 +158,14 @@ class Tuning:
 
         A live knob is judged for the current run, any other for the new run that it would need.
         """
-        dial = self.dials[name]
-        now = self.in_force.idle if self.in_force and dial.live else self.family.idle(self.draft)
-        instead = now.get(dial.field)
+        knob = self.knob_descriptions[name]
+        now = self.in_force.idle if self.in_force and knob.live else self.run_kind.idle(self.draft)
+        instead = now.get(knob.field)
         if instead is None:
             return ""
-        if sentence := texts.KNOBS_IDLE.get(dial.field):
+        if sentence := texts.KNOBS_IDLE.get(knob.field):
             return sentence
-        value = figure(getattr(self.config if self.in_force and dial.live else self.draft, instead))
+        value = figure(getattr(self.config if self.in_force and knob.live else self.draft, instead))
         return texts.KNOBS_IDLE_WITHOUT.format(other=label(instead), value=value)
 
     def turn(self, name: str, value: Any) -> None:
@@ -170,10 +175,10 @@ class Tuning:
             self.draft_seed = value
             self._hold(self.config, self.seed if self.running else value)
             return
-        dial = self.dials[name]
+        knob = self.knob_descriptions[name]
         try:
-            draft = dial.write(self.draft, value)
-            held = dial.write(self.config, value) if dial.live or not self.running else self.config
+            draft = knob.write(self.draft, value)
+            held = knob.write(self.config, value) if knob.live or not self.running else self.config
         except ValueError as error:
             self.problem = _in_words(str(error))
             return
@@ -182,9 +187,9 @@ class Tuning:
 
     def load(self, named: Named) -> None:
         """Load a preset or a sabotage; `undo` restores the knobs."""
-        aside = (self.draft, self.named) if self.draft != self.family.config_of(self.named) else None
+        aside = (self.draft, self.named) if self.draft != self.run_kind.config_of(self.named) else None
         self.problem = ""
-        self._propose(self.family.config_of(named), named)
+        self._propose(self.run_kind.config_of(named), named)
         self.put_aside = None if self.waiting else aside
 
     def apply(self) -> None:
@@ -203,7 +208,7 @@ class Tuning:
     def _propose(self, config: Configuration, named: Named) -> None:
         """Set a whole configuration: at once if possible, else to wait for a new run."""
         self.draft, self.named = config, named
-        if not self.running or all(self.dials[name].live for name in self._different(config, self.config)):
+        if not self.running or all(self.knob_descriptions[name].live for name in self._different(config, self.config)):
             self._hold(config, self.seed)
 
     def _hold(self, config: Configuration, seed: int) -> None:
@@ -214,12 +219,12 @@ class Tuning:
         if config == self.draft:
             self._named_held = self.named
         for name in names:
-            self._on_change(name, self.dials[name].read(config))
+            self._on_change(name, self.knob_descriptions[name].read(config))
         if reseeded:
             self._on_change(SEED, seed)
 
     def _different(self, a: Configuration, b: Configuration) -> list[str]:
-        return [name for name, dial in self.dials.items() if dial.read(a) != dial.read(b)]
+        return [name for name, knob in self.knob_descriptions.items() if knob.read(a) != knob.read(b)]
 
 
 def _in_words(problem: str) -> str:

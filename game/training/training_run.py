@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
-from ai.training.messages import Change
+from ai.training.messages import ChangeSetting
 from game.core import texts
-from game.core.worker import State, Worker
+from game.core.worker import Worker, WorkerState
 
 Kind = TypeVar("Kind")
 
@@ -16,7 +16,7 @@ EARLIER: Final = 3  # earlier runs shown beside the current one, at most
 
 
 @dataclass(frozen=True)
-class Beside(Generic[Kind]):
+class EarlierRun(Generic[Kind]):
     """Earlier run shown beside the current one; its line style stays the same as others come and go."""
 
     name: str
@@ -24,16 +24,16 @@ class Beside(Generic[Kind]):
     style: int  # index into game.charts.series.RUN_STYLES; 0 is the current run's
 
 
-def put_beside(runs: list[Beside[Kind]], name: str, run: Kind) -> str:
+def put_beside(runs: list[EarlierRun[Kind]], name: str, run: Kind) -> str:
     """Add an earlier run, in place of one of its name or of the oldest; return the name of one dropped, or ""."""
     runs[:] = [each for each in runs if each.name != name]
     gone = runs.pop().name if len(runs) >= EARLIER else ""
     style = next(style for style in range(1, EARLIER + 1) if style not in {each.style for each in runs})
-    runs.insert(0, Beside(name, run, style))
+    runs.insert(0, EarlierRun(name, run, style))
     return gone
 
 
-class Learner:
+class TrainingRun:
     """Training run with its worker process: start, pause, resume, step and stop it.
 
     Runs save to the same folder, so the next one waits until the process before it has ended. The window does not
@@ -61,21 +61,21 @@ class Learner:
         return self._launch is not None
 
     @property
-    def state(self) -> State | None:
+    def state(self) -> WorkerState | None:
         """State of the run; None before the first."""
         if self.waiting:
-            return State.STARTING
+            return WorkerState.STARTING
         return self._worker.state if self._worker else None
 
     @property
     def alive(self) -> bool:
         """Whether there is a run that can be paused, stepped, stopped and changed."""
-        return self.state in (State.STARTING, State.RUNNING, State.PAUSED)
+        return self.state in (WorkerState.STARTING, WorkerState.RUNNING, WorkerState.PAUSED)
 
     @property
     def problem(self) -> str:
         """Reason why the run failed; empty if it did not."""
-        return self._worker.problem if self._worker and self.state is State.FAILED else ""
+        return self._worker.problem if self._worker and self.state is WorkerState.FAILED else ""
 
     def call(self, settings: str) -> None:
         """Name the run after its settings, with a number, unless it was saved under a name."""
@@ -97,7 +97,7 @@ class Learner:
 
     def change(self, name: str, value: Any) -> None:
         """Change a live setting of the run."""
-        self._send(Change(name, value))
+        self._send(ChangeSetting(name, value))
 
     def close(self) -> None:
         """End the run and its process for certain."""

@@ -34,7 +34,7 @@ def digits(text: str) -> str:
     return "".join(letter for letter in text if letter in "0123456789")
 
 
-class Line:
+class EditedLine:
     """Editable line of text with a caret, and its editing keys.
 
     Attributes:
@@ -121,7 +121,7 @@ class Line:
 
 
 class Entry(Widget):
-    """Text entry: a `Line` under a label. Enter or a gamepad's A starts typing, then accepts; Escape cancels.
+    """Text entry: a `EditedLine` under a label. Enter or a gamepad's A starts typing, then accepts; Escape cancels.
 
     Up, down and Tab leave it and accept the text. `on_accept` is given the text, stripped
     and never empty; `on_cancel` is called when typing is cancelled.
@@ -143,7 +143,7 @@ class Entry(Widget):
         size: float = TEXT,
     ) -> None:
         super().__init__(manager, box, label)
-        self.line = Line(text, limit, fits)
+        self.line = EditedLine(text, limit, fits)
         self._on_accept, self._on_cancel, self._size = on_accept, on_cancel, size
         self._before = self.line.text
         self._fresh = False
@@ -253,7 +253,7 @@ class Entry(Widget):
 
 
 def draw_line(
-    canvas: Canvas, line: Line, start: tuple[float, float], room: float, size: float, *, typing: bool
+    canvas: Canvas, line: EditedLine, start: tuple[float, float], room: float, size: float, *, typing: bool
 ) -> None:
     """Draw a line of text on a baseline, with its caret or its selection while `typing`."""
     x, baseline = start

@@ -21,7 +21,7 @@ _PLACES: Final = tuple((VIEW_SIZE[0] / 2 + shift, top) for shift, top in product
 _COVER: Final = 0.96  # opacity of the panel, over any background
 
 
-class Notes:
+class Note:
     """Note that shows one message at a time, for five seconds."""
 
     def __init__(self) -> None:

@@ -13,12 +13,12 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import SMALL
 from game.ui.widget import OnPress, PointsManager
 from game.ui.widgets import Choice
-from game.ui.words import WordRow
+from game.ui.words import TextButtonRow
 
 _GAP: Final = 20.0  # points between the row and the word that opens the list
 
 
-class Pick(Choice):
+class ChoiceOrList(Choice):
     """Choice that can also be made from a list: Enter, a gamepad's A or a click on `all_word` calls `on_open`.
 
     The word is shown at the right end if not all options fit into the row.
@@ -43,7 +43,7 @@ class Pick(Choice):
         self._open_left = float(self.box.right)
         if len(self.row.pages) > 1:
             self._open_left -= typeface.width(all_word, size, "regular")
-            self.row = WordRow(options, self.box.left + label_width, self._open_left - _GAP, size)
+            self.row = TextButtonRow(options, self.box.left + label_width, self._open_left - _GAP, size)
 
     def press(self) -> Transition | None:
         """Open the list, or take the option under the mouse."""

@@ -20,7 +20,7 @@ _EDGE: Final = 2.0
 _NOWHERE: Final = (-1.0, -1.0)
 
 
-class Pointer(Widget):
+class VirtualPointer(Widget):
     """Virtual pointer: Enter or a gamepad's A activates it, and then is its mouse button; Escape or B ends it.
 
     `tell` receives its actions as mouse events in points, so that no other code need know of it. While inactive, it

@@ -14,12 +14,12 @@ from game.drawing.tokens import FAINT, INK, MUTE, NET, SMALL, TEXT, Colour
 from game.drawing.typeface import Weight
 from game.ui.widget import EASE, OnPress, PointsManager, Widget, mix
 from game.ui.words import GAP as CHOICE_GAP
-from game.ui.words import WordRow
+from game.ui.words import TextButtonRow
 
 _SWITCH: Final = 46  # points that a switch takes of its box
 
 
-class Word(Widget):
+class TextButton(Widget):
     """Text button; a short line under the word shows the focus."""
 
     def __init__(
@@ -203,7 +203,7 @@ class Choice(Widget):
         super().__init__(manager, box, label)
         self.options, self.index, self._on_change, self._size = options, index, on_change, size
         self._label_room = max(label_width - 10, 0)
-        self.row = WordRow(options, self.box.left + label_width, self.box.right, size, gap)
+        self.row = TextButtonRow(options, self.box.left + label_width, self.box.right, size, gap)
 
     def choose(self, index: int) -> None:
         """Choose an option by its number."""

@@ -14,7 +14,7 @@ GAP: Final = 24  # points between two words
 _ARROW: Final = 24  # points for an arrow on either side
 
 
-class WordRow:
+class TextButtonRow:
     """Row of words from `left` to `right`, in points. One page is shown at a time, between arrows.
 
     Attributes:

@@ -33,7 +33,7 @@ _Paint = Callable[[tuple[int, int]], pygame.Surface]
 
 
 @dataclass(frozen=True)
-class Picture:
+class SpriteShape:
     """Shape drawn for an image key: corners in units of a sprite's size (none for a disc), and a colour."""
 
     corners: tuple[tuple[float, float], ...]
@@ -47,14 +47,14 @@ class Picture:
 _SQUARE: Final = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 _WEDGE: Final = ((-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5))
 # One row a picture, by the image key that sprites have
-PICTURES: Final[dict[str, Picture]] = {
-    "rail": Picture(_SQUARE, FAINT),
-    "slope": Picture(_WEDGE, FAINT),
-    "box": Picture(_SQUARE, MUTE),
-    "bright-box": Picture(_SQUARE, INK),
-    "disc": Picture((), MUTE),
-    "bright-disc": Picture((), INK),
-    "ember-disc": Picture((), EMBER),
+PICTURES: Final[dict[str, SpriteShape]] = {
+    "rail": SpriteShape(_SQUARE, FAINT),
+    "slope": SpriteShape(_WEDGE, FAINT),
+    "box": SpriteShape(_SQUARE, MUTE),
+    "bright-box": SpriteShape(_SQUARE, INK),
+    "disc": SpriteShape((), MUTE),
+    "bright-disc": SpriteShape((), INK),
+    "ember-disc": SpriteShape((), EMBER),
 }
 
 

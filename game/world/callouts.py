@@ -25,7 +25,7 @@ _EDGE: Final = 24.0  # points that words keep from the edges of the view, and fr
 _ROWS: Final = (96.0, 600.0)  # the rows between which words may stand
 
 
-class Moments:
+class Callouts:
     """Callouts of one flight; call `follow` once after every step.
 
     While `calm` (reduced motion), words appear at once, and without light.

@@ -75,7 +75,7 @@ class View:
 
 
 @dataclass(frozen=True)
-class Clear:
+class ClearArea:
     """The part of the screen, in points, that is kept clear for the flight; text has the rest."""
 
     left: float = 0.0
@@ -84,14 +84,14 @@ class Clear:
 
 
 @dataclass(frozen=True)
-class Shot:
+class CameraTarget:
     """Target of a camera: `across`, in metres, is the middle of the view."""
 
     across: float = 0.0
     zoom: float = 1.0
 
     @classmethod
-    def around(cls, left: float, right: float, top: float, clear: Clear) -> Shot:
+    def around(cls, left: float, right: float, top: float, clear: ClearArea) -> CameraTarget:
         """Return the closest shot whose clear part shows `left` to `right`, and up to `top`, in metres."""
         wide = (clear.right - clear.left) / (POINTS_PER_METRE * max(right - left, 1.0))
         high = (GROUND_ROW - clear.head) / (POINTS_PER_METRE * max(top - GROUND_LINE, 1.0))
@@ -99,10 +99,10 @@ class Shot:
         aside = ((clear.left + clear.right) - VIEW_SIZE[0]) / (2 * POINTS_PER_METRE * zoom)
         return cls((left + right) / 2 - aside, zoom).on_land()
 
-    def on_land(self) -> Shot:
+    def on_land(self) -> CameraTarget:
         """Return this shot, moved so that it never shows where the land ends."""
         reach = LAND_REACH - VIEW_SIZE[0] / (2 * POINTS_PER_METRE * self.zoom)
-        return Shot(min(max(self.across, -reach), reach), self.zoom)
+        return CameraTarget(min(max(self.across, -reach), reach), self.zoom)
 
     def view(self, scale: float) -> View:
         """Return the view of this shot, at `scale` pixels per point."""
@@ -124,18 +124,18 @@ class Camera:
         self._tremor, self._time = 0.0, 0.0
 
     @property
-    def shot(self) -> Shot:
+    def shot(self) -> CameraTarget:
         """The shot that is shown now."""
-        return Shot(float(self._state[0]), math.exp(self._state[1]))
+        return CameraTarget(float(self._state[0]), math.exp(self._state[1]))
 
-    def cut(self, shot: Shot) -> None:
+    def cut(self, shot: CameraTarget) -> None:
         """Show a shot at once, without easing."""
         self._moves = True
         self._state = self._before = np.array([shot.across, math.log(shot.zoom)])
         self._speed = np.zeros(2)
         self._tremor = 0.0
 
-    def follow(self, shot: Shot, subject: tuple[float, float] | None = None) -> None:
+    def follow(self, shot: CameraTarget, subject: tuple[float, float] | None = None) -> None:
         """Ease towards a shot, and keep a position in view; call once per step of 1/60 s.
 
         A critically damped spring reaches a fixed target without overshoot. This is its exact solution over a step,

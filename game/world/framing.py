@@ -9,9 +9,9 @@ import numpy as np
 from ai.common.environment import Doubles
 from ai.lander.environment import LanderEnv
 from game.drawing.tokens import VIEW_SIZE
-from game.world.camera import GROUND_LINE, POINTS_PER_METRE, Camera, Clear, Shot
+from game.world.camera import GROUND_LINE, POINTS_PER_METRE, Camera, CameraTarget, ClearArea
 
-ALL: Final = Clear()
+ALL: Final = ClearArea()
 _AROUND: Final = 2.2  # metres beside a craft, and above it
 _BESIDE: Final = 1.6  # metres beside a pad
 _LEAD: Final = 0.6  # seconds: how far ahead of a craft the camera looks
@@ -20,7 +20,7 @@ _REACH: Final = (6.0, 2.2)  # metres to the side at the height of the ground, an
 _FADE: Final = 3.0  # metres over which a pad out of reach stops counting
 
 
-def framed(env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> Shot:
+def framed(env: LanderEnv, slot: int = 0, clear: ClearArea = ALL) -> CameraTarget:
     """Return the closest shot that fits the craft, the way ahead of it, and its pads into the clear screen."""
     x, y = env.position[slot].tolist()
     ahead_x, ahead_y = (env.position[slot] + _LEAD * env.velocity[slot]).tolist()
@@ -28,18 +28,18 @@ def framed(env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> Shot:
     for edges, weight in _pads(env, slot, x, y):
         left += weight * (min(left, edges[0] - _BESIDE) - left)
         right += weight * (max(right, edges[1] + _BESIDE) - right)
-    return Shot.around(left, right, max(y, ahead_y) + _AROUND, clear)
+    return CameraTarget.around(left, right, max(y, ahead_y) + _AROUND, clear)
 
 
-def whole(path: Doubles) -> Shot:
+def whole(path: Doubles) -> CameraTarget:
     """Return a shot of the whole path (k, 2) of a finished flight: the view at rest, widened as far as needed."""
     (left, _), (right, top) = (path.min(axis=0) - _AROUND).tolist(), (path.max(axis=0) + _AROUND).tolist()
-    zoom = min(1.0, Shot.around(left, right, top, ALL).zoom)
+    zoom = min(1.0, CameraTarget.around(left, right, top, ALL).zoom)
     half = VIEW_SIZE[0] / (2 * POINTS_PER_METRE * zoom)
-    return Shot(min(max(0.0, right - half), left + half), zoom).on_land()
+    return CameraTarget(min(max(0.0, right - half), left + half), zoom).on_land()
 
 
-def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: Clear = ALL) -> None:
+def follow(camera: Camera, env: LanderEnv, slot: int = 0, clear: ClearArea = ALL) -> None:
     """Move a camera with a flight, for one step."""
     x, y = env.position[slot].tolist()
     camera.follow(framed(env, slot, clear), (x, y))

@@ -22,7 +22,7 @@ _LEVELS: Final = 8
 _FINE: Final = 8  # pixels up to which there is a picture for every radius
 
 
-class Kind(IntEnum):
+class ParticleKind(IntEnum):
     """Kind of a particle, which decides how it moves, fades, grows and is drawn."""
 
     DUST = 0  # fine, in clouds that grow
@@ -35,7 +35,7 @@ class Kind(IntEnum):
 
 DUST: Final[Colour] = (150, 140, 150)  # of the moon
 _GLOWS: Final[dict[int, Colour]] = {
-    Kind.SPARK: (255, 176, 90), Kind.AMBER: (255, 150, 70), Kind.BLUE: (96, 160, 255),
+    ParticleKind.SPARK: (255, 176, 90), ParticleKind.AMBER: (255, 150, 70), ParticleKind.BLUE: (96, 160, 255),
 }  # fmt: skip
 _SHARDS: Final[tuple[Colour, ...]] = ((214, 158, 74), (190, 198, 214), (92, 98, 118), (168, 112, 48))
 # By kind:
@@ -108,7 +108,7 @@ class Particles:
         normal = np.stack([-slope, np.ones(len(low))], 1) / np.sqrt(1 + slope**2)[:, None]
         into = (velocity[low] * normal).sum(axis=1)
         along = velocity[low] - into[:, None] * normal
-        gas = kind[low] >= Kind.AMBER
+        gas = kind[low] >= ParticleKind.AMBER
         spread = 0.75 * np.abs(into) * np.where(self._rng.random(len(low)) < 0.5, -1.0, 1.0) * gas
         away = _GRIP[kind[low]][:, None] * along - (_BOUNCE[kind[low]] * np.minimum(into, 0))[:, None] * normal
         velocity[low] = away + spread[:, None] * np.stack([normal[:, 1], -normal[:, 0]], 1)
@@ -118,7 +118,7 @@ class Particles:
         """Emit glowing exhaust from a nozzle along a unit vector; `carried` is the velocity of the craft."""
         count = int(self._rng.poisson(2.4 * thrust))
         if count:
-            kind = Kind.BLUE if blue > 0.5 else Kind.AMBER
+            kind = ParticleKind.BLUE if blue > 0.5 else ParticleKind.AMBER
             aside = np.array([-direction[1], direction[0]])
             speed = self._rng.uniform(6.5, 11.0, (count, 1))
             push = carried + direction * speed + aside * self._rng.normal(0.0, 0.55, (count, 1))
@@ -138,8 +138,8 @@ class Particles:
             strength *= max(0.25, 1 - 0.2 * away)
             count, grains = round(0.6 * count), round(0.5 * grains)
         for kind, number, fast, steep, life, size in (
-            (Kind.DUST, count, (1.6, 6.5), 0.14, (0.5, 1.4), (0.08, 0.24)),
-            (Kind.GRAIN, grains, (4.0, 11.0), 0.20, (0.4, 1.0), (0.010, 0.024)),
+            (ParticleKind.DUST, count, (1.6, 6.5), 0.14, (0.5, 1.4), (0.08, 0.24)),
+            (ParticleKind.GRAIN, grains, (4.0, 11.0), 0.20, (0.4, 1.0), (0.010, 0.024)),
         ):
             side = self._rng.choice((-1.0, 1.0), number)
             reach = self._rng.uniform(0.1, 0.8, number)
@@ -153,8 +153,15 @@ class Particles:
     def settle(self, foot: tuple[float, float], strength: float) -> None:
         """Raise a foot's dust, and sparks where it comes down hard; `strength` 0 to 1."""
         for kind, count, fast, rise, life, size in (
-            (Kind.DUST, int(4 + 9 * strength), (0.3, 1.8), (0.1, 0.8), (0.5, 1.2), (0.06, 0.14)),
-            (Kind.SPARK, int(22 * max(0.0, strength - 0.35)), (0.5, 4.5), (0.3, 2.4), (0.25, 0.8), (0.02, 0.045)),
+            (ParticleKind.DUST, int(4 + 9 * strength), (0.3, 1.8), (0.1, 0.8), (0.5, 1.2), (0.06, 0.14)),
+            (
+                ParticleKind.SPARK,
+                int(22 * max(0.0, strength - 0.35)),
+                (0.5, 4.5),
+                (0.3, 2.4),
+                (0.25, 0.8),
+                (0.02, 0.045),
+            ),
         ):
             side = self._rng.choice((-1.0, 1.0), count)
             start = np.stack([foot[0] + side * self._rng.uniform(0.0, 0.25, count), np.full(count, foot[1] + 0.04)], 1)
@@ -164,10 +171,10 @@ class Particles:
     def burst(self, position: Doubles, velocity: Doubles, share: float = 1.0) -> None:
         """Emit the debris of a crash: sparks, fragments and a ring of dust, or a share of them."""
         for kind, most, speed, life, size in (
-            (Kind.SPARK, 52, 6.5, (0.4, 1.6), (0.02, 0.06)),
-            (Kind.SHARD, 22, 4.2, (2.2, 4.5), (0.06, 0.20)),
-            (Kind.DUST, 46, 3.4, (0.7, 1.8), (0.14, 0.40)),
-            (Kind.GRAIN, 40, 7.0, (0.6, 1.8), (0.012, 0.03)),
+            (ParticleKind.SPARK, 52, 6.5, (0.4, 1.6), (0.02, 0.06)),
+            (ParticleKind.SHARD, 22, 4.2, (2.2, 4.5), (0.06, 0.20)),
+            (ParticleKind.DUST, 46, 3.4, (0.7, 1.8), (0.14, 0.40)),
+            (ParticleKind.GRAIN, 40, 7.0, (0.6, 1.8), (0.012, 0.03)),
         ):
             count = math.ceil(share * most)
             turn = self._rng.uniform(0.05 * np.pi, 0.95 * np.pi, count)
@@ -188,16 +195,18 @@ class Particles:
         radius = radius.clip(_LEAST[kind], _MOST)
         radius -= (radius > _FINE) & (radius % 2)  # every second one will do, where to paint one takes long
         corner = np.rint(place).astype(np.intp) - radius[:, None]
-        turn = np.where(kind == Kind.SHARD, (look % 7) * 16 + (age * (3 + look % 5) * 4).astype(np.intp) % 16, 0)
+        turn = np.where(
+            kind == ParticleKind.SHARD, (look % 7) * 16 + (age * (3 + look % 5) * 4).astype(np.intp) % 16, 0
+        )
         sprites = map(_sprite, kind.tolist(), radius.tolist(), level.tolist(), turn.tolist(), repeat(self._dust))
         drawn = list(zip(sprites, corner.tolist(), strict=True))
-        shines = (kind >= Kind.SPARK).tolist()
+        shines = (kind >= ParticleKind.SPARK).tolist()
         surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if not shining])
         surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if shining], pygame.BLEND_RGB_ADD)
 
     def _add(
         self,
-        kind: Kind,
+        kind: ParticleKind,
         position: Doubles,
         velocity: Doubles,
         life: Doubles,
@@ -216,11 +225,11 @@ class Particles:
 @lru_cache(maxsize=2048)
 def _sprite(kind: int, radius: int, level: int, turn: int, dust: Colour) -> pygame.Surface:
     """Return a particle's picture, `radius` pixels to every side of its middle pixel; `level` is in 1/8."""
-    if kind == Kind.DUST:
+    if kind == ParticleKind.DUST:
         return _puff(radius, level, dust)
-    if kind == Kind.GRAIN:
+    if kind == ParticleKind.GRAIN:
         return _grain(radius, level, dust)
-    if kind == Kind.SHARD:
+    if kind == ParticleKind.SHARD:
         return _shard(radius, turn // 16, turn % 16, level)
     return _glow(kind, radius, level)
 
@@ -249,7 +258,7 @@ def _glow(kind: int, radius: int, level: int) -> pygame.Surface:
     axis = np.arange(-radius, radius + 1) / radius
     away = np.hypot(axis[:, None], axis[None, :])[..., None]
     strength, colour = level / _LEVELS, np.array(_GLOWS[kind])
-    heart, halo = (1.0, 0.6) if kind == Kind.SPARK else (0.10, 0.24)
+    heart, halo = (1.0, 0.6) if kind == ParticleKind.SPARK else (0.10, 0.24)
     hot = 0.35 * colour + 0.65 * 255
     picture = heart * np.exp(-((away / 0.24) ** 2)) * hot + halo * np.clip(1 - away, 0, 1) ** 2 * colour
     return pygame.surfarray.make_surface(np.minimum(strength * picture, 255).astype(np.uint8))

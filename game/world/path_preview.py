@@ -6,15 +6,15 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NET
 from game.flight.flight import Flight
 from game.flight.forecast import Drift, Forecast
-from game.flight.networks import Flyer
+from game.flight.networks import Policy
 from game.world.camera import View
 from game.world.paths import draw_dotted
 
 
-class Outlook:
+class PathPreview:
     """Path preview of one flight; call `follow` once after every step, and while the craft waits."""
 
-    def __init__(self, flight: Flight, network: Flyer | None) -> None:
+    def __init__(self, flight: Flight, network: Policy | None) -> None:
         self._flight = flight
         self._drift = Drift(flight.env)
         self._drifts = False
@@ -25,7 +25,7 @@ class Outlook:
         """Whether a network's path is previewed too."""
         return self._forecast is not None
 
-    def ask(self, network: Flyer | None) -> None:
+    def ask(self, network: Policy | None) -> None:
         """Preview this network's path from here on; with None, only the path without input."""
         self._forecast = Forecast(network, self._flight.env.ground) if network else None
 

@@ -9,10 +9,10 @@ from ai.lander.environment import Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import VIEW_SIZE
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.world import framing
-from game.world.callouts import Moments
-from game.world.camera import Camera, Clear, Shot, View
+from game.world.callouts import Callouts
+from game.world.camera import Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import EARTH, landscape
 from game.world.landscape.ground import draw_ground
 from game.world.landscape.themes import LOOKS, look_of
@@ -34,12 +34,12 @@ class Scenery:
 
     """
 
-    def __init__(self, flight: Flight, reduced_motion: bool, clear: Clear = framing.ALL) -> None:
+    def __init__(self, flight: Flight, reduced_motion: bool, clear: ClearArea = framing.ALL) -> None:
         self._flight, self._calm, self.clear = flight, reduced_motion, clear
         self._look = look_of(flight.recording.mission)
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
-        self._moments = Moments(flight.env, reduced_motion)
+        self._moments = Callouts(flight.env, reduced_motion)
         self._time = 0.0
         self._camera = Camera()
         self.cut()
@@ -68,7 +68,7 @@ class Scenery:
         if not self._calm:
             self._camera.cut(shot)
         elif shot.zoom < self._camera.shot.zoom:
-            self._camera.cut(Shot(zoom=shot.zoom))
+            self._camera.cut(CameraTarget(zoom=shot.zoom))
 
     def wind_to(self) -> None:
         """Show the flight at another moment, without the traces of the steps before."""
@@ -77,7 +77,7 @@ class Scenery:
         self._moments.forget()
         action = 0 if flight.over else int(flight.env.fired[0])
         self.stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
-        self.stage.blue[:] = flight.flown_by is Hand.NETWORK
+        self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
         self.cut()
 
     def breathe(self) -> None:
@@ -85,10 +85,10 @@ class Scenery:
         if not self._calm:
             self._time += STEP
 
-    def follow(self, ended: bool, shot: Shot | None = None) -> None:
+    def follow(self, ended: bool, shot: CameraTarget | None = None) -> None:
         """Follow one step; `ended` is whether the flight ended with it. A `shot` replaces the flight's own."""
         flight = self._flight
-        self.stage.follow(np.array([flight.flown_by is Hand.NETWORK]), np.array([ended]))
+        self.stage.follow(np.array([flight.flown_by is StickHolder.NETWORK]), np.array([ended]))
         self._moments.follow()
         if self._calm:
             return
@@ -102,7 +102,7 @@ class Scenery:
         """Return the camera's view, `alpha` of the way from the last step to this one."""
         return self._camera.view(scale, alpha)
 
-    def shot_of(self, path: Doubles) -> Shot:
+    def shot_of(self, path: Doubles) -> CameraTarget:
         """Return a shot of a whole path (k, 2); with reduced motion, the resting shot."""
         return self._camera.shot if self._calm else framing.whole(path)
 

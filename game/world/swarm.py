@@ -10,7 +10,7 @@ import pygame
 
 from ai.common.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, Outcome
-from ai.training.session import CAREFUL, Sight
+from ai.training.session import CAREFUL, SwarmState
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
@@ -44,7 +44,7 @@ class LearningSwarm:
 
     def clear(self) -> None:
         """Forget the run shown so far."""
-        self.sight: Sight | None = None
+        self.swarm_state: SwarmState | None = None
         self._trails = Trails(0)
         self._before: Doubles = np.empty((0, 3))
         self._now: Doubles = self._before
@@ -53,12 +53,12 @@ class LearningSwarm:
         self._frame = 0
         self._lucky = 0
 
-    def take(self, sight: Sight) -> None:
+    def take(self, swarm_state: SwarmState) -> None:
         """Take a new snapshot of the landers."""
-        poses = np.column_stack([sight.position, sight.angle]).astype(float)
-        last = self.sight
-        if last is None or len(last.outcome) != len(sight.outcome):
-            count = len(sight.outcome)
+        poses = np.column_stack([swarm_state.position, swarm_state.angle]).astype(float)
+        last = self.swarm_state
+        if last is None or len(last.outcome) != len(swarm_state.outcome):
+            count = len(swarm_state.outcome)
             self._trails = Trails(count, _KEEP, stride=2)
             fresh = np.ones(count, bool)
         else:
@@ -68,11 +68,13 @@ class LearningSwarm:
         self._now = poses
         self._gap += 0.3 * (min(max(self._since, 1.0), _LONGEST_GAP) - self._gap)
         self._since = 0.0
-        self.sight = sight
-        self._trails.follow(poses[:, :2], sight.outcome.astype(np.intp), fresh, sight.outcome != Outcome.FLYING)
-        flying = sight.outcome == Outcome.FLYING
+        self.swarm_state = swarm_state
+        self._trails.follow(
+            poses[:, :2], swarm_state.outcome.astype(np.intp), fresh, swarm_state.outcome != Outcome.FLYING
+        )
+        flying = swarm_state.outcome == Outcome.FLYING
         if fresh[self._lucky % len(fresh)] or not flying[self._lucky % len(flying)]:
-            self._lucky = int(np.where(flying, sight.earned, -np.inf).argmax())
+            self._lucky = int(np.where(flying, swarm_state.earned, -np.inf).argmax())
 
     def update(self, still: bool = False) -> None:
         """Advance by 1/60 s; while `still`, lamps and flames do not flicker."""
@@ -87,11 +89,11 @@ class LearningSwarm:
         moon = _moon(canvas.surface.get_size(), self._share)
         canvas.surface.blit(moon, (0, 0))
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
-        if self.sight is None:
+        if self.swarm_state is None:
             return
         part = 1.0 if paused else min(1.0, (self._since + alpha) / self._gap)
         poses = self._before + part * (self._now - self._before)
-        wrecked = np.isin(self.sight.outcome, (Outcome.CRASHED, Outcome.OUT_OF_BOUNDS))
+        wrecked = np.isin(self.swarm_state.outcome, (Outcome.CRASHED, Outcome.OUT_OF_BOUNDS))
         count = len(poses)
         size = next((size for most, size in _SIZES if count <= most), _SIZES[-1][1])
         marked = np.zeros(count, bool)
@@ -111,15 +113,15 @@ class LearningSwarm:
         canvas.surface.set_clip(None)
 
     def _burning(self) -> Bools:
-        assert self.sight is not None
-        burning: Bools = (self.sight.action >= 3) & (self.sight.outcome == Outcome.FLYING)
+        assert self.swarm_state is not None
+        burning: Bools = (self.swarm_state.action >= 3) & (self.swarm_state.outcome == Outcome.FLYING)
         return burning
 
     def _draw_marked(
         self, canvas: Canvas, view: View, pose: Doubles, slot: int, word: str, colour: Colour, size: float
     ) -> None:
-        assert self.sight is not None
-        steer = int(self.sight.action[slot]) % 3
+        assert self.swarm_state is not None
+        steer = int(self.swarm_state.action[slot]) % 3
         thrust = np.array([self._burning()[slot], steer == 2, steer == 1], dtype=float)
         draw_craft(canvas, view, LANDER, pose, thrust, 1.0, self._frame, min(1.0, 1.5 * size))
         x, y = view.points(pose[:2]).tolist()

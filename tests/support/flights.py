@@ -4,7 +4,7 @@ from ai.lander.pilots import ScriptedPilot
 from game.flight.flight import Flight
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 
@@ -33,7 +33,7 @@ def kept(context: Context, flight: Flight, when: float = NOON, **more: object) -
     return records.read(records.keep(flight, when, **more).file)
 
 
-def play(driver: Driver) -> Play:
+def play(driver: Driver) -> PlayScene:
     """The flight that is on the screen."""
-    assert isinstance(driver.top, Play)
+    assert isinstance(driver.top, PlayScene)
     return driver.top

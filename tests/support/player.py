@@ -3,7 +3,7 @@
 import pygame
 
 from ai.lander.pilots import Pilot, ScriptedPilot
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from game.ui.form import Form
 from game.ui.listing import Listing
 from game.ui.widget import Widget
@@ -98,7 +98,7 @@ class Player(Driver):
         pilot, held = pilot or ScriptedPilot(), set[str]()
         self.press("main")  # it waits for the first touch
         for _ in range(most):
-            assert isinstance(self.top, Play)
+            assert isinstance(self.top, PlayScene)
             flight = self.top.flight
             if flight.over:
                 break

@@ -14,7 +14,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import NIGHT0, VIEW_SIZE
 from game.world.camera import POINTS_PER_METRE, Camera, View
 from game.world.landscape.earth import paint_earth
-from game.world.landscape.sheet import Sheet
+from game.world.landscape.sheet import WorldPicture
 from game.world.landscape.sky import NearStars, paint_sky
 from game.world.landscape.terrain import (
     HORIZON_HEIGHT,
@@ -25,7 +25,7 @@ from game.world.landscape.terrain import (
     paint_plain,
     paint_ridge,
 )
-from game.world.landscape.themes import LOOKS, MOON, Look
+from game.world.landscape.themes import LOOKS, MOON, Theme
 
 EARTH: Final = (312.0, 152.0)  # points
 EARTH_RADIUS: Final = 43.0
@@ -50,10 +50,10 @@ class Backdrop:
         self._ridges = [
             (*paint_ridge(size, ridge, own), ridge.depth) for ridge, own in zip(RIDGES, ranges, strict=True)
         ]
-        self._plains: dict[float, tuple[Sheet, tuple[float, float]]] = {}
+        self._plains: dict[float, tuple[WorldPicture, tuple[float, float]]] = {}
         self._look = MOON
 
-    def under(self, look: Look) -> Backdrop:
+    def under(self, look: Theme) -> Backdrop:
         """Return the same land under another theme: another world, or other light."""
         other = copy(self)
         other._look, other._plains = look, {}
@@ -103,7 +103,7 @@ class Backdrop:
         plain, corner = self._plain(view)
         plain.draw(surface, view, corner)
 
-    def _plain(self, view: View) -> tuple[Sheet, tuple[float, float]]:
+    def _plain(self, view: View) -> tuple[WorldPicture, tuple[float, float]]:
         """Return the plain and the place of its top left corner in the world; paint it when first needed at a size."""
         detail = min(view.closest, _PLAIN_DETAIL) or 1.0
         if detail not in self._plains:
@@ -114,7 +114,7 @@ class Backdrop:
             if self._look is not MOON:
                 picture = self._look.on_land(picture)
             x, y = rest.metres((-margin * VIEW_SIZE[0], top / rest.scale)).tolist()
-            self._plains[detail] = Sheet(picture, rest.pixels_per_metre), (x, y)
+            self._plains[detail] = WorldPicture(picture, rest.pixels_per_metre), (x, y)
         return self._plains[detail]
 
     def _draw_earth(self, surface: pygame.Surface, earth: tuple[float, float], across: float, down: int) -> None:

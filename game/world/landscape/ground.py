@@ -14,7 +14,7 @@ from game.drawing.paint import Picture, bell, clouds, layer
 from game.drawing.tokens import INK, SMALL
 from game.world.camera import LAND_REACH, WORLD_WIDTH, View
 from game.world.landscape.pad import draw_pad
-from game.world.landscape.sheet import Sheet
+from game.world.landscape.sheet import WorldPicture
 from game.world.landscape.sky import SUN
 
 _REACH: Final = LAND_REACH  # metres to both sides that are painted
@@ -42,7 +42,7 @@ def draw_ground(canvas: Canvas, view: View, ground: Ground, time: float, shift: 
 
 
 @lru_cache(maxsize=2)
-def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[Sheet, tuple[float, float]]:
+def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[WorldPicture, tuple[float, float]]:
     """Return the picture of the hills, and the place of its top left corner in metres."""
     crest_x = np.arange(-_REACH, _REACH, 1 / pixels_per_metre)
     crest = hills_height(ground, crest_x).astype(np.float32)
@@ -66,7 +66,7 @@ def paint_hills(ground: Ground, pixels_per_metre: float) -> tuple[Sheet, tuple[f
     foot = _FOOT * np.clip((crest - ground.base) / 0.8, 0, 1) ** 0.6  # none where there is no hill
     cover = np.clip(below * pixels_per_metre + 0.5, 0, 1) * (crest > ground.base + 0.01)
     cover = cover * np.clip(1 + (rows - ground.base) / np.maximum(foot, 0.02), 0, 1) ** 1.5
-    return Sheet(layer(picture, cover.astype(np.float32), rng), pixels_per_metre), (-_REACH, top)
+    return WorldPicture(layer(picture, cover.astype(np.float32), rng), pixels_per_metre), (-_REACH, top)
 
 
 def hills_height(ground: Ground, x: Doubles) -> Doubles:

@@ -14,7 +14,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.paint import light, mix
 from game.drawing.tokens import INK, NIGHT0, NIGHT1, Colour
 from game.world.camera import View
-from game.world.landscape.sheet import Sheet
+from game.world.landscape.sheet import WorldPicture
 
 _FACTOR: Final = 4
 _BACK: Final = 0.20  # metres by which the deck's far edge appears above its near one
@@ -44,7 +44,9 @@ def draw_pad(
 
 
 @lru_cache(maxsize=8)
-def _paint(pixels_per_metre: float, width: float, height: float, colour: Colour) -> tuple[Sheet, tuple[float, float]]:
+def _paint(
+    pixels_per_metre: float, width: float, height: float, colour: Colour
+) -> tuple[WorldPicture, tuple[float, float]]:
     """Return the picture of a pad `height` metres high, and its corner relative to the middle of its top, in metres."""
     scale = pixels_per_metre * _FACTOR
     half = math.ceil((width / 2 + _MARGIN) * pixels_per_metre)
@@ -75,7 +77,7 @@ def _paint(pixels_per_metre: float, width: float, height: float, colour: Colour)
         x = side * (edge - 0.08)
         quad((150, 158, 178), (x - 0.035, 0.0), (x + 0.035, 0.0), (x + 0.035, _LAMP), (x - 0.035, _LAMP))
     picture = pygame.transform.smoothscale(sheet, (2 * half, above + below))
-    return Sheet(picture, pixels_per_metre), (-half / pixels_per_metre, above / pixels_per_metre)
+    return WorldPicture(picture, pixels_per_metre), (-half / pixels_per_metre, above / pixels_per_metre)
 
 
 def _dashes(quad: object, inset: float, colour: Colour) -> None:
@@ -88,7 +90,7 @@ def _dashes(quad: object, inset: float, colour: Colour) -> None:
 
 
 @lru_cache(maxsize=8)
-def _pool(pixels_per_metre: float, width: float, colour: Colour) -> tuple[Sheet, tuple[float, float]]:
+def _pool(pixels_per_metre: float, width: float, colour: Colour) -> tuple[WorldPicture, tuple[float, float]]:
     """Return the lamps' light on the regolith around the pad, and half its width and height in metres."""
     half_width, half_height = (width / 2 + 2.6) * pixels_per_metre, 0.75 * pixels_per_metre
     x = np.arange(-half_width, half_width, dtype=np.float32)[None, :] / pixels_per_metre
@@ -96,4 +98,7 @@ def _pool(pixels_per_metre: float, width: float, colour: Colour) -> tuple[Sheet,
     shine = sum(np.exp(-(((x - side * width / 2) / 1.25) ** 2) - (y / 0.42) ** 2) for side in (-1, 1))
     fade = np.clip(1 - np.abs(y), 0, 1) * np.clip(1 - np.abs(x) / (width / 2 + 2.6), 0, 1)
     picture = light((0.30 * shine * fade)[..., None] * np.array(colour, np.float32))
-    return Sheet(picture, pixels_per_metre, _BLUR), (half_width / pixels_per_metre, half_height / pixels_per_metre)
+    return WorldPicture(picture, pixels_per_metre, _BLUR), (
+        half_width / pixels_per_metre,
+        half_height / pixels_per_metre,
+    )

@@ -15,7 +15,7 @@ _SPARE: Final = 3  # pixels that the scaled part reaches beyond the view, at lea
 _RIM_LEFT: Final = (1, 0, 2)  # pixels of the rim that are left out on one side: its middle moves the other way
 
 
-class Sheet:
+class WorldPicture:
     """A picture painted at `per_metre` pixels per metre.
 
     `soft` is the relative error that its width may have, half of it at either end.

@@ -17,7 +17,7 @@ Light = tuple[float, float, float]  # red, green, blue
 
 
 @dataclass(frozen=True)
-class Look:
+class Theme:
     """Colour transformation of the landscape, relative to the moon at dawn.
 
     Attributes:
@@ -62,16 +62,16 @@ class Look:
 _DARK: Final = 0.1
 _LEAST_DUST: Final = 0.45  # the engine's own light falls on it
 _NIGHT: Final[Light] = (0.9 * NIGHT0[0], 0.9 * NIGHT0[1], 0.9 * NIGHT0[2])
-MOON: Final = Look()
-LOOKS: Final[dict[str, Look]] = {
+MOON: Final = Theme()
+LOOKS: Final[dict[str, Theme]] = {
     "moon": MOON,
-    "mars": Look(
+    "mars": Theme(
         (1.0, 0.62, 0.45), (1.55, 0.92, 0.62), (104.0, 58.0, 36.0), 0.18, (12.0, 2.0, 0.0), stars=False, earth=False
     ),
-    "earth": Look(
+    "earth": Theme(
         (0.85, 0.95, 1.0), (0.75, 1.05, 0.95), (40.0, 74.0, 112.0), 0.18, (0.0, 4.0, 4.0), stars=False, earth=False
     ),
-    "night": Look((_DARK,) * 3, (_DARK,) * 3, _NIGHT, 1.0, _NIGHT, light=0.4, earth=False),
+    "night": Theme((_DARK,) * 3, (_DARK,) * 3, _NIGHT, 1.0, _NIGHT, light=0.4, earth=False),
 }
 
 

@@ -9,7 +9,7 @@ from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import InForce, idle, in_force
 from ai.digits.config import DIGIT_PRESETS
 from ai.training.loop import Training
-from ai.training.session import Change, Sight, live
+from ai.training.session import ChangeSetting, SwarmState, live
 
 TINY = Config(
     hidden=(8,), num_envs=16, warm_up=32, batch_size=16, updates=1, replay_size=2000, spawn="near", horizon=1000,
@@ -80,13 +80,13 @@ def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():
     training = run.gi_frame.f_locals["run"].training
     told += [next(run) for _ in range(80)]
     assert isinstance(told[0][-2], InForce) or any(isinstance(each, InForce) for each in told[0])
-    (said,) = [each for each in run.send(Change("discount", 0.9)) if isinstance(each, InForce)]
+    (said,) = [each for each in run.send(ChangeSetting("discount", 0.9)) if isinstance(each, InForce)]
     assert said.values["learning_rate"] == training.agent.optimizer.learning_rate == TINY.final_learning_rate
     assert said.values["epsilon_start"] == training.epsilon
     assert said.idle["learning_rate"] == "final_learning_rate"
-    (said,) = [each for each in run.send(Change("final_learning_rate", 0.01)) if isinstance(each, InForce)]
+    (said,) = [each for each in run.send(ChangeSetting("final_learning_rate", 0.01)) if isinstance(each, InForce)]
     assert said.values["learning_rate"] == 0.01, "at once, also while it rests"
-    assert any(isinstance(each, Sight) for each in next(run))
+    assert any(isinstance(each, SwarmState) for each in next(run))
     assert training.agent.optimizer.learning_rate == 0.01
     run.close()
 

@@ -23,7 +23,7 @@ from ai.digits.training import DigitTraining
 from ai.lander.environment import LanderEnv
 from ai.nn import ModelFormatError
 from ai.training.checkpoints import TRAINING_FILE, save_run
-from ai.training.history import HISTORY_FILE, Alteration, Checkpoint, History, Validation
+from ai.training.history import HISTORY_FILE, Checkpoint, History, SettingChange, Validation
 from ai.training.loop import Training
 from main import main
 
@@ -211,7 +211,7 @@ def test_a_run_whose_file_makes_no_sense_is_not_gone_on_with(refused, runs, cont
 def test_a_history_with_nonsense_for_numbers_is_named(tmp_path, entry, value):
     history = History()
     history.append(Checkpoint(0.0, 0, 0.0, np.zeros(3, np.float32)))
-    history.append(Alteration(5, "updates", 1, 2))
+    history.append(SettingChange(5, "updates", 1, 2))
     history.append(Validation(7, 0.5, 1.0, True))
     history.write(tmp_path)
     assert len(History.read(tmp_path).checkpoints) == 1

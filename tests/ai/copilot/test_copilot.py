@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ai.copilot.copilot import GUARDIAN_MARGIN, CoPilot, Mode, Rule
+from ai.copilot.copilot import GUARDIAN_MARGIN, ActionSource, CoPilot, Mode
 from ai.lander.pilots import COAST
 
 
@@ -39,12 +39,12 @@ def test_tolerance_is_the_rule_of_the_paper(assist):
 @pytest.mark.parametrize(
     ("values", "pilot", "action", "rule"),
     [
-        ((0, 0, 0, 9, 10, 0), 3, 3, Rule.PILOT),
-        ((0, 0, 0, 0, 10, 0), 3, 4, Rule.PILOT_MAIN),
-        ((0, 0, 0, 0, 10, 0), 1, 4, Rule.PILOT_STEER),
-        ((0, 0, 0, 0, 10, 0), 2, 4, Rule.COPILOT),
-        ((0, 0, 0, 0, 10, 0), 0, 4, Rule.HANDS_OFF),
-        ((10, 0, 0, 0, 0, 0), 0, 0, Rule.PILOT),
+        ((0, 0, 0, 9, 10, 0), 3, 3, ActionSource.PILOT),
+        ((0, 0, 0, 0, 10, 0), 3, 4, ActionSource.PILOT_MAIN),
+        ((0, 0, 0, 0, 10, 0), 1, 4, ActionSource.PILOT_STEER),
+        ((0, 0, 0, 0, 10, 0), 2, 4, ActionSource.COPILOT),
+        ((0, 0, 0, 0, 10, 0), 0, 4, ActionSource.HANDS_OFF),
+        ((10, 0, 0, 0, 0, 0), 0, 0, ActionSource.PILOT),
     ],
 )
 def test_the_pilot_keeps_as_much_as_is_safe(values, pilot, action, rule):
@@ -106,7 +106,7 @@ def test_a_pilot_who_heads_for_one_pad_is_understood():
 
 
 def test_with_all_pads_open_nothing_is_read_into_actions():
-    copilot = CoPilot(valuer(LEFT, RIGHT), 0.9, "guardian", reads_wishes=False)
+    copilot = CoPilot(valuer(LEFT, RIGHT), 0.9, "guardian", reads_intent=False)
     for _ in range(30):
         copilot.share(seen(1, 2), [1])
     assert copilot.share(seen(1, 2), [2])[0][0] == 2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ai.digits.classifier import DigitClassifier
-from ai.digits.dream import INK, STEPS, Dream
+from ai.digits.dream import INK, STEPS, ActivationMaximisation
 
 MODELS = Path(__file__).parents[3] / "models" / "digits"
 
@@ -15,7 +15,7 @@ def classifier(request):
 
 
 def dreamt(classifier, digit, steps, **options):
-    dream = Dream(classifier, digit, np.random.default_rng(0), **options)
+    dream = ActivationMaximisation(classifier, digit, np.random.default_rng(0), **options)
     for _ in range(steps):
         dream.advance()
     return dream
@@ -24,7 +24,9 @@ def dreamt(classifier, digit, steps, **options):
 @pytest.mark.parametrize("calm", [0.0, 0.7])
 def test_the_network_comes_to_read_the_digit_it_dreams_of(classifier, calm):
     dream = dreamt(classifier, 3, 40, calm=calm)
-    assert dream.probabilities[3] > 0.5 > Dream(classifier, 3, np.random.default_rng(0)).probabilities[3]
+    assert (
+        dream.probabilities[3] > 0.5 > ActivationMaximisation(classifier, 3, np.random.default_rng(0)).probabilities[3]
+    )
     np.testing.assert_array_equal(dream.probabilities, classifier.predict(dream.image)[0])
 
 
@@ -36,7 +38,7 @@ def test_a_calm_dream_has_no_more_ink_than_a_digit_and_a_wild_one_has(classifier
 
 def test_the_gradient_is_that_of_what_is_to_grow(classifier):
     """Against finite differences of the logarithm of the probability, or of the outputs' difference."""
-    dream = Dream(classifier, 2, np.random.default_rng(3), calm=0.0)
+    dream = ActivationMaximisation(classifier, 2, np.random.default_rng(3), calm=0.0)
     network = classifier.network
 
     def worth(image):
@@ -56,7 +58,7 @@ def test_it_begins_with_a_drawing_and_comes_to_an_end():
     classifier = DigitClassifier.load(MODELS / "classic")
     drawing = np.zeros((28, 28), np.float32)
     drawing[4:24, 13:16] = 1
-    dream = Dream(classifier, 1, np.random.default_rng(0), start=drawing)
+    dream = ActivationMaximisation(classifier, 1, np.random.default_rng(0), start=drawing)
     np.testing.assert_array_equal(dream.image, drawing)
     while not dream.done:
         dream.advance()
@@ -77,4 +79,4 @@ def test_it_makes_do_with_any_image(start):
 
 def test_there_is_no_eleventh_digit():
     with pytest.raises(ValueError, match="from 0 to 9"):
-        Dream(DigitClassifier.load(MODELS / "classic"), 10, np.random.default_rng(0))
+        ActivationMaximisation(DigitClassifier.load(MODELS / "classic"), 10, np.random.default_rng(0))

@@ -6,10 +6,20 @@ from ai.digits.checkpoints import resume_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
 from ai.digits.mnist import load_part
-from ai.digits.session import Confusion, DigitPoint, DigitsBegun, Finish, GoBack, Kept, Score, Turned, live_digits
+from ai.digits.session import (
+    Confusion,
+    DigitPoint,
+    DigitRunSaved,
+    DigitRunStarted,
+    DigitSettingChanged,
+    Finish,
+    HeldOutScore,
+    RestoreBest,
+    live_digits,
+)
 from ai.digits.training import DigitTraining, confusion
 from ai.training.history import REVERTED
-from ai.training.messages import Change, Refused, Save
+from ai.training.messages import ChangeSetting, Refused, Save
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, averaging=0.9)
 
@@ -32,8 +42,8 @@ def kinds(told, kind):
 
 def test_a_run_tells_how_it_begins_how_it_stands_and_what_it_misreads(data):
     told = [each for turn in live_digits(SMALL, 4, data=data) for each in turn]
-    assert told[0] == DigitsBegun(SMALL, 4, 0, 30)
-    points, scores = kinds(told, DigitPoint), kinds(told, Score)
+    assert told[0] == DigitRunStarted(SMALL, 4, 0, 30)
+    points, scores = kinds(told, DigitPoint), kinds(told, HeldOutScore)
     assert points[0].step == 1
     assert [one.seconds for one in points] == sorted(one.seconds for one in points)
     assert scores[-1].accuracy > scores[0].accuracy
@@ -59,7 +69,7 @@ def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
 
 def test_a_finished_run_is_kept_with_its_accuracy_on_the_test_images(data, tmp_path):
     told = [each for turn in live_digits(SMALL, 4, keep=tmp_path / "run", data=data) for each in turn]
-    (kept,) = kinds(told, Kept)
+    (kept,) = kinds(told, DigitRunSaved)
     assert kept.folder == tmp_path / "run"
     assert kept.test > 0.2
 
@@ -71,7 +81,7 @@ def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
     run.close()
     assert resume_digit_run(tmp_path / "run", data=data).step == 7
     again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
-    assert [next(again), next(again)] == [[], [DigitsBegun(SMALL, 4, 7, 30)]]
+    assert [next(again), next(again)] == [[], [DigitRunStarted(SMALL, 4, 7, 30)]]
 
 
 def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(data, tmp_path):
@@ -82,7 +92,7 @@ def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(
     told += run.send(Save(tmp_path / "asked meanwhile"))
     for turn in run:
         told += turn
-    saved, kept = kinds(told, Kept)
+    saved, kept = kinds(told, DigitRunSaved)
     assert (saved.folder, saved.problem) == (tmp_path / "asked meanwhile", "")
     assert kept.folder == tmp_path / "run"
     assert kept.test > 0.1
@@ -94,7 +104,7 @@ def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
     run = live_digits(SMALL, 4, keep=tmp_path / "run", data=data)
     for _ in range(9):
         next(run)
-    assert run.send(Save(tmp_path / "named")) == [Kept(tmp_path / "named")]
+    assert run.send(Save(tmp_path / "named")) == [DigitRunSaved(tmp_path / "named")]
     assert resume_digit_run(tmp_path / "named", data=data).step == 7
     (tmp_path / "file").write_text("in the way")
     (refused,) = run.send(Save(tmp_path / "file" / "named"))
@@ -104,10 +114,10 @@ def test_a_run_is_saved_to_another_folder_when_asked(data, tmp_path):
 def test_live_knobs_turn_and_others_are_refused(data):
     run = live_digits(SMALL, data=data)
     next(run), next(run)
-    assert run.send(Change("learning_rate", 1e-4)) == [Turned(0.0, "learning_rate", 1e-4)]
-    (refused,) = run.send(Change("hidden", (3,)))
+    assert run.send(ChangeSetting("learning_rate", 1e-4)) == [DigitSettingChanged(0.0, "learning_rate", 1e-4)]
+    (refused,) = run.send(ChangeSetting("hidden", (3,)))
     assert isinstance(refused, Refused)
-    assert isinstance(run.send(Change("augmentation", 7.0))[0], Refused)
+    assert isinstance(run.send(ChangeSetting("augmentation", 7.0))[0], Refused)
     rates = [each.learning_rate for turn in run for each in kinds(turn, DigitPoint)]
     assert max(rates) <= 1e-4
 
@@ -120,7 +130,9 @@ def test_a_full_disk_is_told_of_once_and_the_run_goes_on(data, tmp_path, monkeyp
 
     monkeypatch.setattr(digit_live, "save_digit_run", full)
     told = [each for turn in live_digits(SMALL, keep=tmp_path / "run", data=data) for each in turn]
-    assert [each.problem for each in kinds(told, Kept)] == ["No space left on device"] * 2  # at first, and at the end
+    assert [each.problem for each in kinds(told, DigitRunSaved)] == [
+        "No space left on device"
+    ] * 2  # at first, and at the end
     assert kinds(told, DigitPoint)[-1].step > 1
 
 
@@ -143,26 +155,26 @@ RUINED = SMALL.changed(epochs=40, learning_rate=0.02, augmentation=0.0)
 def ruin(run):
     """Let a run learn for some epochs, with far too long steps from then on; return what it told."""
     told = [each for _ in range(160) for each in next(run)]
-    told += run.send(Change("learning_rate", 1.0)) + run.send(Change("final_learning_rate", 1.0))
+    told += run.send(ChangeSetting("learning_rate", 1.0)) + run.send(ChangeSetting("final_learning_rate", 1.0))
     told += [each for _ in range(40) for each in next(run)]
-    told += run.send(Change("learning_rate", 0.02)) + run.send(Change("final_learning_rate", 1e-6))
+    told += run.send(ChangeSetting("learning_rate", 0.02)) + run.send(ChangeSetting("final_learning_rate", 1e-6))
     return told + [each for _ in range(20) for each in next(run)]
 
 
 def test_a_ruined_network_can_go_back_to_its_best(data):
     run = live_digits(RUINED, 4, data=data)
     told = ruin(run)
-    assert [each.after for each in kinds(told, Turned)] == [1.0, 1.0, 0.02, 1e-6]
-    scores = [each.accuracy for each in kinds(told, Score)]
+    assert [each.after for each in kinds(told, DigitSettingChanged)] == [1.0, 1.0, 0.02, 1e-6]
+    scores = [each.accuracy for each in kinds(told, HeldOutScore)]
     best = max(scores)
     assert scores[-1] < best - 0.2, "rate to 1 and back leaves a ruin"
-    (went,) = run.send(GoBack())
+    (went,) = run.send(RestoreBest())
     assert (went.name, went.after) == (REVERTED, best)
     training = run.gi_frame.f_locals["run"].training
     table = confusion(training.current(), training.held_images, training.held_labels)
     assert table.trace() / table.sum() == best
-    told = next(turn for _ in range(400) if kinds(turn := next(run), Score))  # a turn is as long as a clock says
-    assert kinds(told, Score)[-1].accuracy > best - 0.1, "and it learns on from there"
+    told = next(turn for _ in range(400) if kinds(turn := next(run), HeldOutScore))  # a turn is as long as a clock says
+    assert kinds(told, HeldOutScore)[-1].accuracy > best - 0.1, "and it learns on from there"
 
 
 def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
@@ -171,13 +183,13 @@ def test_what_is_shown_in_the_end_is_the_network_that_is_kept(data, tmp_path):
     told = run.send(Finish())
     for turn in run:
         told += turn
-    (kept,) = kinds(told, Kept)
+    (kept,) = kinds(told, DigitRunSaved)
     training = resume_digit_run(tmp_path / "run", data=data)
     shown = kinds(told, Confusion)[-1].table
     best = DigitClassifier.load(tmp_path / "run")
     assert np.array_equal(shown, confusion(best, training.held_images, training.held_labels))
     assert shown.trace() / shown.sum() == training.best
-    assert kinds(told, Score)[-1].accuracy < training.best - 0.2, "the curve ends with the last one"
+    assert kinds(told, HeldOutScore)[-1].accuracy < training.best - 0.2, "the curve ends with the last one"
     assert training.history[kept.epoch - 1]["held_out"] == training.best, "and which it is, is said"
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from ai.agent.config import PRESETS
 from ai.lander.environment import NUM_ACTIONS, LanderEnv, Outcome
-from ai.lander.rewards import REWARDS, Change, RewardWeights, Situation
+from ai.lander.rewards import REWARDS, RewardWeights, Situation, SituationChange
 
 SHAPING = ("distance", "speed", "alignment")
 
@@ -13,7 +13,7 @@ SHAPING = ("distance", "speed", "alignment")
 def change(before, after):
     """A decision of four steps between two situations, in which nothing else happened."""
     none = np.zeros(len(before.distance), dtype=np.intp)
-    return Change(before, after, none + 4, none, none, none, none, none > 0, none > 0)
+    return SituationChange(before, after, none + 4, none, none, none, none, none > 0, none > 0)
 
 
 def situation(distance, speed, offset, tilt):

@@ -23,7 +23,7 @@ from ai.nn import (
     NeuralNetwork,
     atomic_folder,
 )
-from ai.nn.folder import NETWORK, Kind
+from ai.nn.folder import NETWORK, FolderKind
 from ai.nn.storage import LAYERS
 
 X = np.random.default_rng(0).normal(size=(7, 3))
@@ -339,7 +339,7 @@ def test_somebodys_files_are_never_replaced(tmp_path):
 
 
 def test_a_folder_may_hold_networks_in_folders(tmp_path):
-    kind = Kind("agent", folders={"network": NETWORK})
+    kind = FolderKind("agent", folders={"network": NETWORK})
     for seed in (1, 2):
         with atomic_folder(tmp_path / "agent", kind) as folder:
             every_layer(seed).save(folder / "network")

@@ -15,8 +15,8 @@ import pytest
 from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import idle
 from ai.lander.rewards import RewardWeights
-from ai.training.hints import Adviser, Hint, Recent
-from ai.training.history import REVERTED, Alteration, Checkpoint, History, Point
+from ai.training.hints import Adviser, Hint, RecentCurves
+from ai.training.history import REVERTED, Checkpoint, History, Point, SettingChange
 from ai.training.session import turned
 
 FILE = Path(__file__).with_name("broken_runs.npz")
@@ -71,7 +71,7 @@ def watch(name: str) -> Watched:
         while turns and told["decisions"] > turns[0][0]:
             at, knob, value = turns.pop(0)
             new = turned(config, knob, value)
-            history.append(Alteration(at, knob, attrgetter(knob)(config), attrgetter(knob)(new)))
+            history.append(SettingChange(at, knob, attrgetter(knob)(config), attrgetter(knob)(new)))
             config = new
         if told["decisions"] >= checkpoint_at:
             history.append(
@@ -152,10 +152,10 @@ def test_after_going_back_the_damage_is_no_longer_spoken_of():
         history.append(Point(**{key: told[key] for key in columns[:-2]}, steps_per_second=0.0, landed=told["success"]))
     for at, knob, value in run.turns:
         before = getattr(PRESETS["modern"], knob) if value == 1.0 else 1.0
-        history.append(Alteration(at, knob, before, value))
-    assert Recent(history, PRESETS["modern"]).damaged_at() == run.turns[0][0]
-    history.append(Alteration(run.turns[-1][0] + 10, REVERTED, None, 100_000))
-    assert Recent(history, PRESETS["modern"]).damaged_at() is None
+        history.append(SettingChange(at, knob, before, value))
+    assert RecentCurves(history, PRESETS["modern"]).damaged_at() == run.turns[0][0]
+    history.append(SettingChange(run.turns[-1][0] + 10, REVERTED, None, 100_000))
+    assert RecentCurves(history, PRESETS["modern"]).damaged_at() is None
 
 
 NAMED = {

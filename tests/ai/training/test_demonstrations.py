@@ -10,8 +10,8 @@ from ai.lander.environment import LanderEnv
 from ai.lander.ground import hilly
 from ai.lander.pilots import ScriptedPilot
 from ai.training.demonstrations import MOST, Demonstration, demonstrate, read, relive, takeover, taught, teach, write
-from ai.training.history import Alteration
-from ai.training.session import TAUGHT, Insight, Refused, Sight, Teach, live
+from ai.training.history import SettingChange
+from ai.training.session import TAUGHT, AddDemonstrations, NetworkState, Refused, SwarmState, live
 
 MODERN = PRESETS["modern"]
 
@@ -131,16 +131,18 @@ def test_a_live_run_learns_from_them_from_its_first_decision(landings, tmp_path)
     lonely, led = live(config), live(config)
     next(lonely)
     next(led)
-    answer = led.send(Teach(path))
-    assert [(told.name, told.after) for told in answer if isinstance(told, Alteration)] == [
+    answer = led.send(AddDemonstrations(path))
+    assert [(told.name, told.after) for told in answer if isinstance(told, SettingChange)] == [
         ("success_pass", True),
         (TAUGHT, len(landings)),
     ]
-    insights = [[message for message in next(run) if isinstance(message, Insight)] for run in (lonely, led)]
+    insights = [[message for message in next(run) if isinstance(message, NetworkState)] for run in (lonely, led)]
     assert not insights[0][-1:] or not insights[0][-1].gradients.any()  # still warming up
     assert insights[1][-1].gradients.any()
     write(path, [*landings, replace(landings[0], begins=30)])
-    assert [told.after for told in led.send(Teach(path)) if isinstance(told, Alteration)] == [1]  # only the new one
+    assert [told.after for told in led.send(AddDemonstrations(path)) if isinstance(told, SettingChange)] == [
+        1
+    ]  # only the new one
     lonely.close()
     led.close()
 
@@ -152,10 +154,10 @@ def test_a_live_run_goes_on_where_there_is_nothing_to_learn_from(content, words,
         path.write_text(content)
     run = live(PRESETS["classic"])
     next(run)
-    (refused,) = run.send(Teach(path))
+    (refused,) = run.send(AddDemonstrations(path))
     assert isinstance(refused, Refused)
     assert words in refused.problem
-    assert any(isinstance(message, Sight) for message in next(run))
+    assert any(isinstance(message, SwarmState) for message in next(run))
     run.close()
 
 
@@ -175,11 +177,11 @@ def test_demonstrations_that_make_no_sense_are_refused_and_the_training_goes_on(
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     run = live(PRESETS["classic"])
     next(run)
-    (refused,) = run.send(Teach(path))
+    (refused,) = run.send(AddDemonstrations(path))
     assert isinstance(refused, Refused)
     assert "flights.json" in refused.problem
     assert len(refused.problem) < 400
-    assert any(isinstance(message, Sight) for message in next(run))
+    assert any(isinstance(message, SwarmState) for message in next(run))
     run.close()
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.normalizer import RunningScale
+from ai.agent.normalizer import Normalizer
 from ai.nn import ModelFormatError
 from ai.training.checkpoints import resume_run
 from ai.training.gym_task import GymTask, gym_config
@@ -19,7 +19,7 @@ LANDER = "ai.gym.lander:tranquility/Lander-v0"
 def test_a_running_scale_is_the_scale_of_all_it_saw():
     rng = np.random.default_rng(0)
     seen = (rng.normal(size=(60, 3)) * [5.0, 0.01, 0.0] + [100.0, -1.0, 3.0]).astype(np.float32)
-    scale = RunningScale(3)
+    scale = Normalizer(3)
     for part in (seen[:1], seen[1:20], seen[20:]):
         scale.watch(part)
     assert scale.mean == pytest.approx(seen.mean(axis=0, dtype=float))
@@ -28,7 +28,7 @@ def test_a_running_scale_is_the_scale_of_all_it_saw():
     assert scaled.mean(axis=0) == pytest.approx(0.0, abs=1e-3)
     assert scaled.std(axis=0) == pytest.approx([1.0, 1.0, 0.0], abs=1e-3)
     assert np.abs(scale(seen * 1000)).max() == 10.0
-    copy = RunningScale(3)
+    copy = Normalizer(3)
     copy.load(json.loads(json.dumps(scale.to_json())))
     assert np.array_equal(copy(seen), scaled)
 

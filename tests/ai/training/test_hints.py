@@ -10,8 +10,8 @@ import pytest
 
 from ai.agent.config import PRESETS, Config
 from ai.lander.rewards import RewardWeights
-from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, Recent, returns
-from ai.training.history import Alteration, Checkpoint, History, Point
+from ai.training.hints import HOLD, REST, RULES, STAY, Adviser, Hint, RecentCurves, returns
+from ai.training.history import Checkpoint, History, Point, SettingChange
 from ai.training.loop import Training
 from ai.training.sabotage import sabotaged
 
@@ -44,13 +44,13 @@ def later(when: float, **values: Any) -> Curve:
 
 
 def holding(curve: Curve, config: Config = MODERN, dead_share: float | None = None, **options: Any) -> set[str]:
-    run = Recent(history(curve, **options), config, dead_share)
+    run = RecentCurves(history(curve, **options), config, dead_share)
     return {rule.name for rule in RULES if rule.holds(run)}
 
 
 def remedy(name: str, curve: Curve, config: Config = MODERN) -> dict[str, Any]:
     rule = next(rule for rule in RULES if rule.name == name)
-    return dict(rule.remedy(Recent(history(curve), config, None)))
+    return dict(rule.remedy(RecentCurves(history(curve), config, None)))
 
 
 # Rules
@@ -94,7 +94,7 @@ def test_each_rule_holds_for_what_it_is_about(name: str, curve: Curve, config: C
 
 def test_gradients_that_are_cut_short_are_counted():
     for share, found in ((0.9, {"clipped"}), (0.4, set())):
-        run = Recent(history(points()), MODERN, clipped_share=share)
+        run = RecentCurves(history(points()), MODERN, clipped_share=share)
         assert {rule.name for rule in RULES if rule.holds(run)} == found
 
 
@@ -133,10 +133,10 @@ def test_no_number_stops_a_rule(column: str):
 @pytest.mark.parametrize("before", [None, "x", -1, 1e9, True, [1], {"a": 1}])
 def test_no_value_that_a_file_holds_of_a_rate_stops_a_rule(before: Any):
     run = history(points())
-    run.append(Alteration(200_000, "learning_rate", before, 1e-3))
-    assert Recent(run, MODERN).damaged_at() is None
-    run.append(Alteration(300_000, "learning_rate", 1.0, 1e-3))
-    assert Recent(run, MODERN).damaged_at() == 0, "before that, it may have been so from the start"
+    run.append(SettingChange(200_000, "learning_rate", before, 1e-3))
+    assert RecentCurves(run, MODERN).damaged_at() is None
+    run.append(SettingChange(300_000, "learning_rate", 1.0, 1e-3))
+    assert RecentCurves(run, MODERN).damaged_at() == 0, "before that, it may have been so from the start"
 
 
 def test_what_a_flight_can_pay_follows_the_weights():
@@ -296,7 +296,7 @@ def test_another_run_begins_without_the_past():
 
 def test_remedies_are_named_as_knobs_are():
     for rule in RULES:
-        for name in rule.remedy(Recent(history(points()), PRESETS["classic"], None)):
+        for name in rule.remedy(RecentCurves(history(points()), PRESETS["classic"], None)):
             attrgetter(name)(MODERN)
 
 

@@ -11,10 +11,10 @@ from ai.training.history import (
     HISTORY_FILE,
     MOST_CHECKPOINTS,
     PARTS,
-    Alteration,
     Checkpoint,
     History,
     Point,
+    SettingChange,
     Validation,
 )
 
@@ -33,8 +33,8 @@ def full_history():
         history.append(point(number))
     history.append(checkpoint(0))
     history.append(checkpoint(300, {"count": 1, "mean": [0.5], "squares": [0.0]}))
-    history.append(Alteration(200, "learning_rate", 0.002, 0.001))
-    history.append(Alteration(200, "mirror", True, False))
+    history.append(SettingChange(200, "learning_rate", 0.002, 0.001))
+    history.append(SettingChange(200, "mirror", True, False))
     history.append(Validation(100, 0.75, -3.5, True))
     return history
 

@@ -14,20 +14,20 @@ from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
 from ai.training import session as module
 from ai.training.checkpoints import resume_run
-from ai.training.history import PARTS, Alteration, Checkpoint, History, Point, Validation
+from ai.training.history import PARTS, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
 from ai.training.session import (
     CAREFUL,
     REVERTED,
-    Begun,
-    Change,
-    Insight,
+    ChangeSetting,
+    NetworkState,
     Refused,
-    Revert,
+    RestoreCheckpoint,
+    RunStarted,
     Save,
     Saved,
-    Sight,
+    SwarmState,
     agent_of,
     live,
     turned,
@@ -90,22 +90,22 @@ def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_pat
 
 def test_the_first_turn_says_how_it_begins(begin):
     first = next(begin(TINY, 7))
-    assert of(Begun, first) == [Begun(TINY, 7, 0)]
+    assert of(RunStarted, first) == [RunStarted(TINY, 7, 0)]
     (checkpoint,) = of(Checkpoint, first)
     assert (checkpoint.decisions, checkpoint.seconds) == (0, 0.0)
     assert np.array_equal(checkpoint.values, Training(TINY, 7).agent.network.values)
-    assert len(of(Sight, first)) == len(of(Insight, first)) == 1
+    assert len(of(SwarmState, first)) == len(of(NetworkState, first)) == 1
 
 
 def test_every_message_can_be_sent_to_another_process(begin):
     run = begin()
-    for message in [*told_in(run, 120), *run.send(Change("discount", 0.9)), *run.send(Change("nope", 1))]:
+    for message in [*told_in(run, 120), *run.send(ChangeSetting("discount", 0.9)), *run.send(ChangeSetting("nope", 1))]:
         assert type(pickle.loads(pickle.dumps(message))) is type(message)
 
 
 def test_sights_show_flights_as_they_end_and_what_they_have_earned(begin):
     run = begin()
-    sights = of(Sight, told_in(run, 150))
+    sights = of(SwarmState, told_in(run, 150))
     assert [sight.decisions for sight in sights] == [32 * number for number in range(150)]
     earned = np.zeros(32)
     ends = 0
@@ -134,7 +134,7 @@ def test_what_flights_earned_is_the_sum_of_its_parts(begin):
     assert len(last.parts) == len(PARTS)
     assert last.landed + last.crashed + last.out_of_bounds + last.timed_out == pytest.approx(1.0)
     assert last.landed == last.success
-    ended = np.concatenate([sight.outcome[sight.outcome != 0] for sight in of(Sight, told)])
+    ended = np.concatenate([sight.outcome[sight.outcome != 0] for sight in of(SwarmState, told)])
     upto = ended[: int(last.episodes)][-100:]
     assert last.crashed == pytest.approx((upto == Outcome.CRASHED).mean(), abs=0.05)
 
@@ -164,11 +164,11 @@ def test_checkpoints_come_by_decisions_and_fly_as_the_run_did(begin):
 def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     run = begin()
     told_in(run, 30)
-    answer, _ = run.send(Change("learning_rate", 0.05))
-    assert answer == Alteration(29 * 32, "learning_rate", TINY.learning_rate, 0.05)
-    answer, _ = run.send(Change("weights.time", -1.0))
-    assert answer == Alteration(29 * 32, "weights.time", TINY.weights.time, -1.0)
-    assert of(Sight, next(run))[0].decisions == 30 * 32
+    answer, _ = run.send(ChangeSetting("learning_rate", 0.05))
+    assert answer == SettingChange(29 * 32, "learning_rate", TINY.learning_rate, 0.05)
+    answer, _ = run.send(ChangeSetting("weights.time", -1.0))
+    assert answer == SettingChange(29 * 32, "weights.time", TINY.weights.time, -1.0)
+    assert of(SwarmState, next(run))[0].decisions == 30 * 32
 
 
 @pytest.mark.parametrize(
@@ -194,10 +194,10 @@ def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin, name,
     run, quiet = begin(), begin()
     told_in(run, 10)
     told_in(quiet, 10)
-    (answer,) = run.send(Change(name, value))
+    (answer,) = run.send(ChangeSetting(name, value))
     assert isinstance(answer, Refused)
     assert words in answer.problem
-    told, expected = of(Sight, told_in(run, 30))[-1], of(Sight, told_in(quiet, 30))[-1]
+    told, expected = of(SwarmState, told_in(run, 30))[-1], of(SwarmState, told_in(quiet, 30))[-1]
     assert np.array_equal(told.position, expected.position)
 
 
@@ -230,7 +230,7 @@ def test_every_live_knob_makes_a_difference(begin, name):
             picked[0] = rng.normal(size=picked[0].shape).astype(np.float32)
             training.agent.successes.add(type(cells)(*picked))
     told_in(run, 10), told_in(quiet, 10)
-    assert isinstance(run.send(Change(name, value))[0], Alteration)
+    assert isinstance(run.send(ChangeSetting(name, value))[0], SettingChange)
     told_in(run, 60), told_in(quiet, 60)
     ours, theirs = (each.gi_frame.f_locals["run"].training for each in (run, quiet))
     assert getattr(ours.agent.config, name) == value
@@ -241,9 +241,9 @@ def test_every_live_knob_makes_a_difference(begin, name):
 def test_turned_weights_pay_in_the_run_that_goes_on(begin):
     run = begin(TINY.changed(spawn="fixed"))
     told_in(run, 20)
-    run.send(Change("weights.time", -100.0))
-    before = of(Sight, next(run))[0].earned
-    after = of(Sight, next(run))[0].earned
+    run.send(ChangeSetting("weights.time", -100.0))
+    before = of(SwarmState, next(run))[0].earned
+    after = of(SwarmState, next(run))[0].earned
     assert ((after - before) < -300).all()  # four physics steps
 
 
@@ -257,12 +257,12 @@ def test_it_goes_back_to_a_checkpoint_and_time_goes_on(begin):
     run = begin()
     told = told_in(run, 120)
     first, second = of(Checkpoint, told)
-    answer = run.send(Revert(second.decisions + 5))
-    assert of(Alteration, answer) == [Alteration(119 * 32, REVERTED, None, second.decisions)]
-    assert np.array_equal(of(Insight, answer)[0].values, second.values)
-    answer = run.send(Revert(0))
-    assert np.array_equal(of(Insight, answer)[0].values, first.values)
-    assert of(Sight, next(run))[0].decisions == 120 * 32
+    answer = run.send(RestoreCheckpoint(second.decisions + 5))
+    assert of(SettingChange, answer) == [SettingChange(119 * 32, REVERTED, None, second.decisions)]
+    assert np.array_equal(of(NetworkState, answer)[0].values, second.values)
+    answer = run.send(RestoreCheckpoint(0))
+    assert np.array_equal(of(NetworkState, answer)[0].values, first.values)
+    assert of(SwarmState, next(run))[0].decisions == 120 * 32
 
 
 def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
@@ -270,17 +270,17 @@ def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
     history = History()
     for message in told_in(run, 100):
         history.append(message)
-    change, _ = run.send(Change("updates", 2))
+    change, _ = run.send(ChangeSetting("updates", 2))
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
     again = begin(Config(), 99, resume=tmp_path / "run")
     first = next(again)
-    assert of(Begun, first) == [Begun(TINY.changed(updates=2), 5, 99 * 32)]
-    assert np.array_equal(of(Insight, first)[0].values, DeepQAgent.load(tmp_path / "run" / "last").online.values)
+    assert of(RunStarted, first) == [RunStarted(TINY.changed(updates=2), 5, 99 * 32)]
+    assert np.array_equal(of(NetworkState, first)[0].values, DeepQAgent.load(tmp_path / "run" / "last").online.values)
     kept = History.read(tmp_path / "run")
     assert np.array_equal(kept.points, history.points, equal_nan=True)
     assert [each.decisions for each in kept.checkpoints] == [each.decisions for each in history.checkpoints]
     assert kept.alterations == [change]
-    sights = of(Sight, told_in(again, 3))
+    sights = of(SwarmState, told_in(again, 3))
     assert sights[-1].decisions == 102 * 32
     assert resume_run(tmp_path / "run").best is None  # nobody has tried it yet
 
@@ -325,7 +325,7 @@ def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypa
     assert resume_run(tmp_path / "run").agent.decisions == 9 * 32  # what was there before is whole
     told = told_in(run, 100)
     assert of(Saved, told) == [Saved(tmp_path / "keep", "No space left on device")]
-    assert len(of(Sight, told)) == 100
+    assert len(of(SwarmState, told)) == 100
     monkeypatch.undo()
     run.close()
     assert resume_run(tmp_path / "keep").agent.decisions == 109 * 32
@@ -431,7 +431,7 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     told, history = told_in(run, 30), History()
 
     def turn(name, value):
-        for message in run.send(Change(name, value)):
+        for message in run.send(ChangeSetting(name, value)):
             history.append(message)
 
     for value in (0.97, 0.96, 0.95, 0.9):  # a drag, with a decision at each step

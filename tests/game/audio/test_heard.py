@@ -4,11 +4,11 @@ import pygame
 import pytest
 
 from game.core import texts
-from game.flight.flight import Hand
-from game.scenes.menu import Menu
-from game.scenes.play import Play
+from game.flight.flight import StickHolder
+from game.scenes.menu import MenuScene
+from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
-from game.scenes.watch import Watch
+from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.listener import Listener
@@ -28,7 +28,7 @@ def focus(game: Driver, label: str) -> None:
 
 
 def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):
-    game: Driver = open_game(Menu())
+    game: Driver = open_game(MenuScene())
     sound.heard()
     game.key(DOWN)
     assert sound.heard() == ["move"]
@@ -82,33 +82,35 @@ def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(soun
 
 
 def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
-    scene = Play(seed=4)
+    scene = PlayScene(seed=4)
     game: Driver = open_game(scene)
     game.frames(2)
     game.post(pygame.KEYDOWN, key=UP, mod=0)
     game.post(pygame.KEYUP, key=UP, mod=0)
     assert sound.heard()[-1].startswith("altitude")
     game.key(pygame.K_TAB)
-    assert scene.flight.hand is Hand.NETWORK
+    assert scene.flight.hand is StickHolder.NETWORK
     assert sound.heard()[0] == "to_network"
     game.key(pygame.K_TAB)
     assert "to_human" in sound.heard()
 
 
-@pytest.mark.parametrize("make", [lambda: Play(seed=4), lambda: Watch(1, seed=4), lambda: Watch(16, seed=4)])
+@pytest.mark.parametrize(
+    "make", [lambda: PlayScene(seed=4), lambda: WatchScene(1, seed=4), lambda: WatchScene(16, seed=4)]
+)
 def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, open_game, make, monkeypatch):
     asked: list[dict[str, float]] = []
     monkeypatch.setattr(sound, "update", lambda: (asked.append(dict(sound.loops)), sound.loops.clear()))
     game: Driver = open_game(make())
     game.post(pygame.WINDOWMINIMIZED)  # nothing need be drawn
-    game.key(pygame.K_TAB if isinstance(game.top, Play) else pygame.K_F1)
+    game.key(pygame.K_TAB if isinstance(game.top, PlayScene) else pygame.K_F1)
     for _ in range(1500):
         game.frames(1)
         if {"landed", "crash"} & set(sound.played):
             break
     assert {"landed", "crash"} & set(sound.played)
     assert max(loops.get("engine", 0.0) for loops in asked) > 0.5
-    assert not [key for key in sound.played if key.startswith("too")] or isinstance(game.top, Play)
+    assert not [key for key in sound.played if key.startswith("too")] or isinstance(game.top, PlayScene)
     game.key(pygame.K_ESCAPE)
     asked.clear()
     game.frames(3)

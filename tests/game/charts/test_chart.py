@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ai.training.history import Alteration, History
+from ai.training.history import History, SettingChange
 from game.charts import plotting
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick
 from game.charts.charts import Charts
 from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.panels.reward_bar import PART_COLOURS, Strip, signed
+from game.panels.reward_bar import PART_COLOURS, RewardBar, signed
 from game.panels.training_charts import _ticks
 from tests.ai.training.test_hints import HEALTHY
 
@@ -503,35 +503,35 @@ PARTS = ("distance", "feet", "time", "terminal")
 
 
 def test_parts_grow_outwards_from_zero_in_their_order() -> None:
-    strip = Strip((40, 30, 380, 60))
-    strip.set(PARTS, [40.0, 30.0, -90.0, 120.0])
-    strip.update(at_once=True)
-    distance, feet, time, terminal = strip.pieces()
+    reward_bar = RewardBar((40, 30, 380, 60))
+    reward_bar.set(PARTS, [40.0, 30.0, -90.0, 120.0])
+    reward_bar.update(at_once=True)
+    distance, feet, time, terminal = reward_bar.pieces()
     assert time.right == distance.left
     assert distance.right == feet.left
     assert feet.right == terminal.left
     assert (terminal.right - terminal.left) / (distance.right - distance.left) == pytest.approx(3)
-    assert strip.box.x <= time.left
-    assert terminal.right <= strip.box.right
+    assert reward_bar.box.x <= time.left
+    assert terminal.right <= reward_bar.box.right
 
 
 def test_a_part_keeps_its_colour_whatever_stands_beside_it() -> None:
-    strip = Strip((40, 30, 380, 60))
-    strip.set(PARTS, [40.0, 30.0, -90.0, 120.0])
-    before = {piece.name: piece.colour for piece in strip.pieces()}
-    strip.set(PARTS[::-1], [-120.0, 0.0, 3.0, -4.0])
-    assert {piece.name: piece.colour for piece in strip.pieces()} == before
+    reward_bar = RewardBar((40, 30, 380, 60))
+    reward_bar.set(PARTS, [40.0, 30.0, -90.0, 120.0])
+    before = {piece.name: piece.colour for piece in reward_bar.pieces()}
+    reward_bar.set(PARTS[::-1], [-120.0, 0.0, 3.0, -4.0])
+    assert {piece.name: piece.colour for piece in reward_bar.pieces()} == before
     assert len(set(PART_COLOURS.values())) == len(PART_COLOURS)
 
 
 def test_the_mouse_finds_a_part() -> None:
-    strip = Strip((40, 30, 380, 60))
-    strip.set(PARTS, [40.0, 30.0, -90.0, 0.0])
-    for piece in strip.pieces()[:3]:
-        found = strip.piece_at(((piece.left + piece.right) / 2, 60.0))
+    reward_bar = RewardBar((40, 30, 380, 60))
+    reward_bar.set(PARTS, [40.0, 30.0, -90.0, 0.0])
+    for piece in reward_bar.pieces()[:3]:
+        found = reward_bar.piece_at(((piece.left + piece.right) / 2, 60.0))
         assert found is not None
         assert (found.name, found.value) == (piece.name, piece.value)
-    assert strip.piece_at((60.0, 200.0)) is None
+    assert reward_bar.piece_at((60.0, 200.0)) is None
 
 
 def test_every_part_of_the_reward_has_a_colour_and_a_sentence() -> None:
@@ -544,27 +544,27 @@ def test_every_part_of_the_reward_has_a_colour_and_a_sentence() -> None:
 
 @pytest.mark.parametrize("values", [[], [0.0] * 4, [NAN, INF, 1e30, -1e30], [1e-12] * 4, [-5.0] * 4, [1.0, 2.0]])
 def test_ugly_parts_are_drawn(canvas: Canvas, values: list[float]) -> None:
-    strip = Strip((40, 30, 380, 60))
-    strip.draw(canvas)
+    reward_bar = RewardBar((40, 30, 380, 60))
+    reward_bar.draw(canvas)
     for _ in range(3):
-        strip.set(PARTS, values)
-        strip.hover((200.0, 62.0))
-        strip.update()
-        strip.draw(canvas)
+        reward_bar.set(PARTS, values)
+        reward_bar.hover((200.0, 62.0))
+        reward_bar.update()
+        reward_bar.draw(canvas)
 
 
 def test_a_strip_that_rests_is_not_drawn_again(canvas: Canvas) -> None:
-    strip = Strip((40, 30, 380, 60))
-    strip.set(PARTS, [1.0, 2.0, 3.0, 4.0])
-    strip.set(PARTS, [2.0, 2.0, 3.0, 4.0])
+    reward_bar = RewardBar((40, 30, 380, 60))
+    reward_bar.set(PARTS, [1.0, 2.0, 3.0, 4.0])
+    reward_bar.set(PARTS, [2.0, 2.0, 3.0, 4.0])
     for _ in range(200):
-        strip.update()
-        strip.draw(canvas)
-    redraws = strip.redraws
+        reward_bar.update()
+        reward_bar.draw(canvas)
+    redraws = reward_bar.redraws
     for _ in range(20):
-        strip.update()
-        strip.draw(canvas)
-    assert strip.redraws == redraws
+        reward_bar.update()
+        reward_bar.draw(canvas)
+    assert reward_bar.redraws == redraws
 
 
 @pytest.mark.parametrize(
@@ -598,8 +598,8 @@ def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
     for number in range(40):
         run.append(replace(HEALTHY, seconds=float(number), decisions=1000.0 * number))
     for name in ("learning_rate", "final_learning_rate", "discount", "n_step", "updates"):
-        run.append(Alteration(10_000, name, 0, 1))
-    run.append(Alteration(20_000, "updates", 1, 2))
+        run.append(SettingChange(10_000, name, 0, 1))
+    run.append(SettingChange(20_000, "updates", 1, 2))
     marks = [tick for tick in _ticks(run) if tick.kind == "knob"]
     assert [tick.x for tick in marks] == [10.0, 20.0]
     assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"

@@ -13,10 +13,10 @@ from game.core import texts
 from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
 from game.flight import networks
-from game.flight.flight import Hand
+from game.flight.flight import StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import LOGBOOK, Records
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play
@@ -47,7 +47,7 @@ def fly(open_game: Open, context: Context, **settings: object) -> Driver:
     for name, value in settings.items():
         setattr(context.settings, name, value)
     context.settings_file.save(context.settings)
-    driver = open_game(Play(seed=4))
+    driver = open_game(PlayScene(seed=4))
     driver.frames(2)
     return driver
 
@@ -96,7 +96,7 @@ def test_the_dial_is_turned_by_keys_wheel_drag_and_stick_and_kept(open_game: Ope
     assert play_below(driver).waiting  # none of that has begun the flight
 
 
-def play_below(driver: Driver) -> Play:
+def play_below(driver: Driver) -> PlayScene:
     driver.key(pygame.K_ESCAPE)
     return play(driver)
 
@@ -147,7 +147,7 @@ def test_a_hundred_handovers_with_help_on_lose_no_input_and_stick_no_engine(open
             held = not held
         driver.frames(1)
         flight = play(driver).flight
-        wanted = LEFT if held and flight.hand is Hand.HUMAN else MAIN
+        wanted = LEFT if held and flight.hand is StickHolder.HUMAN else MAIN
         assert flight.env.actions[0] == wanted
     driver.app.context.settings.assist = 0.0
     if held:
@@ -234,7 +234,7 @@ def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Ope
     assert (last.landed, last.alone) == (False, True)
     driver.key(pygame.K_n)
     driver.key(pygame.K_TAB)
-    assert play(driver).flight.hand is Hand.NETWORK
+    assert play(driver).flight.hand is StickHolder.NETWORK
 
 
 def test_nonsense_in_the_settings_flies_as_usual(open_game: Open, context: Context):

@@ -4,7 +4,7 @@ import pytest
 
 from ai.common.decision import Decision, decide
 from ai.copilot.copilot import Mode
-from game.cockpit.copilot_panel import Insight
+from game.cockpit.copilot_panel import CopilotPanel
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import Flight
@@ -27,19 +27,19 @@ class Wavers:
 @pytest.mark.parametrize("before", range(8))
 def test_the_panel_shows_what_is_flown_from_the_first_step_after_a_hand_over(before: int):
     flight = Flight(3, Wavers(), shares=False)
-    insight = Insight(flight.env.ground)
+    copilot_panel = CopilotPanel(flight.env.ground)
     for _ in range(before):
         flight.step(3)
-        insight.follow(flight)
+        copilot_panel.follow(flight)
     flight.hand_over()
     seen = set()
     for _ in range(20):
         flight.step(0)
-        insight.follow(flight)
+        copilot_panel.follow(flight)
         flown = flight.recording.actions[-1]
-        assert insight.shown
-        assert insight.values is not None
-        assert insight.values.flown == np.argmax(insight.values.points) == flown
+        assert copilot_panel.shown
+        assert copilot_panel.values is not None
+        assert copilot_panel.values.flown == np.argmax(copilot_panel.values.points) == flown
         seen.add(flown)
     assert len(seen) > 1
 
@@ -59,11 +59,11 @@ def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
     flight.help(0.5, Mode.TOLERANCE)
     if not shares:
         flight.hand_over()
-    insight = Insight(flight.env.ground)
+    copilot_panel = CopilotPanel(flight.env.ground)
     flight.step(3)
-    insight.follow(flight)
+    copilot_panel.follow(flight)
     drawn = Drawn(monkeypatch)
-    insight.draw(Canvas(pygame.Surface((1280, 720))), 0.5)
+    copilot_panel.draw(Canvas(pygame.Surface((1280, 720))), 0.5)
     panel = read_panel(drawn)
     assert panel.expected == "–"
     assert {row.figure for row in panel.rows} == {"–"}
@@ -74,14 +74,14 @@ def test_values_that_are_not_numbers_are_called_that_and_no_figure_is_made_up(
 def test_an_override_that_is_over_is_said_to_be_past(monkeypatch: pytest.MonkeyPatch):
     flight = Flight(3, Prefers())
     flight.help(0.5, Mode.TOLERANCE)
-    insight = Insight(flight.env.ground)
+    copilot_panel = CopilotPanel(flight.env.ground)
     canvas, drawn = Canvas(pygame.Surface((1280, 720))), Drawn(monkeypatch)
 
     def title(held: int) -> str:
         flight.step(held)
-        insight.follow(flight)
+        copilot_panel.follow(flight)
         drawn.clear()
-        insight.draw(canvas, 0.5)
+        copilot_panel.draw(canvas, 0.5)
         return next(word for word in drawn.words for why in texts.INSIGHT_WHY.values() if word.startswith(why[0]))
 
     copilot, yours = texts.INSIGHT_WHY["COPILOT"][0], texts.INSIGHT_WHY["PILOT"][0]

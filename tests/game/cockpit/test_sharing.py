@@ -4,9 +4,9 @@ import pytest
 from ai.common.decision import Decision, decide
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
-from game.flight.flight import DECISION_STEPS, Flight, Hand, surface_height
+from game.flight.flight import DECISION_STEPS, Flight, StickHolder, surface_height
 from game.flight.forecast import coast_path
-from game.flight.handicap import HANDS, OWN, Hands
+from game.flight.handicap import HANDS, OWN, Handicap
 
 COAST, LEFT, RIGHT, MAIN = range(4)
 
@@ -56,19 +56,19 @@ def test_without_assist_every_action_is_the_persons_and_with_it_bad_ones_are_cha
     for held in keys(1, 60):
         flight.step(held)
         assert flight.env.actions[0] == held
-        assert flight.flown_by is Hand.HUMAN
+        assert flight.flown_by is StickHolder.HUMAN
         assert not flight.overridden
     flight.help(0.5, Mode.TOLERANCE)
     flight.step(LEFT)  # worth six tenths of the best
-    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (LEFT, False, Hand.HUMAN)
+    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (LEFT, False, StickHolder.HUMAN)
     flight.step(RIGHT)
-    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (MAIN, True, Hand.NETWORK)
+    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (MAIN, True, StickHolder.NETWORK)
 
 
 def test_hands_off_is_the_networks_and_no_override():
     flight = shared(assist=0.1)
     flight.step(COAST)
-    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (MAIN, False, Hand.NETWORK)
+    assert (flight.env.actions[0], flight.overridden, flight.flown_by) == (MAIN, False, StickHolder.NETWORK)
     assert flight.share == 0.0
 
 
@@ -99,12 +99,12 @@ def test_a_hundred_handovers_under_a_shared_stick_lose_no_input_and_stick_no_eng
         assert flight.hand_over()
         held = (LEFT, COAST, RIGHT)[turn % 3]
         flight.step(held)
-        if flight.hand is Hand.NETWORK:
+        if flight.hand is StickHolder.NETWORK:
             assert flight.env.actions[0] == MAIN
         else:
             assert flight.asked == held
             assert flight.env.actions[0] == (LEFT if held == LEFT else MAIN)
-    assert flight.hand is Hand.HUMAN
+    assert flight.hand is StickHolder.HUMAN
     flight.help(0.0, Mode.TOLERANCE)
     flight.step(COAST)
     assert flight.env.actions[0] == COAST
@@ -135,12 +135,12 @@ def test_the_same_seed_and_keys_are_the_same_flight_and_the_recording_flies_it_a
 def test_other_hands_bring_keys_late_wrong_or_in_part_and_ones_own_bring_them_as_they_are():
     seen = np.zeros((1, 9), np.float32)
     held = keys(5, 2000)
-    got = {name: [Hands.ask(hands, key, seen) for key in held] for name in HANDS for hands in [Hands(name, 7, 4)]}
+    got = {name: [Handicap.ask(hands, key, seen) for key in held] for name in HANDS for hands in [Handicap(name, 7, 4)]}
     assert got[OWN] == held
     assert max(got["sensor"]) < MAIN
     for name in ("laggy", "noisy"):
         assert 0.2 < np.mean(np.array(got[name]) != held) < 0.95
-    late = Hands("laggy", 7, 4)
+    late = Handicap("laggy", 7, 4)
     assert [late.ask(COAST, seen) for _ in range(8)] == [COAST] * 8
     assert MAIN in [late.ask(MAIN, seen) for _ in range(200)]  # late, but it comes
     assert COAST in [late.ask(COAST, seen) for _ in range(200)]  # and no engine burns on for good

@@ -17,11 +17,11 @@ from ai.agent.config import Config
 from ai.training.checkpoints import resume_run
 from ai.training.history import Checkpoint, History
 from ai.training.loop import Training
-from ai.training.session import Change, Refused, Save, Saved, live
+from ai.training.session import ChangeSetting, Refused, Save, Saved, live
 from game.core import texts, worker
 from game.core.assets import MODELS_DIR
-from game.core.worker import State, Worker
-from game.core.worker_process import CREDIT, MOST_WAITING, Waiting
+from game.core.worker import Worker, WorkerState
+from game.core.worker_process import CREDIT, MOST_WAITING, MessageQueue
 from game.digits import fixing, measuring
 from game.digits.reader import Switches
 from game.export import export
@@ -62,7 +62,7 @@ def polled(worker, until):
 
 
 def over(worker):
-    return polled(worker, lambda _: worker.state in (State.ENDED, State.FAILED))
+    return polled(worker, lambda _: worker.state in (WorkerState.ENDED, WorkerState.FAILED))
 
 
 def ticks(told):
@@ -77,10 +77,10 @@ def settled(worker):
 
 def test_every_message_comes_once_and_in_order(start):
     counter = start(chores.counting, 400)
-    assert counter.state is State.STARTING
+    assert counter.state is WorkerState.STARTING
     told = over(counter)
     assert ticks(told) == list(range(400))
-    assert counter.state is State.ENDED
+    assert counter.state is WorkerState.ENDED
     assert counter.problem == ""
 
 
@@ -96,7 +96,7 @@ def test_of_a_class_that_is_newest_only_the_latest_comes(start):
 
 
 def test_what_waits_for_long_is_thinned_where_it_may_be():
-    waiting = Waiting()
+    waiting = MessageQueue()
     for number in range(10 * MOST_WAITING):
         waiting.add([Trace(number)] + [Tick(number)] * (number % 1000 == 0))
     told = waiting.take()
@@ -108,7 +108,7 @@ def test_what_waits_for_long_is_thinned_where_it_may_be():
 
 
 def test_much_that_must_not_be_lost_is_kept_and_handed_over_in_parts():
-    waiting = Waiting()
+    waiting = MessageQueue()
     waiting.add(Tick(number) for number in range(3 * MOST_WAITING))
     first = waiting.take(10)
     assert ticks(first + waiting.take()) == list(range(3 * MOST_WAITING))
@@ -119,7 +119,7 @@ def test_a_paused_worker_stands_still_and_steps_one_turn_at_a_time(start):
     polled(counter, lambda told: len(told) > 3)
     counter.step()  # not while it runs
     counter.pause()
-    assert counter.state is State.PAUSED
+    assert counter.state is WorkerState.PAUSED
     settled(counter)
     counter.step()
     (last,) = ticks(polled(counter, ticks))
@@ -130,7 +130,7 @@ def test_a_paused_worker_stands_still_and_steps_one_turn_at_a_time(start):
     assert ticks(stepped) == [last + 1, last + 2, last + 3]
     assert ticks(settled(counter)) == []
     counter.resume()
-    assert counter.state is State.RUNNING
+    assert counter.state is WorkerState.RUNNING
     assert len(ticks(polled(counter, lambda told: len(ticks(told)) > 5))) > 5
 
 
@@ -176,14 +176,14 @@ def test_a_generator_that_raises_fails_with_its_words(start, error, words):
     failed = start(chores.failing, error)
     told = over(failed)
     assert ticks(told) == [0, 1, 2]
-    assert failed.state is State.FAILED
+    assert failed.state is WorkerState.FAILED
     assert failed.problem == texts.WORKER_RAISED.format(reason=words)
 
 
 def test_what_cannot_be_sent_fails_and_says_so(start):
     failed = start(chores.unsendable)
     over(failed)
-    assert failed.state is State.FAILED
+    assert failed.state is WorkerState.FAILED
     assert "pickle" in failed.problem
 
 
@@ -193,7 +193,7 @@ def test_what_cannot_be_sent_fails_and_says_so(start):
 def test_nonsense_fails_and_says_so(start, function, words):
     failed = start(function)
     over(failed)
-    assert failed.state is State.FAILED
+    assert failed.state is WorkerState.FAILED
     assert failed.problem.startswith(texts.WORKER_NONSENSE.partition("{")[0])
     assert words in failed.problem
     polled(failed, lambda _: not failed._process.is_alive())
@@ -202,7 +202,7 @@ def test_nonsense_fails_and_says_so(start, function, words):
 def test_a_function_that_does_not_start_fails(start):
     failed = start(chores.counting, "not a number")
     over(failed)
-    assert failed.state is State.FAILED
+    assert failed.state is WorkerState.FAILED
     assert "TypeError" in failed.problem
 
 
@@ -217,7 +217,7 @@ def test_a_function_that_does_not_start_fails(start):
 def test_a_process_that_dies_fails_with_the_cause(start, how, problem):
     dead = start(chores.dying, **how)
     told = over(dead)
-    assert dead.state is State.FAILED
+    assert dead.state is WorkerState.FAILED
     assert dead.problem == problem
     assert ticks(told) in ([], [0])
 
@@ -227,7 +227,7 @@ def test_a_process_that_hangs_is_ended(start):
     polled(hung, lambda told: ticks(told) == [0])
     hung.patience = 0.3
     over(hung)
-    assert hung.state is State.FAILED
+    assert hung.state is WorkerState.FAILED
     assert hung.problem == texts.WORKER_SILENT.format(seconds=0.3)
     polled(hung, lambda _: not hung._process.is_alive())
 
@@ -239,7 +239,7 @@ def test_a_window_that_was_away_does_not_take_its_worker_for_hung(start):
     for _ in range(50):
         moments[0] += 3600.0  # asleep between any two polls
         counter.poll()
-    assert counter.state in (State.STARTING, State.RUNNING)
+    assert counter.state in (WorkerState.STARTING, WorkerState.RUNNING)
 
 
 @POSIX
@@ -251,10 +251,10 @@ def test_a_process_stopped_in_the_middle_of_a_message_holds_up_nothing(start):
         counter.send("x" * 200)
         if number % 100 == 0:
             counter.poll()
-    assert counter.state is State.RUNNING
+    assert counter.state is WorkerState.RUNNING
     counter.patience = 0.1
     over(counter)
-    assert counter.state is State.FAILED
+    assert counter.state is WorkerState.FAILED
 
 
 @POSIX
@@ -272,7 +272,7 @@ def test_workers_killed_at_any_moment_leave_nothing_but_a_reason(start):
             os.kill(workers[index]._process.pid, signal.SIGKILL)
         for each in workers:
             over(each)
-            assert each.state is State.FAILED
+            assert each.state is WorkerState.FAILED
             assert each.problem == texts.WORKER_KILLED.format(signal="SIGKILL")
 
 
@@ -299,7 +299,7 @@ def test_a_run_that_is_terminated_keeps_itself(start, tmp_path):
     polled(run, lambda told: any(isinstance(each, Checkpoint) and each.decisions > 0 for each in told))
     os.kill(run._process.pid, signal.SIGTERM)
     over(run)
-    assert run.state is State.FAILED
+    assert run.state is WorkerState.FAILED
     assert run.problem == texts.WORKER_SIGNAL.format(signal="SIGTERM")
     assert resume_run(tmp_path / "run").agent.decisions > 0
 
@@ -309,7 +309,7 @@ def test_stopping_lets_the_generator_close(start, tmp_path):
     polled(ending, ticks)
     ending.stop()
     over(ending)
-    assert ending.state is State.ENDED
+    assert ending.state is WorkerState.ENDED
     polled(ending, lambda _: (tmp_path / "closed").exists())
 
 
@@ -319,7 +319,7 @@ def test_one_that_will_not_stop_is_ended(start, tmp_path, monkeypatch):
     polled(stubborn, ticks)
     stubborn.stop()
     over(stubborn)
-    assert stubborn.state is State.ENDED
+    assert stubborn.state is WorkerState.ENDED
     polled(stubborn, lambda _: not stubborn._process.is_alive())
 
 
@@ -335,7 +335,7 @@ def test_closing_is_for_certain_and_may_be_done_at_any_time(start):
         each.close()
         each.send("nobody listens")
         each.pause()
-        assert each.state is State.ENDED
+        assert each.state is WorkerState.ENDED
         assert each.poll() is not None
         assert not each._process.is_alive()
 
@@ -423,7 +423,7 @@ def test_the_program_can_be_imported_by_its_workers():
 
 def test_a_run_in_the_game_makes_the_same_network_as_one_without(start, tmp_path):
     run = start(live, TINY, 7, keep=tmp_path / "keep")
-    run.send(Change("no such knob", 1))
+    run.send(ChangeSetting("no such knob", 1))
     told = polled(run, lambda told: sum(isinstance(each, Checkpoint) for each in told) == 2)
     assert any(isinstance(each, Refused) for each in told)
     run.pause()
@@ -451,7 +451,7 @@ def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: p
     graces: list[float] = []
 
     class Ending:
-        state, problem, patience = State.ENDED, "", 0.0
+        state, problem, patience = WorkerState.ENDED, "", 0.0
 
         def __init__(self, *_: object, **__: object) -> None: ...
         def poll(self) -> list[object]:
@@ -465,10 +465,10 @@ def test_whatever_ends_while_the_window_goes_on_is_not_waited_for(monkeypatch: p
     for module in (export, fixing, measuring):
         monkeypatch.setattr(module, "Worker", Ending)
     export.Export(list, None, tmp_path / "film.gif").close()
-    fix = fixing.Fixing(tmp_path, MODELS_DIR)
+    fix = fixing.FixRunner(tmp_path, MODELS_DIR)
     fix.begin("classic", np.ones((28, 28), np.float32), 3)
     fix.poll()
-    measured = measuring.Measuring(dict)
+    measured = measuring.AccuracyMeasurement(dict)
     measured.ask(Switches())
     measured.anew(Switches())
     assert graces == [0.0, 0.0, 0.0]

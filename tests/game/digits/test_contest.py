@@ -5,7 +5,7 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier, load_part
 from game.core.assets import MODELS_DIR
-from game.digits.quiz_rules import ROUNDS, Contest
+from game.digits.quiz_rules import ROUNDS, QuizGame
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def strangers():
 
 @pytest.fixture
 def contest(classifier, strangers):
-    return Contest(classifier, *strangers, np.random.default_rng(0))
+    return QuizGame(classifier, *strangers, np.random.default_rng(0))
 
 
 def draw(contest, strangers, digit):
@@ -67,6 +67,6 @@ def test_strangers_write_worse_than_most(contest, classifier, strangers):
 
 
 def test_without_strangers_everything_is_drawn(classifier):
-    contest = Contest(classifier, np.zeros((0, 28, 28), np.float32), np.zeros(0, np.uint8), np.random.default_rng(0))
+    contest = QuizGame(classifier, np.zeros((0, 28, 28), np.float32), np.zeros(0, np.uint8), np.random.default_rng(0))
     assert {each.kind for each in contest.rounds} == {"draw"}
     assert contest.lead == 0

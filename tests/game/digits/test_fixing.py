@@ -8,7 +8,7 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier, load_part
 from game.core.assets import MODELS_DIR
-from game.digits.fixing import Fixing
+from game.digits.fixing import FixRunner
 from game.digits.reader import Reader
 
 
@@ -23,12 +23,12 @@ def misread():
 
 @pytest.fixture
 def fixing(tmp_path: Path):
-    fixing = Fixing(tmp_path / "user", MODELS_DIR)
+    fixing = FixRunner(tmp_path / "user", MODELS_DIR)
     yield fixing
     fixing.close()
 
 
-def done(fixing: Fixing, seconds: float = 60):
+def done(fixing: FixRunner, seconds: float = 60):
     end = time.monotonic() + seconds
     while fixing.busy:
         assert time.monotonic() < end, "it never ended"
@@ -38,7 +38,7 @@ def done(fixing: Fixing, seconds: float = 60):
     return None
 
 
-def test_a_fix_is_kept_told_of_and_undone(fixing: Fixing, misread, tmp_path: Path):
+def test_a_fix_is_kept_told_of_and_undone(fixing: FixRunner, misread, tmp_path: Path):
     image, digit = misread
     shipped = fixing.folder("classic")
     assert fixing.begin("classic", image, digit)
@@ -51,14 +51,14 @@ def test_a_fix_is_kept_told_of_and_undone(fixing: Fixing, misread, tmp_path: Pat
     assert folder.is_relative_to(tmp_path / "user")
     assert fixing.folder("modern") == MODELS_DIR / "digits" / "modern"
     assert DigitClassifier.load(folder).predict(image)[0].argmax() == digit
-    assert Fixing(tmp_path / "user", MODELS_DIR).folder("classic") == folder, "the next visit finds it"
+    assert FixRunner(tmp_path / "user", MODELS_DIR).folder("classic") == folder, "the next visit finds it"
     assert fixing.undo("classic")
     assert fixing.folder("classic") == shipped
     assert fixing.fixed is None
     assert not fixing.undo("classic")
 
 
-def test_fixes_stand_upon_each_other(fixing: Fixing, misread, tmp_path: Path):
+def test_fixes_stand_upon_each_other(fixing: FixRunner, misread, tmp_path: Path):
     image, digit = misread
     for wanted in (digit, (digit + 1) % 10):
         fixing.begin("classic", image, wanted)
@@ -69,7 +69,7 @@ def test_fixes_stand_upon_each_other(fixing: Fixing, misread, tmp_path: Path):
     assert DigitClassifier.load(fixing.folder("classic")).predict(image)[0].argmax() == digit
 
 
-def test_what_fails_is_said_and_changes_nothing(fixing: Fixing, tmp_path: Path):
+def test_what_fails_is_said_and_changes_nothing(fixing: FixRunner, tmp_path: Path):
     fixing.begin("classic", np.zeros((28, 28), np.float32), 3)
     assert done(fixing) is None
     assert "nothing to learn from" in fixing.problem
@@ -79,14 +79,16 @@ def test_what_fails_is_said_and_changes_nothing(fixing: Fixing, tmp_path: Path):
 
 def test_a_folder_that_cannot_be_written_is_told_of(misread, tmp_path: Path):
     (tmp_path / "user").write_text("in the way")
-    fixing = Fixing(tmp_path / "user", MODELS_DIR)
+    fixing = FixRunner(tmp_path / "user", MODELS_DIR)
     fixing.begin("classic", *misread)
     assert done(fixing).folder is None
     assert fixing.problem
     assert fixing.folder("classic") == MODELS_DIR / "digits" / "classic"
 
 
-def test_a_damaged_fix_is_passed_over_and_the_next_one_has_a_number_of_its_own(fixing: Fixing, misread, tmp_path: Path):
+def test_a_damaged_fix_is_passed_over_and_the_next_one_has_a_number_of_its_own(
+    fixing: FixRunner, misread, tmp_path: Path
+):
     fixing.begin("classic", *misread)
     done(fixing)
     first = fixing.folder("classic")

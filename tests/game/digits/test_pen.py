@@ -3,23 +3,23 @@
 import pygame
 import pytest
 
-from game.scenes.digits import Digits
-from game.scenes.quiz import Quiz
-from game.ui.virtual_pointer import Pointer
+from game.scenes.digits import DigitsScene
+from game.scenes.quiz import QuizScene
+from game.ui.virtual_pointer import VirtualPointer
 from tests.game.scenes.test_walks import reader
 from tests.support.player import DEVICES, Player
 
 
 @pytest.fixture(params=DEVICES)
 def player(request: pytest.FixtureRequest, open_game) -> Player:
-    player = Player(open_game(Digits()), request.param)
+    player = Player(open_game(DigitsScene()), request.param)
     player.frames(3)
     return player
 
 
 def take_the_pen(player: Player) -> None:
     for direction in ["left"] * 2 + ["down"] * 14 + ["left"] * 2:
-        if isinstance(player.form.focused, Pointer):
+        if isinstance(player.form.focused, VirtualPointer):
             break
         player.press(direction)
     player.press("confirm")
@@ -46,7 +46,7 @@ def test_a_one_is_drawn_and_read(player: Player):
     assert player.top.probabilities.argmax() == 1
     player.press("back")
     assert not player.form.typing
-    assert player.top_name == "Digits"
+    assert player.top_name == "DigitsScene"
     player.press("back")
     assert not player.app.scenes.running
 
@@ -65,7 +65,7 @@ def test_the_pen_stays_on_the_pad(player: Player):
 
 
 def test_a_stick_moves_it_as_far_as_it_is_pushed(open_game):
-    player = Player(open_game(Digits()), "pad")
+    player = Player(open_game(DigitsScene()), "pad")
     player.frames(3)
     take_the_pen(player)
     before = player.top._pen.place.x
@@ -94,7 +94,7 @@ def test_a_lost_focus_lifts_the_pen(player: Player):
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_a_round_of_the_quiz_is_drawn_without_a_mouse(open_game, device: str):
-    player = Player(open_game(Quiz(reader())), device)
+    player = Player(open_game(QuizScene(reader())), device)
     player.frames(3)
     take_the_pen(player)
     player.hold("confirm", down=True)

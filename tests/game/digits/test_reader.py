@@ -10,7 +10,7 @@ from ai.digits.preprocessing import redrawn
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.digits.answer import draw_answer, draw_fix
-from game.digits.fixing import Fixing
+from game.digits.fixing import FixRunner
 from game.digits.reader import Reader, Reading, Switches, Verdict
 from game.drawing.canvas import Canvas
 
@@ -90,7 +90,7 @@ def test_who_is_surer_never_sounds_less_sure(reader: Reader, monkeypatch: pytest
 
 
 def test_the_digit_that_is_being_learnt_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
-    fixing = Fixing(tmp_path, MODELS_DIR)
+    fixing = FixRunner(tmp_path, MODELS_DIR)
     written: list[str] = []
     monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.append(string) or pygame.FRect())
     monkeypatch.setattr("game.digits.fixing.Worker", lambda *_, **__: SimpleNamespace(poll=list, close=lambda _: None))

@@ -3,10 +3,10 @@
 import pygame
 
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import Kept
+from game.drawing.paint_cache import PaintCache
 
 
-def painted(kept: Kept, canvas: Canvas, *shown: object) -> list[object]:
+def painted(kept: PaintCache, canvas: Canvas, *shown: object) -> list[object]:
     """Return what of `shown` had to be painted."""
     seen: list[object] = []
     for each in shown:
@@ -16,12 +16,12 @@ def painted(kept: Kept, canvas: Canvas, *shown: object) -> list[object]:
 
 def test_what_has_not_changed_is_not_painted_again():
     canvas = Canvas(pygame.Surface((1280, 720)))
-    assert painted(Kept(), canvas, "a", "a", "b", "b", "a") == ["a", "b", "a"]
-    assert painted(Kept(2), canvas, "a", "b", "a", "b", "c", "b", "a") == ["a", "b", "c", "a"]
+    assert painted(PaintCache(), canvas, "a", "a", "b", "b", "a") == ["a", "b", "a"]
+    assert painted(PaintCache(2), canvas, "a", "b", "a", "b", "c", "b", "a") == ["a", "b", "c", "a"]
 
 
 def test_another_scale_is_painted_anew_and_the_picture_stands_in_its_box():
-    kept = Kept()
+    kept = PaintCache()
     for size in ((1280, 720), (640, 360)):
         canvas = Canvas(pygame.Surface(size))
         kept.draw(canvas, (100, 40, 20, 20), "dot", lambda sheet: sheet.fill(sheet.rect(5, 5, 2, 2), (255, 0, 0)))

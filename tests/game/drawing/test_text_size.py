@@ -14,19 +14,19 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LABEL, SMALL, TEXT, TEXT_SIZES, TITLE, VIEW_SIZE
 from game.flight.logbook import Records
-from game.play.challenge import Flown
-from game.scenes.menu import Menu
-from game.scenes.play import Play
+from game.play.challenge import FlownMission
+from game.scenes.menu import MenuScene
+from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
-from game.scenes.watch import Watch
+from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 from tests.support.driver import Driver
 
 FLOWN: dict[str, Callable[[Context], Scene]] = {
-    "Play": lambda _: Play(3),
-    "swarm": lambda _: Watch(16, seed=2),
-    "mission": lambda _: Play(0, course=Flown(MISSIONS["wind"])),
+    "Play": lambda _: PlayScene(3),
+    "swarm": lambda _: WatchScene(16, seed=2),
+    "mission": lambda _: PlayScene(0, challenge=FlownMission(MISSIONS["wind"])),
 }
 # A capital's height and what hangs below the line, in sizes of the type: where ink is.
 ABOVE, BELOW = 0.72, 0.2
@@ -84,7 +84,7 @@ def opened(open_game, context: Context, name: str, size: str) -> Driver:
     context.settings.reduced_motion, context.settings.text_size, context.settings.tutored = True, size, True
     context.settings_file.save(context.settings)
     if name in OVER_OTHERS:
-        driver = open_game(Menu())
+        driver = open_game(MenuScene())
         driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
     else:
         driver = open_game({**SCREENS, **FLOWN}[name](context))

@@ -13,7 +13,7 @@ from game.exhibits import EXHIBITS, Exhibit
 from game.exhibits.falls import Bounce, DragRace, Slopes
 from game.exhibits.momentum import Impacts, Spin
 from game.exhibits.piles import Heap, Stack
-from game.scenes.physics import GRAVITIES, Physics
+from game.scenes.physics import GRAVITIES, PhysicsScene
 from game.world.grip import Grip
 from tests.support.driver import Driver
 
@@ -229,11 +229,11 @@ def test_every_sentence_of_an_exhibit_can_be_said(name: str):
 
 
 def test_gravity_is_offered_only_where_there_is_any_and_has_its_unit(open_game: Callable[..., Driver]):
-    driver = open_game(Physics("impacts"))
+    driver = open_game(PhysicsScene("impacts"))
     assert all("m/s²" in words for words in texts.PHYSICS_GRAVITIES)
     for name, offered in (("impacts", True), ("drag", True), ("spin", False), ("stack", True)):
         scene = driver.top
-        assert isinstance(scene, Physics)
+        assert isinstance(scene, PhysicsScene)
         assert type(scene.exhibit) is EXHIBITS[name]
         assert any(widget.label == texts.PHYSICS_GRAVITY for widget in scene._form.widgets) is offered
         driver.key(pygame.K_n)

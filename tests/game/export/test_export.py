@@ -16,16 +16,16 @@ from game.core import texts
 from game.core.scene import Push
 from game.export.export import Export
 from game.export.film import film, frames
-from game.export.kinds import KINDS, Kind
+from game.export.kinds import KINDS, VideoKind
 from game.flight.flight_file import Record
 from game.scenes import replay as module
-from game.scenes.menu import Menu
-from game.scenes.replay import Replay
+from game.scenes.menu import MenuScene
+from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, scripted
 
-SMALL = {".gif": Kind("PIL", (160, 90), 60, True), ".mp4": Kind("av", (160, 90), 60, False)}
+SMALL = {".gif": VideoKind("PIL", (160, 90), 60, True), ".mp4": VideoKind("av", (160, 90), 60, False)}
 
 
 @pytest.fixture
@@ -41,12 +41,12 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_missing_is_whether_it_can_be_imported():
     assert KINDS[".gif"].missing is (importlib.util.find_spec("PIL") is None)
-    assert Kind("no_such_module", (1, 1), 1, True).missing
+    assert VideoKind("no_such_module", (1, 1), 1, True).missing
 
 
 def test_the_frames_show_the_flight_and_a_still_camera_shows_little_else(record: Record):
     length = len(record.recording.actions)
-    before, after, end = frames(Replay(record), SMALL[".gif"], [0, 20, length])
+    before, after, end = frames(ReplayScene(record), SMALL[".gif"], [0, 20, length])
     assert before.shape == after.shape == (90, 160, 3)
     changed = (before != after).any(axis=2)
     assert 0 < changed.mean() < 0.1
@@ -57,7 +57,7 @@ def test_the_frames_show_the_flight_and_a_still_camera_shows_little_else(record:
 def test_a_film_is_written_whole_and_told_of(suffix: str, record: Record, small: None, tmp_path: Path):
     pytest.importorskip(SMALL[suffix].needs)
     path = tmp_path / "new folder" / f"flight{suffix}"
-    shares = [drawn.share for (drawn,) in film(Replay, record, path)]
+    shares = [drawn.share for (drawn,) in film(ReplayScene, record, path)]
     assert shares == sorted(shares)
     assert shares[0] == 0
     assert shares[-1] < 1
@@ -126,7 +126,7 @@ def test_a_full_disk_is_an_error_and_leaves_what_was_there(suffix: str, record: 
     resource.setrlimit(resource.RLIMIT_FSIZE, (900, limits[1]))
     try:
         with pytest.raises(OSError):  # noqa: PT011 - each system and library has words of its own
-            for _ in film(Replay, record, path):
+            for _ in film(ReplayScene, record, path):
                 pass
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
@@ -136,7 +136,7 @@ def test_a_full_disk_is_an_error_and_leaves_what_was_there(suffix: str, record: 
 
 def test_a_film_that_is_stopped_leaves_nothing(record: Record, small: None, tmp_path: Path):
     pytest.importorskip("PIL")
-    turns = film(Replay, record, tmp_path / "pictures" / "flight.gif")
+    turns = film(ReplayScene, record, tmp_path / "pictures" / "flight.gif")
     for _ in range(3):
         next(turns)
     turns.close()
@@ -147,14 +147,14 @@ def test_a_film_that_is_stopped_leaves_nothing(record: Record, small: None, tmp_
 
 
 def _choose_gif(driver: Driver) -> None:
-    assert driver.top_name == "Asking"
+    assert driver.top_name == "QuestionDialog"
     driver.key(pygame.K_RETURN)
 
 
 @pytest.fixture
-def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_path: Path) -> tuple[Driver, Replay]:
+def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_path: Path) -> tuple[Driver, ReplayScene]:
     monkeypatch.setattr(module, "exports_dir", lambda: tmp_path / "pictures")
-    scene = Replay(record)
+    scene = ReplayScene(record)
     driver = open_game(scene)
     driver.frames(2)
     driver.app.scenes.apply(scene._begin_or_stop_export())
@@ -166,25 +166,25 @@ def _answers(driver: Driver) -> list[str]:
 
 
 def test_a_gif_works_as_installed_and_an_mp4_is_offered_only_where_it_can_be_made(
-    replay: tuple[Driver, Replay], monkeypatch
+    replay: tuple[Driver, ReplayScene], monkeypatch
 ):
     driver, scene = replay
     project = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert any(need.startswith("pillow") for need in project["dependencies"])
     driver.key(pygame.K_ESCAPE)
-    monkeypatch.setitem(KINDS, ".mp4", Kind("no_such_module", (1, 1), 1, False))
+    monkeypatch.setitem(KINDS, ".mp4", VideoKind("no_such_module", (1, 1), 1, False))
     driver.app.scenes.apply(scene._begin_or_stop_export())
     assert _answers(driver) == ["GIF", texts.EXPORT_CANCEL]
     command = driver.top._more.partition("run: ")[2]
     assert command in Path("README.md").read_text(encoding="utf-8")
     driver.key(pygame.K_ESCAPE)
-    monkeypatch.setitem(KINDS, ".mp4", Kind("json", (1, 1), 1, False))
+    monkeypatch.setitem(KINDS, ".mp4", VideoKind("json", (1, 1), 1, False))
     driver.app.scenes.apply(scene._begin_or_stop_export())
     assert _answers(driver) == ["GIF", "MP4", texts.EXPORT_CANCEL]
 
 
 @pytest.mark.parametrize("way", ["key", "word"])
-def test_who_does_not_want_a_film_after_all_gets_none(replay: tuple[Driver, Replay], way: str):
+def test_who_does_not_want_a_film_after_all_gets_none(replay: tuple[Driver, ReplayScene], way: str):
     driver, scene = replay
     if way == "key":
         driver.key(pygame.K_ESCAPE)
@@ -195,7 +195,7 @@ def test_who_does_not_want_a_film_after_all_gets_none(replay: tuple[Driver, Repl
 
 
 @pytest.mark.parametrize("file", ["a\0b.json", "\ud800.json", "...json", "x" * 250 + ".json", "C:\\con.json"])
-def test_a_name_that_no_system_takes_is_made_one(replay: tuple[Driver, Replay], file: str, tmp_path: Path):
+def test_a_name_that_no_system_takes_is_made_one(replay: tuple[Driver, ReplayScene], file: str, tmp_path: Path):
     driver, scene = replay
     scene.record = replace(scene.record, entry=replace(scene.record.entry, file=file))
     _choose_gif(driver)
@@ -208,7 +208,7 @@ def test_a_name_that_no_system_takes_is_made_one(replay: tuple[Driver, Replay], 
 
 @pytest.mark.parametrize("name", ["a\0b.gif", "\ud800.gif"])
 def test_an_export_under_an_impossible_name_can_be_closed_and_says_why(record: Record, name: str, tmp_path: Path):
-    export = Export(Replay, record, tmp_path / name)
+    export = Export(ReplayScene, record, tmp_path / name)
     end = time.monotonic() + 60
     while not export.over and time.monotonic() < end:
         export.poll()
@@ -217,20 +217,20 @@ def test_an_export_under_an_impossible_name_can_be_closed_and_says_why(record: R
     export.close()
 
 
-def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay], tmp_path: Path):
+def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, ReplayScene], tmp_path: Path):
     pytest.importorskip("PIL")
     driver, scene = replay
     _choose_gif(driver)
     scene.stopped = False
-    at = scene.tape.at
+    at = scene.flight_replay.at
     driver.frames(5)
-    assert scene.tape.at > at
+    assert scene.flight_replay.at > at
     scene._export.close()  # a film of full size takes its time: the process itself is tested elsewhere
     driver.wait(lambda: scene._export is None)
 
 
 @pytest.mark.parametrize("file", ["", "a flight.json"])
-def test_no_picture_takes_the_place_of_another(replay: tuple[Driver, Replay], file: str, tmp_path: Path):
+def test_no_picture_takes_the_place_of_another(replay: tuple[Driver, ReplayScene], file: str, tmp_path: Path):
     pytest.importorskip("PIL")
     driver, scene = replay
     scene.record = replace(scene.record, entry=replace(scene.record.entry, file=file))
@@ -242,7 +242,7 @@ def test_no_picture_takes_the_place_of_another(replay: tuple[Driver, Replay], fi
     assert scene._export.path == folder / f"{name} 3.gif"
 
 
-def test_a_film_can_be_stopped_and_leaving_ends_its_process(replay: tuple[Driver, Replay], tmp_path: Path):
+def test_a_film_can_be_stopped_and_leaving_ends_its_process(replay: tuple[Driver, ReplayScene], tmp_path: Path):
     pytest.importorskip("PIL")
     driver, scene = replay
     for _ in range(2):
@@ -260,7 +260,7 @@ def test_a_film_can_be_stopped_and_leaving_ends_its_process(replay: tuple[Driver
     assert not multiprocessing.active_children()
 
 
-def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, Replay], tmp_path: Path):
+def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, ReplayScene], tmp_path: Path):
     pytest.importorskip("PIL")
     driver, scene = replay
     (tmp_path / "pictures").write_text("in the way")
@@ -276,8 +276,8 @@ def test_who_leaves_a_replay_is_told_that_its_film_was_not_saved(
     open_game: Callable[..., Driver], context: Context, record: Record, small: None, monkeypatch: pytest.MonkeyPatch
 ):
     pytest.importorskip("PIL")
-    scene = Replay(record)
-    driver = open_game(Menu())
+    scene = ReplayScene(record)
+    driver = open_game(MenuScene())
     driver.app.scenes.apply(Push(scene))
     driver.frames(2)
     monkeypatch.setattr(module, "Export", Endless)
@@ -286,7 +286,7 @@ def test_who_leaves_a_replay_is_told_that_its_film_was_not_saved(
     told: list[str] = []
     monkeypatch.setattr(context, "note", told.append)
     driver.key(pygame.K_ESCAPE)
-    assert isinstance(driver.top, Menu)
+    assert isinstance(driver.top, MenuScene)
     assert told == [texts.EXPORT_STOPPED]
 
 

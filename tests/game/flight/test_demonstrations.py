@@ -7,7 +7,7 @@ from ai.agent.config import Config
 from ai.lander.pilots import ScriptedPilot
 from ai.training.demonstrations import read, relive
 from game.flight.demonstrations import FILE_NAME, keep_lesson, lessons
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 
 
 def flown_by_hand(seed: int, pads: int = 1, network_until: int = 0) -> Flight:
@@ -16,7 +16,7 @@ def flown_by_hand(seed: int, pads: int = 1, network_until: int = 0) -> Flight:
     if network_until:
         flight.hand_over()
     while not flight.over:
-        if len(flight.recording.actions) == network_until and flight.hand is Hand.NETWORK:
+        if len(flight.recording.actions) == network_until and flight.hand is StickHolder.NETWORK:
             flight.hand_over()
         flight.step(int(pilot.act(flight.env.observe())[0]))
     return flight

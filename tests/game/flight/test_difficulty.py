@@ -15,11 +15,11 @@ from game.flight import flight_file
 from game.flight.flight import Flight, Recording
 from game.flight.flight_file import Record
 from game.flight.logbook import Records, best, describe
-from game.flight.replay import Rerun, Tape
+from game.flight.replay import FlightReplay, ReplayedFlight
 from game.flight.skill import Skill
-from game.play.challenge import Flown
+from game.play.challenge import FlownMission
 from game.scenes.choices import ChoicesScene
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.player import Player
@@ -68,7 +68,7 @@ def test_a_flight_under_changing_gravity_is_flown_again_bit_for_bit():
     assert flight.recording.gravity == list(CHANGES.items())
     record = flight_file.from_text(flight_file.to_text(record_of(flight)))
     assert record.recording == flight.recording
-    again = Rerun(record.recording)
+    again = ReplayedFlight(record.recording)
     while not again.over:
         again.step(0)
     assert np.array_equal(again.poses.now, flight.poses.now)
@@ -76,19 +76,20 @@ def test_a_flight_under_changing_gravity_is_flown_again_bit_for_bit():
 
 
 def test_its_tape_can_be_wound_to_any_moment():
-    tape = Tape(record_of(fly(CHANGES)))
-    seen = [tape.flight.env.velocity[0].tolist()]
+    flight_replay = FlightReplay(record_of(fly(CHANGES)))
+    seen = [flight_replay.flight.env.velocity[0].tolist()]
     for _ in range(120):
-        tape.step()
-        seen.append(tape.flight.env.velocity[0].tolist())
+        flight_replay.step()
+        seen.append(flight_replay.flight.env.velocity[0].tolist())
     for step in (95, 30, 51, 50, 49, 100, 1, 120, 0):
-        tape.seek(step)
-        assert tape.flight.env.velocity[0].tolist() == seen[step]
+        flight_replay.seek(step)
+        assert flight_replay.flight.env.velocity[0].tolist() == seen[step]
         assert (
-            tape.flight.recording.gravity_at(step) == fly(CHANGES, step).recording.gravity_at(step) or step in CHANGES
+            flight_replay.flight.recording.gravity_at(step) == fly(CHANGES, step).recording.gravity_at(step)
+            or step in CHANGES
         )
-    tape.scout(10_000)
-    assert tape.faithful
+    flight_replay.scout(10_000)
+    assert flight_replay.faithful
 
 
 def test_two_changes_between_two_steps_are_one():
@@ -136,7 +137,7 @@ def test_a_gravity_beyond_its_limits_is_defaulted(value):
 def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context: Context):
     context.settings.tutored = True
     context.settings_file.save(context.settings)
-    game = open_game(Play(3))
+    game = open_game(PlayScene(3))
     play = game.top
     game.frames(2)
     game.key(pygame.K_UP)
@@ -166,7 +167,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
 def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
     context.settings.gravity = 0.6
     context.settings_file.save(context.settings)
-    game = open_game(Play(0, course=Flown(MISSIONS["fall"])))
+    game = open_game(PlayScene(0, challenge=FlownMission(MISSIONS["fall"])))
     game.frames(2)
     game.key(pygame.K_UP)
     game.frames(10)
@@ -176,7 +177,7 @@ def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
 
 
 def test_nothing_but_the_pace_can_be_chosen_in_a_course(open_game: Open):
-    game = open_game(Play(0, course=Flown(MISSIONS["fall"])))
+    game = open_game(PlayScene(0, challenge=FlownMission(MISSIONS["fall"])))
     game.keys(pygame.K_UP, pygame.K_c)
     labels = [widget.label for widget in game.top._form.widgets]
     assert texts.PACE in labels
@@ -191,7 +192,7 @@ def test_a_recording_says_what_a_step_was_flown_under():
 def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_practice(open_game: Open, context: Context):
     context.settings.pace = 0.5
     context.settings_file.save(context.settings)
-    player = Player(open_game(Play(0, course=Flown(MISSIONS["fall"]))), "keys")
+    player = Player(open_game(PlayScene(0, challenge=FlownMission(MISSIONS["fall"]))), "keys")
     play = player.top
     player.frames(2)
     player.hold("main", down=True)
@@ -207,7 +208,7 @@ def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_practice(open
     assert (entry.pace, entry.practice, entry.alone, entry.medal) == (0.5, True, False, 0)
     assert texts.PRACTICE in play.ending.card.score
     record = Records(context.user_dir).read(entry.file)
-    again = Rerun(record.recording)
+    again = ReplayedFlight(record.recording)
     while not again.over:
         again.step(0)
     assert np.array_equal(again.poses.now, play.flight.poses.now)

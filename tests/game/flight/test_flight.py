@@ -9,7 +9,7 @@ from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS, Flight, Hand, Swarm
+from game.flight.flight import DECISION_STEPS, Flight, StickHolder, Swarm
 from game.flight.forecast import Forecast, coast_path
 from game.flight.outcomes import outcome_card
 
@@ -74,7 +74,7 @@ def test_a_network_decides_every_four_steps_and_at_once_when_it_takes_over():
 def test_no_network_and_no_flight_cannot_be_handed_over():
     flight = Flight(1)
     assert not flight.hand_over()
-    assert flight.hand is Hand.HUMAN
+    assert flight.hand is StickHolder.HUMAN
     flight = Flight(1, Counting())
     while not flight.over:
         flight.step(0)
@@ -180,18 +180,18 @@ def test_a_lean_just_over_the_limit_does_not_read_as_the_limit_or_less():
 
 def test_networks_are_listed_with_what_is_wrong_with_them(tmp_path: Path):
     models, user = tmp_path / "models", tmp_path / "user"
-    roster = networks.Roster(models, user)
-    assert roster.names == ["modern", "scripted"]
-    assert "missing" in roster["modern"].problem
-    assert roster.first_fit().name == "scripted"
+    policies = networks.Policies(models, user)
+    assert policies.names == ["modern", "scripted"]
+    assert "missing" in policies["modern"].problem
+    assert policies.first_fit().name == "scripted"
     for folder in (models / "lander" / "broken", user / "models" / "mine"):
         folder.mkdir(parents=True)
         (folder / "config.json").write_text("{}")
     (user / "models" / "pictures").mkdir()
     (user / "models" / "notes.txt").touch()
-    roster = networks.Roster(models, user)
-    assert roster.names == ["modern", "broken", "mine", "scripted"]
-    assert all(roster[name].flyer is None and roster[name].problem for name in ("modern", "broken", "mine"))
+    policies = networks.Policies(models, user)
+    assert policies.names == ["modern", "broken", "mine", "scripted"]
+    assert all(policies[name].policy is None and policies[name].problem for name in ("modern", "broken", "mine"))
     assert networks.chosen(models, user, "broken").problem
     assert networks.chosen(models, user, "gone").name == "modern"
 
@@ -202,16 +202,16 @@ def test_only_the_network_that_is_asked_for_is_read_and_only_once(tmp_path: Path
     read = []
     load = DeepQAgent.load
     monkeypatch.setattr(DeepQAgent, "load", lambda folder: (read.append(folder.name), load(folder))[1])
-    roster = networks.Roster(tmp_path / "shipped", tmp_path)
-    assert roster["two"].flyer is roster["two"].flyer is not None
+    policies = networks.Policies(tmp_path / "shipped", tmp_path)
+    assert policies["two"].policy is policies["two"].policy is not None
     assert read == ["two"]
 
 
 @pytest.mark.skipif(not (MODELS_DIR / "lander" / "modern").exists(), reason="no trained network here")
 def test_the_shipped_network_lands():
     network = networks.chosen(MODELS_DIR, Path("nowhere"))
-    assert network.flyer is not None, network.problem
-    swarm = Swarm(32, 9, network.flyer)
+    assert network.policy is not None, network.problem
+    swarm = Swarm(32, 9, network.policy)
     for _ in range(1600):
         swarm.step()
     assert swarm.landed > 0.9 * (swarm.landed + swarm.lost)
@@ -224,13 +224,13 @@ def test_whatever_lies_in_the_players_folder_is_named_and_never_raises(tmp_path:
     DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(folder / "cut")
     (folder / "cut" / "optimizer.npz").write_bytes((folder / "cut" / "optimizer.npz").read_bytes()[:200])
     DeepQAgent(NUM_FEATURES, NUM_ACTIONS).save(tmp_path / "shipped" / "lander" / "modern")
-    found = networks.Roster(tmp_path / "shipped", tmp_path)
-    assert found["cartpole"].flyer is None
+    found = networks.Policies(tmp_path / "shipped", tmp_path)
+    assert found["cartpole"].policy is None
     assert "4 inputs and 2 actions" in found["cartpole"].problem
-    assert found["cut"].flyer is None
+    assert found["cut"].policy is None
     assert found["cut"].problem
-    assert found["modern"].flyer is not None
-    assert found["modern (yours)"].flyer is not None
+    assert found["modern"].policy is not None
+    assert found["modern (yours)"].policy is not None
 
 
 def test_a_forecast_ends_at_the_ground_and_disturbs_nothing():

@@ -13,7 +13,7 @@ from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.flight import flight_file
 from game.flight import logbook as records
-from game.flight.flight import Flight, Hand, Recording
+from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
 from game.flight.logbook import Records, best, skill, totals
 from game.scenes.logbook import _row
@@ -288,7 +288,7 @@ def test_totals_and_skill_are_of_what_was_flown():
 @given(st.lists(st.sampled_from(range(6)), min_size=1, max_size=300), st.integers(0, 2**40))
 @settings(max_examples=50, deadline=None)
 def test_any_recording_survives_its_file(actions: list[int], seed: int):
-    hands = [Hand.HUMAN if action % 2 else Hand.NETWORK for action in actions]
+    hands = [StickHolder.HUMAN if action % 2 else StickHolder.NETWORK for action in actions]
     recording = Recording(seed, "hard", 3, actions, hands)
     record = Record(recording, replace(entry(), file="x"), (1.0, 2.0, -0.25))
     assert from_text(to_text(record)) == record

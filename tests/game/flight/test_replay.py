@@ -9,12 +9,12 @@ from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.flight.replay import Rerun, Tape
-from game.scenes.logbook import Logbook
-from game.scenes.replay import Replay
+from game.flight.replay import FlightReplay, ReplayedFlight
+from game.scenes.logbook import LogbookScene
+from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import NOON, fly_out, kept, scripted
@@ -27,27 +27,27 @@ def record(context: Context) -> Record:
     return kept(context, scripted(by_hand=40))
 
 
-def state(tape: Tape) -> tuple:
-    env = tape.flight.env
+def state(flight_replay: FlightReplay) -> tuple:
+    env = flight_replay.flight.env
     return (*env.position[0].tolist(), *env.velocity[0].tolist(), float(env.angle[0]), int(env.outcome[0]),
-            int(env.main_steps[0]), tape.flight.share)  # fmt: skip
+            int(env.main_steps[0]), flight_replay.flight.share)  # fmt: skip
 
 
 def test_a_tape_can_be_wound_to_any_moment_and_shows_it_as_it_was(record: Record):
-    tape = Tape(record)
-    seen = [state(tape)]
-    for _ in range(tape.length):
-        tape.step()
-        seen.append(state(tape))
-    assert tape.flight.outcome is Outcome.LANDED
-    for step in (0, 1, 19, 20, 21, 77, tape.length - 1, tape.length, 40, 39, 3, tape.length):
-        tape.seek(step)
-        assert tape.at == step
-        assert state(tape) == seen[step]
-    tape.seek(60)
+    flight_replay = FlightReplay(record)
+    seen = [state(flight_replay)]
+    for _ in range(flight_replay.length):
+        flight_replay.step()
+        seen.append(state(flight_replay))
+    assert flight_replay.flight.outcome is Outcome.LANDED
+    for step in (0, 1, 19, 20, 21, 77, flight_replay.length - 1, flight_replay.length, 40, 39, 3, flight_replay.length):
+        flight_replay.seek(step)
+        assert flight_replay.at == step
+        assert state(flight_replay) == seen[step]
+    flight_replay.seek(60)
     for step in range(61, 90):
-        tape.step()
-        assert state(tape) == seen[step]
+        flight_replay.step()
+        assert state(flight_replay) == seen[step]
 
 
 def test_read_outs_turn_to_the_pads_that_they_turned_to_in_flight():
@@ -58,7 +58,7 @@ def test_read_outs_turn_to_the_pads_that_they_turned_to_in_flight():
         flight.step(int(pilot.act(flight.env.observe((first + 1) % 3))[0]))
         flown.append((int(flight.env.target[0]), float(flight.env.altitude[0])))
     assert flown[0][0] == first != flown[-1][0]
-    again = Rerun(flight.recording)
+    again = ReplayedFlight(flight.recording)
     while not again.over:
         again.step(0)
         replayed.append((int(again.env.target[0]), float(again.env.altitude[0])))
@@ -66,42 +66,42 @@ def test_read_outs_turn_to_the_pads_that_they_turned_to_in_flight():
 
 
 def test_a_tape_winds_no_further_than_was_looked_ahead_and_never_out_of_the_flight(record: Record):
-    tape = Tape(record)
-    tape.scout(30)
-    tape.seek(500)
-    assert tape.at == 30
-    tape.seek(-5)
-    assert tape.at == 0
-    assert not tape.touching
-    tape.scout(10_000)
-    assert tape.touching
-    tape.seek(10_000)
-    assert (tape.at, tape.complete, tape.faithful) == (tape.length, True, True)
-    assert len(tape.path) == tape.length + 1
-    tape.step()
-    assert tape.at == tape.length
+    flight_replay = FlightReplay(record)
+    flight_replay.scout(30)
+    flight_replay.seek(500)
+    assert flight_replay.at == 30
+    flight_replay.seek(-5)
+    assert flight_replay.at == 0
+    assert not flight_replay.touching
+    flight_replay.scout(10_000)
+    assert flight_replay.touching
+    flight_replay.seek(10_000)
+    assert (flight_replay.at, flight_replay.complete, flight_replay.faithful) == (flight_replay.length, True, True)
+    assert len(flight_replay.path) == flight_replay.length + 1
+    flight_replay.step()
+    assert flight_replay.at == flight_replay.length
 
 
 @pytest.mark.parametrize("pads", [1, 3])
 def test_hands_are_those_that_flew(context: Context, pads: int):
     records = Records(context.user_dir)
     flight = scripted(pads=pads, by_hand=40)
-    tape = Tape(records.read(records.keep(flight, NOON).file))
-    tape.scout(10_000)
-    tape.seek(40)
-    assert tape.flight.flown_by is Hand.HUMAN
-    tape.seek(41)
-    assert tape.flight.flown_by is Hand.NETWORK
-    tape.seek(tape.length)
-    assert tape.flight.share == flight.share
+    flight_replay = FlightReplay(records.read(records.keep(flight, NOON).file))
+    flight_replay.scout(10_000)
+    flight_replay.seek(40)
+    assert flight_replay.flight.flown_by is StickHolder.HUMAN
+    flight_replay.seek(41)
+    assert flight_replay.flight.flown_by is StickHolder.NETWORK
+    flight_replay.seek(flight_replay.length)
+    assert flight_replay.flight.share == flight.share
 
 
 def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: Record):
     x, y, angle = record.end
-    tape = Tape(replace(record, end=(x + 0.01, y, angle)))
-    tape.scout(10_000)
-    assert not tape.faithful
-    driver = open_game(Replay(replace(record, end=(x, y + 1, angle))))
+    flight_replay = FlightReplay(replace(record, end=(x + 0.01, y, angle)))
+    flight_replay.scout(10_000)
+    assert not flight_replay.faithful
+    driver = open_game(ReplayScene(replace(record, end=(x, y + 1, angle))))
     driver.frames(120)
     assert "other rules" in said(driver)
 
@@ -112,10 +112,10 @@ def said(driver: Driver) -> str:
 
 def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):
     record.recording.actions[50:], record.recording.hands[50:] = [], []
-    tape = Tape(record)
+    flight_replay = FlightReplay(record)
     for _ in range(70):
-        tape.step()
-    assert (tape.at, tape.complete, tape.faithful) == (50, True, False)
+        flight_replay.step()
+    assert (flight_replay.at, flight_replay.complete, flight_replay.faithful) == (50, True, False)
 
 
 # The scene
@@ -123,90 +123,90 @@ def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):
 
 @pytest.fixture
 def replay(open_game: Open, record: Record) -> Driver:
-    driver = open_game(Replay(record))
+    driver = open_game(ReplayScene(record))
     driver.frames(2)
     return driver
 
 
-def scene(driver: Driver) -> Replay:
-    assert isinstance(driver.top, Replay)
+def scene(driver: Driver) -> ReplayScene:
+    assert isinstance(driver.top, ReplayScene)
     return driver.top
 
 
 def test_it_plays_at_its_own_pace_and_at_others(replay: Driver):
-    before = scene(replay).tape.at
+    before = scene(replay).flight_replay.at
     replay.frames(20)
-    assert scene(replay).tape.at == before + 20
+    assert scene(replay).flight_replay.at == before + 20
     replay.keys(pygame.K_MINUS, pygame.K_MINUS)
-    before = scene(replay).tape.at
+    before = scene(replay).flight_replay.at
     replay.frames(40)
-    assert scene(replay).tape.at == pytest.approx(before + 10, abs=1)
+    assert scene(replay).flight_replay.at == pytest.approx(before + 10, abs=1)
 
 
 def test_space_stops_a_period_steps_and_arrows_wind(replay: Driver):
     replay.frames(60)
     replay.key(pygame.K_SPACE)
-    at = scene(replay).tape.at
+    at = scene(replay).flight_replay.at
     replay.frames(10)
-    assert scene(replay).tape.at == at
+    assert scene(replay).flight_replay.at == at
     replay.key(pygame.K_PERIOD)
-    assert scene(replay).tape.at == at + 1
+    assert scene(replay).flight_replay.at == at + 1
     replay.key(pygame.K_LEFT)
-    assert scene(replay).tape.at == at - 5
+    assert scene(replay).flight_replay.at == at - 5
     replay.key(pygame.K_HOME)
-    assert scene(replay).tape.at == 0
+    assert scene(replay).flight_replay.at == 0
     replay.frames(120)
     replay.key(pygame.K_END)
-    assert scene(replay).tape.at == scene(replay).tape.length
+    assert scene(replay).flight_replay.at == scene(replay).flight_replay.length
     assert scene(replay).ended
 
 
 def test_at_the_end_it_stays_and_space_begins_anew(replay: Driver):
-    replay.frames(scene(replay).tape.length + 30)
+    replay.frames(scene(replay).flight_replay.length + 30)
     assert scene(replay).ended
     replay.key(pygame.K_SPACE)
     replay.frames(3)
-    assert 0 < scene(replay).tape.at < 10
+    assert 0 < scene(replay).flight_replay.at < 10
 
 
 @pytest.mark.parametrize(("reduced", "faster", "slow"), [(False, 0, True), (False, 1, False), (True, 0, False)])
 def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, reduced: bool, faster: int, slow: bool):
     context.settings_file.save(replace(context.settings, reduced_motion=reduced))
-    driver = open_game(Replay(kept(context, fly_out(Flight(5)))))
+    driver = open_game(ReplayScene(kept(context, fly_out(Flight(5)))))
     driver.frames(2)
     driver.keys(*[pygame.K_PLUS] * faster)
     driver.wait(lambda: scene(driver).ended)
-    assert scene(driver).tape.flight.outcome is Outcome.CRASHED
+    assert scene(driver).flight_replay.flight.outcome is Outcome.CRASHED
     assert scene(driver)._pace.slow is slow
     driver.keys(pygame.K_HOME)
     assert not scene(driver)._pace.slow
-    before = scene(driver).tape.at
+    before = scene(driver).flight_replay.at
     driver.frames(10)
-    assert scene(driver).tape.at == before + 10 * (1 + faster)
+    assert scene(driver).flight_replay.at == before + 10 * (1 + faster)
 
 
 def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
     replay.frames(150)
-    box = scene(replay)._strip.box
+    box = scene(replay)._reward_bar.box
     replay.click((box.left + 84 + 0.5 * (box.width - 84), box.centery))
-    assert scene(replay).tape.at == pytest.approx(scene(replay).tape.length / 2, abs=5)
+    assert scene(replay).flight_replay.at == pytest.approx(scene(replay).flight_replay.length / 2, abs=5)
     assert not scene(replay).stopped
 
 
 def test_a_gamepad_stops_winds_and_leaves(open_game: Open, record: Record, context: Context):
     Records(context.user_dir)
-    driver = open_game(Logbook())
+    driver = open_game(LogbookScene())
     driver.frames(2)
     driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert driver.top_name == "Replay"
+    assert driver.top_name == "ReplayScene"
     driver.frames(100)
     driver.button(pygame.CONTROLLER_BUTTON_A)
     assert scene(driver).stopped
-    at = scene(driver).tape.at
+    at = scene(driver).flight_replay.at
     driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
-    assert scene(driver).tape.at < at
+    assert scene(driver).flight_replay.at < at
     driver.button(pygame.CONTROLLER_BUTTON_B)
-    assert driver.top_name == "Logbook"
+    assert driver.top_name == "LogbookScene"
 
 
 def test_drawing_changes_nothing(replay: Driver):
@@ -229,18 +229,18 @@ def book(open_game: Open, context: Context) -> Driver:
         fall.step(0)
     records.keep(landing, NOON, alone=True)
     records.keep(fall, NOON + 60, alone=True)
-    driver = open_game(Logbook())
+    driver = open_game(LogbookScene())
     driver.frames(3)
     return driver
 
 
-def page(driver: Driver) -> Logbook:
-    assert isinstance(driver.top, Logbook)
+def page(driver: Driver) -> LogbookScene:
+    assert isinstance(driver.top, LogbookScene)
     return driver.top
 
 
 def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
-    driver = open_game(Logbook())
+    driver = open_game(LogbookScene())
     driver.keys(pygame.K_RETURN, pygame.K_DELETE, pygame.K_DOWN, pygame.K_UP)
     assert page(driver).chosen is None
     assert not driver.key(pygame.K_ESCAPE)
@@ -263,7 +263,7 @@ def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(boo
     assert [word.label for word in page(book)._verbs] == [texts.LOGBOOK_BRING_BACK, texts.BACK]
     assert said(book) == texts.LOGBOOK_THROWN
     book.key(pygame.K_RETURN)  # there is nothing to watch any more
-    assert book.top_name == "Logbook"
+    assert book.top_name == "LogbookScene"
     written: list[str] = []
     monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
     book.frames(1)
@@ -274,7 +274,7 @@ def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(boo
     assert said(book) == texts.LOGBOOK_BROUGHT_BACK
     assert page(book).chosen == entry
     book.key(pygame.K_RETURN)
-    assert book.top_name == "Replay"
+    assert book.top_name == "ReplayScene"
 
 
 def test_a_damaged_flight_is_named_and_left_alone(book: Driver):
@@ -283,6 +283,6 @@ def test_a_damaged_flight_is_named_and_left_alone(book: Driver):
     path = page(book)._records.folder / entry.file
     path.write_text("{")
     book.key(pygame.K_RETURN)
-    assert book.top_name == "Logbook"
+    assert book.top_name == "LogbookScene"
     assert "damaged" in said(book)
     assert path.read_text() == "{"

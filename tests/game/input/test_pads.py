@@ -11,7 +11,7 @@ import pytest
 from game.core import texts
 from game.drawing.glyphs import SIGN
 from game.input.controls import Command
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from tests.support.driver import Driver
 
 GAME_CONTROLLER, AXES, BUTTONS = 1, 6, 15
@@ -84,7 +84,7 @@ def test_a_pad_leads_from_the_menu_to_settings_and_back(game: Driver, pads: Virt
     tap(pygame.CONTROLLER_BUTTON_A)
     assert game.top_name == "SettingsScene"
     tap(pygame.CONTROLLER_BUTTON_B)
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
 
 
 def test_two_games_one_after_the_other_hear_the_same_pad(open_game: Callable[..., Driver], pads: VirtualPads):
@@ -97,7 +97,7 @@ def test_two_games_one_after_the_other_hear_the_same_pad(open_game: Callable[...
 
 
 def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Callable[..., Driver], pads: VirtualPads):
-    play = Play(3)
+    play = PlayScene(3)
     game = open_game(play)
     pads.plug_in()
     game.frames(3)
@@ -108,7 +108,7 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Calla
     flown = len(play.flight.recording.actions)
     pads.pull_out_all()
     game.frames(3)
-    assert game.top_name == "Pause"
+    assert game.top_name == "PauseScene"
     assert game.app._notes._text == texts.PAD_LOST
     assert not SIGN.search(game.app.context.controls.word(Command.CONFIRM))
     game.key(pygame.K_ESCAPE)
@@ -133,11 +133,11 @@ def test_a_pad_pulled_out_before_its_turn_is_not_told_of_by_the_name_of_another(
 
 
 def test_a_pad_pulled_out_that_nobody_uses_disturbs_nobody(open_game: Callable[..., Driver], pads: VirtualPads):
-    game = open_game(Play(3))
+    game = open_game(PlayScene(3))
     pads.plug_in()
     game.frames(3)
     game.key(pygame.K_UP)
     game.frames(5)
     pads.pull_out_all()
     game.frames(5)
-    assert game.top_name == "Play"
+    assert game.top_name == "PlayScene"

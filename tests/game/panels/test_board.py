@@ -5,14 +5,14 @@ import pytest
 
 from ai.agent.config import PRESETS, Config
 from ai.training.history import COLUMNS, History, Point
-from ai.training.messages import Begun
+from ai.training.messages import RunStarted
 from ai.training.session import live
 from game.charts.chart import Chart, Series
 from game.core import texts
-from game.panels.training_charts import Board
-from game.training.lander_run import Student
+from game.panels.training_charts import TrainingCharts
+from game.training.lander_run import LanderRun
 from game.training.library import Library
-from game.training.training_run import Beside
+from game.training.training_run import EarlierRun
 
 
 def run(config: Config, points: float) -> History:
@@ -28,11 +28,11 @@ def run(config: Config, points: float) -> History:
 def test_mean_q_is_drawn_in_points_of_reward_whatever_the_networks_count_in(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: dict[str, list[Series]] = {}
     monkeypatch.setattr(Chart, "set", lambda chart, series, *_: drawn.update({chart.label: series}))
-    board = Board()
+    training_charts = TrainingCharts()
     modern, classic = (run(PRESETS[name], 80.0) for name in ("modern", "classic"))
     assert modern["mean_q"][0] != classic["mean_q"][0]
     for _ in range(24):
-        board.look(modern, [Beside("classic", classic, 1)])
+        training_charts.look(modern, [EarlierRun("classic", classic, 1)])
     assert len(drawn[texts.TRAIN_CHARTS["mean_q"]]) == 2
     for series in drawn[texts.TRAIN_CHARTS["mean_q"]]:
         np.testing.assert_allclose(series.y, 80.0, rtol=1e-6)
@@ -50,9 +50,9 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
 
     class Tells:
         def poll(self) -> tuple[object, ...]:
-            return tuple(message for message in told if isinstance(message, Begun))
+            return tuple(message for message in told if isinstance(message, RunStarted))
 
-    student = Student(Library(tmp_path))
-    student._worker = Tells()  # type: ignore[assignment]
-    student.poll()
-    assert student.history.reward_scale == config.reward_scale
+    lander_run = LanderRun(Library(tmp_path))
+    lander_run._worker = Tells()  # type: ignore[assignment]
+    lander_run.poll()
+    assert lander_run.history.reward_scale == config.reward_scale

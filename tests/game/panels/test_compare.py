@@ -7,8 +7,8 @@ import pytest
 
 from ai.training.history import Checkpoint, History
 from game.core import texts
-from game.panels.training_charts import Board
-from game.training.training_run import EARLIER, Beside, put_beside
+from game.panels.training_charts import TrainingCharts
+from game.training.training_run import EARLIER, EarlierRun, put_beside
 from tests.ai.training.test_hints import HEALTHY
 
 
@@ -21,7 +21,7 @@ def run_of(seconds: float, decisions: float) -> History:
 
 
 def test_a_run_keeps_its_style_as_others_come_and_go():
-    runs: list[Beside[str]] = []
+    runs: list[EarlierRun[str]] = []
     for name in ("a", "b", "c"):
         assert put_beside(runs, name, name) == ""
     styles = {each.name: each.style for each in runs}
@@ -34,28 +34,28 @@ def test_a_run_keeps_its_style_as_others_come_and_go():
     assert next(each.style for each in runs if each.name == "c") == styles["c"]
 
 
-def look(board: Board, history: History, beside: list[Beside[History]]) -> None:
+def look(training_charts: TrainingCharts, history: History, beside: list[EarlierRun[History]]) -> None:
     for _ in range(12):
-        board.look(history, beside)
+        training_charts.look(history, beside)
 
 
 @pytest.mark.parametrize(("axis", "end", "reach"), [(0, 367.0, 12.0), (1, 4e6, 2e5), (2, 100.0, 100.0)])
 def test_a_short_run_beside_a_long_one_can_be_measured_so_that_it_is_seen(axis: int, end: float, reach: float):
-    board, short = Board(), run_of(12.0, 200_000.0)
-    look(board, short, [Beside("long", run_of(367.0, 4e6), 1)])
-    board.measure_by(axis)
-    look(board, short, [Beside("long", run_of(367.0, 4e6), 1)])
-    for chart in board.charts.charts:
+    training_charts, short = TrainingCharts(), run_of(12.0, 200_000.0)
+    look(training_charts, short, [EarlierRun("long", run_of(367.0, 4e6), 1)])
+    training_charts.measure_by(axis)
+    look(training_charts, short, [EarlierRun("long", run_of(367.0, 4e6), 1)])
+    for chart in training_charts.charts.charts:
         assert chart._x_range == (0.0, pytest.approx(end))
         assert chart._runs[0].x[-1] == pytest.approx(reach)
         assert chart.read_x(end) == texts.TRAIN_AXIS[axis].format(end)
 
 
 def test_a_checkpoint_is_chosen_where_it_stands_on_the_axis():
-    board, run = Board(), run_of(100.0, 1e6)
+    training_charts, run = TrainingCharts(), run_of(100.0, 1e6)
     checkpoints = [Checkpoint(25.0 * number, 250_000 * number, 0.0, np.zeros(1, np.float32)) for number in range(5)]
     for axis, place in ((0, 51.0), (1, 510_000.0), (2, 51.0)):
-        board.measure_by(axis)
-        look(board, run, [])
-        board.choose(place, checkpoints)
-        assert board.chosen is checkpoints[2]
+        training_charts.measure_by(axis)
+        look(training_charts, run, [])
+        training_charts.choose(place, checkpoints)
+        assert training_charts.chosen is checkpoints[2]

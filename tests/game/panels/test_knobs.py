@@ -11,10 +11,10 @@ from game.core import texts
 from game.core.scene import Pop, Transition
 from game.drawing.canvas import Canvas
 from game.panels.knob import Knob, SeedKnob, SliderKnob
-from game.panels.knobs import Knobs
+from game.panels.knobs import KnobsPanel
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.widgets import Choice, Word
+from game.ui.widgets import Choice, TextButton
 from tests.support.driver import Driver
 
 BOX = pygame.Rect(868, 20, 384, 404)
@@ -31,11 +31,11 @@ class Panel:
     def enter(self, context: Context) -> None:
         self.form = Form(context, on_back=Pop)
         heard = self.heard
-        self.knobs = Knobs(
+        self.knobs = KnobsPanel(
             self.form, self.box, PRESETS["modern"], 0,
             lambda name, value: heard.append((name, value)), lambda *anew: heard.append(anew),
         )  # fmt: skip
-        self.other = self.form.add(Word(self.form.manager, (64, 600, 80, 24), "Other", lambda: None))
+        self.other = self.form.add(TextButton(self.form.manager, (64, 600, 80, 24), "Other", lambda: None))
 
     def exit(self) -> None:
         pass
@@ -55,10 +55,10 @@ class Panel:
         self.knobs.draw(canvas)
 
     def knob(self, name: str) -> Any:
-        return next(each for each in self.form.widgets if isinstance(each, Knob) and each.dial.name == name)
+        return next(each for each in self.form.widgets if isinstance(each, Knob) and each.description.name == name)
 
-    def word(self, label: str) -> Word:
-        return next(each for each in self.form.widgets if isinstance(each, Word) and each.label == label)
+    def word(self, label: str) -> TextButton:
+        return next(each for each in self.form.widgets if isinstance(each, TextButton) and each.label == label)
 
     @property
     def tabs(self) -> Choice:
@@ -69,7 +69,7 @@ class Panel:
         return next(each for each in self.form.widgets if isinstance(each, SeedKnob))
 
     def has(self, label: str) -> bool:
-        return any(isinstance(each, Word) and each.label == label for each in self.form.widgets)
+        return any(isinstance(each, TextButton) and each.label == label for each in self.form.widgets)
 
 
 @pytest.fixture
@@ -160,7 +160,7 @@ def test_the_presets_own_value_is_a_stop_as_well(panel: tuple[Driver, Panel]):
     game, scene = panel
     turn_to(game, scene, "exploration")
     knob = scene.knob("epsilon_decisions")
-    assert Config().epsilon_decisions not in knob.dial.stops
+    assert Config().epsilon_decisions not in knob.description.stops
     scene.form.focus(knob)
     game.keys(pygame.K_RIGHT, pygame.K_LEFT)
     assert [value for _, value in scene.heard] == [50_000, 40_000]
@@ -241,7 +241,7 @@ def test_the_sabotage_page_can_be_left_as_it_was(panel: tuple[Driver, Panel]):
     game, scene = panel
     scene.form.focus(scene.word(texts.SABOTAGE))
     game.keys(pygame.K_RETURN)
-    assert isinstance(scene.form.focused, Word)
+    assert isinstance(scene.form.focused, TextButton)
     assert scene.form.focused.label == "No target"
     game.click(scene.word(texts.SABOTAGE_LEAVE).box.center)
     assert scene.heard == []

@@ -10,8 +10,8 @@ from ai.lander.environment import ACTION_NAMES, FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.panels.network_plan import Plan, steady_choice, strongest_edges
-from game.panels.network_view import NetView
+from game.panels.network_plan import NetworkPlan, steady_choice, strongest_edges
+from game.panels.network_view import NetworkView
 from tests.game.shell.test_draw import state_of
 
 BOX = (868, 420, 384, 180)
@@ -30,13 +30,13 @@ def network_of(features: int = 9, actions: int = 6, **options: object) -> Neural
     return network
 
 
-def view_of(network: NeuralNetwork, box: tuple[int, int, int, int] = BOX) -> NetView:
-    view = NetView(box, FEATURE_NAMES, ACTION_NAMES)
+def view_of(network: NeuralNetwork, box: tuple[int, int, int, int] = BOX) -> NetworkView:
+    view = NetworkView(box, FEATURE_NAMES, ACTION_NAMES)
     view.set(network, OBSERVATION)
     return view
 
 
-def play(view: NetView, canvas: Canvas, frames: int = 40) -> None:
+def play(view: NetworkView, canvas: Canvas, frames: int = 40) -> None:
     for _ in range(frames):
         view.update()
         view.draw(canvas)
@@ -102,7 +102,7 @@ def test_edges_follow_what_is_to_be_shown() -> None:
     weights.value[:] = [[3, 0], [0, -2], [1, 0]]
     network.gradients[:] = 0
     weights.gradient[:] = [[0, 0], [0, 0], [0, 5]]
-    plan = Plan(network, [0.0, 2.0, -1.0], 12)
+    plan = NetworkPlan(network, [0.0, 2.0, -1.0], 12)
 
     def drawn(show: str) -> list[tuple[int, int, bool]]:
         return [(edge.start, edge.end, edge.positive) for edge in plan.edges(show, 12)]  # type: ignore[arg-type]
@@ -114,7 +114,7 @@ def test_edges_follow_what_is_to_be_shown() -> None:
 
 def test_a_plan_is_a_copy() -> None:
     network = network_of()
-    plan = Plan(network, OBSERVATION, 12)
+    plan = NetworkPlan(network, OBSERVATION, 12)
     before = [edge.size for edge in plan.edges("weights", 50)]
     network.values[:] = 7
     assert [edge.size for edge in plan.edges("weights", 50)] == before
@@ -122,9 +122,9 @@ def test_a_plan_is_a_copy() -> None:
 
 def test_the_best_output_is_the_one_the_network_would_take() -> None:
     network = network_of()
-    plan = Plan(network, OBSERVATION, 12)
+    plan = NetworkPlan(network, OBSERVATION, 12)
     assert plan.best() == int(network.predict(OBSERVATION.astype(np.float32)).argmax())
-    assert Plan(network, None, 12).best() is None
+    assert NetworkPlan(network, None, 12).best() is None
 
 
 # Pointing
@@ -156,7 +156,7 @@ def test_the_hovered_unit_s_edges_stand_out(canvas: Canvas) -> None:
     assert touched > plain > _light_along(view, edge.column, edge.start, edge.end)
 
 
-def _light_along(view: NetView, column: int, start: int, end: int) -> float:
+def _light_along(view: NetworkView, column: int, start: int, end: int) -> float:
     """Return how bright the sheet of light is a quarter along an edge, where not many cross."""
     assert view._sheets is not None
     (x0, y0), (x1, y1) = (view._on_sheet(view._centres[column + k][place]) for k, place in enumerate((start, end)))
@@ -206,7 +206,7 @@ def test_what_is_drawn_in_parts_ends_up_the_same_as_at_once(canvas: Canvas) -> N
     view.set(network, -OBSERVATION)
     view.update()
     play(view, canvas, 90)
-    other = NetView(LARGE, FEATURE_NAMES, ACTION_NAMES)
+    other = NetworkView(LARGE, FEATURE_NAMES, ACTION_NAMES)
     other.plan, other._given = view.plan, view._given
     other._centres = other._lay_out()
     other._pick_edges()
@@ -252,7 +252,7 @@ def test_any_network_is_drawn_in_any_box(
 
 @pytest.mark.parametrize("features", [1, 4, 40])
 def test_other_numbers_of_inputs_are_drawn(canvas: Canvas, features: int) -> None:
-    view = NetView(BOX, FEATURE_NAMES, ACTION_NAMES)
+    view = NetworkView(BOX, FEATURE_NAMES, ACTION_NAMES)
     view.set(network_of(features, 2), np.ones(features))
     play(view, canvas, 3)
     assert view.columns[0].total == features
@@ -276,7 +276,7 @@ def test_damaged_numbers_are_drawn_and_marked(canvas: Canvas, bad: float) -> Non
 
 @pytest.mark.parametrize("observation", [None, np.ones(4), np.ones((3, 9)), np.zeros(0)])
 def test_without_a_fitting_observation_the_weights_are_drawn(canvas: Canvas, observation: object) -> None:
-    view = NetView(BOX, FEATURE_NAMES, ACTION_NAMES)
+    view = NetworkView(BOX, FEATURE_NAMES, ACTION_NAMES)
     view.set(network_of(), observation)  # type: ignore[arg-type]
     play(view, canvas, 3)
     assert view.edges
@@ -284,7 +284,7 @@ def test_without_a_fitting_observation_the_weights_are_drawn(canvas: Canvas, obs
 
 
 def test_nothing_is_drawn_of_no_network(canvas: Canvas) -> None:
-    view = NetView(BOX)
+    view = NetworkView(BOX)
     view.hover((900.0, 450.0))
     play(view, canvas, 3)
     view.set(NeuralNetwork(*CostFunctions.use_mse()), np.ones(3))
@@ -304,7 +304,7 @@ def test_a_network_of_another_size_takes_its_place_while_a_unit_is_looked_at(can
 def test_outputs_are_told_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -> None:
     network = network_of()
     values = network.predict(np.atleast_2d(OBSERVATION))[0]
-    view = NetView(LARGE, FEATURE_NAMES, ACTION_NAMES)
+    view = NetworkView(LARGE, FEATURE_NAMES, ACTION_NAMES)
     view.output_scale = 0.01
     view.set(network, OBSERVATION)
     written: list[str] = []

@@ -12,13 +12,13 @@ from ai.agent.agent import DeepQAgent
 from ai.common.decision import Decision
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
-from game.cockpit.copilot_panel import Insight
-from game.cockpit.decision_panel import draw_mind
+from game.cockpit.copilot_panel import CopilotPanel
+from game.cockpit.decision_panel import draw_decision
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS, Flight
 from game.panels.q_values import SPAN
-from game.scenes.watch import Watch
+from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from tests.support.drawn import Drawn, Panel, number, read_panel
 from tests.support.driver import Driver
@@ -72,10 +72,10 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
 ):
     context.models_dir = MODELS.parent
     context.settings.reduced_motion = True
-    driver = open_game(Watch(count, seed=4))
+    driver = open_game(WatchScene(count, seed=4))
     watch = driver.top
-    assert isinstance(watch, Watch)
-    watch.swarm.flyer = Witness(agent)
+    assert isinstance(watch, WatchScene)
+    watch.swarm.policy = Witness(agent)
     watch._show(count - 1)
     slot, env = watch.shown, watch.swarm.env
     drawn = Drawn(monkeypatch)
@@ -94,7 +94,7 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
             sensed = watch.swarm.decision.observation[slot]
             assert sensed[1] > 0.5  # of the new start, not of where the last flight ended
         drawn.clear()
-        draw_mind(canvas, watch.decision)
+        draw_decision(canvas, watch.decision)
         panel = read_panel(drawn)
         points = agent.q_values(sensed)[0] / agent.config.reward_scale
         if env.outcome[slot] == Outcome.FLYING:
@@ -112,10 +112,10 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
 
 def test_the_scene_draws_that_panel(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch):
     context.models_dir = MODELS.parent
-    driver = open_game(Watch(1, seed=4))
+    driver = open_game(WatchScene(1, seed=4))
     driver.frames(40)
     watch = driver.top
-    assert isinstance(watch, Watch)
+    assert isinstance(watch, WatchScene)
     drawn = Drawn(monkeypatch)
     watch.draw(driver.app.canvas, 0.5)
     points = watch.decision.points
@@ -127,7 +127,7 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
     agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch
 ):
     flight, drawn = Flight(5, agent), Drawn(monkeypatch)
-    insight = Insight(flight.env.ground)
+    copilot_panel = CopilotPanel(flight.env.ground)
     flight.hand_over()
     while not flight.over:
         if len(flight.recording.actions) % DECISION_STEPS == 0:
@@ -135,9 +135,9 @@ def test_the_co_pilots_panel_draws_what_a_network_that_flies_alone_decides(
         flight.step(0)
         if flight.over:
             break
-        insight.follow(flight)
+        copilot_panel.follow(flight)
         drawn.clear()
-        insight.draw(canvas, 0.0)
+        copilot_panel.draw(canvas, 0.0)
         points = agent.q_values(sensed)[0] / agent.config.reward_scale
         check(read_panel(drawn), points, flight.recording.actions[-1])
         said = any("is kept" in word for word in drawn.words)
@@ -151,7 +151,7 @@ def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
     agent: DeepQAgent, canvas: Canvas, monkeypatch: pytest.MonkeyPatch, mode: Mode, pads: int
 ):
     flight, drawn = Flight(5, agent, pads=pads), Drawn(monkeypatch)
-    insight = Insight(flight.env.ground)
+    copilot_panel = CopilotPanel(flight.env.ground)
     flight.help(0.5, mode)
     rng = np.random.default_rng(1)
     titles, held = set(), 0
@@ -159,18 +159,18 @@ def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
         if len(flight.recording.actions) % 7 == 0:
             held = int(rng.choice([0, 0, 1, 2, 3, 4, 5]))
         flight.step(held)
-        insight.follow(flight)
+        copilot_panel.follow(flight)
         if flight.over:
             break
         decision = flight.decision
         assert decision is not None
         drawn.clear()
-        insight.draw(canvas, 0.5)
+        copilot_panel.draw(canvas, 0.5)
         pad, flown = int(flight.env.target[0]), flight.recording.actions[-1]
         points = agent.q_values(decision.observation[0, pad])[0] / agent.config.reward_scale
         check(read_panel(drawn), points, flown)
-        titles.add(insight.why[0])
-        read_why(insight.why, overridden=flight.overridden)
+        titles.add(copilot_panel.why[0])
+        read_why(copilot_panel.why, overridden=flight.overridden)
     assert len(titles) > 2
 
 

@@ -8,10 +8,10 @@ from ai.lander.environment import PARAMS, LanderEnv, Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core.scene import Push
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS, Flight, Hand
+from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.play.ghost import Ghost
-from game.scenes.menu import Menu
-from game.scenes.play import Play
+from game.scenes.menu import MenuScene
+from game.scenes.play import PlayScene
 from game.world.camera import Camera, View
 from tests.support.driver import Driver
 
@@ -32,8 +32,8 @@ def duel(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Driv
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", ScriptedPilot()))
 
     def begin(rival: object, seed: int = 12) -> Driver:
-        driver = open_game(Menu())
-        play = Play(seed, rival=rival, rival_name="checkpoint 14 s")  # type: ignore[arg-type]
+        driver = open_game(MenuScene())
+        play = PlayScene(seed, rival=rival, rival_name="checkpoint 14 s")  # type: ignore[arg-type]
         driver.app.scenes.apply(Push(play))
         driver.frames(1)
         return driver
@@ -41,8 +41,8 @@ def duel(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Driv
     return begin
 
 
-def scene(driver: Driver) -> Play:
-    assert isinstance(driver.top, Play)
+def scene(driver: Driver) -> PlayScene:
+    assert isinstance(driver.top, PlayScene)
     return driver.top
 
 
@@ -106,7 +106,7 @@ def test_the_ghost_waits_in_a_pause(duel):
     press(driver, MAIN)
     driver.frames(20)
     driver.key(pygame.K_ESCAPE)
-    assert driver.top_name == "Pause"
+    assert driver.top_name == "PauseScene"
     before = int(ghost_below(driver).flight.env.steps[0])
     driver.frames(10)
     driver.key(pygame.K_ESCAPE)
@@ -115,7 +115,7 @@ def test_the_ghost_waits_in_a_pause(duel):
 
 def ghost_below(driver: Driver) -> Ghost:
     below = driver.app.scenes._stack[-2]
-    assert isinstance(below, Play)
+    assert isinstance(below, PlayScene)
     assert below._ghost is not None
     return below._ghost
 
@@ -123,11 +123,11 @@ def ghost_below(driver: Driver) -> Ghost:
 def test_escape_leaves_before_the_start_and_after_the_end(duel):
     driver = duel(Idle())
     driver.key(pygame.K_ESCAPE)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
     driver = duel(Idle())
     end(driver, 8, 3, 0, -3, 0, 0)
     driver.key(pygame.K_ESCAPE)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_leaving_from_the_pause_goes_back_as_well(duel):
@@ -135,14 +135,14 @@ def test_leaving_from_the_pause_goes_back_as_well(duel):
     press(driver, MAIN)
     driver.frames(5)
     driver.keys(pygame.K_ESCAPE, pygame.K_UP, pygame.K_RETURN)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_looking_away_before_the_start_pauses_and_does_not_leave(duel):
     driver = duel(Idle())
     driver.post(pygame.WINDOWFOCUSLOST)
     driver.frames(15)
-    assert driver.top_name == "Pause"
+    assert driver.top_name == "PauseScene"
 
 
 @pytest.mark.parametrize(("key", "same"), [(pygame.K_r, True), (pygame.K_n, False)])
@@ -166,13 +166,13 @@ def test_a_gamepad_flies_retries_and_leaves(duel):
     driver.button(pygame.CONTROLLER_BUTTON_X)
     assert scene(driver).waiting
     driver.button(pygame.CONTROLLER_BUTTON_START)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_hand_over_still_works_and_the_card_tells_of_both(duel):
     driver = duel(Idle())
     driver.key(pygame.K_TAB)
-    assert scene(driver).flight.hand is Hand.NETWORK
+    assert scene(driver).flight.hand is StickHolder.NETWORK
     for _ in range(1500):
         driver.frames(1)
         if scene(driver).ending.shown >= 1:

@@ -11,7 +11,7 @@ from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.input.bindings import Command, Held
 from game.play.tutorial import Tutorial
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from tests.support.driver import Driver
 from tests.support.flights import play
 
@@ -41,10 +41,10 @@ class Reader:
         self.touch()
 
     @property
-    def course(self) -> Tutorial:
-        course = play(self.driver)._course
-        assert isinstance(course, Tutorial)
-        return course
+    def challenge(self) -> Tutorial:
+        challenge = play(self.driver)._challenge
+        assert isinstance(challenge, Tutorial)
+        return challenge
 
     def touch(self) -> None:
         """Let the game know which device is in use."""
@@ -59,7 +59,7 @@ class Reader:
         """Return which sentence is written, and the keys that it names."""
         scene = play(self.driver)
         moment = scene._moment(1.0)
-        words = self.course.words(scene.flight, moment.controls, waiting=moment.waiting, stuck=moment.stuck)
+        words = self.challenge.words(scene.flight, moment.controls, waiting=moment.waiting, stuck=moment.stuck)
         for name, pattern in SENTENCES:
             if found := pattern.fullmatch(words):
                 return name, found.groupdict()
@@ -151,15 +151,15 @@ DEVICES = ("keys", "pad", "mouse")
 
 
 def reader(open_game: Open, device: str, late: int = 0) -> Reader:
-    return Reader(open_game(Play(0, course=Tutorial())), device, late)
+    return Reader(open_game(PlayScene(0, challenge=Tutorial())), device, late)
 
 
 def to_the_landing(pupil: Reader, most: int = 6000) -> None:
     for _ in range(most):
         pupil.follow()
-        if pupil.course.through:
+        if pupil.challenge.through:
             break
-    assert pupil.course.flown, pupil.read[-1]
+    assert pupil.challenge.flown, pupil.read[-1]
     assert play(pupil.driver).flight.outcome is Outcome.LANDED
 
 
@@ -176,9 +176,9 @@ def test_who_does_the_opposite_never_stands_still_for_anything_but_a_key_that_is
     pupil = reader(open_game, device)
     opposed = set()
     for _ in range(6000):
-        if pupil.course.through:
+        if pupil.challenge.through:
             break
-        lesson = pupil.course.lesson.name
+        lesson = pupil.challenge.lesson.name
         if lesson not in opposed:
             opposed.add(lesson)
             for _ in range(360):
@@ -186,7 +186,7 @@ def test_who_does_the_opposite_never_stands_still_for_anything_but_a_key_that_is
                 name, keys = pupil.read[-1]
                 assert not pupil.still or keys or name in ("fall", "LET_GO")
         pupil.follow()
-    assert pupil.course.flown
+    assert pupil.challenge.flown
     assert opposed >= set(texts.TUTORIAL)
 
 
@@ -199,7 +199,7 @@ def test_who_holds_on_to_the_engine_is_warned_lost_told_why_and_goes_on_by_letti
     for _ in range(600):
         pupil.driver.skip()
         seen.append(pupil.sentence()[0])
-        why = why or pupil.course.why
+        why = why or pupil.challenge.why
     assert seen.index("TOO_HIGH") < seen.index("AGAIN")
     assert "at the top" in why
     assert seen[-1] == "fall"  # which says to let go of everything
@@ -208,7 +208,7 @@ def test_who_holds_on_to_the_engine_is_warned_lost_told_why_and_goes_on_by_letti
     pupil.driver.skip(30)
     assert not play(pupil.driver).waiting
     assert play(pupil.driver).flight.env.velocity[0, 1] < -0.3
-    assert pupil.course.why
-    while pupil.course.lesson.name == "fall":
+    assert pupil.challenge.why
+    while pupil.challenge.lesson.name == "fall":
         pupil.follow()
-    assert not pupil.course.why  # what went wrong before is done with
+    assert not pupil.challenge.why  # what went wrong before is done with

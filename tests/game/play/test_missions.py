@@ -17,16 +17,16 @@ from game.drawing.canvas import Canvas
 from game.flight import flight_file, networks
 from game.flight.credit import Credit
 from game.flight.difficulty import Difficulty
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.flight.outcomes import Card, flight_figures, landing_score
-from game.flight.replay import Rerun, Tape
-from game.play.challenge import Flown
-from game.scenes.logbook import Logbook
-from game.scenes.missions import Missions
-from game.scenes.play import Play
-from game.scenes.replay import Replay
+from game.flight.outcomes import OutcomeCard, flight_figures, landing_score
+from game.flight.replay import FlightReplay, ReplayedFlight
+from game.play.challenge import FlownMission
+from game.scenes.logbook import LogbookScene
+from game.scenes.missions import MissionsScene
+from game.scenes.play import PlayScene
+from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
@@ -92,14 +92,14 @@ def recorded(name: str) -> Record:
 
 @pytest.mark.parametrize("name", MISSIONS)
 def test_every_mission_can_be_won_and_has_a_recorded_flight_that_earns_gold(name: str):
-    tape = Tape(recorded(name))
-    tape.scout(10_000)
-    tape.seek(tape.reached)
-    env = tape.flight.env
-    assert tape.flight.outcome is Outcome.LANDED
+    flight_replay = FlightReplay(recorded(name))
+    flight_replay.scout(10_000)
+    flight_replay.seek(flight_replay.reached)
+    env = flight_replay.flight.env
+    assert flight_replay.flight.outcome is Outcome.LANDED
     assert MISSIONS[name].medal(float(env.fuel[0]), float(env.time[0])) == 3
-    assert tape.record.entry.course == name
-    assert tape.record.entry.medal == 3
+    assert flight_replay.record.entry.course == name
+    assert flight_replay.record.entry.medal == 3
 
 
 def test_the_network_lands_where_its_page_says_so():
@@ -111,29 +111,29 @@ def test_the_network_lands_where_its_page_says_so():
 
 @pytest.mark.parametrize("name", ["wind", "outage", "ferry"])
 def test_a_mission_is_flown_again_from_its_file_as_it_was(context: Context, name: str):
-    tape = Tape(kept(context, scripted(0, mission=name), course=name))
-    tape.scout(10_000)
-    assert tape.faithful
-    assert tape.complete
+    flight_replay = FlightReplay(kept(context, scripted(0, mission=name), course=name))
+    flight_replay.scout(10_000)
+    assert flight_replay.faithful
+    assert flight_replay.complete
 
 
 def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open_game: Open):
     driver = open_game()
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
-    assert driver.top_name == "Missions"
+    assert driver.top_name == "MissionsScene"
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
-    assert play(driver)._course.name == "brake"
+    assert play(driver)._challenge.name == "brake"
     assert play(driver)._ghost is not None
     land(driver)
     assert play(driver).ending.card.score == "gold"
     driver.key(pygame.K_RETURN)
-    assert driver.top_name == "Missions"
+    assert driver.top_name == "MissionsScene"
     assert driver.top._best["brake"].medal == 3
     assert driver.top.chosen == "brake"
 
 
 def test_a_gamepad_flies_a_mission_and_comes_back(open_game: Open):
-    driver = open_game(Missions())
+    driver = open_game(MissionsScene())
     driver.button(pygame.CONTROLLER_BUTTON_A)
     driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 32000)
     driver.frames(5)
@@ -141,7 +141,7 @@ def test_a_gamepad_flies_a_mission_and_comes_back(open_game: Open):
     driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 0)
     land(driver)
     driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert driver.top_name == "Missions"
+    assert driver.top_name == "MissionsScene"
 
 
 def test_the_card_says_what_the_next_medal_asks():
@@ -149,13 +149,13 @@ def test_the_card_says_what_the_next_medal_asks():
     flight = Flight(0, None, mission="brake")
     env = flight.env
     env.outcome[:] = Outcome.LANDED
-    card = Card(True, "", "", (), 1.0)
+    card = OutcomeCard(True, "", "", (), 1.0)
 
     def said(fuel: float, seconds: float) -> str:
         env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
-        course = Flown(mission)
-        credit = Credit(flight, Difficulty(Settings(), flight, free=False), course)
-        return course.card(card, flight, credit).reason
+        challenge = FlownMission(mission)
+        credit = Credit(flight, Difficulty(Settings(), flight, free=False), challenge)
+        return challenge.card(card, flight, credit).reason
 
     assert said(3.0, 7.0) == texts.MEDAL_GOLD
     assert said(3.5, 7.0) == "Gold asks for 0.4 s less fuel."
@@ -169,9 +169,9 @@ def test_a_mission_that_is_lost_says_what_its_own_trouble_asks():
         env = flight.env
         env.outcome[:], env.cause[:] = Outcome.CRASHED, cause
         env.main_steps[:], env.steps[:] = round(60 * fuel), round(60 * seconds)
-        course = Flown(MISSIONS[name])
-        credit = Credit(flight, Difficulty(Settings(), flight, free=False), course)
-        return course.card(Card(False, "", "", (), 1.0, advice="else"), flight, credit).advice
+        challenge = FlownMission(MISSIONS[name])
+        credit = Credit(flight, Difficulty(Settings(), flight, free=False), challenge)
+        return challenge.card(OutcomeCard(False, "", "", (), 1.0, advice="else"), flight, credit).advice
 
     assert said("tank", Cause.HARD, fuel=3.0) == texts.ADVICE_TANK
     assert said("tank", Cause.HARD, fuel=2.0) == "else"
@@ -210,14 +210,14 @@ def test_what_surrounds_a_flight_is_told():
 
 
 def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open):
-    driver = open_game(Missions())
+    driver = open_game(MissionsScene())
     driver.key(pygame.K_RETURN)
-    assert play(driver)._ghost.flight.hand is Hand.NETWORK
-    assert not isinstance(play(driver)._ghost.flight, Rerun)
+    assert play(driver)._ghost.flight.hand is StickHolder.NETWORK
+    assert not isinstance(play(driver)._ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
     driver.keys(*[pygame.K_DOWN] * 10, pygame.K_RETURN)
-    assert play(driver)._course.name == "outage"
-    assert isinstance(play(driver)._ghost.flight, Rerun)
+    assert play(driver)._challenge.name == "outage"
+    assert isinstance(play(driver)._ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
     driver.key(pygame.K_TAB)
     driver.key(pygame.K_LEFT)
@@ -225,30 +225,30 @@ def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open)
 
 
 def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(open_game: Open, context: Context):
-    driver = open_game(Missions())
+    driver = open_game(MissionsScene())
     driver.key(pygame.K_RETURN)
     land(driver)
     driver.key(pygame.K_RETURN)
     assert driver.top._offered == ["network", "recorded", "own"]
     driver.top._rivals[0].choose(2)
     driver.top._list.press()
-    assert isinstance(driver.top._course()._rival, Record)
+    assert isinstance(driver.top._challenge()._rival, Record)
     file = Records(context.user_dir).folder / driver.top._best["fall"].file
     file.write_text("{")
     said: list[str] = []
     context.note = said.append
-    assert driver.top._course()._rival is None
+    assert driver.top._challenge()._rival is None
     assert "damaged" in said[0]
 
 
 def test_the_first_flight_can_be_flown_at_any_time(open_game: Open):
-    driver = open_game(Missions())
+    driver = open_game(MissionsScene())
     driver.keys(pygame.K_UP, pygame.K_RETURN)
-    assert play(driver)._course.title == texts.TUTORIAL_TITLE
+    assert play(driver)._challenge.title == texts.TUTORIAL_TITLE
 
 
 def test_no_medal_for_what_the_network_flew_or_for_a_crash(open_game: Open):
-    driver = open_game(Missions())
+    driver = open_game(MissionsScene())
     driver.key(pygame.K_RETURN)
     driver.key(pygame.K_TAB)
     driver.frames(3)
@@ -261,18 +261,18 @@ def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
     open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, assist: float, warned: bool
 ):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("modern", DeepQAgent(9, 6)))
-    driver = open_game(Play(0, course=Flown(MISSIONS["brake"])))
+    driver = open_game(PlayScene(0, challenge=FlownMission(MISSIONS["brake"])))
     driver.app.context.settings.assist = assist
     driver.key(pygame.K_r)
     written: set[str] = set()
     monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.add(string) or pygame.FRect())
     driver.frames(1)
     assert (texts.NOT_COUNTED["helped"] in written) is warned
-    assert (play(driver)._course.goal in written) is not warned
+    assert (play(driver)._challenge.goal in written) is not warned
 
 
 def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
-    driver = open_game(Missions())
+    driver = open_game(MissionsScene())
     driver.keys(pygame.K_END, pygame.K_RETURN)
     first = play(driver).flight
     driver.key(pygame.K_n)
@@ -286,13 +286,13 @@ def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
 @pytest.fixture
 def book(open_game: Open, context: Context) -> Driver:
     kept(context, scripted(by_hand=30))
-    driver = open_game(Logbook())
+    driver = open_game(LogbookScene())
     driver.frames(2)
     return driver
 
 
 def test_a_flight_that_ends_is_written_down(open_game: Open, context: Context):
-    driver = open_game(Play(5))
+    driver = open_game(PlayScene(5))
     driver.frames(1)
     land(driver)
     (entry,) = Records(context.user_dir).entries()
@@ -316,13 +316,13 @@ def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
     book.key(pygame.K_RETURN)
     book.frames(60)
     book.key(pygame.K_SPACE)
-    assert isinstance(book.top, Replay)
-    tape = book.top.tape
-    at, place = tape.at, tape.flight.env.position.copy()
+    assert isinstance(book.top, ReplayScene)
+    flight_replay = book.top.flight_replay
+    at, place = flight_replay.at, flight_replay.flight.env.position.copy()
     book.key(pygame.K_TAB)
     flight = play(book).flight
     assert np.array_equal(flight.env.position, place)
-    assert flight.recording.actions == tape.record.recording.actions[:at]
+    assert flight.recording.actions == flight_replay.record.recording.actions[:at]
     book.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     book.frames(10)
     assert len(flight.recording.actions) > at
@@ -337,4 +337,4 @@ def test_at_the_end_there_is_nothing_to_fly_on(book: Driver):
     book.frames(200)
     book.key(pygame.K_END)
     book.key(pygame.K_TAB)
-    assert book.top_name == "Replay"
+    assert book.top_name == "ReplayScene"

@@ -12,14 +12,14 @@ from game.core import texts
 from game.core.scene import Push
 from game.core.settings import FILE_NAME
 from game.flight import networks
-from game.flight.flight import Hand
+from game.flight.flight import StickHolder
 from game.flight.logbook import Records
 from game.flight.outcomes import crash_reason
 from game.input.bindings import Held
 from game.play.tutorial import LESSONS, Tutorial
-from game.scenes.menu import Menu
-from game.scenes.missions import Missions
-from game.scenes.play import Play
+from game.scenes.menu import MenuScene
+from game.scenes.missions import MissionsScene
+from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
 from game.ui.context import Context
 from tests.support.drawn import Drawn
@@ -36,12 +36,12 @@ pytestmark = pytest.mark.usefixtures("scripted_network")
 
 
 def tutorial(driver: Driver) -> Tutorial:
-    course = play(driver)._course
-    assert isinstance(course, Tutorial)
-    return course
+    challenge = play(driver)._challenge
+    assert isinstance(challenge, Tutorial)
+    return challenge
 
 
-def obey(scene: Play, name: str) -> int:
+def obey(scene: PlayScene, name: str) -> int:
     """The action that does what a lesson asks; nothing while a new flight waits for the keys to be let go."""
     if scene.waiting and not scene._let_go:
         return 0
@@ -55,18 +55,18 @@ def learn(pupil: Player) -> Iterator[str]:
     last, held = "", set[str]()
     for step in range(2500):
         pupil.app.window.minimised = step % 10 > 0  # drawing is most of the work
-        course, env = tutorial(pupil), play(pupil).flight.env
-        if course.through:
+        challenge, env = tutorial(pupil), play(pupil).flight.env
+        if challenge.through:
             break
-        if (name := course.lesson.name) != last:
+        if (name := challenge.lesson.name) != last:
             yield name
             last = name
-        action = 3 * (env.velocity[0, 1] < -1) if course._praise else obey(play(pupil), name)
+        action = 3 * (env.velocity[0, 1] < -1) if challenge._praise else obey(play(pupil), name)
         wanted = {key for key, on in zip(KEYS, (action >= 3, action % 3 == 1, action % 3 == 2), strict=True) if on}
         for key in held ^ wanted:
             pupil.hold(key, down=key in wanted)
         held = wanted
-        if name in ("hand_over", "take_back") and not course._praise:
+        if name in ("hand_over", "take_back") and not challenge._praise:
             pupil.press("hand over")
         pupil.frames(1)
     assert tutorial(pupil).through, last
@@ -99,22 +99,22 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     assert scene.ending.card.title == texts.TUTORIAL_DONE
     assert not Records(context.user_dir).entries()
     pupil.press("confirm")
-    assert play(driver)._course is None
+    assert play(driver)._challenge is None
     assert play(driver).waiting
     driver.app.close()
     assert saved(context) == (True, True)
-    missions = open_game(Missions()).top
+    missions = open_game(MissionsScene()).top
     assert missions._row(FIRST.name)[1] == texts.TUTORIAL_FLOWN
 
 
 def test_only_the_very_first_flight_teaches(open_game: Open):
     driver = open_game()
     driver.key(pygame.K_RETURN)
-    assert play(driver)._course is None
+    assert play(driver)._challenge is None
 
 
 def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, context: Context):
-    driver = pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    driver = pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
     lessons = learn(pupil)
     assert [next(lessons) for _ in range(4)] == NAMES[:4]  # which is now to lean
     first = play(driver).flight
@@ -131,7 +131,7 @@ def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, con
 
 
 def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    driver = open_game(Play(0, course=Tutorial()))
+    driver = open_game(PlayScene(0, challenge=Tutorial()))
     for _ in range(2):
         driver.key(pygame.K_n)  # to the fall, and the braking
     driver.key(pygame.K_LEFT)
@@ -150,20 +150,20 @@ def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open,
 
 
 def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
-    driver = open_game(Play(0, course=Tutorial()))
-    course = tutorial(driver)
+    driver = open_game(PlayScene(0, challenge=Tutorial()))
+    challenge = tutorial(driver)
     for _ in range(2):
         driver.key(pygame.K_n)
-    assert course.lesson.name == "brake"
+    assert challenge.lesson.name == "brake"
     scene = play(driver)
-    assert course._line(scene.flight, False, False) == texts.TUTORIAL["brake"][0]
+    assert challenge._line(scene.flight, False, False) == texts.TUTORIAL["brake"][0]
     scene.flight.env.place(np.ones(1, bool), np.array([[0.0, 12.0, 0.0, 0.5, 0.0, 0.0]]))
-    assert course._line(scene.flight, False, False) == texts.TUTORIAL_RISES
+    assert challenge._line(scene.flight, False, False) == texts.TUTORIAL_RISES
 
 
 def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
     context.sound = sound = Listener()
-    pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
     lessons = learn(pupil)
     next(lessons)
     sound.heard()
@@ -172,9 +172,9 @@ def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
 
 
 def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context):
-    driver = open_game(Menu())
+    driver = open_game(MenuScene())
     context.settings.assist = 1.0
-    driver.app.scenes.apply(Push(Play(0, course=Tutorial())))
+    driver.app.scenes.apply(Push(PlayScene(0, challenge=Tutorial())))
     driver.key(pygame.K_n)
     driver.key(pygame.K_LEFT)
     driver.frames(20)
@@ -187,7 +187,7 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
 
 
 def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
-    driver = pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    driver = pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
     for name in learn(pupil):
         if name == "take_back":
             break
@@ -195,18 +195,18 @@ def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
     wait_for_another(driver)  # the network goes on to land
     assert first.outcome is Outcome.LANDED
     assert tutorial(driver).lesson.name == "hand_over"
-    assert play(driver).flight.hand is Hand.HUMAN
+    assert play(driver).flight.hand is StickHolder.HUMAN
 
 
 def test_each_lesson_can_be_skipped(open_game: Open, context: Context):
-    driver = open_game(Menu(), tutored=False)
+    driver = open_game(MenuScene(), tutored=False)
     driver.key(pygame.K_RETURN)
     for name in NAMES:
         if name == "take_back":
             continue  # who does not hand over has nothing to take back
         assert tutorial(driver).lesson.name == name
         driver.key(pygame.K_n)
-    assert play(driver)._course is None
+    assert play(driver)._challenge is None
     assert saved(context) == (True, False)  # left out, and not flown
 
 
@@ -216,34 +216,34 @@ def saved(context: Context) -> tuple[bool, bool]:
 
 
 def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: Context):
-    driver = open_game(Menu(), tutored=False)
+    driver = open_game(MenuScene(), tutored=False)
     driver.keys(pygame.K_RETURN, pygame.K_ESCAPE)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
     driver.key(pygame.K_RETURN)
     assert tutorial(driver).lesson.name == "fire"
     assert saved(context) == (False, False)
     driver.key(pygame.K_UP)
     driver.key(pygame.K_ESCAPE)
-    assert driver.top_name == "Pause"
+    assert driver.top_name == "PauseScene"
     word = next(word for word in driver.top._form.widgets if word.label == texts.TUTORIAL_LEAVE)
     driver.top._form.focus(word)
     driver.key(pygame.K_RETURN)
-    assert play(driver)._course is None
+    assert play(driver)._challenge is None
     assert saved(context) == (True, False)
 
 
 def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "it is gone"))
-    pupil = Player(open_game(Play(0, course=Tutorial())), "keys")
+    pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
     assert list(learn(pupil)) == [name for name in NAMES if name not in ("hand_over", "take_back")]
 
 
 def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game: Open):
-    driver = open_game(Play(0, course=Tutorial()))
-    controls, course = driver.app.context.controls, tutorial(driver)
+    driver = open_game(PlayScene(0, challenge=Tutorial()))
+    controls, challenge = driver.app.context.controls, tutorial(driver)
 
     def words() -> str:
-        return course.words(play(driver).flight, controls)
+        return challenge.words(play(driver).flight, controls)
 
     assert words().startswith(controls.word(Held.MAIN))
     by_key = words()
@@ -259,15 +259,15 @@ def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game:
 
 
 def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
-    driver = open_game(Play(0, course=Tutorial()))
+    driver = open_game(PlayScene(0, challenge=Tutorial()))
     for _ in range(3):
         driver.key(pygame.K_n)
-    course, controls = tutorial(driver), driver.app.context.controls
+    challenge, controls = tutorial(driver), driver.app.context.controls
     flight = play(driver).flight
-    assert course.lesson.name == "lean"
-    assert course.words(flight, controls).startswith(f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} ")
+    assert challenge.lesson.name == "lean"
+    assert challenge.words(flight, controls).startswith(f"{controls.word(Held.LEFT)} or {controls.word(Held.RIGHT)} ")
     driver.move((640, 360))
-    assert " or " not in course.words(flight, controls).split(".")[0]
+    assert " or " not in challenge.words(flight, controls).split(".")[0]
 
 
 @pytest.mark.parametrize("device", DEVICES)

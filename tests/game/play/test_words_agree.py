@@ -14,18 +14,18 @@ from ai.lander.missions import MISSIONS
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight import networks
-from game.flight.flight import Flight, Hand
+from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Entry
 from game.flight.logbook import Records
-from game.flight.replay import Tape
-from game.play.challenge import Daily, Flown
+from game.flight.replay import FlightReplay
+from game.play.challenge import DailyStart, FlownMission
 from game.play.race import fly_on, race
 from game.play.tutorial import Tutorial
 from game.scenes.choices import ChoicesScene
-from game.scenes.logbook import Logbook, _row
-from game.scenes.missions import Missions
-from game.scenes.play import Play
-from game.scenes.replay import Replay
+from game.scenes.logbook import LogbookScene, _row
+from game.scenes.missions import MissionsScene
+from game.scenes.play import PlayScene
+from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import fly_out, kept, play
@@ -116,55 +116,55 @@ class Reading:
             assert page.flew == {flew(flight.recording.hands)}, page.words
         else:
             shared = flight.copilot is not None and flight.copilot.assist > 0
-            truth = "network" if flight.hand is Hand.NETWORK else "both" if shared else "person"
+            truth = "network" if flight.hand is StickHolder.NETWORK else "both" if shared else "person"
             assert page.who == {truth}, page.words
             assert not page.flew
             if truth == "person":
                 assert not any("assist" in word or "guards" in word for word in page.words), page.words
         for share in page.shares:
             assert abs(abs(share) / 100 - (flight.share if share > 0 else 1 - flight.share)) <= 0.01
-        hint = texts.HINT_TAKE_BACK if flight.hand is Hand.NETWORK else texts.HINT_HAND_OVER
+        hint = texts.HINT_TAKE_BACK if flight.hand is StickHolder.NETWORK else texts.HINT_HAND_OVER
         told = {texts.HINT_TAKE_BACK, texts.HINT_HAND_OVER} & set(page.words)
         assert told == ({hint} if flight.network and not flight.over else set()), page.words
         return page
 
 
-def flew(hands: list[Hand]) -> str:
+def flew(hands: list[StickHolder]) -> str:
     kinds = set(hands)
-    return "both" if len(kinds) > 1 else "you" if kinds == {Hand.HUMAN} else "network"
+    return "both" if len(kinds) > 1 else "you" if kinds == {StickHolder.HUMAN} else "network"
 
 
-def recorded(context: Context, *, mission: str = "", hand: Hand = Hand.HUMAN) -> Replay:
+def recorded(context: Context, *, mission: str = "", hand: StickHolder = StickHolder.HUMAN) -> ReplayScene:
     flight = Flight(3, Weighs(), mission=mission)
-    if hand is Hand.NETWORK:
+    if hand is StickHolder.NETWORK:
         flight.hand_over()
     fly_out(flight)
-    return Replay(kept(context, flight, course=mission, alone=hand is Hand.HUMAN))
+    return ReplayScene(kept(context, flight, course=mission, alone=hand is StickHolder.HUMAN))
 
 
-def raced(replay: Replay) -> Play:
-    return Play(replay.record.recording.seed, course=race(replay.record))
+def raced(replay: ReplayScene) -> PlayScene:
+    return PlayScene(replay.record.recording.seed, challenge=race(replay.record))
 
 
-def flown_on(context: Context, **more: object) -> Play:
+def flown_on(context: Context, **more: object) -> PlayScene:
     replay = recorded(context, **more)  # type: ignore[arg-type]
-    tape = Tape(replay.record)
-    tape.scout(40)
-    tape.seek(30)
-    return Play(replay.record.recording.seed, course=fly_on(replay.record, tape))
+    flight_replay = FlightReplay(replay.record)
+    flight_replay.scout(40)
+    flight_replay.seek(30)
+    return PlayScene(replay.record.recording.seed, challenge=fly_on(replay.record, flight_replay))
 
 
-SCENES: dict[str, Callable[[Context], Play]] = {
-    "free": lambda _: Play(4),
-    "mission": lambda _: Play(0, course=Flown(MISSIONS["brake"])),
-    "daily": lambda _: Play(0, course=Daily(date(2026, 1, 1))),
-    "duel": lambda _: Play(4, rival=Weighs(), rival_name="it"),
+SCENES: dict[str, Callable[[Context], PlayScene]] = {
+    "free": lambda _: PlayScene(4),
+    "mission": lambda _: PlayScene(0, challenge=FlownMission(MISSIONS["brake"])),
+    "daily": lambda _: PlayScene(0, challenge=DailyStart(date(2026, 1, 1))),
+    "duel": lambda _: PlayScene(4, rival=Weighs(), rival_name="it"),
     "race": lambda context: raced(recorded(context)),
     "race a mission": lambda context: raced(recorded(context, mission="brake")),
     "flown on": flown_on,
-    "flown on a network's": lambda context: flown_on(context, hand=Hand.NETWORK),
+    "flown on a network's": lambda context: flown_on(context, hand=StickHolder.NETWORK),
     "flown on a mission": lambda context: flown_on(context, mission="brake"),
-    "tutorial": lambda _: Play(0, course=Tutorial()),
+    "tutorial": lambda _: PlayScene(0, challenge=Tutorial()),
 }
 FREE: dict[str, dict[str, object]] = {
     "three pads": {"three_pads": True},
@@ -197,8 +197,8 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     reading.check(30)
     land(driver)
     page = reading.check(70)
-    course = play(driver)._course
-    if course and not course.kept:
+    challenge = play(driver)._challenge
+    if challenge and not challenge.kept:
         return
     entry = Records(context.user_dir).entries()[-1]
     flight = play(driver).flight
@@ -276,7 +276,7 @@ def assert_book_agrees(reading: Reading, entry: Entry) -> None:
     """Open the logbook at that flight: it is told as the card told it."""
     from game.core.scene import Push
 
-    reading.driver.app.scenes.apply(Push(Logbook()))
+    reading.driver.app.scenes.apply(Push(LogbookScene()))
     page = reading.page(2)
     assert reading.driver.top.chosen == entry
     assert (texts.NOT_COUNTED[entry.bar] in page.words) if entry.bar else not page.counts
@@ -289,7 +289,7 @@ def test_nobody_is_said_to_help_who_can_not(open_game: Open, context: Context, m
     context.settings.assist = 0.6
     context.settings_file.save(context.settings)
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", network, "it is gone"))
-    reading = Reading(open_game(Play(4)), monkeypatch)
+    reading = Reading(open_game(PlayScene(4)), monkeypatch)
     reading.check(3)
     reading.driver.key(pygame.K_UP)
     assert reading.check(20).who == {"person"}
@@ -305,7 +305,7 @@ def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, conte
     assert driver.app._notes._text == texts.FLOWN_ALONE
     play(driver)._choose_network("stand-in")  # in a pause
     driver.keys(pygame.K_TAB, pygame.K_PLUS)
-    assert play(driver).flight.hand is Hand.HUMAN
+    assert play(driver).flight.hand is StickHolder.HUMAN
     assert reading.check(3).who == {"person"}
 
 
@@ -324,18 +324,20 @@ def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context,
 
 def test_the_page_of_a_mission_says_whose_landing_earns_bronze(open_game: Open, context: Context, monkeypatch):
     kept(context, fly_out(Flight(0, mission="brake")), course="brake", alone=False, barred="helped")
-    reading = Reading(open_game(Missions()), monkeypatch)
+    reading = Reading(open_game(MissionsScene()), monkeypatch)
     assert texts.MISSION_ANY in reading.page(2).words
     assert "own hand" in texts.MISSION_ANY
 
 
-@pytest.mark.parametrize("hand", list(Hand))
-def test_a_replay_says_who_flew_from_its_first_moment_on(open_game: Open, context: Context, monkeypatch, hand: Hand):
+@pytest.mark.parametrize("hand", list(StickHolder))
+def test_a_replay_says_who_flew_from_its_first_moment_on(
+    open_game: Open, context: Context, monkeypatch, hand: StickHolder
+):
     reading = Reading(open_game(recorded(context, hand=hand)), monkeypatch)
     reading.driver.key(pygame.K_SPACE)
     for step in (0, 1, 20):
         reading.driver.top.seek(step)
-        assert reading.page().flew == {"you" if hand is Hand.HUMAN else "network"}
+        assert reading.page().flew == {"you" if hand is StickHolder.HUMAN else "network"}
 
 
 def test_a_change_after_the_end_changes_nothing_of_what_was_flown(open_game: Open, context: Context, monkeypatch):
@@ -368,9 +370,9 @@ def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
     set_off(reading, way)
     end(reading.driver, outcome)
     if scene == "tutorial":  # which begins again, and says why
-        page, course = reading.page(), play(reading.driver)._course
+        page, challenge = reading.page(), play(reading.driver)._challenge
         assert page.flew == {flew(play(reading.driver).flight.recording.hands)}
-        assert course.why in page.words
+        assert challenge.why in page.words
         return
     page = reading.check(100)
     title = texts.OUTCOMES[outcome.name][0]

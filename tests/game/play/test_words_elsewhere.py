@@ -9,14 +9,14 @@ import pytest
 
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.core.worker import State
+from game.core.worker import WorkerState
 from game.digits.answer import best_two, percent
 from game.flight import networks
 from game.scenes.digit_training import DigitTrainingScene
-from game.scenes.digits import Digits
-from game.scenes.train import Train
-from game.scenes.watch import COUNTS, Watch
-from game.training.training_run import Learner
+from game.scenes.digits import DigitsScene
+from game.scenes.train import TrainScene
+from game.scenes.watch import COUNTS, WatchScene
+from game.training.training_run import TrainingRun
 from game.ui.context import Context
 from tests.game.play.test_words_agree import COUNTS as EARNED
 from tests.game.play.test_words_agree import FLEW, OnlyFlies, Reading, Weighs, pattern
@@ -47,7 +47,7 @@ class Roster:
 @pytest.mark.parametrize("name", Roster.names)
 def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context: Context, monkeypatch, name, count):
     monkeypatch.setattr(networks, "Roster", Roster)
-    reading = Reading(open_game(Watch(count, seed=2)), monkeypatch)
+    reading = Reading(open_game(WatchScene(count, seed=2)), monkeypatch)
     driver, watch = reading.driver, reading.driver.top
     watch._model_choice.choose(Roster.names.index(name))
     swarm = watch.swarm
@@ -90,18 +90,23 @@ def many(count: int) -> str:
     return texts.WATCH_MANY.format(count=count)
 
 
-STATES = [None, *State]
-LINES = {Train: (texts.TRAIN_BEGINS, texts.TRAIN_LINE), DigitTrainingScene: (texts.PUPIL_LOADING, texts.PUPIL_LINE)}
-BUTTON = dict.fromkeys([State.RUNNING, State.STARTING], texts.TRAIN_PAUSE) | {State.PAUSED: texts.TRAIN_RESUME}
+STATES = [None, *WorkerState]
+LINES = {
+    TrainScene: (texts.TRAIN_BEGINS, texts.TRAIN_LINE),
+    DigitTrainingScene: (texts.PUPIL_LOADING, texts.PUPIL_LINE),
+}
+BUTTON = dict.fromkeys([WorkerState.RUNNING, WorkerState.STARTING], texts.TRAIN_PAUSE) | {
+    WorkerState.PAUSED: texts.TRAIN_RESUME
+}
 
 
-@pytest.mark.parametrize("make", [Train, DigitTrainingScene])
+@pytest.mark.parametrize("make", [TrainScene, DigitTrainingScene])
 def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game: Open, monkeypatch, make):
     reading = Reading(open_game(make()), monkeypatch)
     driver, scene = reading.driver, reading.driver.top
-    learner = scene.student if make is Train else scene.pupil
-    told: list[State | None] = [None]
-    monkeypatch.setattr(Learner, "state", property(lambda _: told[0]))
+    learner = scene.lander_run if make is TrainScene else scene.pupil
+    told: list[WorkerState | None] = [None]
+    monkeypatch.setattr(TrainingRun, "state", property(lambda _: told[0]))
     for state in (*STATES, *reversed(STATES)):
         told[0] = state
         quiet = {name: lambda *_: None for name in ("pause", "resume", "stop", "close", "step", "send", "set_pace")}
@@ -110,7 +115,7 @@ def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game
         words = set(reading.page(12).words)
         offered = {texts.TRAIN_START, texts.TRAIN_PAUSE, texts.TRAIN_RESUME} & words
         assert offered == {BUTTON.get(state, texts.TRAIN_START)}, state
-        assert any("the disk is full" in word for word in words) == (state is State.FAILED), state
+        assert any("the disk is full" in word for word in words) == (state is WorkerState.FAILED), state
         begins, invites = LINES[make]
         assert {begins, invites} & words == {begins if learner.alive else invites}, state
         if make is DigitTrainingScene:
@@ -123,7 +128,7 @@ VERDICTS = [pattern(text) for text in (texts.DIGITS_SURE, texts.DIGITS_LIKELY, t
 
 
 def test_one_verdict_is_said_of_a_drawing_and_it_is_that_of_the_figures(open_game: Open, monkeypatch):
-    reading = Reading(open_game(Digits()), monkeypatch)
+    reading = Reading(open_game(DigitsScene()), monkeypatch)
     driver = reading.driver
     assert texts.DIGITS_EMPTY in reading.page(3).words
     said: set[str] = set()

@@ -15,14 +15,14 @@ from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
 from ai.digits.session import Confusion
 from ai.digits.training import DigitTraining
 from game.core import texts
-from game.core.worker import State
-from game.scenes.dialog import Asking, Naming
+from game.core.worker import WorkerState
+from game.scenes.dialog import NameDialog, QuestionDialog
 from game.scenes.digit_training import FAMILY, DigitTrainingScene
-from game.scenes.dream import Dream
-from game.scenes.quiz import Quiz
-from game.training.dials import dials
-from game.training.digit_run import Pupil
-from game.training.run_settings import Tuning
+from game.scenes.dream import DreamScene
+from game.scenes.quiz import QuizScene
+from game.training.digit_run import DigitRun
+from game.training.knob_descriptions import knob_descriptions
+from game.training.run_settings import RunSettings
 from tests.support.driver import Driver
 
 SMALL = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
@@ -52,7 +52,7 @@ def confusion() -> Confusion:
 
 
 def test_every_setting_has_a_knob_and_a_word():
-    turned = dials(DigitConfig)
+    turned = knob_descriptions(DigitConfig)
     assert {dial.field for dial in turned} == {item.name for item in fields(DigitConfig)} <= set(texts.KNOBS)
     for dial in turned:
         assert len(dial.stops) > 1
@@ -67,8 +67,8 @@ def test_every_setting_has_a_knob_and_a_word():
 
 
 def test_presets_are_named_and_no_sabotage_is_offered():
-    tuning = Tuning(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, FAMILY)
-    assert tuning.named == ("classic", "")
+    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, FAMILY)
+    assert run_settings.named == ("classic", "")
     assert FAMILY.word(FAMILY.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
 
 
@@ -78,28 +78,28 @@ def test_presets_are_named_and_no_sabotage_is_offered():
 def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
     scene = train.top
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.pupil.confusion and scene.pupil.curves.points)
-    assert scene.pupil.config == SMALL
-    assert scene.pupil.confusion.table.sum() == 2_000
-    assert scene.matrix.confusion is scene.pupil.confusion
+    wait(train, lambda: scene.digit_run.confusion and scene.digit_run.curves.points)
+    assert scene.digit_run.config == SMALL
+    assert scene.digit_run.confusion.table.sum() == 2_000
+    assert scene.matrix.confusion is scene.digit_run.confusion
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.pupil.state is State.PAUSED)
+    wait(train, lambda: scene.digit_run.state is WorkerState.PAUSED)
     train.frames(5)
     train.click(scene.stop_word.box.center)
-    wait(train, lambda: not scene.pupil.alive)
-    assert scene.pupil.state is State.ENDED
-    assert not scene.pupil.problem
-    assert 0 < scene.pupil.test < 1, "what was stopped is measured"
+    wait(train, lambda: not scene.digit_run.alive)
+    assert scene.digit_run.state is WorkerState.ENDED
+    assert not scene.digit_run.problem
+    assert 0 < scene.digit_run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
     wait(train, lambda: scene.stop_word and scene.stop_word.label == texts.PUPIL_GO_ON)
-    stood = scene.pupil.curves.points[-1].step
+    stood = scene.digit_run.curves.points[-1].step
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
     train.click(scene.stop_word.box.center)
-    wait(train, lambda: scene.pupil.curves.points)
-    assert scene.pupil.curves.points[0].step > stood - 1
+    wait(train, lambda: scene.digit_run.curves.points)
+    assert scene.digit_run.curves.points[0].step > stood - 1
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
-    assert len(scene.pupil.earlier) == 1
-    scene.pupil.close()
+    assert len(scene.digit_run.earlier) == 1
+    scene.digit_run.close()
 
 
 def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, monkeypatch):
@@ -112,21 +112,21 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     train.key(pygame.K_TAB)
     scene._form.focus(scene.start_word)
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.pupil.curves.points)
+    wait(train, lambda: scene.digit_run.curves.points)
     train.click(scene.save_word.box.center)
-    assert isinstance(train.top, Naming)
+    assert isinstance(train.top, NameDialog)
     train.key(pygame.K_RETURN)
     assert train.top is scene
     kept = tmp_path / "user" / "digits" / "runs" / texts.PUPIL_NAME.format(preset="Classic")
     wait(train, lambda: (kept / "config.json").exists() and len(notes) == 4)
     assert kept.name in notes[-1]
     train.click(scene.stop_word.box.center)
-    wait(train, lambda: not scene.pupil.alive and scene.pupil.kept)
+    wait(train, lambda: not scene.digit_run.alive and scene.digit_run.kept)
     train.click(scene.dream_word.box.center)
-    assert isinstance(train.top, Dream)
+    assert isinstance(train.top, DreamScene)
     train.key(pygame.K_ESCAPE)
     train.click(scene.quiz_word.box.center)
-    assert isinstance(train.top, Quiz)
+    assert isinstance(train.top, QuizScene)
 
 
 @pytest.mark.parametrize("answer", [texts.PUPIL_LEFT_KEEP.format(name="Classic reader"), texts.TRAIN_LEFT_DISCARD, ""])
@@ -134,14 +134,14 @@ def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path:
     scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
     save_digit_run(DigitTraining(SMALL, 3), runs / ".training")
     train.key(pygame.K_RETURN)
-    assert isinstance(train.top, Asking)
+    assert isinstance(train.top, QuestionDialog)
     if answer:
         train.click(next(word for word in train.top._form.widgets if word.label == answer).box.center)
     else:
         train.key(pygame.K_ESCAPE)
     assert train.top is scene
-    scene.pupil.close()
-    assert (scene.pupil.runs == 1) == bool(answer)
+    scene.digit_run.close()
+    assert (scene.digit_run.runs == 1) == bool(answer)
     assert (runs / "Classic reader" / "config.json").exists() == answer.startswith("Keep")
     assert len(list(runs.glob(".trash/*/config.json"))) == (answer == texts.TRAIN_LEFT_DISCARD)
     assert answer or (runs / ".training" / "config.json").exists()
@@ -150,56 +150,56 @@ def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path:
 def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     scene = train.top
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.pupil.curves.points)
+    wait(train, lambda: scene.digit_run.curves.points)
     notes: list[str] = []
     train.app.context.note = notes.append
     train.key(pygame.K_ESCAPE)
-    assert scene.pupil.state is State.ENDED
-    assert scene.pupil.unfinished
+    assert scene.digit_run.state is WorkerState.ENDED
+    assert scene.digit_run.unfinished
     assert notes == [texts.TRAIN_KEPT]
 
 
 def test_a_process_that_dies_is_told_of_and_another_can_be_started(train: Driver):
     scene = train.top
     train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.pupil.state is State.RUNNING)
-    scene.pupil._worker._process.kill()
-    wait(train, lambda: scene.pupil.state is State.FAILED)
-    assert "killed" in scene.pupil.problem
+    wait(train, lambda: scene.digit_run.state is WorkerState.RUNNING)
+    scene.digit_run._worker._process.kill()
+    wait(train, lambda: scene.digit_run.state is WorkerState.FAILED)
+    assert "killed" in scene.digit_run.problem
     train.frames(20)
     train.key(pygame.K_RETURN)
-    assert scene.pupil.alive
+    assert scene.digit_run.alive
 
 
 # What is kept
 
 
 def test_a_new_run_puts_the_last_one_aside(tmp_path: Path):
-    pupil = Pupil(tmp_path)
-    pupil.unsaved.mkdir()
-    (pupil.unsaved / "config.json").write_text("old")
-    pupil.begin(SMALL, 0)
-    pupil.close()
+    digit_run = DigitRun(tmp_path)
+    digit_run.unsaved.mkdir()
+    (digit_run.unsaved / "config.json").write_text("old")
+    digit_run.begin(SMALL, 0)
+    digit_run.close()
     (aside,) = tmp_path.glob(".trash/*/config.json")
     assert aside.read_text() == "old"
 
 
 def test_looking_for_an_unfinished_run_leaves_alone_what_is_being_written(tmp_path: Path):
-    pupil = Pupil(tmp_path)
-    pupil.begin(SMALL, 0)
-    half = tmp_path / f".{pupil.unsaved.name}.old"  # between the two renames of a save
+    digit_run = DigitRun(tmp_path)
+    digit_run.begin(SMALL, 0)
+    half = tmp_path / f".{digit_run.unsaved.name}.old"  # between the two renames of a save
     half.mkdir()
     for name in ("last.npz", "training.json"):
         (half / name).write_bytes(b"")
-    assert not pupil.unfinished
+    assert not digit_run.unfinished
     assert half.exists()
-    pupil.close()
-    assert pupil.unfinished
+    digit_run.close()
+    assert digit_run.unfinished
     assert not half.exists()
 
 
 def test_two_games_teach_two_runs(tmp_path: Path):
-    one, other = Pupil(tmp_path), Pupil(tmp_path)
+    one, other = DigitRun(tmp_path), DigitRun(tmp_path)
     one.collection.hold()
     other.collection.hold()
     assert one.unsaved != other.unsaved
@@ -208,25 +208,25 @@ def test_two_games_teach_two_runs(tmp_path: Path):
 
 
 def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(train: Driver, tmp_path: Path):
-    pupil, runs = train.top.pupil, tmp_path / "user" / "digits" / "runs"
+    digit_run, runs = train.top.digit_run, tmp_path / "user" / "digits" / "runs"
     train.key(pygame.K_RETURN)
-    wait(train, lambda: pupil.curves.points)
-    assert pupil.save("first") == ""
-    pupil.begin(SMALL, 4)
-    assert pupil.waiting
-    assert pupil.save("second") == texts.PUPIL_NOTHING
-    wait(train, lambda: pupil.curves.points)
+    wait(train, lambda: digit_run.curves.points)
+    assert digit_run.save("first") == ""
+    digit_run.begin(SMALL, 4)
+    assert digit_run.waiting
+    assert digit_run.save("second") == texts.PUPIL_NOTHING
+    wait(train, lambda: digit_run.curves.points)
     assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
-    assert pupil.seed == 4
+    assert digit_run.seed == 4
 
 
 @pytest.mark.parametrize("name", ["..", "a/b", "", "con", "taken"])
 def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
     (tmp_path / "taken").mkdir()
-    pupil = Pupil(tmp_path)
-    pupil.unsaved.mkdir()
-    assert pupil.save(name)
-    assert pupil.unsaved.exists()
+    digit_run = DigitRun(tmp_path)
+    digit_run.unsaved.mkdir()
+    assert digit_run.save(name)
+    assert digit_run.unsaved.exists()
 
 
 # The matrix
@@ -234,13 +234,13 @@ def test_a_name_that_cannot_be_had_is_refused(tmp_path: Path, name: str):
 
 def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     scene = train.top
-    scene.pupil.confusion = confusion()
+    scene.digit_run.confusion = confusion()
     train.frames(2)
     assert scene.matrix.cell == (4, 9)
     box, pitch = scene.matrix.box, scene.matrix.pitch
     train.move((box.left + 1.5 * pitch, box.top + 7.5 * pitch))
     assert scene.matrix.cell == (7, 1)
-    scene.pupil.confusion = confusion()
+    scene.digit_run.confusion = confusion()
     train.frames(2)
     assert scene.matrix.cell == (7, 1)
     train.resize((960, 540))

@@ -12,7 +12,7 @@ from ai.digits.preprocessing import preprocess_strokes
 from benchmarks.digits_robustness import TEMPLATES
 from game.digits.reader import Switches, Verdict
 from game.drawing.tokens import INK
-from game.scenes.digits import Digits
+from game.scenes.digits import DigitsScene
 from game.ui.context import Context
 from tests.support.chores import biased_fix
 from tests.support.driver import Driver
@@ -22,11 +22,11 @@ Open = Callable[..., Driver]
 
 @pytest.fixture
 def drawing(open_game: Open) -> Driver:
-    return open_game(Digits())
+    return open_game(DigitsScene())
 
 
-def scene(driver: Driver) -> Digits:
-    assert isinstance(driver.top, Digits)
+def scene(driver: Driver) -> DigitsScene:
+    assert isinstance(driver.top, DigitsScene)
     return driver.top
 
 
@@ -212,7 +212,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
     shutil.copytree(context.models_dir / "digits", tmp_path / "models" / "digits")
     (tmp_path / "models" / "digits" / "modern" / "config.json").write_text("{", encoding="utf-8")
     context.models_dir = tmp_path / "models"
-    driver = open_game(Digits())
+    driver = open_game(DigitsScene())
     assert scene(driver).chosen == "classic"
     assert "config.json" in scene(driver)._reader.problems["modern"]
     driver.key(pygame.K_n)
@@ -224,12 +224,12 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
 
 def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, context: Context, tmp_path):
     context.models_dir = tmp_path
-    driver = open_game(Digits())
+    driver = open_game(DigitsScene())
     draw(driver, strokes(3))
     driver.keys(pygame.K_n, pygame.K_3)
     assert scene(driver).probabilities is None
     assert set(scene(driver)._reader.problems) == {"modern", "classic"}
-    assert driver.top_name == "Digits"
+    assert driver.top_name == "DigitsScene"
 
 
 def test_drawing_changes_nothing_but_pixels(drawing: Driver):
@@ -263,12 +263,14 @@ def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, con
 def test_menu_leads_to_drawing_and_back(open_game: Open):
     driver = open_game()
     driver.keys(*[pygame.K_DOWN] * 4, pygame.K_RETURN)
-    assert driver.top_name == "Digits"
+    assert driver.top_name == "DigitsScene"
     driver.key(pygame.K_ESCAPE)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
-@pytest.mark.parametrize(("word", "name"), [("Quiz", "Quiz"), ("Train", "DigitTrainingScene"), ("Dream", "Dream")])
+@pytest.mark.parametrize(
+    ("word", "name"), [("Quiz", "QuizScene"), ("Train", "DigitTrainingScene"), ("Dream", "DreamScene")]
+)
 def test_words_lead_to_the_other_screens_and_the_drawing_is_kept(drawing: Driver, word: str, name: str):
     draw(drawing, strokes(6))
     digits = scene(drawing)
@@ -276,7 +278,7 @@ def test_words_lead_to_the_other_screens_and_the_drawing_is_kept(drawing: Driver
     drawing.click(widget.box.center)
     assert drawing.top_name == name
     drawing.key(pygame.K_ESCAPE)
-    while drawing.top is not digits and drawing.top_name == "Pause":
+    while drawing.top is not digits and drawing.top_name == "PauseScene":
         drawing.keys(pygame.K_UP, pygame.K_RETURN)  # Leave
     assert drawing.top is digits
     assert guess(drawing) == 6

@@ -10,9 +10,9 @@ from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.flight import networks
-from game.flight.replay import Rerun
+from game.flight.replay import ReplayedFlight
 from game.play.captions import BELOW_OPENING
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from game.world.camera import View
 from tests.support.driver import Driver
 
@@ -24,7 +24,7 @@ REST = (0.0, PARAMS.pad_top + PARAMS.stand + 0.3, 0.0, 0.0, 0.0, 0.0)
 @pytest.fixture
 def game(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None))
-    return open_game(Play(seed=3))
+    return open_game(PlayScene(seed=3))
 
 
 @pytest.fixture
@@ -40,8 +40,8 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return strings
 
 
-def scene(driver: Driver) -> Play:
-    assert isinstance(driver.top, Play)
+def scene(driver: Driver) -> PlayScene:
+    assert isinstance(driver.top, PlayScene)
     return driver.top
 
 
@@ -95,7 +95,7 @@ def test_with_and_without_motion_the_same_hands_fly_the_same_flight(game: Driver
         game.skip(900)
         flight = scene(game).flight
         assert flight.over
-        again = Rerun(flight.recording)
+        again = ReplayedFlight(flight.recording)
         while not again.over:
             again.step(0)
         assert np.array_equal(again.poses.now, flight.poses.now)

@@ -13,9 +13,9 @@ from game.drawing.tokens import INK, VIEW_SIZE
 from game.input import signs
 from game.input.bindings import KEYBOARD, Bindings, Command, Held
 from game.input.controls import Controls, key_name
-from game.play.challenge import Flown
-from game.scenes.menu import Menu
-from game.scenes.play import Play
+from game.play.challenge import FlownMission
+from game.scenes.menu import MenuScene
+from game.scenes.play import PlayScene
 from game.ui.context import Context
 from game.ui.hints import draw_hints
 from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
@@ -23,7 +23,7 @@ from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
        Command.NEXT: pygame.K_k, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
        Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
-FLOWN = {"Play": lambda _: Play(3), "mission": lambda _: Play(0, course=Flown(MISSIONS["fall"]))}
+FLOWN = {"Play": lambda _: PlayScene(3), "mission": lambda _: PlayScene(0, challenge=FlownMission(MISSIONS["fall"]))}
 
 
 def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name: str) -> Counter[str]:
@@ -32,7 +32,7 @@ def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name
     context.settings_file.save(context.settings)
     context.controls = Controls()
     if name in OVER_OTHERS:
-        driver = open_game(Menu())
+        driver = open_game(MenuScene())
         driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
     else:
         driver = open_game({**SCREENS, **FLOWN}[name](context))
@@ -74,7 +74,7 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
     context.settings_file.save(context.settings)
     settings = open_game(SCREENS["SettingsScene"](context)).top
     assert settings._form.widgets[0]._hint.startswith("F9 ")
-    driver = open_game(Menu())
+    driver = open_game(MenuScene())
     driver.app.scenes.apply(Push(OVER_OTHERS["ChoicesScene"](driver.top)))
     help_ = driver.top._rows[driver.top._form.widgets[0]]()
     assert " X" in help_

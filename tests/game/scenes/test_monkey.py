@@ -6,7 +6,7 @@ import pytest
 from benchmarks.monkey import Monkey, playground
 from benchmarks.tour import dialogs, makers, scene_types
 from game.core.settings import Settings
-from game.scenes.menu import Menu
+from game.scenes.menu import MenuScene
 from game.ui.context import Context
 
 
@@ -28,21 +28,21 @@ def test_it_does_find_faults(folder: Path, monkeypatch: pytest.MonkeyPatch):
     def fail(*_: object) -> None:
         raise ZeroDivisionError("a fault on purpose")
 
-    monkeypatch.setattr(Menu, "draw", fail)
+    monkeypatch.setattr(MenuScene, "draw", fail)
     monkey = Monkey(folder, open_sound=False)
     monkey.play(10)
     assert "a fault on purpose" in monkey.faults.found[0]
 
 
 def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    kept: list[Menu] = []
-    leave = Menu.exit
+    kept: list[MenuScene] = []
+    leave = MenuScene.exit
 
-    def keep(menu: Menu) -> None:
+    def keep(menu: MenuScene) -> None:
         kept.append(menu)
         leave(menu)
 
-    monkeypatch.setattr(Menu, "exit", keep)
+    monkeypatch.setattr(MenuScene, "exit", keep)
     monkey = Monkey(folder, open_sound=False)
     monkey.play(10)
     assert "1 × Menu still in memory" in monkey.left_behind()
@@ -51,6 +51,6 @@ def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pyte
 def test_every_scene_can_be_entered_or_is_reached_from_another(folder: Path):
     context = Context(folder / "user", Settings())
     made = {type(make()).__name__ for make in makers(context).values()} - {"NoneType"}
-    made |= {type(make()).__name__ for make in dialogs(Menu()).values()}
-    inner = {"ChoicesScene", "Dialog", "Fault", "Pause"}  # one key away from Play; no screens
-    assert {each.__name__ for each in scene_types()} - made - inner <= {"Replay"}  # there is no flight yet
+    made |= {type(make()).__name__ for make in dialogs(MenuScene()).values()}
+    inner = {"ChoicesScene", "Dialog", "ErrorScene", "PauseScene"}  # one key away from Play; no screens
+    assert {each.__name__ for each in scene_types()} - made - inner <= {"ReplayScene"}  # there is no flight yet

@@ -13,7 +13,7 @@ from game.exhibits import EXHIBITS
 from game.exhibits.falls import Slopes
 from game.exhibits.momentum import Spin
 from game.exhibits.piles import Stack
-from game.scenes.physics import GRAVITIES, Physics
+from game.scenes.physics import GRAVITIES, PhysicsScene
 from tests.support.driver import Driver
 from tests.support.window import ROOT
 
@@ -23,11 +23,11 @@ _, EARTH = GRAVITIES
 
 @pytest.fixture
 def gallery(open_game: Open) -> Driver:
-    return open_game(Physics())
+    return open_game(PhysicsScene())
 
 
-def scene(driver: Driver) -> Physics:
-    assert isinstance(driver.top, Physics)
+def scene(driver: Driver) -> PhysicsScene:
+    assert isinstance(driver.top, PhysicsScene)
     return driver.top
 
 
@@ -77,7 +77,7 @@ def test_gravity_is_chosen_and_the_exhibit_begins_anew(gallery: Driver):
 
 
 def test_the_mouse_takes_hold_pulls_and_lets_go(open_game: Open):
-    driver = open_game(Physics("spin"))
+    driver = open_game(PhysicsScene("spin"))
     exhibit = scene(driver).exhibit
     assert isinstance(exhibit, Spin)
     disc = exhibit.turning[0]
@@ -121,7 +121,7 @@ def test_pausing_lets_go(gallery: Driver):
     physics = scene(gallery)
     press(gallery, pygame.MOUSEBUTTONDOWN, seen(gallery, exhibit.ball))
     gallery.key(pygame.K_ESCAPE)
-    assert gallery.top_name == "Pause"
+    assert gallery.top_name == "PauseScene"
     assert physics.grip is None
     gallery.frames(3)
     gallery.key(pygame.K_ESCAPE)
@@ -179,7 +179,7 @@ def test_every_exhibit_is_drawn_at_every_size_and_drawing_changes_nothing(galler
 
 
 def test_between_two_steps_bodies_are_drawn_in_between(open_game: Open):
-    driver = open_game(Physics("bounce"))
+    driver = open_game(PhysicsScene("bounce"))
     driver.keys(pygame.K_MINUS, pygame.K_MINUS)
     driver.frames(41)
     pictures = []
@@ -192,9 +192,9 @@ def test_between_two_steps_bodies_are_drawn_in_between(open_game: Open):
 def test_menu_leads_to_physics_and_back(open_game: Open):
     driver = open_game()
     driver.keys(*[pygame.K_DOWN] * 5, pygame.K_RETURN)
-    assert driver.top_name == "Physics"
+    assert driver.top_name == "PhysicsScene"
     driver.key(pygame.K_BACKSPACE)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 # The command
@@ -209,7 +209,7 @@ def test_the_command_opens_the_exhibit_over_the_menu(monkeypatch, tmp_path):
         driver.frames(3)
         assert name(driver) == "drag"
         driver.keys(pygame.K_ESCAPE, pygame.K_UP, pygame.K_RETURN)  # Pause, Leave
-        assert driver.top_name == "Menu"
+        assert driver.top_name == "MenuScene"
         app.close()
         return 0
 

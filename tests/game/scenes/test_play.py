@@ -14,9 +14,9 @@ from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.drawing.canvas import Canvas
 from game.flight import networks
-from game.flight.flight import Hand
+from game.flight.flight import StickHolder
 from game.flight.logbook import Records
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 
@@ -33,14 +33,14 @@ class Steady:
 
 @pytest.fixture
 def flown_by(monkeypatch: pytest.MonkeyPatch) -> Callable[[object], None]:
-    def use(flyer: object) -> None:
-        monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", flyer))  # type: ignore[arg-type]
+    def use(policy: object) -> None:
+        monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", policy))  # type: ignore[arg-type]
 
     return use
 
 
-def scene(driver: Driver) -> Play:
-    assert isinstance(driver.top, Play)
+def scene(driver: Driver) -> PlayScene:
+    assert isinstance(driver.top, PlayScene)
     return driver.top
 
 
@@ -52,7 +52,7 @@ def let_go(driver: Driver, key: int) -> None:
     driver.post(pygame.KEYUP, key=key, mod=0, unicode="", scancode=0)
 
 
-def start_at(play: Play, *start: float) -> None:
+def start_at(play: PlayScene, *start: float) -> None:
     play.waiting = False
     play.flight.env.place(np.ones(1, bool), np.array([start]))
 
@@ -64,7 +64,7 @@ def action(driver: Driver) -> int:
 @pytest.mark.parametrize(("keys", "wanted"), [((MAIN,), 3), ((LEFT,), 1), ((RIGHT, pygame.K_w), 5), ((LEFT, RIGHT), 0)])
 def test_keys_fly(open_game: Open, flown_by, keys: tuple[int, ...], wanted: int):
     flown_by(None)
-    driver = open_game(Play(seed=1))
+    driver = open_game(PlayScene(seed=1))
     driver.frames(1)
     for key in keys:
         press(driver, key)
@@ -79,7 +79,7 @@ def test_keys_fly(open_game: Open, flown_by, keys: tuple[int, ...], wanted: int)
 @pytest.mark.parametrize("begin", [MAIN, LEFT, pygame.K_TAB])
 def test_a_flight_waits_for_the_first_touch_even_through_a_pause(open_game: Open, flown_by, begin: int):
     flown_by(Steady())
-    driver = open_game(Play(seed=1))
+    driver = open_game(PlayScene(seed=1))
     driver.frames(30)
     driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
     assert scene(driver).flight.env.steps[0] == 0
@@ -103,7 +103,7 @@ def test_the_key_that_opened_the_flight_does_not_also_begin_it(open_game: Open, 
 
 def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, flown_by):
     flown_by(Steady())
-    driver = open_game(Play(seed=1))
+    driver = open_game(PlayScene(seed=1))
     held = False
     for turn in range(100):
         if turn % 10 == 0:  # stay clear of the ground
@@ -115,13 +115,13 @@ def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, 
             (let_go if held else press)(driver, MAIN)
             held = not held
         driver.frames(1)
-        assert action(driver) == (1 if scene(driver).flight.hand is Hand.NETWORK else 3 * held)
+        assert action(driver) == (1 if scene(driver).flight.hand is StickHolder.NETWORK else 3 * held)
     assert not scene(driver).flight.over
 
 
 def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
-    driver = open_game(Play(seed=12))
+    driver = open_game(PlayScene(seed=12))
     driver.frames(1)
     driver.key(LEFT)
     driver.frames(20)
@@ -136,7 +136,7 @@ def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_
 @pytest.mark.parametrize("key", [pygame.K_RETURN, pygame.K_SPACE, pygame.K_r])
 def test_after_a_crash_one_key_flies_the_same_start_again(open_game: Open, flown_by, key: int):
     flown_by(None)
-    driver = open_game(Play(seed=3))
+    driver = open_game(PlayScene(seed=3))
     began = scene(driver).flight.poses.before.copy()
     start_at(scene(driver), 8, 3, 0, -3, 0, 0)
     driver.frames(140)
@@ -149,7 +149,7 @@ def test_after_a_crash_one_key_flies_the_same_start_again(open_game: Open, flown
 
 def test_after_a_landing_enter_flies_a_new_start_and_r_the_same(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(Play(seed=3))
+    driver = open_game(PlayScene(seed=3))
     for key, same in ((pygame.K_r, True), (pygame.K_RETURN, False)):
         start_at(scene(driver), 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
         driver.frames(140)
@@ -160,7 +160,7 @@ def test_after_a_landing_enter_flies_a_new_start_and_r_the_same(open_game: Open,
 
 def test_a_thrust_held_through_the_end_does_not_dismiss_the_card(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(Play(seed=3))
+    driver = open_game(PlayScene(seed=3))
     start_at(scene(driver), 8, 3, 0, -4, 0, 0)
     press(driver, pygame.K_SPACE)
     driver.frames(20)
@@ -172,7 +172,7 @@ def test_a_thrust_held_through_the_end_does_not_dismiss_the_card(open_game: Open
 
 def test_pause_by_key_and_by_looking_away_keeps_the_flight(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(Play(seed=3))
+    driver = open_game(PlayScene(seed=3))
     flight = scene(driver).flight
     for event in (pygame.WINDOWFOCUSLOST, None):
         if event is None:
@@ -180,7 +180,7 @@ def test_pause_by_key_and_by_looking_away_keeps_the_flight(open_game: Open, flow
         else:
             driver.post(event)
             driver.frames(12)
-        assert driver.top_name == "Pause"
+        assert driver.top_name == "PauseScene"
         steps = int(flight.env.steps[0])
         driver.frames(10)
         assert flight.env.steps[0] == steps
@@ -193,19 +193,19 @@ def test_pause_by_key_and_by_looking_away_keeps_the_flight(open_game: Open, flow
 
 def test_a_glance_away_does_not_pause(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(Play(seed=3))
+    driver = open_game(PlayScene(seed=3))
     driver.post(pygame.WINDOWFOCUSLOST)
     driver.frames(3)
     driver.post(pygame.WINDOWFOCUSGAINED)
     driver.frames(30)
-    assert driver.top_name == "Play"
+    assert driver.top_name == "PlayScene"
 
 
 def test_a_resize_in_the_middle_changes_nothing_but_the_picture(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
     flown = []
     for sizes in ([], [(900, 700), (640, 360), (1280, 720)]):
-        driver = open_game(Play(seed=4))
+        driver = open_game(PlayScene(seed=4))
         driver.key(pygame.K_TAB)
         for size in sizes:
             driver.resize(size)
@@ -219,11 +219,11 @@ def test_a_resize_in_the_middle_changes_nothing_but_the_picture(open_game: Open,
 
 def test_a_missing_network_is_named_and_the_game_goes_on(open_game: Open, context: Context, tmp_path: Path):
     context.models_dir = tmp_path
-    driver = open_game(Play(seed=1))
+    driver = open_game(PlayScene(seed=1))
     driver.key(pygame.K_TAB)
     driver.frames(30)
     play = scene(driver)
-    assert play.flight.hand is Hand.HUMAN
+    assert play.flight.hand is StickHolder.HUMAN
     assert "missing" in play._network.problem
 
 
@@ -246,10 +246,10 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
     for path in (tmp_path / "lander" / "modern").rglob("*weights.npy"):
         damage(path)
     context.models_dir = tmp_path
-    driver = open_game(Play(seed=1))
+    driver = open_game(PlayScene(seed=1))
     driver.key(pygame.K_TAB)
     driver.frames(30)
-    assert scene(driver).flight.hand is Hand.HUMAN
+    assert scene(driver).flight.hand is StickHolder.HUMAN
     assert "weights" in scene(driver)._network.problem
     begins = scene(driver)._network.problem[:18]  # a long one is shortened in its middle
     assert begins in driver.app._notes._text
@@ -257,7 +257,7 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
 
 def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_other_flight(open_game: Open, context):
     resource = pytest.importorskip("resource")
-    driver = open_game(Play(seed=1))
+    driver = open_game(PlayScene(seed=1))
     crash(driver)
     before = {path.name: path.read_bytes() for path in context.user_dir.rglob("*.json*")}
     assert len(before) == 2  # the logbook, and the flight
@@ -283,7 +283,7 @@ def crash(driver: Driver) -> None:
 
 
 def test_a_window_that_is_minimised_for_a_minute_finds_the_flight_as_it_was_left(open_game: Open, flown_by):
-    driver = open_game(Play(seed=1))
+    driver = open_game(PlayScene(seed=1))
     driver.frames(2)
     driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     driver.frames(30)
@@ -292,7 +292,7 @@ def test_a_window_that_is_minimised_for_a_minute_finds_the_flight_as_it_was_left
     driver.frames(3600)
     driver.post(pygame.WINDOWRESTORED)
     driver.post(pygame.WINDOWFOCUSGAINED)
-    assert driver.top_name == "Pause"
+    assert driver.top_name == "PauseScene"
     driver.key(pygame.K_ESCAPE)
     flight = scene(driver).flight
     flown = len(flight.recording.actions)
@@ -308,21 +308,23 @@ def with_networks(context: Context, tmp_path: Path, *names: str) -> None:
         DeepQAgent(config=Config(hidden=(4,))).save(context.user_dir / "models" / name)
 
 
-@pytest.mark.parametrize("hand", [Hand.HUMAN, Hand.NETWORK])
-def test_the_pause_changes_the_network_in_mid_flight(open_game: Open, context: Context, tmp_path: Path, hand: Hand):
+@pytest.mark.parametrize("hand", [StickHolder.HUMAN, StickHolder.NETWORK])
+def test_the_pause_changes_the_network_in_mid_flight(
+    open_game: Open, context: Context, tmp_path: Path, hand: StickHolder
+):
     with_networks(context, tmp_path, "a", "b", "modern")
-    driver = open_game(Play(seed=4))
+    driver = open_game(PlayScene(seed=4))
     play = scene(driver)
     assert play._network.name == "modern"
     driver.key(pygame.K_TAB)
-    if hand is Hand.HUMAN:
+    if hand is StickHolder.HUMAN:
         driver.key(pygame.K_TAB)
     driver.frames(20)
     flight, before = play.flight, play.flight.network
     driver.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
-    assert driver.top_name == "Runs"
+    assert driver.top_name == "NetworksScene"
     driver.keys(pygame.K_END, pygame.K_RETURN)  # the one that was saved first
-    assert driver.top_name == "Pause"
+    assert driver.top_name == "PauseScene"
     driver.keys(pygame.K_ESCAPE)
     assert scene(driver).flight is flight
     assert flight.hand is hand
@@ -334,18 +336,18 @@ def test_the_pause_changes_the_network_in_mid_flight(open_game: Open, context: C
 def test_a_network_that_breaks_on_the_way_gives_the_stick_back(open_game: Open, context: Context, tmp_path: Path):
     with_networks(context, tmp_path, "modern", "hurt")
     (context.user_dir / "models" / "hurt" / "online" / "config.json").write_text("{")
-    driver = open_game(Play(seed=4))
+    driver = open_game(PlayScene(seed=4))
     driver.key(pygame.K_TAB)
     driver.frames(5)
     scene(driver)._choose_network("hurt")
     driver.frames(5)
-    assert scene(driver).flight.hand is Hand.HUMAN
+    assert scene(driver).flight.hand is StickHolder.HUMAN
     assert "No network" in driver.app._notes._text
 
 
 def test_draw_changes_nothing(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
-    driver = open_game(Play(seed=4))
+    driver = open_game(PlayScene(seed=4))
     driver.key(pygame.K_TAB)
     driver.frames(90)
     pictures = []
@@ -358,7 +360,7 @@ def test_draw_changes_nothing(open_game: Open, flown_by):
 @pytest.mark.parametrize("hints", [True, False])
 def test_hints_come_with_the_setting_and_go_with_it(open_game: Open, flown_by, monkeypatch, hints: bool):
     flown_by(ScriptedPilot())
-    driver = open_game(Play(seed=4))
+    driver = open_game(PlayScene(seed=4))
     driver.app.context.settings.show_hints = hints
     written: list[str] = []
     monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
@@ -373,10 +375,10 @@ def test_hints_come_with_the_setting_and_go_with_it(open_game: Open, flown_by, m
 
 def test_the_networks_way_is_drawn_in_its_colour_if_there_is_one(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
-    driver = open_game(Play(seed=4))
+    driver = open_game(PlayScene(seed=4))
     driver.frames(200)
-    assert len(scene(driver)._outlook._forecast.path) > 5
+    assert len(scene(driver)._path_preview._forecast.path) > 5
     flown_by(None)
-    driver = open_game(Play(seed=4))
+    driver = open_game(PlayScene(seed=4))
     driver.frames(2)
-    assert not scene(driver)._outlook.asks
+    assert not scene(driver)._path_preview.asks

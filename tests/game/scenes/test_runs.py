@@ -13,8 +13,8 @@ from ai.agent.config import Config
 from game.core import collection as collection_module
 from game.core import texts
 from game.core.scene import Pop, Push
-from game.scenes.menu import Menu
-from game.scenes.runs import Runs
+from game.scenes.menu import MenuScene
+from game.scenes.runs import NetworksScene
 from game.training.library import Library
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -57,16 +57,16 @@ def three(library: Library) -> Library:
 @pytest.fixture
 def open_runs(open_game: Open, library: Library) -> Callable[..., Driver]:
     def begin(**arguments: object) -> Driver:
-        driver = open_game(Menu())
-        driver.app.scenes.apply(Push(Runs(**arguments)))  # type: ignore[arg-type]
+        driver = open_game(MenuScene())
+        driver.app.scenes.apply(Push(NetworksScene(**arguments)))  # type: ignore[arg-type]
         driver.frames(2)
         return driver
 
     return begin
 
 
-def scene(driver: Driver) -> Runs:
-    assert isinstance(driver.top, Runs)
+def scene(driver: Driver) -> NetworksScene:
+    assert isinstance(driver.top, NetworksScene)
     return driver.top
 
 
@@ -119,9 +119,9 @@ def test_without_any_network_the_screen_still_stands(open_runs, context: Context
     context.models_dir = tmp_path / "nothing"
     driver = open_runs()
     driver.keys(ENTER, pygame.K_DELETE, pygame.K_F2, RIGHT)
-    assert driver.top_name == "Runs"
+    assert driver.top_name == "NetworksScene"
     driver.keys(DOWN, ENTER)  # Back
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_the_keyboard_renames(open_runs, three: Library):
@@ -162,7 +162,7 @@ def test_a_name_can_be_left_as_it_was(open_runs, three: Library, way: str):
     assert scene(driver)._entry is None
     assert sorted(run.name for run in three.runs()) == ["a", "b", "c"]
     driver.key(ESCAPE)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_the_mouse_accepts_a_name_and_letters_are_no_commands_meanwhile(open_runs, three: Library):
@@ -199,7 +199,7 @@ def test_a_gamepad_deletes_brings_back_and_leaves(open_runs, three: Library):
     driver.button(pygame.CONTROLLER_BUTTON_A)
     assert [run.name for run in three.runs()] == ["a", "b", "c"]
     driver.button(pygame.CONTROLLER_BUTTON_B)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_the_mouse_deletes_and_brings_back(open_runs, three: Library):
@@ -255,7 +255,7 @@ def test_a_damaged_run_is_shown_with_its_problem(open_runs, three: Library):
 
 def test_watch_and_fly_with_the_chosen_one_and_come_back_to_it(open_runs, three: Library, context: Context):
     driver = open_runs()
-    for verb, name in ((texts.RUN_WATCH, "Watch"), (texts.RUN_FLY, "Play")):
+    for verb, name in ((texts.RUN_WATCH, "WatchScene"), (texts.RUN_FLY, "PlayScene")):
         click_row(driver, 1)
         click(driver, verb)
         assert driver.top_name == name
@@ -276,12 +276,12 @@ def test_a_new_name_is_still_the_one_that_flies(open_runs, three: Library, conte
 
 def test_go_on_training_opens_a_training_of_that_folder(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
     asked: list[Path] = []
-    stand_in = SimpleNamespace(Train=lambda resume: (asked.append(resume), Menu())[1])
+    stand_in = SimpleNamespace(Train=lambda resume: (asked.append(resume), MenuScene())[1])
     monkeypatch.setitem(sys.modules, "game.scenes.train", stand_in)
     driver = open_runs()
     click(driver, texts.RUN_TRAIN)
     assert asked == [three.folder / "a"]
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_who_opens_the_screen_may_train_in_a_way_of_their_own(open_runs, three: Library):
@@ -289,7 +289,7 @@ def test_who_opens_the_screen_may_train_in_a_way_of_their_own(open_runs, three: 
     driver = open_runs(train=lambda folder: (asked.append(folder), Pop())[1])
     click(driver, texts.RUN_TRAIN)
     assert asked == [three.folder / "a"]
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 @pytest.mark.parametrize("way", ["enter", "word", "pad", "second click"])
@@ -311,7 +311,7 @@ def test_choosing_hands_the_name_back_and_closes(open_runs, three: Library, way:
             click_row(driver, 1)
             click_row(driver, 1)
     assert chosen == ["b"]
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_what_cannot_fly_cannot_be_chosen(open_runs, three: Library):
@@ -320,7 +320,7 @@ def test_what_cannot_fly_cannot_be_chosen(open_runs, three: Library):
     driver = open_runs(choose=chosen.append)
     driver.keys(pygame.K_HOME, ENTER)
     assert not chosen
-    assert driver.top_name == "Runs"
+    assert driver.top_name == "NetworksScene"
 
 
 def test_a_folder_that_is_dropped_is_copied_in(open_runs, three: Library, tmp_path: Path):

@@ -22,15 +22,15 @@ from ai.training.session import TAUGHT
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.scene import Push
-from game.core.worker import State
+from game.core.worker import WorkerState
 from game.flight.demonstrations import FILE_NAME
-from game.panels.network_panel import Inside
-from game.panels.network_view import NetView
-from game.scenes.dialog import Asking, Naming
-from game.scenes.menu import Menu
-from game.scenes.play import Play
-from game.scenes.train import Train
-from game.training.lander_run import Student
+from game.panels.network_panel import NetworkPanel
+from game.panels.network_view import NetworkView
+from game.scenes.dialog import NameDialog, QuestionDialog
+from game.scenes.menu import MenuScene
+from game.scenes.play import PlayScene
+from game.scenes.train import TrainScene
+from game.training.lander_run import LanderRun
 from game.training.library import Library
 from game.ui import focus
 from game.ui.widget import Widget
@@ -42,7 +42,7 @@ SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_si
 
 @pytest.fixture
 def train(open_game: Callable[..., Driver]) -> Driver:
-    driver = open_game(Train())
+    driver = open_game(TrainScene())
     driver.frames(2)
     driver.top.knobs.set_config(SMALL, 3)
     return driver
@@ -50,35 +50,35 @@ def train(open_game: Callable[..., Driver]) -> Driver:
 
 def start(driver: Driver) -> None:
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: len(driver.top.student.history) >= 2)
+    driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
 
 
 def test_start_pause_step_and_go_on(train: Driver) -> None:
     start(train)
     scene = train.top
-    assert scene.student.state is State.RUNNING
-    assert len(scene.swarm.sight.outcome) == 4
+    assert scene.lander_run.state is WorkerState.RUNNING
+    assert len(scene.swarm.swarm_state.outcome) == 4
     train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.student.state is State.PAUSED)
+    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
     train.frames(20)
     time.sleep(0.2)
     train.frames(5)
-    stood = scene.student.sight.decisions
+    stood = scene.lander_run.swarm_state.decisions
     time.sleep(0.3)
     train.frames(5)
-    assert scene.student.sight.decisions == stood
+    assert scene.lander_run.swarm_state.decisions == stood
     train.key(pygame.K_PERIOD)
-    train.wait(lambda: scene.student.sight.decisions > stood)
-    assert scene.student.sight.decisions == stood + 4
+    train.wait(lambda: scene.lander_run.swarm_state.decisions > stood)
+    assert scene.lander_run.swarm_state.decisions == stood + 4
     train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.student.sight.decisions > stood + 8)
+    train.wait(lambda: scene.lander_run.swarm_state.decisions > stood + 8)
 
 
 def test_it_learns_as_it_would_without_a_window(train: Driver) -> None:
     start(train)
     scene = train.top
-    train.wait(lambda: len(scene.student.history.checkpoints) >= 2)
-    checkpoint = scene.student.history.checkpoints[1]
+    train.wait(lambda: len(scene.lander_run.history.checkpoints) >= 2)
+    checkpoint = scene.lander_run.history.checkpoints[1]
     training = Training(SMALL, 3)
     while training.agent.decisions < checkpoint.decisions:
         training.advance()
@@ -90,7 +90,7 @@ def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
     scene = train.top
     scene._form.focus(scene._save_word)
     train.key(pygame.K_RETURN)
-    assert isinstance(train.top, Naming)
+    assert isinstance(train.top, NameDialog)
     train.key(pygame.K_RETURN)
     assert train.top is scene
     library = Library(tmp_path / "user")
@@ -102,41 +102,41 @@ def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
 
 def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game: Callable[..., Driver]) -> None:
     start(train)
-    decisions = train.top.student.history["decisions"][-1]
+    decisions = train.top.lander_run.history["decisions"][-1]
     train.app.close()
-    driver = open_game(Train())
+    driver = open_game(TrainScene())
     driver.frames(2)
-    assert isinstance(driver.top, Asking)
+    assert isinstance(driver.top, QuestionDialog)
     driver.key(pygame.K_RETURN)
     scene = driver.top
-    driver.wait(lambda: scene.student.begun or scene.student.sight)
-    assert scene.student.sight.decisions >= decisions
-    assert scene.student.config.num_envs == SMALL.num_envs
+    driver.wait(lambda: scene.lander_run.begun or scene.lander_run.swarm_state)
+    assert scene.lander_run.swarm_state.decisions >= decisions
+    assert scene.lander_run.config.num_envs == SMALL.num_envs
 
 
 def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_game: Callable[..., Driver]) -> None:
     train.top.knobs.set_config(PRESETS["classic"].changed(hidden=(8,)), 3)
     start(train)
-    assert train.top.student.name == "Classic 1"
+    assert train.top.lander_run.name == "Classic 1"
     train.app.close()
-    driver = open_game(Train())
+    driver = open_game(TrainScene())
     driver.frames(2)
     driver.key(pygame.K_RETURN)
-    driver.wait(lambda: driver.top.student.sight)
+    driver.wait(lambda: driver.top.lander_run.swarm_state)
     driver.frames(2)
-    assert driver.top.student.name == "Classic 1"
+    assert driver.top.lander_run.name == "Classic 1"
 
 
 def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game: Callable[..., Driver]) -> None:
     start(train)
     train.app.close()
-    driver = open_game(Train())
+    driver = open_game(TrainScene())
     driver.frames(2)
     driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
-    assert isinstance(driver.top, Train)
+    assert isinstance(driver.top, TrainScene)
     driver.frames(2)
-    assert isinstance(driver.top, Train)
-    library = driver.top.student.library
+    assert isinstance(driver.top, TrainScene)
+    library = driver.top.lander_run.library
     assert library.rescued() is None
     assert library.last_deleted
 
@@ -145,29 +145,29 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     start(train)
     scene = train.top
     scene._save_as("mine")
-    train.wait(scene.student.library.runs)
+    train.wait(scene.lander_run.library.runs)
     train.app.scenes.apply(scene._open_runs())
     train.frames(2)
     verbs = train.top._verbs
     train.top._form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    train.wait(lambda: scene.student.sight is not None)
-    assert scene.student.state is State.RUNNING
+    train.wait(lambda: scene.lander_run.swarm_state is not None)
+    assert scene.lander_run.state is WorkerState.RUNNING
 
 
 def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     start(train)
     scene = train.top
-    (scene.student.library.folder / "mine").mkdir()
+    (scene.lander_run.library.folder / "mine").mkdir()
     train.app.scenes.apply(scene._save())
     train.top._entry.text = "mine"
     train.key(pygame.K_RETURN)
-    assert isinstance(train.top, Naming)
+    assert isinstance(train.top, NameDialog)
     train.post(pygame.TEXTINPUT, text="M2")
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    train.wait(scene.student.library.runs)
+    train.wait(scene.lander_run.library.runs)
 
 
 def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
@@ -176,20 +176,20 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     (word,) = [widget for widget in scene._form.widgets if widget.label == texts.TRAIN_TEACH]
     scene._form.focus(word)
     train.key(pygame.K_RETURN)
-    assert scene.student.state is None, "nothing to learn from, nothing begun"
+    assert scene.lander_run.state is None, "nothing to learn from, nothing begun"
     assert texts.TRAIN_NO_LESSONS in notes
     write(tmp_path / "user" / FILE_NAME, demonstrate(ScriptedPilot(), 2, seed=5, spawn="near"))
     train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.student.lessons == 2 and len(scene.student.history))
-    assert scene.student.config.success_pass
+    train.wait(lambda: scene.lander_run.lessons == 2 and len(scene.lander_run.history))
+    assert scene.lander_run.config.success_pass
     assert scene.knobs.config.success_pass
     train.frames(1)
     assert texts.TRAIN_TAUGHT.format(count=2) in notes
     scene._form.focus(scene._save_word)
     train.key(pygame.K_RETURN)
     train.key(pygame.K_RETURN)
-    train.wait(scene.student.library.runs)
-    (run,) = scene.student.library.runs()
+    train.wait(scene.lander_run.library.runs)
+    (run,) = scene.lander_run.library.runs()
     assert "trained on you" in run.name
     assert sum(each.name == TAUGHT for each in History.read(run.folder).alterations) == 1
 
@@ -198,11 +198,11 @@ def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
     start(train)
     scene = train.top
     scene.knobs.turn("discount", 0.9)
-    train.wait(lambda: scene.student.config.discount == 0.9)
-    assert scene.student.history.alterations[-1].name == "discount"
+    train.wait(lambda: scene.lander_run.config.discount == 0.9)
+    assert scene.lander_run.history.alterations[-1].name == "discount"
     scene.knobs.turn("n_step", 3)
     assert scene.knobs.waiting == ["n_step"]
-    assert scene.student.config.n_step == SMALL.n_step
+    assert scene.lander_run.config.n_step == SMALL.n_step
 
 
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
@@ -211,12 +211,12 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     scene._form.focus(next(each for each in scene._form.widgets if isinstance(each, Scrubber)))
     train.key(pygame.K_LEFT)
     train.key(pygame.K_RETURN)
-    assert isinstance(train.top, Play)
-    train.wait(lambda: scene.student.state is State.PAUSED)
+    assert isinstance(train.top, PlayScene)
+    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
-    train.wait(lambda: scene.student.state is State.RUNNING)
+    train.wait(lambda: scene.lander_run.state is WorkerState.RUNNING)
 
 
 def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
@@ -245,7 +245,7 @@ def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
     assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
 
 
-def shown_heading(inside: Inside) -> str:
+def shown_heading(inside: NetworkPanel) -> str:
     return str(inside._heading.options[inside._heading.index])
 
 
@@ -286,17 +286,17 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
 
     scene = train.top
     press("confirm")
-    train.wait(lambda: len(scene.student.history) >= 2)
+    train.wait(lambda: len(scene.lander_run.history) >= 2)
     press("confirm")
-    train.wait(lambda: scene.student.state is State.PAUSED)
+    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
     press("right")
     assert scene._form.focused is scene._step_word
     scene._form.focus(scene._save_word)
     press("confirm")
-    assert isinstance(train.top, Naming)
+    assert isinstance(train.top, NameDialog)
     press("confirm")
     assert train.top is scene
-    train.wait(scene.student.library.runs)
+    train.wait(scene.lander_run.library.runs)
     press("back")
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
@@ -304,11 +304,11 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
 def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp_path: Path) -> None:
     start(train)
     scene = train.top
-    train.wait(lambda: scene.student.library.unsaved.is_dir() or scene.student.state is State.FAILED, 60)
+    train.wait(lambda: scene.lander_run.library.unsaved.is_dir() or scene.lander_run.state is WorkerState.FAILED, 60)
     for child in active_children():
         child.kill()
-    train.wait(lambda: scene.student.state is State.FAILED)
-    assert scene.student.problem
+    train.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
+    assert scene.lander_run.problem
     train.frames(20)
     scene._save_as("saved all the same")
     (run,) = Library(tmp_path / "user").runs()
@@ -319,10 +319,10 @@ def test_numbers_that_run_away_are_told(train: Driver) -> None:
     wild = SMALL.changed(cost="mse", reward_scale=1.0, weights=RewardWeights(terminal=1e30))
     train.top.knobs.set_config(wild, 0)
     train.key(pygame.K_RETURN)
-    train.wait(lambda: train.top.student.state is State.FAILED, 60)
-    assert "learning step" in train.top.student.problem
+    train.wait(lambda: train.top.lander_run.state is WorkerState.FAILED, 60)
+    assert "learning step" in train.top.lander_run.problem
     train.frames(20)
-    assert isinstance(train.top, Train)
+    assert isinstance(train.top, TrainScene)
 
 
 def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(train: Driver) -> None:
@@ -333,30 +333,30 @@ def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(train: Drive
         time.sleep(0.05 * number)
         for child in active_children():
             child.kill()
-        train.wait(lambda: scene.student.state is State.FAILED)
+        train.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
         assert train.top is scene
-    for run in scene.student.library.runs():
+    for run in scene.lander_run.library.runs():
         assert not run.problem
         assert resume_run(run.folder).agent.decisions > 0
 
 
 def _kept() -> list[object]:
-    return [each for each in gc.get_objects() if isinstance(each, Train | Student | NetView)]
+    return [each for each in gc.get_objects() if isinstance(each, TrainScene | LanderRun | NetworkView)]
 
 
 def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     threads, others = threading.active_count(), set(map(id, _kept()))
     for visit in range(10):
-        assert isinstance(game.top, Menu)
-        scene = Train()
+        assert isinstance(game.top, MenuScene)
+        scene = TrainScene()
         game.app.scenes.apply(Push(scene))
         game.frames(2)
-        if isinstance(game.top, Asking):  # about the run of the visit before
+        if isinstance(game.top, QuestionDialog):  # about the run of the visit before
             game.key(pygame.K_ESCAPE)
         scene.knobs.set_config(SMALL, 0)
         game.key(pygame.K_RETURN)
         if visit % 4 == 0:  # the others leave while it starts
-            game.wait(lambda scene=scene: scene.student.sight)
+            game.wait(lambda scene=scene: scene.lander_run.swarm_state)
         game.key(pygame.K_ESCAPE)
         assert not active_children()
     del scene

@@ -14,28 +14,28 @@ from benchmarks.tour import scene_types
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
-from game.flight.flight import Hand
+from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.input.controls import Command
 from game.scenes.bindings import BindingsScene
 from game.scenes.choices import ChoicesScene
-from game.scenes.dialog import Asking, Naming, Picking
+from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_training import DigitTrainingScene
-from game.scenes.digits import Digits
-from game.scenes.dream import Dream
-from game.scenes.logbook import Logbook
-from game.scenes.menu import Menu
-from game.scenes.missions import Missions
-from game.scenes.pause import Pause
-from game.scenes.physics import Physics
-from game.scenes.play import Play
-from game.scenes.quiz import Quiz
-from game.scenes.replay import Replay
-from game.scenes.runs import Runs
+from game.scenes.digits import DigitsScene
+from game.scenes.dream import DreamScene
+from game.scenes.logbook import LogbookScene
+from game.scenes.menu import MenuScene
+from game.scenes.missions import MissionsScene
+from game.scenes.pause import PauseScene
+from game.scenes.physics import PhysicsScene
+from game.scenes.play import PlayScene
+from game.scenes.quiz import QuizScene
+from game.scenes.replay import ReplayScene
+from game.scenes.runs import NetworksScene
 from game.scenes.settings import SettingsScene
-from game.scenes.train import Train
-from game.scenes.watch import Watch
+from game.scenes.train import TrainScene
+from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from game.ui.widget import Widget
 from tests.support.driver import Driver
@@ -43,30 +43,30 @@ from tests.support.flights import kept, scripted
 from tests.support.player import DEVICES, Player
 
 SCREENS: dict[str, Callable[[Context], Scene]] = {
-    "Menu": lambda _: Menu(),
-    "Missions": lambda _: Missions(),
-    "Watch": lambda _: Watch(seed=1),
-    "Train": lambda _: Train(),
-    "Digits": lambda _: Digits(),
+    "MenuScene": lambda _: MenuScene(),
+    "MissionsScene": lambda _: MissionsScene(),
+    "WatchScene": lambda _: WatchScene(seed=1),
+    "TrainScene": lambda _: TrainScene(),
+    "DigitsScene": lambda _: DigitsScene(),
     "DigitTrainingScene": lambda _: DigitTrainingScene(),
-    "Dream": lambda _: Dream(reader()),
-    "Quiz": lambda _: Quiz(reader()),
-    "Physics": lambda _: Physics(),
-    "Logbook": lambda _: Logbook(),
+    "DreamScene": lambda _: DreamScene(reader()),
+    "QuizScene": lambda _: QuizScene(reader()),
+    "PhysicsScene": lambda _: PhysicsScene(),
+    "LogbookScene": lambda _: LogbookScene(),
     "SettingsScene": lambda _: SettingsScene(),
     "BindingsScene": lambda _: BindingsScene(),
-    "Runs": lambda _: Runs(),
-    "Replay": lambda context: Replay(flown(context)),
+    "NetworksScene": lambda _: NetworksScene(),
+    "ReplayScene": lambda context: ReplayScene(flown(context)),
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
-    "Pause": lambda below: Pause(below, retry=lambda: None),
+    "PauseScene": lambda below: PauseScene(below, retry=lambda: None),
     "ChoicesScene": lambda below: ChoicesScene(below, Skill([]), begun=False),
-    "Asking": lambda below: Asking(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
-    "Naming": lambda below: Naming(below, "?", "name", lambda _: ""),
-    "Picking": lambda below: Picking(below, "?", [("a",), ("b",)], lambda _: None),
+    "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
+    "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
+    "ListDialog": lambda below: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),
 }
 # Flown rather than walked, shown once something has failed, or a part of others.
-NO_SCREENS = {"Play", "Fault", "Dialog", "Vista"}
+NO_SCREENS = {"PlayScene", "ErrorScene", "Dialog", "MenuBackground"}
 
 
 def reader() -> DigitClassifier:
@@ -98,24 +98,24 @@ def test_every_screen_there_is_will_be_walked():
 @pytest.mark.parametrize("name", SCREENS)
 def test_every_widget_is_reached_and_seen_and_there_is_a_way_out(open_screen, name: str):
     player = open_screen(SCREENS[name])
-    if name in ("Watch", "Physics", "Replay"):
+    if name in ("WatchScene", "PhysicsScene", "ReplayScene"):
         player.press("step")
     walk(player)
     for _ in range(3):
-        if player.app.scenes.running and player.top_name != "Pause":
+        if player.app.scenes.running and player.top_name != "PauseScene":
             player.press("back")
-    if player.top_name == "Pause":
+    if player.top_name == "PauseScene":
         player.choose(texts.PAUSE_LEAVE)
     assert not player.app.scenes.running  # it was the only scene
 
 
 @pytest.mark.parametrize("name", OVER_OTHERS)
 def test_so_are_those_that_stand_over_another(open_screen, name: str):
-    player = open_screen(SCREENS["Menu"])
+    player = open_screen(SCREENS["MenuScene"])
     menu = player.top
     player.app.scenes.apply(Push(OVER_OTHERS[name](menu)))
     player.frames(3)
-    if name == "Naming":
+    if name == "NameDialog":
         player.press("down")  # out of the line, with what stands there
     walk(player)
     player.press("back")
@@ -155,59 +155,59 @@ def saved(player: Player) -> dict[str, object]:
 
 
 def test_a_mission_is_found_flown_and_left(open_screen):
-    player = open_screen(SCREENS["Menu"])
+    player = open_screen(SCREENS["MenuScene"])
     player.choose(texts.MENU["missions"][0])
-    assert player.top_name == "Missions"
+    assert player.top_name == "MissionsScene"
     player.press("confirm")  # the list is where it begins
     player.frames(2)
     player.press("pause")  # nothing has begun: it leads back at once
-    assert player.top_name == "Missions"
+    assert player.top_name == "MissionsScene"
     player.press("confirm")
     player.fly()
     assert player.top.flight.outcome is Outcome.LANDED
     wait_for_card(player)
     player.press("confirm")
-    assert player.top_name == "Missions"
+    assert player.top_name == "MissionsScene"
     assert player.top._row("fall")[1] in texts.MEDALS[1:]
     player.press("back")
-    assert player.top_name == "Menu"
+    assert player.top_name == "MenuScene"
 
 
 def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
-    player = open_screen(SCREENS["Menu"])
+    player = open_screen(SCREENS["MenuScene"])
     player.choose(texts.MENU["play"][0])
     player.press("main", "hand over")
-    assert player.top.flight.hand is Hand.NETWORK
+    assert player.top.flight.hand is StickHolder.NETWORK
     player.press("hand over", "pause")
-    assert player.top_name == "Pause"
+    assert player.top_name == "PauseScene"
     player.choose(texts.PAUSE_LEAVE)
-    assert player.top_name == "Menu"
+    assert player.top_name == "MenuScene"
 
 
 def test_a_replay_is_watched_wound_and_flown_on(open_screen):
-    player = open_screen(lambda context: [flown(context), Menu()][1])
+    player = open_screen(lambda context: [flown(context), MenuScene()][1])
     player.choose(texts.MENU["logbook"][0])
     player.press("confirm")
     replay = player.top
-    assert player.top_name == "Replay"
+    assert player.top_name == "ReplayScene"
     player.frames(60)
     player.press("step")
     assert replay.stopped
-    at = replay.tape.at
+    at = replay.flight_replay.at
     player.press("left")  # the strip of what was done is where it begins
-    assert replay.tape.at < at
+    assert replay.flight_replay.at < at
     player.press("hand over")
-    assert player.top_name == "Play"
+    assert player.top_name == "PlayScene"
     player.press("main")
     player.press("pause")
     player.choose(texts.PAUSE_LEAVE)
     assert player.top is replay
     player.press("back", "back")
-    assert player.top_name == "Menu"
+    assert player.top_name == "MenuScene"
 
 
 def test_settings_are_changed_and_kept(open_screen):
-    player = open_screen(SCREENS["Menu"])
+    player = open_screen(SCREENS["MenuScene"])
     player.choose(texts.MENU["settings"][0])
     player.press("down", "down", "confirm")
     assert saved(player)["colour_safe"] is True
@@ -233,7 +233,7 @@ def test_settings_are_changed_and_kept(open_screen):
     player.choose(texts.BINDINGS_ALL)
     assert saved(player)[kind] == {}
     player.press("back", "back")
-    assert player.top_name == "Menu"
+    assert player.top_name == "MenuScene"
 
 
 def hint(player: Driver, words: str) -> tuple[float, float]:
@@ -270,7 +270,7 @@ def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str)
 def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
     context.settings.tutored, context.settings.show_hints = True, False
     context.settings_file.save(context.settings)
-    game: Driver = open_game(Play(3))
+    game: Driver = open_game(PlayScene(3))
     play = game.top
     game.move((640, 400))
     game.frames(3)
@@ -287,9 +287,9 @@ def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
         game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1260, 400)), button=button)
     assert play.flight.recording.actions[-1] == 0
     game.click(hint(game, "hand over"))
-    assert play.flight.hand is Hand.NETWORK
+    assert play.flight.hand is StickHolder.NETWORK
     game.click(hint(game, "pause"))
-    assert game.top_name == "Pause"
+    assert game.top_name == "PauseScene"
     game.frames(2)
     game.click(next(word for word in game.top._form.widgets if word.label == texts.PAUSE_LEAVE).box.center)
-    assert not game.app.scenes.running or game.top_name != "Play"
+    assert not game.app.scenes.running or game.top_name != "PlayScene"

@@ -10,9 +10,9 @@ from ai.agent.config import Config
 from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS
-from game.panels.run_status import draw_standing
-from game.scenes.runs import Runs
-from game.scenes.watch import Watch
+from game.panels.run_status import draw_run_status
+from game.scenes.runs import NetworksScene
+from game.scenes.watch import WatchScene
 from game.training.library import Library
 from game.ui.context import Context
 from game.world.camera import Camera
@@ -24,11 +24,11 @@ Open = Callable[..., Driver]
 @pytest.fixture
 def watching(open_game: Open, context: Context, tmp_path: Path) -> Driver:
     context.models_dir = tmp_path / "models"  # only the scripted pilot is here
-    return open_game(Watch(seed=2))
+    return open_game(WatchScene(seed=2))
 
 
-def scene(driver: Driver) -> Watch:
-    assert isinstance(driver.top, Watch)
+def scene(driver: Driver) -> WatchScene:
+    assert isinstance(driver.top, WatchScene)
     return driver.top
 
 
@@ -128,7 +128,7 @@ def test_a_gamepad_stops_steps_and_chooses(watching: Driver):
     watching.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
     assert scene(watching).shown == 1
     watching.button(pygame.CONTROLLER_BUTTON_START)
-    assert watching.top_name == "Pause"
+    assert watching.top_name == "PauseScene"
 
 
 def test_restart_flies_new_starts(watching: Driver):
@@ -148,14 +148,14 @@ def many(open_game: Open, context: Context, tmp_path: Path) -> Driver:
         agent.save(context.user_dir / "models" / f"run {number:02}")
     context.settings.model = "run 03"
     SettingsFile(context.user_dir).save(context.settings)
-    return open_game(Watch(seed=2))
+    return open_game(WatchScene(seed=2))
 
 
 def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):
     assert scene(many)._network.name == "run 03"
-    assert set(scene(many)._roster._read) == {"run 03"}
+    assert set(scene(many)._policies._read) == {"run 03"}
     many.key(pygame.K_RIGHT)
-    assert set(scene(many)._roster._read) == {"run 03", "run 04"}
+    assert set(scene(many)._policies._read) == {"run 03", "run 04"}
 
 
 @pytest.mark.parametrize("way", ["key", "pad", "mouse", "pause"])
@@ -171,7 +171,7 @@ def test_a_list_opens_to_choose_from(many: Driver, context: Context, way: str):
         case _:
             many.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     runs = many.top
-    assert isinstance(runs, Runs)
+    assert isinstance(runs, NetworksScene)
     assert runs.shown is not None
     assert runs.shown.name == "run 03"
     many.keys(pygame.K_HOME, pygame.K_RETURN)
@@ -236,12 +236,12 @@ def test_draw_changes_nothing(watching: Driver):
 def test_menu_leads_to_watch_and_back(open_game: Open):
     driver = open_game()
     driver.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
-    assert driver.top_name == "Watch"
+    assert driver.top_name == "WatchScene"
     driver.frames(5)
     driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
-    assert driver.top_name == "Watch"
+    assert driver.top_name == "WatchScene"
     driver.key(pygame.K_BACKSPACE)
-    assert driver.top_name == "Menu"
+    assert driver.top_name == "MenuScene"
 
 
 def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
@@ -269,6 +269,6 @@ def test_only_a_rate_of_success_has_its_colour(
 
     monkeypatch.setattr(Canvas, "text", text)
     watch._draw_counts(watching.app.canvas)
-    draw_standing(watching.app.canvas, (0, 0), "", "", f"{10 * landed}.00", "", drop=0, room=100)
+    draw_run_status(watching.app.canvas, (0, 0), "", "", f"{10 * landed}.00", "", drop=0, room=100)
     for figure in (f"{10 * landed}", f"{10 * landed}.00"):
         assert (colours[figure] == watching.app.canvas.palette.good) == good

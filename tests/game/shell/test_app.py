@@ -9,8 +9,8 @@ import pytest
 from game.core.scene import Pop, Push, Quit, Replace
 from game.core.settings import Settings, SettingsFile
 from game.scenes import scene_of
-from game.scenes.menu import Menu
-from game.scenes.pause import Pause
+from game.scenes.menu import MenuScene
+from game.scenes.pause import PauseScene
 from game.scenes.settings import SettingsScene
 from game.shell.app import LOG_NAME, App, log_to
 from game.shell.window import NoDisplayError
@@ -61,14 +61,14 @@ def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
     game.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
     game.key(pygame.K_ESCAPE)
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
 
 
 def test_menu_leads_to_settings_by_mouse_and_by_pad(game: Driver):
     game.click((90, 585))
     assert game.top_name == "SettingsScene"
     game.button(pygame.CONTROLLER_BUTTON_B)
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
     game.axis(pygame.CONTROLLER_AXIS_LEFTY, -30000)  # from Settings up to the logbook
     game.axis(pygame.CONTROLLER_AXIS_LEFTY, 0)
     game.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
@@ -126,7 +126,7 @@ def test_every_screen_works_at_every_size(game: Driver, size: tuple[int, int]):
     assert game.top_name == "SettingsScene"
     game.frames(3)
     game.click((80, 640))
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
 
 
 def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
@@ -137,7 +137,7 @@ def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
         game.key(pygame.K_RETURN, pygame.KMOD_LALT)
         assert not context.settings.full_screen
     assert game.app.window.size == size
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
 
 
 def test_a_mouse_at_rest_takes_nothing_from_the_keyboard(open_game, monkeypatch: pytest.MonkeyPatch):
@@ -184,10 +184,10 @@ def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Conte
     game.app._guarded(lambda: game.app.scenes.apply(Push(broken)))
     game.key(pygame.K_x)
     game.frames(2)
-    assert game.top_name == "Fault"
+    assert game.top_name == "ErrorScene"
     assert "a fault on purpose" in (context.user_dir / LOG_NAME).read_text()
     game.key(pygame.K_RETURN)
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
     assert game.frames(2)
 
 
@@ -210,10 +210,10 @@ def test_a_scene_that_fails_too_early_to_be_closed_is_told_of_and_the_others_are
     if way != "first":
         game.app.show(broken)
     game.frames(2)
-    assert game.top_name == "Fault"
+    assert game.top_name == "ErrorScene"
     assert below.closed == (way != "first")
     game.key(pygame.K_RETURN)
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
 
 
 @pytest.mark.parametrize("leave", [Replace(Probe()), Pop(), Pop(2)])
@@ -223,7 +223,7 @@ def test_a_scene_that_fails_to_leave_gives_back_what_it_holds(open_game, leave):
     game.app.show(held[1])
     held[1].fails_in = "exit"
     game.app._guarded(lambda: game.app.scenes.apply(leave))
-    assert not game.app.scenes.running or game.top_name == "Fault"
+    assert not game.app.scenes.running or game.top_name == "ErrorScene"
     game.app.close()
     assert held[1].closed == 1
 
@@ -245,7 +245,7 @@ def test_making_a_window_leaves_the_collector_of_the_process_alone(open_game):
     assert (gc.get_freeze_count(), gc.get_threshold()) == before
 
 
-@pytest.mark.parametrize("scene", [Menu, SettingsScene, lambda: Pause(Probe()), Probe])
+@pytest.mark.parametrize("scene", [MenuScene, SettingsScene, lambda: PauseScene(Probe()), Probe])
 def test_closing_the_window_anywhere_saves_the_settings(open_game, context: Context, scene):
     game = open_game(scene())
     context.settings.model = "mine"
@@ -266,7 +266,7 @@ def test_settings_are_saved_even_if_the_last_scene_fails_to_leave(open_game, con
 def test_pause_stops_the_scene_below_and_resumes_it(open_game):
     probe = Probe()
     game = open_game(probe)
-    game.app.scenes.apply(Push(Pause(probe)))
+    game.app.scenes.apply(Push(PauseScene(probe)))
     assert probe.left == 1
     updates = probe.updates
     game.frames(5)
@@ -280,15 +280,15 @@ def test_pause_offers_retry_settings_and_the_way_out(open_game):
     retried = []
     game = open_game()
     game.app.scenes.apply(Push(probe := Probe()))
-    game.app.scenes.apply(Push(Pause(probe, lambda: retried.append(True))))
+    game.app.scenes.apply(Push(PauseScene(probe, lambda: retried.append(True))))
     game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
     game.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_SPACE)
     assert retried == [True]
     assert game.top is probe
-    game.app.scenes.apply(Push(Pause(probe)))
+    game.app.scenes.apply(Push(PauseScene(probe)))
     game.keys(pygame.K_UP, pygame.K_RETURN)
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
 
 
 def test_a_scene_that_is_left_for_good_is_in_memory_no_more(game: Driver):
@@ -308,7 +308,7 @@ def test_stack_pops_several_levels_and_ends_empty(game: Driver):
     for probe in probes:
         game.app.scenes.apply(Push(probe))
     game.app.scenes.apply(Pop(2))
-    assert game.top_name == "Menu"
+    assert game.top_name == "MenuScene"
     game.app.scenes.apply(Pop())
     assert not game.frames(1)
 

@@ -11,7 +11,7 @@ import pytest
 from benchmarks.tour import stock
 from game.audio.mixer import Sound
 from game.drawing.canvas import Canvas
-from game.drawing.paint_cache import Kept
+from game.drawing.paint_cache import PaintCache
 from game.drawing.sky import NightSky
 from game.ui.context import Context
 from tests.game.drawing.test_text_size import FLOWN, opened
@@ -19,7 +19,7 @@ from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 from tests.support.driver import Driver
 
 # Kept so as not to be painted again: of these, drawing may make as it likes.
-PICTURES = (Canvas, pygame.Surface, Kept, NightSky)
+PICTURES = (Canvas, pygame.Surface, PaintCache, NightSky)
 SHARED = (Context, Sound)
 COUNTS = {"redraws"}  # of paintings, for tests
 PLAIN = (int, float, complex, str, bytes, bool, type(None), type, range)

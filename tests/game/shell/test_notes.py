@@ -8,17 +8,17 @@ import pytest
 from game.core.scene import Push, Scene
 from game.drawing.tokens import VIEW_SIZE
 from game.scenes.choices import ChoicesScene
-from game.scenes.dialog import Naming
-from game.scenes.digits import Digits
-from game.scenes.logbook import Logbook
-from game.scenes.menu import Menu
-from game.scenes.missions import Missions
-from game.scenes.pause import Pause
-from game.scenes.play import Play
-from game.scenes.runs import Runs
+from game.scenes.dialog import NameDialog
+from game.scenes.digits import DigitsScene
+from game.scenes.logbook import LogbookScene
+from game.scenes.menu import MenuScene
+from game.scenes.missions import MissionsScene
+from game.scenes.pause import PauseScene
+from game.scenes.play import PlayScene
+from game.scenes.runs import NetworksScene
 from game.scenes.settings import SettingsScene
-from game.scenes.train import Train
-from game.scenes.watch import Watch
+from game.scenes.train import TrainScene
+from game.scenes.watch import WatchScene
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
@@ -27,9 +27,9 @@ NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
 
 def scenes() -> dict[str, Scene]:
     return {
-        "menu": Menu(), "settings": SettingsScene(), "logbook": Logbook(), "missions": Missions(), "runs": Runs(),
-        "digits": Digits(), "play": Play(seed=1), "watch": Watch(seed=1), "pause": Pause(Menu()),
-        "choices": Play(seed=1), "naming": Menu(), "train": Train(),
+        "menu": MenuScene(), "settings": SettingsScene(), "logbook": LogbookScene(), "missions": MissionsScene(),
+        "runs": NetworksScene(), "digits": DigitsScene(), "play": PlayScene(seed=1), "watch": WatchScene(seed=1),
+        "pause": PauseScene(MenuScene()), "choices": PlayScene(seed=1), "naming": MenuScene(), "train": TrainScene(),
     }  # fmt: skip
 
 
@@ -41,7 +41,7 @@ def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, nam
         driver.key(pygame.K_c)
         assert isinstance(driver.top, ChoicesScene)
     if name == "naming":
-        driver.app.scenes.apply(Push(Naming(driver.top, "What shall it be called?", "one", lambda _: "")))
+        driver.app.scenes.apply(Push(NameDialog(driver.top, "What shall it be called?", "one", lambda _: "")))
     driver.frames(3)
     driver.app.context.note(NOTE)
     driver.frames(2)
@@ -54,7 +54,7 @@ def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, nam
 
 
 def test_a_note_moves_aside_where_the_middle_is_taken_in_every_row(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    driver = open_game(Menu())
+    driver = open_game(MenuScene())
     driver.frames(2)
     notes, canvas = driver.app._notes, driver.app.canvas
     taken = canvas.rect(800, 0, VIEW_SIZE[0] - 800, VIEW_SIZE[1])

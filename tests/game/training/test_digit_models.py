@@ -11,8 +11,8 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, build_digit_network
 from game.core.assets import MODELS_DIR
 from game.digits.reader import Reader
-from game.scenes.dialog import Picking
-from game.scenes.digits import Digits
+from game.scenes.dialog import ListDialog
+from game.scenes.digits import DigitsScene
 from game.training.digit_models import called, runs_dir, shelf
 from game.ui.context import Context
 from tests.game.scenes.test_digits import draw, guess, strokes
@@ -59,7 +59,7 @@ def test_networks_of_any_shape_are_explained(context: Context, config):
 
 
 def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable[..., Driver], own: list[str]):
-    driver = open_game(Digits())
+    driver = open_game(DigitsScene())
     draw(driver, strokes(3))
     seen = []
     for _ in range(5):
@@ -71,13 +71,13 @@ def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable
     driver.key(pygame.K_b)
     assert driver.top.chosen == own[-1]
     driver.key(pygame.K_RETURN)
-    assert isinstance(driver.top, Picking)
+    assert isinstance(driver.top, ListDialog)
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top.chosen == "classic"
 
 
 def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable[..., Driver], context: Context):
-    driver = open_game(Digits())
+    driver = open_game(DigitsScene())
     driver.click(next(word for word in driver.top._form.widgets if word.label == "Train").box.center)
     assert driver.top_name == "DigitTrainingScene"
     save(context, "mine")
@@ -88,7 +88,7 @@ def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable
 
 def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver], context: Context, own: list[str]):
     (runs_dir(context.user_dir) / own[0] / "config.json").write_text("{", encoding="utf-8")
-    driver = open_game(Digits())
+    driver = open_game(DigitsScene())
     driver.keys(pygame.K_n, pygame.K_n)
     assert driver.top.chosen == own[1]
     assert "config.json" in driver.top._reader.problems[own[0]]

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from game.core.worker import State, Worker
-from game.training.training_run import Learner
+from game.core.worker import Worker, WorkerState
+from game.training.training_run import TrainingRun
 from tests.support.chores import keep
 
 
-class Notebook(Learner):
+class Notebook(TrainingRun):
     """Runs that note when they begin and end."""
 
     grace = 5.0
@@ -67,46 +67,46 @@ def wait(learner: Notebook, until: Callable[[], object]) -> list[str]:
 
 def test_the_next_run_begins_when_the_one_before_has_ended_and_nobody_waits(notebook: Notebook):
     assert notebook.begin("one", 0.5, "at once") == "at once"
-    wait(notebook, lambda: notebook.state is State.RUNNING)
+    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.begin("two", note="later") == ""
     assert notebook.waiting
-    assert notebook.state is State.STARTING
+    assert notebook.state is WorkerState.STARTING
     assert notebook.alive
-    notes = wait(notebook, lambda: notebook.state is State.RUNNING)
+    notes = wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notes == ["later"]
     assert notebook.lines == ["one begins", "one ends", "two begins"]
 
 
 def test_what_is_asked_meanwhile_is_for_the_run_to_come(notebook: Notebook):
     notebook.begin("one", 0.3)
-    wait(notebook, lambda: notebook.state is State.RUNNING)
+    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     notebook.begin("two")
     notebook.pause()
-    wait(notebook, lambda: notebook.state is State.PAUSED)
+    wait(notebook, lambda: notebook.state is WorkerState.PAUSED)
     assert notebook.lines[-1] == "two begins"
 
 
 def test_of_two_that_wait_the_last_one_is_meant(notebook: Notebook):
     notebook.begin("one", 0.3)
-    wait(notebook, lambda: notebook.state is State.RUNNING)
+    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     notebook.begin("two")
     notebook.begin("three")
-    wait(notebook, lambda: notebook.state is State.RUNNING)
+    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "one ends", "three begins"]
 
 
 def test_one_that_does_not_end_is_ended(notebook: Notebook, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("game.core.worker.STOP_SECONDS", 0.3)
     notebook.begin("one", 60.0)
-    wait(notebook, lambda: notebook.state is State.RUNNING)
+    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     notebook.begin("two")
-    wait(notebook, lambda: notebook.state is State.RUNNING)
+    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     assert notebook.lines == ["one begins", "two begins"]
 
 
 def test_after_a_close_nothing_begins(notebook: Notebook):
     notebook.begin("one", 0.2)
-    wait(notebook, lambda: notebook.state is State.RUNNING)
+    wait(notebook, lambda: notebook.state is WorkerState.RUNNING)
     notebook.begin("two")
     notebook.close()
     notebook.poll()

@@ -7,10 +7,10 @@ from ai.agent.config import PRESETS, Config
 from ai.lander.rewards import RewardWeights
 from ai.training.sabotage import SABOTAGES, sabotaged
 from game.core import texts
-from game.training.dials import dials, figure, pages
-from game.training.run_settings import LANDER, Tuning
+from game.training.knob_descriptions import figure, knob_descriptions, pages
+from game.training.run_settings import LANDER, RunSettings
 
-DIALS = {dial.name: dial for dial in dials()}
+KNOBS = {knob.name: knob for knob in knob_descriptions()}
 
 
 @pytest.fixture
@@ -19,8 +19,8 @@ def heard() -> list[Any]:
 
 
 @pytest.fixture
-def tuning(heard: list[Any]) -> Tuning:
-    return Tuning(
+def run_settings(heard: list[Any]) -> RunSettings:
+    return RunSettings(
         PRESETS["modern"], 0, lambda name, value: heard.append((name, value)), lambda *anew: heard.append(anew)
     )
 
@@ -30,35 +30,35 @@ def tuning(heard: list[Any]) -> Tuning:
 
 def test_every_field_that_can_be_turned_has_a_dial_and_a_word():
     turned = {item.name for item in fields(Config)} - {"env"}
-    assert {dial.field for dial in DIALS.values()} == turned
-    assert {dial.part for dial in DIALS.values()} - {""} == {part.name for part in fields(RewardWeights)}
+    assert {knob.field for knob in KNOBS.values()} == turned
+    assert {knob.part for knob in KNOBS.values()} - {""} == {part.name for part in fields(RewardWeights)}
     assert turned <= set(texts.KNOBS)
-    assert set(pages(DIALS.values())) == set(texts.KNOB_PAGES)
-    assert all(dial.help for dial in DIALS.values())
+    assert set(pages(KNOBS.values())) == set(texts.KNOB_PAGES)
+    assert all(knob.help for knob in KNOBS.values())
 
 
-@pytest.mark.parametrize("name", DIALS)
+@pytest.mark.parametrize("name", KNOBS)
 def test_a_configuration_takes_every_stop(name: str):
-    dial = DIALS[name]
-    assert len(set(dial.stops)) == len(dial.stops) > 1
-    for stop in dial.stops:
-        assert dial.read(dial.write(PRESETS["modern"], stop)) == stop
+    knob = KNOBS[name]
+    assert len(set(knob.stops)) == len(knob.stops) > 1
+    for stop in knob.stops:
+        assert knob.read(knob.write(PRESETS["modern"], stop)) == stop
 
 
 def test_stops_are_numbers_that_people_choose():
-    assert DIALS["batch_size"].stops == (8, 16, 32, 64, 128, 256, 512, 1024)
-    assert DIALS["learning_rate"].stops[:6] == (1e-5, 1.5e-5, 2e-5, 3e-5, 5e-5, 7e-5)
-    assert DIALS["n_step"].stops == tuple(range(1, 21))
-    assert {0.9, 0.98, 0.985, 0.99, 0.999} < set(DIALS["discount"].stops)
-    assert {0.0, 0.01, 0.05} < set(DIALS["epsilon_end"].stops)
-    assert DIALS["weights.time"].stops[0] == 0.0
-    assert DIALS["weights.time"].stops[-1] < DIALS["weights.time"].stops[1] < 0
+    assert KNOBS["batch_size"].stops == (8, 16, 32, 64, 128, 256, 512, 1024)
+    assert KNOBS["learning_rate"].stops[:6] == (1e-5, 1.5e-5, 2e-5, 3e-5, 5e-5, 7e-5)
+    assert KNOBS["n_step"].stops == tuple(range(1, 21))
+    assert {0.9, 0.98, 0.985, 0.99, 0.999} < set(KNOBS["discount"].stops)
+    assert {0.0, 0.01, 0.05} < set(KNOBS["epsilon_end"].stops)
+    assert KNOBS["weights.time"].stops[0] == 0.0
+    assert KNOBS["weights.time"].stops[-1] < KNOBS["weights.time"].stops[1] < 0
 
 
 def test_stops_reach_from_end_to_end():
     for item in fields(Config):
         if item.metadata["low"] is not None and item.name != "hidden":
-            stops = DIALS[item.name].stops
+            stops = KNOBS[item.name].stops
             assert (stops[0], stops[-1]) == (item.metadata["low"], item.metadata["high"])
 
 
@@ -77,113 +77,113 @@ def test_values_are_written_for_people(value: Any, written: str):
 # Tuning
 
 
-def test_without_a_run_every_knob_changes_at_once(tuning: Tuning, heard: list[Any]):
-    tuning.turn("n_step", 3)
-    tuning.turn("learning_rate", 0.01)
-    tuning.turn("seed", 7)
-    assert (tuning.config.n_step, tuning.config.learning_rate, tuning.seed) == (3, 0.01, 7)
+def test_without_a_run_every_knob_changes_at_once(run_settings: RunSettings, heard: list[Any]):
+    run_settings.turn("n_step", 3)
+    run_settings.turn("learning_rate", 0.01)
+    run_settings.turn("seed", 7)
+    assert (run_settings.config.n_step, run_settings.config.learning_rate, run_settings.seed) == (3, 0.01, 7)
     assert heard == [("n_step", 3), ("learning_rate", 0.01), ("seed", 7)]
-    assert not tuning.waiting
+    assert not run_settings.waiting
 
 
-def test_in_a_run_the_live_ones_change_and_the_others_wait(tuning: Tuning, heard: list[Any]):
-    tuning.set_running(True)
-    tuning.turn("n_step", 3)
-    tuning.turn("learning_rate", 0.01)
-    tuning.turn("seed", 7)
+def test_in_a_run_the_live_ones_change_and_the_others_wait(run_settings: RunSettings, heard: list[Any]):
+    run_settings.set_running(True)
+    run_settings.turn("n_step", 3)
+    run_settings.turn("learning_rate", 0.01)
+    run_settings.turn("seed", 7)
     assert heard == [("learning_rate", 0.01)]
-    assert tuning.waiting == ["n_step", "seed"]
-    assert (tuning.config.n_step, tuning.seed) == (10, 0)
-    tuning.apply()
+    assert run_settings.waiting == ["n_step", "seed"]
+    assert (run_settings.config.n_step, run_settings.seed) == (10, 0)
+    run_settings.apply()
     assert heard[1:] == [(PRESETS["modern"].changed(n_step=3, learning_rate=0.01), 7)]
-    assert not tuning.waiting
+    assert not run_settings.waiting
 
 
-def test_undo_takes_back_what_waits_and_leaves_what_holds(tuning: Tuning, heard: list[Any]):
-    tuning.set_running(True)
-    tuning.turn("learning_rate", 0.01)
-    tuning.turn("hidden", (32, 32))
-    tuning.undo()
-    assert tuning.draft == tuning.config == PRESETS["modern"].changed(learning_rate=0.01)
+def test_undo_takes_back_what_waits_and_leaves_what_holds(run_settings: RunSettings, heard: list[Any]):
+    run_settings.set_running(True)
+    run_settings.turn("learning_rate", 0.01)
+    run_settings.turn("hidden", (32, 32))
+    run_settings.undo()
+    assert run_settings.draft == run_settings.config == PRESETS["modern"].changed(learning_rate=0.01)
     assert heard == [("learning_rate", 0.01)]
 
 
-def test_what_waits_holds_once_the_run_is_over(tuning: Tuning, heard: list[Any]):
-    tuning.set_running(True)
-    tuning.turn("n_step", 3)
-    tuning.set_running(False)
-    assert tuning.config.n_step == 3
+def test_what_waits_holds_once_the_run_is_over(run_settings: RunSettings, heard: list[Any]):
+    run_settings.set_running(True)
+    run_settings.turn("n_step", 3)
+    run_settings.set_running(False)
+    assert run_settings.config.n_step == 3
     assert heard == [("n_step", 3)]
 
 
-def test_a_preset_waits_whole_in_a_run(tuning: Tuning, heard: list[Any]):
-    tuning.set_running(True)
-    tuning.load(("classic", ""))
-    assert tuning.config == PRESETS["modern"]
-    assert "learning_rate" in tuning.waiting
+def test_a_preset_waits_whole_in_a_run(run_settings: RunSettings, heard: list[Any]):
+    run_settings.set_running(True)
+    run_settings.load(("classic", ""))
+    assert run_settings.config == PRESETS["modern"]
+    assert "learning_rate" in run_settings.waiting
     assert not heard
-    tuning.undo()
-    assert tuning.named == ("modern", "")
-    tuning.load(("classic", ""))
-    tuning.apply()
+    run_settings.undo()
+    assert run_settings.named == ("modern", "")
+    run_settings.load(("classic", ""))
+    run_settings.apply()
     assert heard == [(PRESETS["classic"], 0)]
-    assert tuning.named == ("classic", "")
+    assert run_settings.named == ("classic", "")
 
 
-def test_a_sabotage_of_live_knobs_alone_takes_effect_at_once(tuning: Tuning, heard: list[Any]):
-    tuning.set_running(True)
-    tuning.load(("modern", "no_target"))
+def test_a_sabotage_of_live_knobs_alone_takes_effect_at_once(run_settings: RunSettings, heard: list[Any]):
+    run_settings.set_running(True)
+    run_settings.load(("modern", "no_target"))
     assert heard == [("target_rate", 1.0)]
-    assert not tuning.waiting
-    assert not tuning.changed
+    assert not run_settings.waiting
+    assert not run_settings.changed
 
 
-def test_knobs_that_a_preset_puts_aside_can_be_had_back(tuning: Tuning, heard: list[Any]):
-    tuning.turn("n_step", 3)
-    tuning.load(("classic", ""))
-    assert tuning.config == PRESETS["classic"]
-    tuning.undo()
-    assert tuning.config == PRESETS["modern"].changed(n_step=3)
-    assert tuning.named == ("modern", "")
-    assert heard[-1][0] in DIALS
+def test_knobs_that_a_preset_puts_aside_can_be_had_back(run_settings: RunSettings, heard: list[Any]):
+    run_settings.turn("n_step", 3)
+    run_settings.load(("classic", ""))
+    assert run_settings.config == PRESETS["classic"]
+    run_settings.undo()
+    assert run_settings.config == PRESETS["modern"].changed(n_step=3)
+    assert run_settings.named == ("modern", "")
+    assert heard[-1][0] in KNOBS
 
 
-def test_a_preset_puts_nothing_aside_where_nothing_was_turned(tuning: Tuning):
-    tuning.load(("classic", ""))
-    assert tuning.put_aside is None
+def test_a_preset_puts_nothing_aside_where_nothing_was_turned(run_settings: RunSettings):
+    run_settings.load(("classic", ""))
+    assert run_settings.put_aside is None
 
 
-def test_an_impossible_value_changes_nothing_and_is_explained(tuning: Tuning, heard: list[Any]):
-    tuning.turn("learning_rate", -1.0)
-    assert tuning.config == tuning.draft == PRESETS["modern"]
-    assert tuning.problem.startswith("Learning rate lies between")
+def test_an_impossible_value_changes_nothing_and_is_explained(run_settings: RunSettings, heard: list[Any]):
+    run_settings.turn("learning_rate", -1.0)
+    assert run_settings.config == run_settings.draft == PRESETS["modern"]
+    assert run_settings.problem.startswith("Learning rate lies between")
     assert not heard
-    tuning.turn("learning_rate", 0.01)
-    assert not tuning.problem
-    tuning.load(("classic", ""))
-    tuning.turn("replay_size", 500)
-    assert tuning.problem == "Forget at once is at most Replay, 500, not 1000"
-    assert tuning.config == PRESETS["classic"]
+    run_settings.turn("learning_rate", 0.01)
+    assert not run_settings.problem
+    run_settings.load(("classic", ""))
+    run_settings.turn("replay_size", 500)
+    assert run_settings.problem == "Forget at once is at most Replay, 500, not 1000"
+    assert run_settings.config == PRESETS["classic"]
 
 
-def test_parts_of_the_reward_are_named_apart(tuning: Tuning, heard: list[Any]):
-    tuning.turn("weights.time", -0.6)
+def test_parts_of_the_reward_are_named_apart(run_settings: RunSettings, heard: list[Any]):
+    run_settings.turn("weights.time", -0.6)
     assert heard == [("weights.time", -0.6)]
-    assert tuning.config.weights == replace(PRESETS["modern"].weights, time=-0.6)
+    assert run_settings.config.weights == replace(PRESETS["modern"].weights, time=-0.6)
 
 
-def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(tuning: Tuning, heard: list[Any]):
-    tuning.set_config(PRESETS["classic"].changed(discount=0.95), 3)
-    assert (tuning.named, tuning.seed, tuning.changed) == (("classic", ""), 3, True)
+def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(run_settings: RunSettings, heard: list[Any]):
+    run_settings.set_config(PRESETS["classic"].changed(discount=0.95), 3)
+    assert (run_settings.named, run_settings.seed, run_settings.changed) == (("classic", ""), 3, True)
     assert LANDER.nearest(sabotaged(PRESETS["modern"], "no_shaping")) == ("modern", "no_shaping")
     assert not heard
 
 
-def test_a_run_that_begins_with_what_was_chosen_keeps_its_name(tuning: Tuning):
-    tuning.turn("discount", 0.9)
-    tuning.turn("n_step", 1)  # nearer to a sabotage than to modern
-    tuning.set_config(tuning.config, tuning.seed)
-    assert tuning.named == ("modern", "")
+def test_a_run_that_begins_with_what_was_chosen_keeps_its_name(run_settings: RunSettings):
+    run_settings.turn("discount", 0.9)
+    run_settings.turn("n_step", 1)  # nearer to a sabotage than to modern
+    run_settings.set_config(run_settings.config, run_settings.seed)
+    assert run_settings.named == ("modern", "")
 
 
 @pytest.mark.parametrize("name", SABOTAGES)

@@ -9,10 +9,10 @@ from game.drawing.canvas import Canvas
 from game.input.bindings import Command
 from game.ui import entry
 from game.ui.context import Context
-from game.ui.entry import Entry, Line, digits, printable
+from game.ui.entry import EditedLine, Entry, digits, printable
 from game.ui.form import Form
 from game.ui.listing import Listing
-from game.ui.widgets import Word
+from game.ui.widgets import TextButton
 from tests.support.driver import Driver
 
 
@@ -31,7 +31,7 @@ class Page:
             Entry(form.manager, (64, 100, 300, 32), "NAME", "Modern 3", log.append, limit=12, fits=fitting,
                   on_cancel=lambda: log.append("cancelled"))
         )  # fmt: skip
-        self.word = form.add(Word(form.manager, (64, 160, 80, 24), "Save", lambda: log.append("saved")))
+        self.word = form.add(TextButton(form.manager, (64, 160, 80, 24), "Save", lambda: log.append("saved")))
         self.list = form.add(
             Listing(form.manager, (64, 220, 400, 160), [(f"run {n}", f"{n} %") for n in range(self.rows)],
                     on_choose=log.append, on_press=lambda row: log.append(("open", row)), empty="none yet")
@@ -69,7 +69,7 @@ def write(game: Driver, text: str) -> None:
         game.post(pygame.KEYUP, key=code, mod=0, unicode=letter, scancode=0)
 
 
-def press(line: Line, *keys: int, mod: int = 0) -> None:
+def press(line: EditedLine, *keys: int, mod: int = 0) -> None:
     for key in keys:
         line.take(pygame.event.Event(pygame.KEYDOWN, key=key, mod=mod))
 
@@ -78,13 +78,13 @@ def press(line: Line, *keys: int, mod: int = 0) -> None:
 
 
 def test_the_first_letter_takes_the_place_of_a_suggestion():
-    line = Line("Modern")
+    line = EditedLine("Modern")
     line.insert("x")
     assert (line.text, line.caret) == ("x", 1)
 
 
 def test_a_moved_caret_keeps_the_suggestion():
-    line = Line("Modern")
+    line = EditedLine("Modern")
     press(line, pygame.K_END)
     line.insert("!")
     press(line, pygame.K_HOME, pygame.K_RIGHT, pygame.K_DELETE)
@@ -94,13 +94,13 @@ def test_a_moved_caret_keeps_the_suggestion():
 
 
 def test_the_ends_of_a_line_are_the_end():
-    line = Line("ab")
+    line = EditedLine("ab")
     press(line, pygame.K_HOME, pygame.K_LEFT, pygame.K_BACKSPACE, pygame.K_END, pygame.K_RIGHT, pygame.K_DELETE)
     assert (line.text, line.caret) == ("ab", 2)
 
 
 def test_everything_can_be_selected_and_deleted():
-    line = Line("ab")
+    line = EditedLine("ab")
     press(line, pygame.K_END)
     press(line, pygame.K_a, mod=pygame.KMOD_LCTRL)
     press(line, pygame.K_BACKSPACE)
@@ -117,13 +117,13 @@ def test_everything_can_be_selected_and_deleted():
     ],
 )
 def test_only_what_fits_is_written(fits: Callable[[str], str], text: str, kept: str):
-    line = Line("", fits=fits)
+    line = EditedLine("", fits=fits)
     line.insert(text)
     assert line.text == kept
 
 
 def test_a_line_is_never_longer_than_its_limit():
-    line = Line("abc", limit=5)
+    line = EditedLine("abc", limit=5)
     line.place(1)
     line.insert("123456")
     assert line.text == "a12bc"
@@ -131,7 +131,7 @@ def test_a_line_is_never_longer_than_its_limit():
 
 def test_the_clipboard_is_pasted(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(entry, "_clipboard", lambda: "run/7\n")
-    line = Line("", fits=fitting)
+    line = EditedLine("", fits=fitting)
     press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
     assert line.text == "run7"
 
@@ -141,14 +141,14 @@ def test_no_clipboard_is_no_text(monkeypatch: pytest.MonkeyPatch):
         raise pygame.error("no clipboard")
 
     monkeypatch.setattr(pygame.scrap, "get_text", broken)
-    line = Line("a")
+    line = EditedLine("a")
     press(line, pygame.K_END)
     press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
     assert line.text == "a"
 
 
 def test_a_held_key_repeats_until_it_is_let_go():
-    line = Line("x" * 30)
+    line = EditedLine("x" * 30)
     press(line, pygame.K_END, pygame.K_BACKSPACE)
     for _ in range(60):
         line.update()
@@ -264,7 +264,7 @@ def test_the_mouse_places_the_caret_and_a_nudge_does_not_take_the_focus(page: tu
 
 
 def test_a_long_text_keeps_its_caret_in_sight():
-    line = Line("m" * 40)
+    line = EditedLine("m" * 40)
     assert entry.first_shown(line.text, 40, 15, 300) > 0
     assert entry.first_shown(line.text, 0, 15, 300) == 0
 

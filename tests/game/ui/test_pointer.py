@@ -11,11 +11,11 @@ from ai.agent.config import Config
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from game.flight.flight import Flight
 from game.flight.logbook import Records
-from game.scenes.logbook import Logbook
-from game.scenes.physics import Physics
-from game.scenes.train import Train
+from game.scenes.logbook import LogbookScene
+from game.scenes.physics import PhysicsScene
+from game.scenes.train import TrainScene
 from game.ui.context import Context
-from game.ui.virtual_pointer import Pointer
+from game.ui.virtual_pointer import VirtualPointer
 from tests.support.driver import Driver
 from tests.support.flights import NOON, fly_out
 from tests.support.player import DEVICES, Player
@@ -31,7 +31,7 @@ def take(request: pytest.FixtureRequest, open_game: Open) -> Take:
     def taken(scene: object) -> Player:
         player = Player(open_game(scene), request.param)
         player.frames(3)
-        pointer = next(widget for widget in player.form.widgets if isinstance(widget, Pointer))
+        pointer = next(widget for widget in player.form.widgets if isinstance(widget, VirtualPointer))
         player.form.focus(pointer)
         player.press("confirm")
         assert pointer.typing
@@ -40,8 +40,8 @@ def take(request: pytest.FixtureRequest, open_game: Open) -> Take:
     return taken
 
 
-def pointer(player: Player) -> Pointer:
-    assert isinstance(player.form.focused, Pointer)
+def pointer(player: Player) -> VirtualPointer:
+    assert isinstance(player.form.focused, VirtualPointer)
     return player.form.focused
 
 
@@ -61,7 +61,7 @@ def bring(player: Player, place: tuple[float, float]) -> None:
 
 
 def test_a_body_is_gripped_lifted_and_let_go(take: Take):
-    player = take(Physics("spin"))
+    player = take(PhysicsScene("spin"))
     scene = player.top
     disc = scene.exhibit.turning[0]
 
@@ -84,11 +84,11 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
     assert not player.form.typing
     assert scene._hovered() is None
     player.press("pause")
-    assert player.top_name == "Pause"
+    assert player.top_name == "PauseScene"
 
 
 def test_who_looks_elsewhere_lets_go(take: Take):
-    player = take(Physics("spin"))
+    player = take(PhysicsScene("spin"))
     scene = player.top
     bring(player, tuple(scene._view(1.0).points(scene.exhibit.turning[0].position[0]).tolist()))
     player.hold("confirm", down=True)
@@ -105,7 +105,7 @@ def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
     records = Records(context.user_dir)
     for number in range(3):
         records.keep(fly_out(Flight(number)), NOON + number, alone=True)
-    player = take(Logbook())
+    player = take(LogbookScene())
     chart, other = player.top._charts.charts
     bring(player, chart.plot.center)
     assert chart._pointed
@@ -113,15 +113,15 @@ def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
     assert np.isclose(chart._cursor, 2.0, atol=0.1)
     player.press("back")
     assert not chart._pointed
-    assert player.top_name == "Logbook"
+    assert player.top_name == "LogbookScene"
 
 
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
-    player = take(Train())
+    player = take(TrainScene())
     view = player.top.inside._view
     view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
     bring(player, view._centres[1][3])
     assert view._hovered == (1, 3)
     player.press("back")
     assert view._hovered is None
-    assert player.top_name == "Train"
+    assert player.top_name == "TrainScene"

@@ -13,14 +13,14 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
 from game.input.controls import Command
 from game.scenes.choices import ChoicesScene
-from game.scenes.play import Play
+from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
 from game.ui import focus
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.listing import shortened
 from game.ui.widget import PointsManager
-from game.ui.widgets import CHOICE_GAP, Choice, Slider, Toggle, Word
+from game.ui.widgets import CHOICE_GAP, Choice, Slider, TextButton, Toggle
 from tests.support.driver import Driver
 
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
@@ -35,7 +35,7 @@ class Page:
     def enter(self, context: Context) -> None:
         self.form = form = Form(context, on_back=Pop)
         manager, log = form.manager, self.log
-        self.word = form.add(Word(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))  # type: ignore[func-returns-value]
+        self.word = form.add(TextButton(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))  # type: ignore[func-returns-value]
         self.toggle = form.add(Toggle(manager, (64, 150, 400, 32), "Switch", False, log.append))
         self.slider = form.add(
             Slider(manager, (64, 200, 400, 24), "Rate", 0.5, (0.0, 1.0), log.append, step=0.1, figure_width=60)
@@ -282,7 +282,7 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
 
 @pytest.mark.parametrize("scene", [SettingsScene, ChoicesScene])
 def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver], scene: type):
-    driver = open_game(SettingsScene() if scene is SettingsScene else Play(seed=1))
+    driver = open_game(SettingsScene() if scene is SettingsScene else PlayScene(seed=1))
     driver.frames(2)
     if scene is ChoicesScene:
         driver.key(pygame.K_c)

@@ -10,8 +10,8 @@ from game.drawing.tokens import VIEW_SIZE
 from game.flight.flight import Flight
 from game.play.captions import BELOW_OPENING
 from game.world import framing
-from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, Shot, View
-from game.world.landscape.sheet import Sheet
+from game.world.camera import CLOSEST, GROUND_LINE, GROUND_ROW, WIDEST, Camera, CameraTarget, View
+from game.world.landscape.sheet import WorldPicture
 
 
 def placed(start: list[float], ground: Ground | None = None, conditions: Conditions | None = None) -> LanderEnv:
@@ -97,10 +97,10 @@ def test_the_camera_comes_nearer_on_the_way_down_and_the_ground_stays_on_its_row
 
 def test_the_camera_reaches_a_shot_that_stays_without_going_past_it():
     camera = Camera()
-    camera.cut(Shot(-8.0, 0.8))
+    camera.cut(CameraTarget(-8.0, 0.8))
     shots = []
     for _ in range(360):
-        camera.follow(Shot(5.0, 1.9))
+        camera.follow(CameraTarget(5.0, 1.9))
         shots.append(camera.shot)
     across, zoom = np.array([shot.across for shot in shots]), np.array([shot.zoom for shot in shots])
     assert (np.diff(across) > 0).all()
@@ -113,19 +113,19 @@ def test_the_camera_reaches_a_shot_that_stays_without_going_past_it():
 def test_two_cameras_that_see_the_same_move_the_same_and_drawing_moves_none():
     cameras = [Camera(), Camera()]
     for camera in cameras:
-        camera.cut(Shot())
+        camera.cut(CameraTarget())
     for step in range(100):
         for camera in cameras:
-            camera.follow(Shot(math.sin(step / 9), 1.4))
+            camera.follow(CameraTarget(math.sin(step / 9), 1.4))
         cameras[0].view(1.0, 0.3)
     assert cameras[0].view(1.0, 0.5) == cameras[1].view(1.0, 0.5)
 
 
 def test_a_picture_in_between_lies_between():
     camera = Camera()
-    camera.cut(Shot())
+    camera.cut(CameraTarget())
     for _ in range(20):
-        camera.follow(Shot(9.0, 1.6))
+        camera.follow(CameraTarget(9.0, 1.6))
     places = [camera.view(1.0, alpha).centre[0] for alpha in (0.0, 0.5, 1.0)]
     assert places == sorted(places)
     assert places[0] < places[2]
@@ -133,11 +133,11 @@ def test_a_picture_in_between_lies_between():
 
 def test_a_blow_shakes_the_view_a_little_and_not_for_long():
     camera = Camera()
-    camera.cut(Shot())
+    camera.cut(CameraTarget())
     camera.shake(9.0)
     away = []
     for _ in range(120):
-        camera.follow(Shot())
+        camera.follow(CameraTarget())
         away.append(np.abs(camera.view(1.0).points((0.0, 5.0)) - View(1.0).points((0.0, 5.0))).max())
     assert 2.0 < max(away) <= 9.0
     assert max(away[30:]) < 1.0
@@ -154,7 +154,7 @@ def test_what_is_scaled_stays_where_it_belongs():
     picture = pygame.Surface((960, 96), pygame.SRCALPHA)
     picture.fill((0, 0, 0, 0))
     picture.fill((255, 255, 255, 255), (480, 48, 48, 48))  # 1 m square, its corner at (0, 4)
-    sheet = Sheet(picture, 48.0)
+    sheet = WorldPicture(picture, 48.0)
     for zoom, across in ((0.8, 0.0), (1.0, 2.0), (1.5, -1.3), (2.0, 4.0)):
         view = View(1.0, (across, 5.0), zoom, CLOSEST)
         surface = pygame.Surface(VIEW_SIZE)

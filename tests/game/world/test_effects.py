@@ -9,7 +9,7 @@ from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from game.flight.flight import Flight
 from game.world.landscape.relief import Relief
-from game.world.particles import Kind, Particles
+from game.world.particles import ParticleKind, Particles
 from game.world.stage import Stage
 from game.world.wreck import Wreck
 
@@ -56,7 +56,7 @@ def test_fragments_fly_and_bounce_above_the_hills_and_come_to_rest():
         live = particles.alive
         place = particles._position[live]
         assert (place[:, 1] >= relief.height(place[:, 0]) - 1e-9).all()
-        shards = live & (particles._kind == Kind.SHARD)
+        shards = live & (particles._kind == ParticleKind.SHARD)
         rose += int((particles._velocity[shards, 1] > 0.2).sum())
     assert rose > 50
 
@@ -65,7 +65,9 @@ def test_fragments_fly_and_bounce_above_the_hills_and_come_to_rest():
 def test_what_flies_about_falls_as_on_that_world(mission: str):
     env = MISSIONS[mission].begin()
     stage = Stage(env, np.random.default_rng(0))
-    stage.particles._add(Kind.SHARD, np.array([[0.0, 20.0]]), np.zeros((1, 2)), np.array([9.0]), np.array([0.1]))
+    stage.particles._add(
+        ParticleKind.SHARD, np.array([[0.0, 20.0]]), np.zeros((1, 2)), np.array([9.0]), np.array([0.1])
+    )
     for _ in range(60):
         stage.particles.update()
     assert stage.particles._velocity[0, 1] == pytest.approx(-env.params.gravity)
@@ -83,7 +85,7 @@ def test_the_wind_carries_what_is_light_and_no_faster_than_it_goes():
             each.step(np.array([3]))
             stage.follow(np.zeros(1, bool), np.zeros(1, bool))
             assert stage.particles.wind == stage.wind.speed
-            gas = stage.particles.alive & (stage.particles._kind == Kind.AMBER)
+            gas = stage.particles.alive & (stage.particles._kind == ParticleKind.AMBER)
             speeds += (stage.particles._velocity[gas, 0] - each.velocity[0, 0]).tolist()
         sideways.append(np.mean(speeds))
     blowing = [MISSIONS["wind"].conditions.push(np.arange(60) / 60).max() * 16]
@@ -101,7 +103,7 @@ def test_a_jet_raises_more_dust_the_nearer_and_the_stronger_it_is():
             env.place(np.ones(1, bool), np.array([[8.0, height, 0, 0, 0, 0]]))
             env.step(np.array([action]))
             stage.follow(np.zeros(1, bool), np.zeros(1, bool))
-        raised.append(int((stage.particles.alive & (stage.particles._kind == Kind.DUST)).sum()))
+        raised.append(int((stage.particles.alive & (stage.particles._kind == ParticleKind.DUST)).sum()))
     far, middle, near, off = raised
     assert far == 0
     assert off == 0

@@ -61,7 +61,7 @@ def test_a_picture_is_found_by_its_key_and_drawn_at_the_size_of_the_sprite(drawn
     body = World().add(Circle(1.0), (0.6, 0.0))
     before = drawn([Sprite(body, "disc", (2.0, 2.0))])
     assert drawn([Sprite(body, "disc", (0.4, 0.4))]) != before
-    monkeypatch.setitem(bodies.PICTURES, "disc", bodies.Picture((), HUMAN))
+    monkeypatch.setitem(bodies.PICTURES, "disc", bodies.SpriteShape((), HUMAN))
     assert drawn([Sprite(body, "disc", (2.0, 2.0))]) != before
     with pytest.raises(KeyError, match="trebuchet"):
         Outlines([Sprite(body, "trebuchet", (2.0, 2.0))])

@@ -8,23 +8,23 @@ import numpy as np
 import pytest
 
 from ai.lander.environment import Outcome
-from game.scenes.menu_background import Vista
+from game.scenes.menu_background import MenuBackground
 from game.ui.context import Context
 
 
 @pytest.mark.parametrize("folder", [None, "nothing here"], ids=["network", "no network"])
 def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: str | None, tmp_path: Path) -> None:
-    vista = Vista()
-    vista.enter(replace(context, models_dir=tmp_path / folder) if folder else context)
+    background = MenuBackground()
+    background.enter(replace(context, models_dir=tmp_path / folder) if folder else context)
     end = time.monotonic() + 20
-    while vista._pilot is None:
+    while background._pilot is None:
         assert time.monotonic() < end
         time.sleep(0.01)
-    env, landings, highest = vista._env, 0, 0.0
+    env, landings, highest = background._env, 0, 0.0
     for _ in range(2400):
-        over = vista._over
-        vista.update()
-        landings += vista._over and not over and env.outcome[0] == Outcome.LANDED
+        over = background._over
+        background.update()
+        landings += background._over and not over and env.outcome[0] == Outcome.LANDED
         highest = max(highest, float(env.position[0, 1]))
         assert abs(env.position[0, 0]) < 8, "it stays in sight"
     assert landings >= 2
@@ -33,23 +33,23 @@ def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: st
 
 def test_it_stands_still_where_motion_is_reduced(context: Context) -> None:
     context.settings.reduced_motion = True
-    vista = Vista()
-    vista.enter(context)
-    pose = vista._poses.at(1.0)
+    background = MenuBackground()
+    background.enter(context)
+    pose = background._poses.at(1.0)
     for _ in range(60):
-        vista.update()
-    assert np.array_equal(vista._poses.at(1.0), pose)
+        background.update()
+    assert np.array_equal(background._poses.at(1.0), pose)
 
 
 def test_it_stands_again_when_motion_is_reduced_in_its_midst(context: Context) -> None:
-    vista = Vista()
-    vista.enter(context)
-    pose = vista._poses.at(1.0)
+    background = MenuBackground()
+    background.enter(context)
+    pose = background._poses.at(1.0)
     for _ in range(60):
-        vista.update()
-    assert not np.array_equal(vista._poses.at(1.0), pose)
+        background.update()
+    assert not np.array_equal(background._poses.at(1.0), pose)
     context.settings.reduced_motion = True
-    vista.enter(context)
-    vista.update()
-    assert np.array_equal(vista._poses.at(0.5), pose)
-    assert not vista._stage.thrust.any()
+    background.enter(context)
+    background.update()
+    assert np.array_equal(background._poses.at(0.5), pose)
+    assert not background._stage.thrust.any()

@@ -11,7 +11,7 @@ from ai.agent.config import Config
 from ai.lander.rewards import RewardWeights
 from game.core import texts
 
-Kind = Literal["slider", "switch", "words"]
+KnobKind = Literal["slider", "switch", "words"]
 REWARD: Final = "reward"  # the page of the reward weights
 WEIGHTS: Final = "weights"
 _LADDER: Final = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)  # steps of a scale, times a power of ten
@@ -25,7 +25,7 @@ Configuration = Any  # `ai.agent.config.Config`, or another dataclass with field
 
 
 @dataclass(frozen=True)
-class Dial:
+class KnobDescription:
     """Knob for one field of the configuration, or for one of its reward weights.
 
     Attributes:
@@ -43,7 +43,7 @@ class Dial:
     help: str
     page: str
     live: bool
-    kind: Kind
+    kind: KnobKind
     stops: tuple[Any, ...]
 
     @property
@@ -63,7 +63,7 @@ class Dial:
         return config.changed(**{self.field: value})
 
 
-def dials(of: type[Configuration] = Config) -> list[Dial]:
+def knob_descriptions(of: type[Configuration] = Config) -> list[KnobDescription]:
     """Return every knob of a configuration class, in the order of its fields."""
     made = []
     for item in fields(of):
@@ -71,7 +71,7 @@ def dials(of: type[Configuration] = Config) -> list[Dial]:
             made += [_weight(part, bool(item.metadata["live"])) for part in fields(RewardWeights)]
         elif stops := _stops(item):
             described = item.metadata
-            made.append(Dial(item.name, "", label(item.name), described["help"], described["group"],
+            made.append(KnobDescription(item.name, "", label(item.name), described["help"], described["group"],
                              described["live"], _kind(item), stops))  # fmt: skip
     return made
 
@@ -102,20 +102,20 @@ def told(changes: Mapping[str, Any]) -> str:
 
 @cache
 def _labels() -> dict[str, str]:
-    return {dial.name: dial.label for dial in dials()}
+    return {knob.name: knob.label for knob in knob_descriptions()}
 
 
-def _kind(item: Field[Any]) -> Kind:
+def _kind(item: Field[Any]) -> KnobKind:
     if item.type == "bool":
         return "switch"
     return "words" if item.metadata["choices"] or isinstance(item.default, tuple) else "slider"
 
 
-def _weight(part: Field[Any], live: bool) -> Dial:
+def _weight(part: Field[Any], live: bool) -> KnobDescription:
     default = float(getattr(RewardWeights(), part.name))
     stops = tuple(_rounded(share * default) for share in _SHARES) if default else _COSTS
     words = texts.KNOB_WEIGHTS.get(part.name, (part.name.capitalize(), ""))
-    return Dial(WEIGHTS, part.name, *words, REWARD, live, "slider", stops)
+    return KnobDescription(WEIGHTS, part.name, *words, REWARD, live, "slider", stops)
 
 
 def _stops(item: Field[Any]) -> tuple[Any, ...]:
@@ -158,6 +158,6 @@ def _rounded(value: float) -> float:
     return float(f"{value:.6g}") + 0.0  # without a minus before 0
 
 
-def pages(of: Iterable[Dial]) -> list[str]:
+def pages(of: Iterable[KnobDescription]) -> list[str]:
     """Return the names of the pages, in the order of their first knobs."""
-    return list(dict.fromkeys(dial.page for dial in of))
+    return list(dict.fromkeys(knob.page for knob in of))
