@@ -33,7 +33,7 @@ def _table(arguments: argparse.Namespace) -> int:
 
     from ai.agent.agent import DeepQAgent
     from ai.agent.config import LANDER
-    from ai.copilot.measurement import ONE_PAD, PILOTS, THREE_PADS, WISHFUL, one_pad, three_pads
+    from ai.copilot.measurement import INTENT_PILOTS, ONE_PAD, PILOTS, THREE_PADS, one_pad, three_pads
     from ai.lander.pilots import Pilot, ScriptedPilot
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):
@@ -46,7 +46,7 @@ def _table(arguments: argparse.Namespace) -> int:
         return fail(f"the co-pilot flies the lander; this network is for {agent.config.env}")
     good: Pilot = ScriptedPilot() if arguments.good == "scripted" else agent
     tables: dict[str, list[AssistedFlights]] = {"one_pad": [], "three_pads": []}
-    rows = len(PILOTS) * len(ONE_PAD) + 1 + len(WISHFUL) * len(THREE_PADS)
+    rows = len(PILOTS) * len(ONE_PAD) + 1 + len(INTENT_PILOTS) * len(THREE_PADS)
     with tqdm(total=rows, desc="flying", unit="row", disable=None) as bar:
         for name, fly in (("one_pad", one_pad), ("three_pads", three_pads)):
             for row in fly(agent, good, arguments.episodes, arguments.seed):

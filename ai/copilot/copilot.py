@@ -54,7 +54,7 @@ class SharedDecision:
     action: Ints  # (n,) what is flown
     pilot: Ints  # (n,) what the pilot asked for
     best: Ints  # (n,) what the co-pilot would do
-    rule: Ints  # (n,) of Rule
+    source: Ints  # (n,) of ActionSource
     values: Floats  # (n, pads, 6) what each action is worth on the way to each pad
     meant: Floats  # (n, pads, 6) the same, with the likeliest pad's in place of those that can't be meant
     feasible: Bools  # (n, 6) which actions the pilot could have had
@@ -99,7 +99,7 @@ class CoPilot:
     the way to every pad by a margin, which falls from infinity at assist 0 to 0 at assist 1.
 
     Of several pads, only those count that may still be meant, by what the pilot has done so far
-    (`ai.copilot.intent`); with `reads_wishes` off, all do. Hands off, the co-pilot flies to the likeliest. So it
+    (`ai.copilot.intent`); with `infers_intent` off, all do. Hands off, the co-pilot flies to the likeliest. So it
     remembers from one decision to the next, which should be some 1/15 s; `forget` makes it ready for another flight.
 
     `reward_scale` is what a point of reward is in the agent's values; by default, what it was trained with.
@@ -112,15 +112,15 @@ class CoPilot:
         mode: Mode | str = Mode.TOLERANCE,
         *,
         reward_scale: float | None = None,
-        reads_intent: bool = True,
+        infers_intent: bool = True,
     ) -> None:
         self.agent = agent
         self.assist = assist
         self.mode = Mode(mode)
         config = agent.config if isinstance(agent, DeepQAgent) else Config()
         self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
-        self.reads_intent = reads_intent
-        self._wishes = Intent(self.reward_scale)
+        self.infers_intent = infers_intent
+        self._intent = Intent(self.reward_scale)
 
     @property
     def assist(self) -> float:
@@ -135,7 +135,7 @@ class CoPilot:
 
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
-        self._wishes.forget(mask)
+        self._intent.forget(mask)
 
     def share(self, observation: Floats, pilot_action: Any) -> tuple[Ints, Bools]:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
@@ -165,18 +165,18 @@ class CoPilot:
         candidates = np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS,
                                best - best % _STEERS + pilot % _STEERS, best])  # fmt: skip
         rows = np.arange(slots)
-        rule = feasible[rows, candidates].argmax(axis=0)
-        action = candidates[rule, rows]
-        rule[(pilot == COAST) & (action != pilot)] = ActionSource.HANDS_OFF
-        return SharedDecision(observation, action, pilot, best, rule, values, meant, feasible, likely,
+        source = feasible[rows, candidates].argmax(axis=0)
+        action = candidates[source, rows]
+        source[(pilot == COAST) & (action != pilot)] = ActionSource.HANDS_OFF
+        return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,
                               self.assist, self.mode, self.reward_scale)  # fmt: skip
 
     def _read(self, values: Floats, pilot: Ints, away: Floats) -> tuple[Doubles, Floats]:
         """Return how likely each pad is meant, (n, pads), and the values with the likeliest's where a pad is not."""
         slots, pads, _ = values.shape
-        if pads == 1 or not self.reads_intent:
+        if pads == 1 or not self.infers_intent:
             return np.full((slots, pads), 1.0 / pads), values
-        likely = self._wishes.watch(values, pilot)
+        likely = self._intent.watch(values, pilot)
         likeliest = (likely - 1e-6 * away).argmax(axis=1)[:, None]  # among equals, the nearest
         open_ = in_question(likely) & (pilot != COAST)[:, None]
         pad = np.where(open_, np.arange(pads), likeliest)

@@ -25,8 +25,8 @@ PILOTS: Final[dict[str, MakePilot]] = {
     "sensor": lambda *_: SensorPilot(),
     "none": lambda *_: NoPilot(),
 }
-WISHFUL: Final = ("full", "laggy", "noisy", "noisier")  # pilots that have a pad in mind
-GROUNDS: Final = 5  # different hills for the flights with a hidden wish
+INTENT_PILOTS: Final = ("full", "laggy", "noisy", "noisier")  # pilots that have a pad in mind
+GROUNDS: Final = 5  # different hills for the flights with a hidden intent
 ALONE: Final = "alone"
 COPILOT: Final = "co-pilot"  # the pilot of the row in which the network flies alone
 OPEN: Final = "guardian, all pads open"  # the same rule, with nothing read into what the pilot does
@@ -80,7 +80,7 @@ def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Ite
     and with the same mishaps, which follow from `seed`.
     """
     for name in PILOTS:
-        yield from _measure(_crews(agent, good, [name], ONE_PAD, seed), episodes, seed)
+        yield from _measure(_assisted_pilots(agent, good, [name], ONE_PAD, seed), episodes, seed)
     yield from _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
 
 
@@ -93,60 +93,60 @@ def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> 
     for ground in range(GROUNDS):
         rng = np.random.default_rng([seed, ground])
         start = int(rng.integers(2**31))
-        crews = _crews(agent, good, WISHFUL, THREE_PADS, start)
-        parts.append(_measure(crews, max(1, round(episodes / GROUNDS)), start, hilly(rng)))
+        assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, start)
+        parts.append(_measure(assisted, max(1, round(episodes / GROUNDS)), start, hilly(rng)))
     yield from (_mean(rows) for rows in zip(*parts, strict=True))
 
 
-def _crews(
+def _assisted_pilots(
     agent: DeepQAgent, good: Pilot, names: Sequence[str], helps: Sequence[Help], seed: int
 ) -> list[AssistedPilot]:
-    crews = []
+    assisted = []
     for name in names:
         for mode, assist in helps:
             copilot = None
             if mode != ALONE:
-                copilot = CoPilot(agent, assist, Mode.GUARDIAN if mode == OPEN else mode, reads_intent=mode != OPEN)
-            crews.append(
+                copilot = CoPilot(agent, assist, Mode.GUARDIAN if mode == OPEN else mode, infers_intent=mode != OPEN)
+            assisted.append(
                 AssistedPilot(name, PILOTS[name](good, np.random.default_rng(seed)), str(mode), assist, copilot)
             )
-    return crews
+    return assisted
 
 
 def _measure(
-    crews: Sequence[AssistedPilot], episodes: int, seed: int, ground: Ground | None = None
+    assisted: Sequence[AssistedPilot], episodes: int, seed: int, ground: Ground | None = None
 ) -> list[AssistedFlights]:
-    """Fly `episodes` flights of every crew, all at once and from the same starts."""
-    env = LanderEnv(len(crews) * episodes, seed, ground=ground)
+    """Fly `episodes` flights of every assisted pilot, all at once and from the same starts."""
+    env = LanderEnv(len(assisted) * episodes, seed, ground=ground)
     for first in range(0, env.num_envs, episodes):
         for slot, rng in enumerate(np.random.default_rng(seed).spawn(episodes), first):
             env.draw_from(slot, rng)
-    wishes = np.random.default_rng(seed).integers(len(env.ground.pads), size=episodes)
-    env.target = np.tile(wishes, len(crews))
+    intended = np.random.default_rng(seed).integers(len(env.ground.pads), size=episodes)
+    env.target = np.tile(intended, len(assisted))
     env.reset()
-    returns, overridden, decisions = _fly(env, crews)
+    returns, overridden, decisions = _fly(env, assisted)
     rows = []
-    for number, crew in enumerate(crews):
+    for number, each in enumerate(assisted):
         mine = slice(number * episodes, (number + 1) * episodes)
         _, landed, crashed, gone, late = (float((env.outcome[mine] == outcome).mean()) for outcome in Outcome)
         changed = float(overridden[mine].sum() / decisions[mine].sum())
-        own = float((env.landed_on[mine] == wishes).mean())
-        rows.append(AssistedFlights(crew.name, crew.mode, crew.assist, episodes, landed, crashed, gone, late,
+        own = float((env.landed_on[mine] == intended).mean())
+        rows.append(AssistedFlights(each.name, each.mode, each.assist, episodes, landed, crashed, gone, late,
                         float(returns[mine].mean()), changed, own))  # fmt: skip
     return rows
 
 
-def _fly(env: LanderEnv, crews: Sequence[AssistedPilot]) -> tuple[Doubles, Doubles, Doubles]:
+def _fly(env: LanderEnv, assisted: Sequence[AssistedPilot]) -> tuple[Doubles, Doubles, Doubles]:
     """Fly until all have ended; return every flight's return, overridden decisions, and decisions, (n,) each."""
     returns, overridden, decisions = np.zeros((3, env.num_envs))
-    episodes = env.num_envs // len(crews)
+    episodes = env.num_envs // len(assisted)
     while (flying := env.outcome == Outcome.FLYING).any():
         seen, wished, actions = env.observe_pads(), env.observe(), env.actions.copy()
-        for row, crew in enumerate(crews):
+        for row, each in enumerate(assisted):
             mine = slice(row * episodes, (row + 1) * episodes)
             if flying[mine].any():
-                asked = crew.pilot.act(wished[mine], held=env.actions[mine])
-                actions[mine] = asked if crew.copilot is None else crew.copilot.share(seen[mine], asked)[0]
+                asked = each.pilot.act(wished[mine], held=env.actions[mine])
+                actions[mine] = asked if each.copilot is None else each.copilot.share(seen[mine], asked)[0]
                 overridden[mine] += flying[mine] & (actions[mine] != asked)
         decisions += flying
         returns += env.step(actions).reward

@@ -84,7 +84,7 @@ class CopilotPanel:
         self.why = why(decision, self.values)
         if self.values.asked is None:
             self._override = None
-        elif int(decision.rule[0]) != ActionSource.PILOT:
+        elif int(decision.source[0]) != ActionSource.PILOT:
             self._override, self._stays = self.why, _STAYS
 
     def draw(self, canvas: Canvas, share: float) -> None:
@@ -139,22 +139,22 @@ def why(decision: SharedDecision, values: QValues) -> Why:
     """Explain whose action is flown, and why, by the figures that decided it."""
     from ai.copilot.copilot import ActionSource, Mode
 
-    rule, asked = ActionSource(int(decision.rule[0])), values.asked
+    source, asked = ActionSource(int(decision.source[0])), values.asked
     if asked is None:
         return texts.INSIGHT_WHY[ActionSource.HANDS_OFF.name]
-    title, *lines = texts.INSIGHT_WHY[rule.name]
+    title, *lines = texts.INSIGHT_WHY[source.name]
     if not values.readable:
         return title, *texts.VALUES_DAMAGED
     name = ACTION_NAMES[asked].capitalize()
     if decision.mode is Mode.GUARDIAN:
         return title, *_guarded(decision, name)
     loss, allowed = values.loss(asked), values.allowed or 0.0
-    if rule is ActionSource.PILOT and loss == 0.0:
+    if source is ActionSource.PILOT and loss == 0.0:
         return title, texts.INSIGHT_SAME.format(asked=name), ""
-    if rule is ActionSource.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
+    if source is ActionSource.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
         return title, texts.INSIGHT_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.INSIGHT_ANOTHER
     less, most = _told_apart(loss, allowed)
-    if rule is ActionSource.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
+    if source is ActionSource.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
         lines[1] = texts.INSIGHT_EVERY_PAD
     flown = ACTION_NAMES[values.flown]
     first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)

@@ -27,13 +27,13 @@ class FlownPath:
     def __init__(self, flight: Flight) -> None:
         self._points: list[Doubles] = [flight.env.position[0].copy()]
         self._hands: list[StickHolder] = []
-        self.callouts: list[Doubles] = []
+        self.moments: list[Doubles] = []
 
     def follow(self, flight: Flight, stepped_in: bool) -> None:
         """Record a step, and whether the co-pilot stepped in with it."""
         here = flight.env.position[0]
         if stepped_in:
-            self.callouts.append(here.copy())
+            self.moments.append(here.copy())
         if len(flight.recording.actions) % _STRIDE == 0 or flight.over:
             self._points.append(here.copy())
             self._hands.append(flight.flown_by)
@@ -71,5 +71,5 @@ class FlownPath:
 
     def _marked(self) -> list[Doubles]:
         """Return the places of interventions, thinned out where they are too close to tell apart."""
-        every = max(1, -(-len(self.callouts) // _MOST_MARKS))
-        return self.callouts[::every]
+        every = max(1, -(-len(self.moments) // _MOST_MARKS))
+        return self.moments[::every]

@@ -49,7 +49,7 @@ def test_tolerance_is_the_rule_of_the_paper(assist):
 )
 def test_the_pilot_keeps_as_much_as_is_safe(values, pilot, action, rule):
     decision = CoPilot(valuer(values), 0.8).decide(seen(), [pilot])
-    assert (decision.action[0], decision.rule[0]) == (action, rule)
+    assert (decision.action[0], decision.source[0]) == (action, rule)
     assert decision.best[0] == np.argmax(values)
     assert decision.feasible[0, action]
 
@@ -106,7 +106,7 @@ def test_a_pilot_who_heads_for_one_pad_is_understood():
 
 
 def test_with_all_pads_open_nothing_is_read_into_actions():
-    copilot = CoPilot(valuer(LEFT, RIGHT), 0.9, "guardian", reads_intent=False)
+    copilot = CoPilot(valuer(LEFT, RIGHT), 0.9, "guardian", infers_intent=False)
     for _ in range(30):
         copilot.share(seen(1, 2), [1])
     assert copilot.share(seen(1, 2), [2])[0][0] == 2

@@ -20,7 +20,7 @@ def agent():
 def few(monkeypatch):
     """A table small enough for a test."""
     monkeypatch.setattr(copilot_table, "PILOTS", {name: copilot_table.PILOTS[name] for name in ("laggy", "none")})
-    monkeypatch.setattr(copilot_table, "WISHFUL", ("laggy",))
+    monkeypatch.setattr(copilot_table, "INTENT_PILOTS", ("laggy",))
     monkeypatch.setattr(copilot_table, "GROUNDS", 1)
     monkeypatch.setattr(copilot_table, "ONE_PAD", ((ALONE, 0.0), (Mode.TOLERANCE, 0.6), (Mode.GUARDIAN, 0.4)))
     monkeypatch.setattr(copilot_table, "THREE_PADS", ((ALONE, 0.0), (Mode.GUARDIAN, 0.4), (OPEN, 0.4)))
