@@ -39,7 +39,7 @@ class Scenery:
         self._look = look_of(flight.recording.mission)
         chance = np.random.default_rng(flight.recording.seed)
         self.stage = Stage(flight.env, chance, reduced_motion, LOOKS[self._look].on_dust(DUST), LOOKS[self._look].light)
-        self._moments = Callouts(flight.env, reduced_motion)
+        self._callouts = Callouts(flight.env, reduced_motion)
         self._time = 0.0
         self._camera = Camera()
         self.cut()
@@ -52,7 +52,7 @@ class Scenery:
     @calm.setter
     def calm(self, calm: bool) -> None:
         if calm != self._calm:
-            self._calm = self.stage.calm = self._moments.calm = calm
+            self._calm = self.stage.calm = self._callouts.calm = calm
             self._camera = Camera()
             self.cut()
 
@@ -74,7 +74,7 @@ class Scenery:
         """Show the flight at another moment, without the traces of the steps before."""
         flight = self._flight
         self.stage.forget()
-        self._moments.forget()
+        self._callouts.forget()
         action = 0 if flight.over else int(flight.env.fired[0])
         self.stage.thrust[0] = action >= 3, action % 3 == 2, action % 3 == 1
         self.stage.blue[:] = flight.flown_by is StickHolder.NETWORK
@@ -89,7 +89,7 @@ class Scenery:
         """Follow one step; `ended` is whether the flight ended with it. A `shot` replaces the flight's own."""
         flight = self._flight
         self.stage.follow(np.array([flight.flown_by is StickHolder.NETWORK]), np.array([ended]))
-        self._moments.follow()
+        self._callouts.follow()
         if self._calm:
             return
         self._camera.shake(self.stage.jolt)
@@ -125,12 +125,12 @@ class Scenery:
         if self._flight.outcome is Outcome.OUT_OF_BOUNDS:
             mark_lost(canvas, view, pose)
             return
-        self._moments.draw_light(canvas, view, pose)
+        self._callouts.draw_light(canvas, view, pose)
         self.stage.draw_lander(canvas, view, pose, alpha=alpha)
         self.stage.draw_dust(canvas, view, alpha)
         shown = self.stage.wreck_pose(alpha) if self._flight.outcome is Outcome.CRASHED else None
         if words:
-            self._moments.draw_words(canvas, view, pose if shown is None else shown)
+            self._callouts.draw_words(canvas, view, pose if shown is None else shown)
 
 
 def mark_lost(canvas: Canvas, view: View, pose: Doubles) -> None:
