@@ -88,7 +88,12 @@ def rows() -> dict[str, Row]:
 
     play, heap = Row(lambda _: PlayScene(seed=4), FLOWN), lambda _: PhysicsScene("heap")
     with TemporaryDirectory() as folder:
-        others = makers(Context(Path(folder), Settings())).keys() - {"Play", "Watch", "Physics", "mission"}
+        others = makers(Context(Path(folder), Settings())).keys() - {
+            "PlayScene",
+            "WatchScene",
+            "PhysicsScene",
+            "mission",
+        }
     return {
         "play, by hand": play,
         "play, network": Row(play.make, (pygame.K_r, pygame.K_TAB)),

@@ -64,10 +64,20 @@ _FLY = (
     pygame.K_RETURN,
 )
 _KEYS: dict[str, tuple[int, ...]] = {
-    **dict.fromkeys(("Play", "mission", "daily", "race"), _FLY),
-    "Replay": (0, 0, pygame.K_HOME, 0, pygame.K_MINUS, pygame.K_END, pygame.K_SPACE, pygame.K_PERIOD, pygame.K_PLUS),
-    "Watch": (0, 0, pygame.K_PLUS, pygame.K_n, pygame.K_r, 0, pygame.K_MINUS),
-    "Physics": (0, 0, pygame.K_c, pygame.K_n, 0, pygame.K_r),
+    **dict.fromkeys(("PlayScene", "mission", "daily", "race"), _FLY),
+    "ReplayScene": (
+        0,
+        0,
+        pygame.K_HOME,
+        0,
+        pygame.K_MINUS,
+        pygame.K_END,
+        pygame.K_SPACE,
+        pygame.K_PERIOD,
+        pygame.K_PLUS,
+    ),
+    "WatchScene": (0, 0, pygame.K_PLUS, pygame.K_n, pygame.K_r, 0, pygame.K_MINUS),
+    "PhysicsScene": (0, 0, pygame.K_c, pygame.K_n, 0, pygame.K_r),
 }
 _LOOK = (pygame.K_DOWN, pygame.K_RIGHT, pygame.K_DOWN, pygame.K_LEFT, pygame.K_UP, 0)
 

@@ -137,7 +137,7 @@ def _move_pen(scene: DigitsScene, frame: int) -> None:
 
 
 def _has_learnt(scene: TrainScene) -> bool:
-    history = scene.student.history
+    history = scene.lander_run.history
     return bool(len(history) and history["success"][-1] > 0.9)
 
 

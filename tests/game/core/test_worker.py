@@ -361,12 +361,12 @@ def test_a_worker_that_is_forgotten_ends():
 
 PARENT = """
 import sys, time
-from game.core.worker import State, Worker
+from game.core.worker import Worker, WorkerState
 from tests.support import chores
 if __name__ == "__main__":
     workers = [Worker(chores.counting), Worker(chores.counting), Worker(chores.hanging)]
     workers[0].pause()
-    while any(worker.state is State.STARTING for worker in workers):
+    while any(worker.state is WorkerState.STARTING for worker in workers):
         time.sleep(0.02)
         for worker in workers:
             worker.poll()

@@ -87,7 +87,7 @@ def changed(driver: Driver) -> set[str]:
 
 @pytest.mark.parametrize("name", [*SCREENS, *FLOWN, *OVER_OTHERS])
 def test_drawing_changes_no_state(open_game: Callable[..., Driver], context: Context, name: str):
-    if name in {"Logbook", "Missions", "Runs"}:
+    if name in {"LogbookScene", "MissionsScene", "NetworksScene"}:
         stock(context)
     driver = opened(open_game, context, name, "normal")
     assert not changed(driver)
@@ -105,7 +105,7 @@ def test_drawing_changes_no_state(open_game: Callable[..., Driver], context: Con
 
 
 def test_neither_does_it_while_one_scene_gives_way_to_another(open_game: Callable[..., Driver], context: Context):
-    driver = open_game(SCREENS["Menu"](context))
+    driver = open_game(SCREENS["MenuScene"](context))
     driver.frames(5)
     driver.app.show(SCREENS["SettingsScene"](context))
     for _ in range(15):
