@@ -7,7 +7,6 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import PARAMS, Cause, Outcome
 from ai.lander.missions import MISSIONS
-from benchmarks.missions import fly
 from game.cockpit.hud import flight_readouts
 from game.cockpit.surroundings import surroundings
 from game.core import texts
@@ -30,6 +29,7 @@ from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
+from tests.support.missions import fly
 
 Open = Callable[..., Driver]
 REST = float(PARAMS.pad_top + PARAMS.stand + 0.002)
