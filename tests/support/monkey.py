@@ -276,3 +276,5 @@ def playground() -> Iterator[Path]:
             for variable, value in before.items():
                 os.environ.pop(variable) if value is None else os.environ.update({variable: value})
             tempfile.tempdir = None
+            gc.collect()
+            gc.freeze()  # the monkey looks through all there is

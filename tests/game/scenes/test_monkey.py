@@ -45,7 +45,7 @@ def test_it_does_find_scenes_that_stay_in_memory(folder: Path, monkeypatch: pyte
     monkeypatch.setattr(MenuScene, "exit", keep)
     monkey = Monkey(folder, open_sound=False)
     monkey.play(10)
-    assert "1 × Menu still in memory" in monkey.left_behind()
+    assert "1 × MenuScene still in memory" in monkey.left_behind()
 
 
 def test_every_scene_can_be_entered_or_is_reached_from_another(folder: Path):
