@@ -8,6 +8,7 @@ import pygame
 
 from game.core.scene import Scene
 from game.shell.app import App
+from game.ui.form import Form
 
 
 class Driver:
@@ -30,6 +31,18 @@ class Driver:
     @property
     def top_name(self) -> str:
         return type(self.top).__name__
+
+    @property
+    def said(self) -> str:
+        """What the note over all scenes says, or said last."""
+        return self.app._notes._text
+
+    @property
+    def form(self) -> Form:
+        """The widgets of the scene on the screen."""
+        form = getattr(self.top, "_form", None)
+        assert isinstance(form, Form)
+        return form
 
     def frames(self, number: int = 1) -> bool:
         """Play frames. The first, the last and each tenth are drawn: drawing is most of the work, and changes nothing.

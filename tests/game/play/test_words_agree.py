@@ -312,7 +312,7 @@ def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, conte
     reading = begin(open_game, context, monkeypatch, "daily", {"assist": 0.8})
     driver = reading.driver
     driver.key(pygame.K_TAB)
-    assert driver.app._notes._text == texts.FLOWN_ALONE
+    assert driver.said == texts.FLOWN_ALONE
     play(driver)._choose_network("stand-in")  # in a pause
     driver.keys(pygame.K_TAB, pygame.K_PLUS)
     assert play(driver).flight.hand is StickHolder.HUMAN
