@@ -27,12 +27,12 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pygame
 
-from benchmarks.digits_robustness import template_strokes
 from game.core.settings import Settings
 from game.scenes import scene_of
 from game.scenes.digits import DigitsScene
 from game.shell.app import App
 from game.ui.context import Context
+from tests.support.digit_styles import template_strokes
 
 LIMIT = 16.0
 EACH = 10

@@ -38,7 +38,6 @@ import numpy as np
 import pygame
 
 from ai.lander.missions import MISSIONS
-from benchmarks.tour import makers, scene_types, stock
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.exhibits import EXHIBITS
@@ -54,6 +53,7 @@ from game.scenes.watch import COUNTS, WatchScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import Backdrop, landscape
+from tests.support.tour import makers, scene_types, stock
 
 FRAMES = 1000
 RUNS = 3

@@ -32,8 +32,7 @@ from pathlib import Path
 import numpy as np
 import pygame
 
-from benchmarks.monkey import playground, resident
-from benchmarks.tour import makers, stock
+from benchmarks.monkey import resident
 from game.core.scene import Pop, Push
 from game.core.settings import Settings
 from game.scenes import scene_of
@@ -42,6 +41,8 @@ from game.scenes.error_screen import ErrorScene
 from game.scenes.quiz import QuizScene
 from game.shell.app import App
 from game.ui.context import Context
+from tests.support.monkey import playground
+from tests.support.tour import makers, stock
 
 WARM = 5  # minutes, in which every scene has its turn
 GROWTH = 20.0  # megabytes

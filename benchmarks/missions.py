@@ -13,32 +13,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is imported, 
 import argparse
 from pathlib import Path
 
-import numpy as np
-
 from ai.agent.agent import DeepQAgent
-from ai.lander.environment import Cause, LanderEnv, Outcome
-from ai.lander.missions import MISSIONS, Mission
+from ai.lander.environment import Cause, Outcome
+from ai.lander.missions import MISSIONS
+from tests.support.missions import fly
 
 MODEL = Path(__file__).parent.parent / "models" / "lander" / "modern"
-REACH = np.array([0.5, 0.5, 0.2, 0.2, 0.05, 0.05])
-
-
-def near(mission: Mission, count: int) -> LanderEnv:
-    """Landers that begin near the mission's own start; the first begins at it."""
-    env = mission.begin(count, frame_skip=4)
-    away = REACH * np.random.default_rng(0).uniform(-1, 1, (count, 6))
-    away[0] = 0.0
-    env.place(np.ones(count, dtype=bool), np.array(mission.start) + away)
-    return env
-
-
-def fly(agent: DeepQAgent, mission: Mission, count: int) -> tuple[np.ndarray, ...]:
-    """Outcome, cause, fuel and seconds of `count` flights, (count,) each; the first is from the mission's own start."""
-    env = near(mission, count)
-    observation = env.observe()
-    while (env.outcome == Outcome.FLYING).any():
-        observation = env.step(agent.act(observation, held=env.actions)).observation
-    return env.outcome, env.cause, env.fuel, env.time
 
 
 def main() -> None:

@@ -3,6 +3,7 @@
 Property tests draw the same examples every time: a suite that passed passes again. One thread each is enough.
 """
 
+import gc
 import signal
 
 import pytest
@@ -16,6 +17,12 @@ from hypothesis import settings  # noqa: E402
 
 settings.register_profile("same", derandomize=True)
 settings.load_profile("same")
+
+
+def pytest_collection_finish() -> None:
+    """Keep modules and tests out of every later collection, as the game does: each game that closes collects once."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:

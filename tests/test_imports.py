@@ -135,6 +135,13 @@ def test_main_imports_the_game_only_when_it_is_played():
         assert not [name for name in imports(path, everywhere=False) if is_within(name, {"game"})]
 
 
+@pytest.mark.parametrize("folder", ["engine", "ai", "game", "tests"])
+def test_benchmarks_are_imported_by_nothing_and_tests_by_tests_alone(folder):
+    strangers = {"benchmarks", "docs"} | ({"tests"} - {folder})
+    found = {name_of(path): imports(path) for path in (*modules(folder), *PROGRAM)}
+    assert not {name: each for name, those in found.items() for each in those if is_within(each, strangers)}
+
+
 def loaded_by(names, suspects):
     """Which of the suspects are in memory after these modules have been imported, one after another."""
     program = f"""

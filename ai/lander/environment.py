@@ -143,7 +143,7 @@ class LanderEnv(Craft):
         held = self.actions
         self._take(actions)
         flying = self.outcome == Outcome.FLYING
-        before = self._situation()
+        before = self.situation()
         flown, tilted, feet = self.steps.copy(), np.zeros_like(self.steps), self._feet_steps.copy()
         for _ in range(self.frame_skip):
             still_flying = self.outcome == Outcome.FLYING
@@ -154,7 +154,7 @@ class LanderEnv(Craft):
         ended = flying & (self.outcome != Outcome.FLYING)
         flown = self.steps - flown
         change = SituationChange(
-            before, self._situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
+            before, self.situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
             switched=flying * engines_switched(held, self.actions),
             feet_down=np.minimum(self._feet_steps, FEET_STEPS_PAID) - np.minimum(feet, FEET_STEPS_PAID),
             landed=ended & (self.outcome == Outcome.LANDED),
@@ -227,7 +227,8 @@ class LanderEnv(Craft):
         self.world.detector.recall_memory(snapshot["contacts"])
         self._started = True
 
-    def _situation(self) -> Situation:
+    def situation(self) -> Situation:
+        """Return what the shaping reward depends on: distance, offset, speed and tilt from the pad, (batch,) each."""
         offset = self.position - self.pad
         across, above = offset[:, 0], offset[:, 1] - self.params.stand
         velocity = self._relative_velocity()

@@ -138,6 +138,7 @@ class Tutorial(Challenge):
         lesson: the current lesson.
         through: whether all lessons are done or skipped.
         flown: whether the last lesson was completed by a landing.
+        praise: number of steps for which the last lesson is still praised.
 
     """
 
@@ -146,7 +147,7 @@ class Tutorial(Challenge):
 
     def __init__(self) -> None:
         self._lessons = list(LESSONS)
-        self._number = self._done_for = self._praise = 0
+        self._number = self._done_for = self.praise = 0
         self._begun = 0  # number of times that the lesson was begun
         self._why = ""  # reason why the lesson restarts
         self.through = self.flown = False
@@ -172,7 +173,7 @@ class Tutorial(Challenge):
             self._do_without_network()
         self._number -= self.lesson.back
         self._begun += 1
-        self._done_for = self._praise = self._flown_for = 0
+        self._done_for = self.praise = self._flown_for = 0
         self._over = False
         flight = Flight(seed, network, mission=FIRST.name, shares=False)  # a co-pilot would brake the fall
         flight.env.place(np.ones(1, bool), np.array([self.lesson.start]))
@@ -190,16 +191,16 @@ class Tutorial(Challenge):
             self._why = self._reason(flight)
         self._over = flight.over
         self._flown_for += 1
-        if self._praise:
-            self._praise -= 1
-            if not self._praise:
+        if self.praise:
+            self.praise -= 1
+            if not self.praise:
                 self._begin_lesson(self._number + 1)
             return ""
         done = flight.hand is self.lesson.by and self.lesson.done(flight)
         self._done_for = self._done_for + 1 if done else 0 if self.lesson.held else self._done_for
         if self._done_for < self.lesson.steps:
             return ""
-        self._praise = _PRAISE
+        self.praise = _PRAISE
         self.through = self.flown = self._number == len(self._lessons) - 1
         return "" if self.through else "choose"  # a landing has a sound of its own
 
@@ -238,7 +239,7 @@ class Tutorial(Challenge):
 
     def _begin_lesson(self, number: int) -> None:
         self._number, self._why = number, ""
-        self._done_for = self._praise = self._begun = 0
+        self._done_for = self.praise = self._begun = 0
 
     def _do_without_network(self) -> None:
         """Skip lessons that need a network, at any point of the tutorial."""
@@ -289,7 +290,7 @@ class Tutorial(Challenge):
             return texts.TUTORIAL_READY
         if flight.hand is StickHolder.HUMAN and (urgent := self._urgent(env)):
             return urgent
-        if self._praise:
+        if self.praise:
             return texts.TUTORIAL_GOOD[lesson.name]
         if flight.hand is StickHolder.NETWORK:
             return texts.TUTORIAL["take_back"][0]
@@ -326,7 +327,7 @@ class Tutorial(Challenge):
             return
         x, y, _ = flight.poses.at(scene.alpha)[0].tolist()
         words = self.words(flight, scene.controls, waiting=scene.waiting, stuck=scene.stuck)
-        praised = bool(self._praise) and words == texts.TUTORIAL_GOOD[self.lesson.name]
+        praised = bool(self.praise) and words == texts.TUTORIAL_GOOD[self.lesson.name]
         tick = 22 if praised else 0
         why = self._why_beside(flight)
         width = max(canvas.text_width(words, size=_SIZE) + tick, canvas.text_width(why, size=SMALL))

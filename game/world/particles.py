@@ -54,6 +54,12 @@ class Particles:
 
     The ground, `gravity` in m/s² and the colour of its dust are those of the flight; gravity may change, and so may
     `wind`, the speed of the air to the right in m/s.
+
+    Attributes:
+        position: (slots, 2), metres.
+        velocity: (slots, 2), m/s.
+        kind: (slots,), each a `ParticleKind`; all three only hold where `alive`.
+
     """
 
     def __init__(
@@ -61,13 +67,13 @@ class Particles:
     ) -> None:
         self._rng, self._relief, self.gravity, self._dust = rng, relief, gravity, dust
         self.wind = 0.0
-        self._position = np.zeros((slots, 2))
+        self.position = np.zeros((slots, 2))
         self._before = np.zeros((slots, 2))
-        self._velocity = np.zeros((slots, 2))
+        self.velocity = np.zeros((slots, 2))
         self._age = np.full(slots, np.inf)
         self._life = np.ones(slots)
         self._size = np.zeros(slots)
-        self._kind = np.zeros(slots, np.intp)
+        self.kind = np.zeros(slots, np.intp)
         self._look = np.zeros(slots, np.intp)
         self._next = 0
 
@@ -86,13 +92,13 @@ class Particles:
         live = np.flatnonzero(self.alive)
         if not len(live):
             return
-        kind = self._kind[live]
-        before, velocity = self._position[live], self._velocity[live]
+        kind = self.kind[live]
+        before, velocity = self.position[live], self.velocity[live]
         velocity[:, 0] += _SAIL[kind] * self.wind * STEP
         velocity[:, 1] -= _WEIGHT[kind] * self.gravity * STEP
         position = before + velocity * STEP
         self._bounce(position, velocity, kind)
-        self._before[live], self._position[live], self._velocity[live] = before, position, velocity
+        self._before[live], self.position[live], self.velocity[live] = before, position, velocity
         self._age[live] += STEP
         self._size[live] += _GROWTH[kind] * STEP
 
@@ -124,7 +130,7 @@ class Particles:
             push = carried + direction * speed + aside * self._rng.normal(0.0, 0.55, (count, 1))
             start = nozzle + direction * self._rng.uniform(0.2, 0.9, (count, 1))
             life = self._rng.uniform(0.14, 0.34, count)
-            self._add(kind, start, push, life, self._rng.uniform(0.03, 0.07, count))
+            self.add(kind, start, push, life, self._rng.uniform(0.03, 0.07, count))
 
     def blow(self, x: float, strength: float) -> None:
         """Blow dust outwards along the ground from where a jet meets it; `strength` 0 to 1.
@@ -147,7 +153,7 @@ class Particles:
             speed = self._rng.uniform(*fast, number) * (0.4 + 0.6 * strength)
             rise = speed * steep * self._rng.uniform(0.2, 1.0, number)
             place = np.stack([start, self._relief.height(start) + 0.05], 1)
-            self._add(kind, place, np.stack([side * speed, rise], 1), self._rng.uniform(*life, number),
+            self.add(kind, place, np.stack([side * speed, rise], 1), self._rng.uniform(*life, number),
                       self._rng.uniform(*size, number))  # fmt: skip
 
     def settle(self, foot: tuple[float, float], strength: float) -> None:
@@ -166,7 +172,7 @@ class Particles:
             side = self._rng.choice((-1.0, 1.0), count)
             start = np.stack([foot[0] + side * self._rng.uniform(0.0, 0.25, count), np.full(count, foot[1] + 0.04)], 1)
             speed = np.stack([side * self._rng.uniform(*fast, count), self._rng.uniform(*rise, count)], 1)
-            self._add(kind, start, speed, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
+            self.add(kind, start, speed, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
 
     def burst(self, position: Doubles, velocity: Doubles, share: float = 1.0) -> None:
         """Emit the debris of a crash: sparks, fragments and a ring of dust, or a share of them."""
@@ -181,15 +187,15 @@ class Particles:
             fast = speed * self._rng.uniform(0.15, 1.0, count)
             push = np.stack([np.cos(turn), np.sin(turn)], 1) * fast[:, None] + 0.35 * velocity * (1, -0.4)
             start = position + self._rng.uniform(-0.5, 0.5, (count, 2)) * (1.0, 0.7)
-            self._add(kind, start, push, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
+            self.add(kind, start, push, self._rng.uniform(*life, count), self._rng.uniform(*size, count))
 
     def draw(self, surface: pygame.Surface, view: View, alpha: float) -> None:
         """Draw the particles, `alpha` of the way from the last step to this one."""
         live = np.flatnonzero(self.alive)
         if not len(live):
             return
-        kind, look, age = self._kind[live], self._look[live], self._age[live]
-        place = view.pixels(self._before[live] + alpha * (self._position[live] - self._before[live]))
+        kind, look, age = self.kind[live], self._look[live], self._age[live]
+        place = view.pixels(self._before[live] + alpha * (self.position[live] - self._before[live]))
         level = np.ceil(_LEVELS * (1 - age / self._life[live])).astype(np.intp)
         radius = np.rint(self._size[live] * view.pixels_per_metre * _SPREAD[kind]).astype(np.intp)
         radius = radius.clip(_LEAST[kind], _MOST)
@@ -204,7 +210,7 @@ class Particles:
         surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if not shining])
         surface.fblits([pair for pair, shining in zip(drawn, shines, strict=True) if shining], pygame.BLEND_RGB_ADD)
 
-    def _add(
+    def add(
         self,
         kind: ParticleKind,
         position: Doubles,
@@ -212,13 +218,14 @@ class Particles:
         life: Doubles,
         size: Doubles,
     ) -> None:
+        """Add particles (count, 2) that live for `life` seconds (count,), with radii of `size` metres (count,)."""
         if not len(position):
             return
         slots = (self._next + np.arange(len(position))) % len(self._age)
         self._next = int(slots[-1] + 1) % len(self._age)
-        self._position[slots] = self._before[slots] = position
-        self._velocity[slots], self._life[slots], self._size[slots] = velocity, life, size
-        self._age[slots], self._kind[slots] = 0.0, kind
+        self.position[slots] = self._before[slots] = position
+        self.velocity[slots], self._life[slots], self._size[slots] = velocity, life, size
+        self._age[slots], self.kind[slots] = 0.0, kind
         self._look[slots] = self._rng.integers(0, 1000, len(slots))
 
 

@@ -8,11 +8,20 @@ import pygame
 
 from game.core.scene import Scene
 from game.shell.app import App
+from game.ui.form import Form
 
 
 class Driver:
+    """Plays one game.
+
+    Attributes:
+        unseen: whether no frame is drawn at all until somebody looks again.
+
+    """
+
     def __init__(self, app: App) -> None:
         self.app = app
+        self.unseen = False
         self._skipped = 0
 
     @property
@@ -23,18 +32,41 @@ class Driver:
     def top_name(self) -> str:
         return type(self.top).__name__
 
+    @property
+    def said(self) -> str:
+        """What the note over all scenes says, or said last."""
+        return self.app._notes._text
+
+    @property
+    def form(self) -> Form:
+        """The widgets of the scene on the screen."""
+        form = getattr(self.top, "_form", None)
+        assert isinstance(form, Form)
+        return form
+
     def frames(self, number: int = 1) -> bool:
-        for _ in range(number):
-            goes_on = self.app.tick()
+        """Play frames. The first, the last and each tenth are drawn: drawing is most of the work, and changes nothing.
+
+        Events come in with the first frame, which may hide or show the window.
+        """
+        for left in reversed(range(number)):
+            goes_on = self._play(drawn=left in (0, number - 1) or left % 10 == 0)
         return goes_on
 
     def skip(self, number: int = 1) -> None:
-        """Play frames of which only every tenth is drawn, of many calls too: drawing is most of the work."""
+        """Play frames of which only every tenth is drawn, of many calls too."""
         for _ in range(number):
             self._skipped += 1
-            self.app.window.minimised = self._skipped % 10 > 0  # anew each time: events may have shown the window
-            self.frames(1)
-        self.app.window.minimised = False
+            self._play(drawn=self._skipped % 10 == 0)
+
+    def _play(self, *, drawn: bool) -> bool:
+        window = self.app.window
+        if (drawn and not self.unseen) or window.minimised:
+            return self.app.tick()
+        window.minimised = True
+        goes_on = self.app.tick()
+        window.minimised = False
+        return goes_on
 
     def wait(self, until: Callable[[], object], seconds: float = 40.0) -> None:
         """Play frames until something holds; the limit is only there so that a failure ends."""

@@ -4,7 +4,6 @@ import pygame
 
 from ai.lander.pilots import Pilot, ScriptedPilot
 from game.scenes.play import PlayScene
-from game.ui.form import Form
 from game.ui.listing import Listing
 from game.ui.widget import Widget
 from tests.support.driver import Driver
@@ -45,12 +44,6 @@ class Player(Driver):
             kind = pygame.CONTROLLERBUTTONDOWN if down else pygame.CONTROLLERBUTTONUP
             event = pygame.Event(kind, button=BUTTONS[name], instance_id=0)
         pygame.event.post(event)
-
-    @property
-    def form(self) -> Form:
-        form = getattr(self.top, "_form", None)
-        assert isinstance(form, Form)
-        return form
 
     def choose(self, label: str) -> None:
         """Go down to the widget of that name, or up to it, and press it."""

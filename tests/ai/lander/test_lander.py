@@ -202,14 +202,14 @@ def test_reward_is_the_sum_of_its_parts_and_potentials_telescope():
     env = LanderEnv(16, 5, "random")
     env.reset()
     rng = np.random.default_rng(1)
-    start = env._situation()
+    start = env.situation()
     totals = dict.fromkeys(("distance", "speed"), 0.0)
     for _ in range(400):
         result = env.step(rng.integers(0, NUM_ACTIONS, 16))
         assert result.reward == pytest.approx(sum(result.components.values()), abs=1e-4)
         for name in totals:
             totals[name] = totals[name] + result.components[name]
-    end = env._situation()
+    end = env.situation()
     weights = RewardWeights()
     assert totals["distance"] == pytest.approx(10 * weights.distance * (start.distance - end.distance), abs=1e-3)
     assert totals["speed"] == pytest.approx(10 * weights.speed * (start.speed - end.speed), abs=1e-3)

@@ -30,11 +30,11 @@ def shaped(before, after, weights):
 def test_in_points_a_flight_is_paid_for_its_two_ends_alone():
     env, rng = LanderEnv(20, 3, "practice"), np.random.default_rng(0)
     env.reset()
-    start, paid = env._situation(), np.zeros(20)
+    start, paid = env.situation(), np.zeros(20)
     while (flying := env.outcome == Outcome.FLYING).any():
         components = env.step(rng.integers(0, NUM_ACTIONS, 20)).components
         paid += flying * sum(components[name] for name in SHAPING)
-    assert paid == pytest.approx(shaped(start, env._situation(), env.weights), abs=1e-2)
+    assert paid == pytest.approx(shaped(start, env.situation(), env.weights), abs=1e-2)
 
 
 @pytest.mark.parametrize("preset", PRESETS)

@@ -36,8 +36,9 @@ from ai.training.gym_task import gym_config
 from ai.training.history import History
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
-from benchmarks.faults import SUBJECTS, damaged, killed, limited
 from main import main
+from tests.support.faults import damaged, killed, limited
+from tests.support.saved import SUBJECTS
 
 ROOT = Path(__file__).parents[3]
 SMALL = PRESETS["modern"].changed(hidden=(8,), num_envs=2, replay_size=200)

@@ -7,7 +7,6 @@ import pygame
 import pytest
 
 from ai.lander.missions import MISSIONS
-from benchmarks.tour import stock
 from game.core import texts
 from game.core.scene import Push, Scene
 from game.drawing import typeface
@@ -22,6 +21,7 @@ from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 from tests.support.driver import Driver
+from tests.support.tour import stock
 
 FLOWN: dict[str, Callable[[Context], Scene]] = {
     "Play": lambda _: PlayScene(3),

@@ -109,7 +109,7 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Calla
     pads.pull_out_all()
     game.frames(3)
     assert game.top_name == "PauseScene"
-    assert game.app._notes._text == texts.PAD_LOST
+    assert game.said == texts.PAD_LOST
     assert not SIGN.search(game.app.context.controls.word(Command.CONFIRM))
     game.key(pygame.K_ESCAPE)
     game.frames(10)
@@ -125,10 +125,10 @@ def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Calla
 def test_a_pad_pulled_out_before_its_turn_is_not_told_of_by_the_name_of_another(game: Driver, pads: VirtualPads):
     pads.plug_in()
     game.frames(2)
-    assert "Virtual" in game.app._notes._text
-    game.app._notes.show("said since")
+    assert "Virtual" in game.said
+    game.app.context.note("said since")
     game.post(pygame.CONTROLLERDEVICEADDED, device_index=7, guid="")
-    assert game.app._notes._text == "said since"
+    assert game.said == "said since"
     assert game.app.context.controls.pads == 1
 
 

@@ -62,7 +62,7 @@ def end(driver: Driver, *start: float) -> None:
     play.waiting = False
     play.flight.env.place(np.ones(1, bool), np.array([start]))
     while play.ending.shown < 1:
-        driver.frames(1)
+        driver.skip()
 
 
 def test_a_ghost_flies_as_the_rival_would_alone():
@@ -174,7 +174,7 @@ def test_hand_over_still_works_and_the_card_tells_of_both(duel):
     driver.key(pygame.K_TAB)
     assert scene(driver).flight.hand is StickHolder.NETWORK
     for _ in range(1500):
-        driver.frames(1)
+        driver.skip()
         if scene(driver).ending.shown >= 1:
             break
     assert scene(driver).flight.outcome is Outcome.LANDED

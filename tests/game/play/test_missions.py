@@ -7,7 +7,6 @@ import pytest
 from ai.agent.agent import DeepQAgent
 from ai.lander.environment import PARAMS, Cause, Outcome
 from ai.lander.missions import MISSIONS
-from benchmarks.missions import fly
 from game.cockpit.hud import flight_readouts
 from game.cockpit.surroundings import surroundings
 from game.core import texts
@@ -30,6 +29,7 @@ from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
+from tests.support.missions import fly
 
 Open = Callable[..., Driver]
 REST = float(PARAMS.pad_top + PARAMS.stand + 0.002)
@@ -44,7 +44,7 @@ def land(driver: Driver) -> None:
     x, y = env.pad[0].tolist()
     env.place(np.ones(1, bool), np.array([[x, y + PARAMS.stand + 0.002, 0, 0, 0, 0]]))
     while scene.ending.shown < 1:
-        driver.frames(1)
+        driver.skip()
 
 
 def test_every_mission_has_words_and_can_be_begun():
@@ -301,7 +301,7 @@ def test_a_flight_that_ends_is_written_down(open_game: Open, context: Context):
 
 def test_the_ghost_of_a_race_flies_as_the_flight_did(book: Driver):
     book.keys(pygame.K_DOWN)
-    word = next(widget for widget in book.top._form.widgets if widget.label == texts.LOGBOOK_RACE)
+    word = next(widget for widget in book.form.widgets if widget.label == texts.LOGBOOK_RACE)
     book.click(word.box.center)
     ghost = play(book)._ghost
     play(book).waiting = False

@@ -61,12 +61,12 @@ def learn(pupil: Player) -> Iterator[str]:
         if (name := challenge.lesson.name) != last:
             yield name
             last = name
-        action = 3 * (env.velocity[0, 1] < -1) if challenge._praise else obey(play(pupil), name)
+        action = 3 * (env.velocity[0, 1] < -1) if challenge.praise else obey(play(pupil), name)
         wanted = {key for key, on in zip(KEYS, (action >= 3, action % 3 == 1, action % 3 == 2), strict=True) if on}
         for key in held ^ wanted:
             pupil.hold(key, down=key in wanted)
         held = wanted
-        if name in ("hand_over", "take_back") and not challenge._praise:
+        if name in ("hand_over", "take_back") and not challenge.praise:
             pupil.press("hand over")
         pupil.frames(1)
     assert tutorial(pupil).through, last
@@ -137,7 +137,7 @@ def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open,
     driver.key(pygame.K_LEFT)
     first = play(driver).flight
     while not first.over:
-        driver.frames(1)
+        driver.skip()
     drawn = Drawn(monkeypatch)
     reason = crash_reason(first.env)
     while play(driver).flight is first:
@@ -156,9 +156,11 @@ def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
         driver.key(pygame.K_n)
     assert challenge.lesson.name == "brake"
     scene = play(driver)
-    assert challenge._line(scene.flight, False, False) == texts.TUTORIAL["brake"][0]
+    controls = driver.app.context.controls
+    keys = {"main": controls.word(Held.MAIN)}
+    assert challenge.words(scene.flight, controls) == texts.TUTORIAL["brake"][0].format(**keys)
     scene.flight.env.place(np.ones(1, bool), np.array([[0.0, 12.0, 0.0, 0.5, 0.0, 0.0]]))
-    assert challenge._line(scene.flight, False, False) == texts.TUTORIAL_RISES
+    assert challenge.words(scene.flight, controls) == texts.TUTORIAL_RISES.format(**keys)
 
 
 def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
@@ -225,8 +227,8 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     driver.key(pygame.K_UP)
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "PauseScene"
-    word = next(word for word in driver.top._form.widgets if word.label == texts.TUTORIAL_LEAVE)
-    driver.top._form.focus(word)
+    word = next(word for word in driver.form.widgets if word.label == texts.TUTORIAL_LEAVE)
+    driver.form.focus(word)
     driver.key(pygame.K_RETURN)
     assert play(driver)._challenge is None
     assert saved(context) == (True, False)

@@ -29,7 +29,7 @@ NETWORKS = {"weighs": Weighs(), "only flies": OnlyFlies(), networks.SCRIPTED: On
 BROKEN = "its target is missing"
 
 
-class Policies:
+class Stored:
     """Stands in for what lies on the disk; the last one is damaged."""
 
     names = (*NETWORKS, "broken")
@@ -44,12 +44,12 @@ class Policies:
 
 
 @pytest.mark.parametrize("count", [1, 16])
-@pytest.mark.parametrize("name", Policies.names)
+@pytest.mark.parametrize("name", Stored.names)
 def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context: Context, monkeypatch, name, count):
-    monkeypatch.setattr(networks, "Policies", Policies)
+    monkeypatch.setattr(networks, "Policies", Stored)
     reading = Reading(open_game(WatchScene(count, seed=2)), monkeypatch)
     driver, watch = reading.driver, reading.driver.top
-    watch._model_choice.choose(Policies.names.index(name))
+    watch._model_choice.choose(Stored.names.index(name))
     swarm = watch.swarm
     for stopped in (False, True):
         watch.stopped = stopped
@@ -72,7 +72,7 @@ def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context:
 def check_watch(reading: Reading, flies: str, broken: bool) -> None:
     words, watch = set(reading.page().words), reading.driver.top
     scripted, count, swarm = flies == networks.SCRIPTED, COUNTS[watch._count], watch.swarm
-    who = {texts.WATCH_SCRIPTED, texts.WATCH_STOPPED, *(texts.WATCH_FLIES.format(name=each) for each in Policies.names)}
+    who = {texts.WATCH_SCRIPTED, texts.WATCH_STOPPED, *(texts.WATCH_FLIES.format(name=each) for each in Stored.names)}
     flying = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=flies)
     assert who & words == {texts.WATCH_STOPPED if watch.stopped else flying}
     assert {texts.HINT_GO, texts.HINT_STOP} & words == {texts.HINT_GO if watch.stopped else texts.HINT_STOP}
@@ -104,23 +104,23 @@ BUTTON = dict.fromkeys([WorkerState.RUNNING, WorkerState.STARTING], texts.TRAIN_
 def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game: Open, monkeypatch, make):
     reading = Reading(open_game(make()), monkeypatch)
     driver, scene = reading.driver, reading.driver.top
-    run = scene.lander_run if make is TrainScene else scene.digit_run
+    learner = scene.lander_run if make is TrainScene else scene.digit_run
     told: list[WorkerState | None] = [None]
     monkeypatch.setattr(TrainingRun, "state", property(lambda _: told[0]))
     for state in (*STATES, *reversed(STATES)):
         told[0] = state
         quiet = {name: lambda *_: None for name in ("pause", "resume", "stop", "close", "step", "send", "set_pace")}
-        run._worker = state and SimpleNamespace(state=state, problem="the disk is full", gone=True,
+        learner._worker = state and SimpleNamespace(state=state, problem="the disk is full", gone=True,
                                                     poll=list, **quiet)  # fmt: skip
         words = set(reading.page(12).words)
         offered = {texts.TRAIN_START, texts.TRAIN_PAUSE, texts.TRAIN_RESUME} & words
         assert offered == {BUTTON.get(state, texts.TRAIN_START)}, state
         assert any("the disk is full" in word for word in words) == (state is WorkerState.FAILED), state
         begins, invites = LINES[make]
-        assert {begins, invites} & words == {begins if run.alive else invites}, state
+        assert {begins, invites} & words == {begins if learner.alive else invites}, state
         if make is DigitTrainingScene:
-            assert (texts.PUPIL_STOP in words) == run.alive, state
-    run._worker = None
+            assert (texts.PUPIL_STOP in words) == learner.alive, state
+    learner._worker = None
     assert driver.top is scene
 
 

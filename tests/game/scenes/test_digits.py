@@ -9,12 +9,12 @@ import pytest
 
 from ai.digits.ablation import stage_accuracy
 from ai.digits.preprocessing import preprocess_strokes
-from benchmarks.digits_robustness import TEMPLATES
 from game.digits.reader import Switches, Verdict
 from game.drawing.tokens import INK
 from game.scenes.digits import DigitsScene
 from game.ui.context import Context
 from tests.support.chores import biased_fix
+from tests.support.digit_styles import TEMPLATES
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]

@@ -3,11 +3,11 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.monkey import Monkey, playground
-from benchmarks.tour import dialogs, makers, scene_types
 from game.core.settings import Settings
 from game.scenes.menu import MenuScene
 from game.ui.context import Context
+from tests.support.monkey import Monkey, playground
+from tests.support.tour import dialogs, makers, scene_types
 
 
 @pytest.fixture

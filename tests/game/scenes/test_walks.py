@@ -10,7 +10,6 @@ import pytest
 
 from ai.digits.classifier import DigitClassifier
 from ai.lander.environment import Outcome
-from benchmarks.tour import scene_types
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
@@ -41,6 +40,7 @@ from game.ui.widget import Widget
 from tests.support.driver import Driver
 from tests.support.flights import kept, scripted
 from tests.support.player import DEVICES, Player
+from tests.support.tour import scene_types
 
 SCREENS: dict[str, Callable[[Context], Scene]] = {
     "MenuScene": lambda _: MenuScene(),

@@ -8,7 +8,6 @@ import numpy as np
 import pygame
 import pytest
 
-from benchmarks.tour import stock
 from game.audio.mixer import Sound
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
@@ -17,6 +16,7 @@ from game.ui.context import Context
 from tests.game.drawing.test_text_size import FLOWN, opened
 from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 from tests.support.driver import Driver
+from tests.support.tour import stock
 
 # Kept so as not to be painted again: of these, drawing may make as it likes.
 PICTURES = (Canvas, pygame.Surface, PaintCache, NightSky)

@@ -54,10 +54,10 @@ def test_fragments_fly_and_bounce_above_the_hills_and_come_to_rest():
     for _ in range(200):
         particles.update()
         live = particles.alive
-        place = particles._position[live]
+        place = particles.position[live]
         assert (place[:, 1] >= relief.height(place[:, 0]) - 1e-9).all()
-        shards = live & (particles._kind == ParticleKind.SHARD)
-        rose += int((particles._velocity[shards, 1] > 0.2).sum())
+        shards = live & (particles.kind == ParticleKind.SHARD)
+        rose += int((particles.velocity[shards, 1] > 0.2).sum())
     assert rose > 50
 
 
@@ -65,12 +65,10 @@ def test_fragments_fly_and_bounce_above_the_hills_and_come_to_rest():
 def test_what_flies_about_falls_as_on_that_world(mission: str):
     env = MISSIONS[mission].begin()
     stage = Stage(env, np.random.default_rng(0))
-    stage.particles._add(
-        ParticleKind.SHARD, np.array([[0.0, 20.0]]), np.zeros((1, 2)), np.array([9.0]), np.array([0.1])
-    )
+    stage.particles.add(ParticleKind.SHARD, np.array([[0.0, 20.0]]), np.zeros((1, 2)), np.array([9.0]), np.array([0.1]))
     for _ in range(60):
         stage.particles.update()
-    assert stage.particles._velocity[0, 1] == pytest.approx(-env.params.gravity)
+    assert stage.particles.velocity[0, 1] == pytest.approx(-env.params.gravity)
 
 
 def test_the_wind_carries_what_is_light_and_no_faster_than_it_goes():
@@ -85,8 +83,8 @@ def test_the_wind_carries_what_is_light_and_no_faster_than_it_goes():
             each.step(np.array([3]))
             stage.follow(np.zeros(1, bool), np.zeros(1, bool))
             assert stage.particles.wind == stage.wind.speed
-            gas = stage.particles.alive & (stage.particles._kind == ParticleKind.AMBER)
-            speeds += (stage.particles._velocity[gas, 0] - each.velocity[0, 0]).tolist()
+            gas = stage.particles.alive & (stage.particles.kind == ParticleKind.AMBER)
+            speeds += (stage.particles.velocity[gas, 0] - each.velocity[0, 0]).tolist()
         sideways.append(np.mean(speeds))
     blowing = [MISSIONS["wind"].conditions.push(np.arange(60) / 60).max() * 16]
     assert stage.wind.speed == 0
@@ -103,7 +101,7 @@ def test_a_jet_raises_more_dust_the_nearer_and_the_stronger_it_is():
             env.place(np.ones(1, bool), np.array([[8.0, height, 0, 0, 0, 0]]))
             env.step(np.array([action]))
             stage.follow(np.zeros(1, bool), np.zeros(1, bool))
-        raised.append(int((stage.particles.alive & (stage.particles._kind == ParticleKind.DUST)).sum()))
+        raised.append(int((stage.particles.alive & (stage.particles.kind == ParticleKind.DUST)).sum()))
     far, middle, near, off = raised
     assert far == 0
     assert off == 0
@@ -115,7 +113,7 @@ def test_dust_is_blown_off_beside_a_deck_and_not_from_it():
     for _ in range(20):
         particles.blow(0.5, 1.0)
     assert particles.alive.any()
-    assert (np.abs(particles._position[particles.alive, 0]) > PARAMS.pad_width / 2).all()
+    assert (np.abs(particles.position[particles.alive, 0]) > PARAMS.pad_width / 2).all()
 
 
 @pytest.mark.parametrize("seed", range(6))
