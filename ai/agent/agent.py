@@ -172,19 +172,19 @@ class DeepQAgent:
 
     @np.errstate(over="ignore", invalid="ignore")  # what overflows is found by the optimizer
     def learn(self) -> float | None:
-        """Take `config.updates` learning steps, and a second pass over successes if asked for; return the mean loss.
+        """Take `config.gradient_steps` steps, and a second pass over successes if asked for; return the mean loss.
 
         None before the warm-up is over. The targets of all these steps are computed in one go beforehand. Raises
         DivergenceError when a number is no longer finite.
         """
         config = self.config
-        if self.replay.added < config.warm_up:
+        if self.replay.added < config.learning_starts:
             return None
         self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip
-        self.loss, self.mean_q = self._learn_from(self.replay, config.batch_size, config.updates)
+        self.loss, self.mean_q = self._learn_from(self.replay, config.batch_size, config.gradient_steps)
         if config.success_pass and len(self.successes) >= config.success_batch_size:
-            self._learn_from(self.successes, config.success_batch_size, config.updates, follow=False)
+            self._learn_from(self.successes, config.success_batch_size, config.gradient_steps, follow=False)
         return self.loss
 
     def _learn_from(
@@ -249,7 +249,7 @@ class DeepQAgent:
     def _count(self) -> None:
         """Count a learning step of the first pass, and update the target network when it is due."""
         self.train_count += 1
-        if self.train_count % self.config.target_every == 0:
+        if self.train_count % self.config.target_update_interval == 0:
             self._follow()
 
     def change(self, config: Config) -> None:
@@ -265,7 +265,7 @@ class DeepQAgent:
 
     def _follow(self) -> None:
         """Move the target network towards the online one."""
-        rate = self.config.target_rate
+        rate = self.config.tau
         if rate >= 1.0:
             self.target.values = self.online.values
         else:

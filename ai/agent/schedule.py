@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
 # Settings that define schedules, each with the one that acts in its place once it has no effect.
 _SCHEDULED: Final = {
-    "learning_rate": "final_learning_rate", "final_learning_rate": "learning_rate", "horizon": "final_learning_rate",
-    "care": "horizon", "epsilon_start": "epsilon_end", "epsilon_end": "epsilon_start", "epsilon_decay": "epsilon_end",
+    "learning_rate": "final_learning_rate", "final_learning_rate": "learning_rate",
+    "schedule_decisions": "final_learning_rate", "final_touchdown_limits": "schedule_decisions",
+    "epsilon_start": "epsilon_end", "epsilon_end": "epsilon_start", "epsilon_decay": "epsilon_end",
     "epsilon_decisions": "epsilon_end", "epsilon_spread": "num_envs",
 }  # fmt: skip
 
@@ -53,17 +54,17 @@ def geometric(start: float, end: float, factor: float, done: int) -> float:
 
 def learning_rate(config: Config, decisions: int) -> float:
     """Return the learning rate after so many decisions."""
-    return linear(config.learning_rate, config.final_learning_rate, decisions, config.horizon)
+    return linear(config.learning_rate, config.final_learning_rate, decisions, config.schedule_decisions)
 
 
 def importance(config: Config, decisions: int) -> float:
     """Return the importance-sampling exponent, which says how far the bias of prioritised replay is corrected."""
-    return linear(config.importance_exponent, 1.0, decisions, config.horizon)
+    return linear(config.importance_exponent, 1.0, decisions, config.schedule_decisions)
 
 
-def care(config: Config, decisions: int) -> float:
+def touchdown_limits(config: Config, decisions: int) -> float:
     """Return the limits of a touchdown after so many decisions, as a share of the real ones."""
-    return linear(1.0, config.care, decisions, config.horizon)
+    return linear(1.0, config.final_touchdown_limits, decisions, config.schedule_decisions)
 
 
 def exploration(config: Config, decisions: int, episodes: int) -> float:
@@ -107,5 +108,6 @@ def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ..
     """Return all scheduled values at one moment, rounded so that they can be compared."""
     each = exploration_of_each(config, exploration(config, decisions, episodes))
     corrected = importance(config, decisions) if config.prioritised else 0.0
-    decided = (learning_rate(config, decisions), care(config, decisions), corrected, float(each[0]), float(each[-1]))
+    limits = touchdown_limits(config, decisions)
+    decided = (learning_rate(config, decisions), limits, corrected, float(each[0]), float(each[-1]))
     return tuple(round(value, 12) for value in decided)

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.config import DigitConfig
-from ai.digits.training import LIVE, DigitTraining
+from ai.digits.training import DigitTraining
 from ai.nn import Array
 from ai.training.history import REVERTED
 from ai.training.messages import ChangeSetting, Refused, Save
@@ -219,12 +219,11 @@ class _LiveDigits:
         if isinstance(command, RestoreBest):
             return self._go_back()
         try:
-            if command.name not in LIVE:
-                raise ValueError(f"{command.name} cannot change while a run goes on")
-            self.training.change(self.training.config.changed(**{command.name: command.value}))
+            self.training.change(self.training.config.turned(command.name, command.value))
         except ValueError as error:
             return [Refused(command, str(error))]
-        return [DigitSettingChanged(self.training.seconds, command.name, command.value)]
+        name = self.training.config.name_now(command.name)
+        return [DigitSettingChanged(self.training.seconds, name, command.value)]
 
     def _go_back(self) -> list[Message]:
         if self._best is None:

@@ -82,7 +82,7 @@ class DigitTraining:
     @property
     def learning_rate(self) -> float:
         """Learning rate: it rises in a straight line, then falls along half a cosine (Loshchilov & Hutter 2017)."""
-        config, warm = self.config, self.config.warm_up * self.steps_per_epoch
+        config, warm = self.config, self.config.warm_up_epochs * self.steps_per_epoch
         rise = min(1.0, (self.step + 1) / warm) if warm else 1.0
         share = min(1.0, self.step / self.steps)
         fall = 0.5 + 0.5 * math.cos(math.pi * share)
@@ -102,8 +102,8 @@ class DigitTraining:
         batch = self._order[place * config.batch_size : (place + 1) * config.batch_size]
         rng = np.random.default_rng((self.seed, 2, self.step))
         images, labels = self._changed(self.images[batch], rng), self.labels[batch]
-        targets = np.full((len(batch), 10), config.smoothing / 10, np.float32)
-        targets[np.arange(len(batch)), labels] += 1 - config.smoothing
+        targets = np.full((len(batch), 10), config.label_smoothing / 10, np.float32)
+        targets[np.arange(len(batch)), labels] += 1 - config.label_smoothing
 
         self.optimizer.learning_rate = rate = self.learning_rate
         for layer in network.layers:
@@ -114,7 +114,7 @@ class DigitTraining:
         loss = network.correct(outputs, targets, self.optimizer)
         self.step += 1
         # A young average follows faster, so that it soon forgets the initial weights.
-        keep = min(config.averaging, self.step / (self.step + 10))
+        keep = min(config.ema_decay, self.step / (self.step + 10))
         if keep:
             self.average += (1 - keep) * (network.values - self.average)
         else:
@@ -132,7 +132,7 @@ class DigitTraining:
         if not self.config.augmentation:
             return images
         changed = augment(images, rng, Strength().times(self.config.augmentation))
-        same = rng.random(len(images)) < self.config.original
+        same = rng.random(len(images)) < self.config.unaugmented
         changed[same] = images[same]
         return changed
 

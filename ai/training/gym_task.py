@@ -22,9 +22,9 @@ FAILED: Final = 2
 # Found by trial on CartPole-v1 and LunarLander-v3; docs/environments.md has the measurements.
 GYM: Final = Config(
     env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0,
-    learning_rate=2e-3, final_learning_rate=3e-4, horizon=700_000, discount=0.995, n_step=3, batch_size=128,
-    updates=4, replay_size=1_000_000, warm_up=5_000, epsilon_decisions=40_000, epsilon_end=0.05, epsilon_spread=0.7,
-    hidden=(64, 64), target_rate=0.005, reward_scale=0.01,
+    learning_rate=2e-3, final_learning_rate=3e-4, schedule_decisions=700_000, discount=0.995, n_step=3,
+    batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
+    epsilon_end=0.05, epsilon_spread=0.7, hidden=(64, 64), tau=0.005, reward_scale=0.01,
 )  # fmt: skip
 
 

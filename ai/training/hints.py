@@ -46,7 +46,8 @@ class Hint:
     """Hint at a fault, by the name of its rule.
 
     Attributes:
-        remedy: values to try, by the name of a knob: a field of Config, or "weights.time" for a part of the reward.
+        remedy: values to try, by the name of a knob: a field of Config, or "reward_weights.time" for one of its
+            parts.
         back_to: how many decisions the run had taken when it was at its best, if it should go back there.
 
     """
@@ -161,7 +162,7 @@ def _q_runs_away(run: RecentCurves) -> bool:
 
 def _target_stands(run: RecentCurves) -> bool:
     """Whether the target network lags far behind, and with it the targets, and the flights where it flies them."""
-    return run.config.target_every / run.config.target_rate > _TARGET_STEPS
+    return run.config.target_update_interval / run.config.tau > _TARGET_STEPS
 
 
 def _short_sight(run: RecentCurves) -> bool:
@@ -171,7 +172,11 @@ def _short_sight(run: RecentCurves) -> bool:
 
 def _no_guide(run: RecentCurves) -> bool:
     """Whether no part of the reward tells a lander on its way that it comes closer."""
-    return run.is_late() and run.last("landed") < 0.6 and not any(getattr(run.config.weights, part) for part in _PARTS)
+    return (
+        run.is_late()
+        and run.last("landed") < 0.6
+        and not any(getattr(run.config.reward_weights, part) for part in _PARTS)
+    )
 
 
 def _dead_units(run: RecentCurves) -> bool:
@@ -200,7 +205,7 @@ def _plateau(run: RecentCurves) -> bool:
 def _overfed(run: RecentCurves) -> bool:
     """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
     config = run.config
-    return config.updates * config.batch_size > 500 * config.num_envs
+    return config.gradient_steps * config.batch_size > 500 * config.num_envs
 
 
 def _clipped(run: RecentCurves) -> bool:
@@ -210,7 +215,7 @@ def _clipped(run: RecentCurves) -> bool:
 
 def returns(config: Config) -> tuple[float, float]:
     """Return the least and the most that a flight could earn, as the network sees it."""
-    weights = config.weights
+    weights = config.reward_weights
     shaped = 10 * weights.distance * _FARTHEST + 10 * weights.speed * _FASTEST + weights.alignment
     steady = weights.tilt + weights.engine + weights.switch + weights.time  # at every physics step
     lost = min(0.0, steady) * _FLIGHT - abs(shaped) - abs(weights.terminal)
@@ -245,8 +250,8 @@ def _slower(factor: float) -> Callable[[RecentCurves], Mapping[str, Any]]:
 def _calm_q(run: RecentCurves) -> Mapping[str, Any]:
     if not run.config.double:
         return {"double": True}
-    if run.config.target_rate > 0.05 and run.config.target_every < 50:
-        return {"target_rate": 0.005}
+    if run.config.tau > 0.05 and run.config.target_update_interval < 50:
+        return {"tau": 0.005}
     return _slower(10)(run)
 
 
@@ -269,9 +274,13 @@ def _for_hovering(run: RecentCurves) -> Mapping[str, Any]:
         return {"random_main": 0.3}
     if config.spawn in _FAR_SPAWNS:
         return {"spawn": "practice"}
-    if config.weights.time > paid.time:
-        return {"weights.time": paid.time}
-    return _for_short_sight(config) or {"weights.time": round(1.5 * config.weights.time, 3)}
+    if config.reward_weights.time > paid.time:
+        return {"reward_weights.time": paid.time}
+    return _for_short_sight(config) or {"reward_weights.time": round(1.5 * config.reward_weights.time, 3)}
+
+
+def _usual_guide(_: RecentCurves) -> Mapping[str, Any]:
+    return {f"reward_weights.{part}": getattr(RewardWeights(), part) for part in _PARTS}
 
 
 def _for_plateau(run: RecentCurves) -> Mapping[str, Any]:
@@ -295,14 +304,14 @@ def _more_memory(run: RecentCurves) -> Mapping[str, Any]:
 
 
 def _nearer_target(run: RecentCurves) -> Mapping[str, Any]:
-    return {"target_every": 50} if run.config.target_rate > 0.5 else {"target_every": 1, "target_rate": 0.005}
+    return {"target_update_interval": 50} if run.config.tau > 0.5 else {"target_update_interval": 1, "tau": 0.005}
 
 
 def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
     """Take fewer steps where there are many, or let more landers feed them."""
     config = run.config
     enough = 500 * config.num_envs // config.batch_size
-    return {"updates": enough} if config.updates > 12 and enough else {"num_envs": 256}
+    return {"gradient_steps": enough} if config.gradient_steps > 12 and enough else {"num_envs": 256}
 
 
 def _longer(run: RecentCurves) -> Mapping[str, Any]:
@@ -322,7 +331,7 @@ RULES: Final = (
     HintRule("collapsed", _collapsed, _slower(3), RecentCurves.best_moment),
     HintRule("target_stands", _target_stands, _nearer_target),
     HintRule("short_sight", _short_sight, lambda _: {"discount": 0.985}),
-    HintRule("no_guide", _no_guide, lambda _: {f"weights.{part}": getattr(RewardWeights(), part) for part in _PARTS}),
+    HintRule("no_guide", _no_guide, _usual_guide),
     HintRule("crashes", _crashes, _for_crashes),
     HintRule("hovers", _hovers, _for_hovering),
     HintRule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory),

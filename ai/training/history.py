@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from ai.agent.config import Config
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
 from ai.lander.rewards import REWARDS
@@ -285,7 +286,8 @@ def _alteration(told: dict[str, Any]) -> SettingChange:
         raise ValueError(f"{brief(repr(told['name']), 40)} is no name of a knob")
     if not isinstance(told["after"], bool | int | float | str):
         raise ValueError(f"{brief(repr(told['after']), 40)} is no value of a knob")
-    return SettingChange(count_of(told["decisions"]), told["name"], told["before"], told["after"])
+    name = Config.name_now(told["name"])  # an older run has the names of its day
+    return SettingChange(count_of(told["decisions"]), name, told["before"], told["after"])
 
 
 def _validation(told: dict[str, Any]) -> Validation:

@@ -52,7 +52,7 @@ class NetworkState:
 
 @dataclass(frozen=True)
 class ChangeSetting:
-    """Command to turn a live knob, by its field's name in Config; "weights.time" is one of the reward's weights."""
+    """Command to turn a live knob, by its field's name in Config; "reward_weights.time" is a part of the reward."""
 
     name: str
     value: Any

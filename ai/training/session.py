@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import fields, replace
 from itertools import repeat
 from operator import attrgetter
 from pathlib import Path
@@ -51,7 +50,7 @@ from ai.training.task import VALIDATION_SEED
 
 __all__ = [
     "CAREFUL", "REVERTED", "TAUGHT", "AddDemonstrations", "ChangeSetting", "NetworkState", "Refused",
-    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "agent_of", "live", "turned",
+    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "agent_of", "live",
 ]  # fmt: skip
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
@@ -105,17 +104,6 @@ def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
     agent.go_back(checkpoint.values, _scale_of(agent, checkpoint))
     agent.decisions = checkpoint.decisions
     return agent
-
-
-def turned(config: Config, name: str, value: Any) -> Config:
-    """Return the configuration with one live knob turned, named as in Change; raises ValueError if it can't be."""
-    name, _, part = name.partition(".")
-    knobs = {knob.name: knob.metadata["live"] for knob in fields(Config)}
-    if name not in knobs or (part and (name, part in vars(config.weights)) != ("weights", True)):
-        raise ValueError(f"there is no setting called {name}{part and '.'}{part}")
-    if not knobs[name]:
-        raise ValueError(f"{name} cannot change while a run goes on")
-    return config.changed(**{name: replace(config.weights, **{part: value}) if part else value})
 
 
 class _ValidationFlights:
@@ -298,14 +286,15 @@ class _LiveRun:
     def _change(self, command: ChangeSetting) -> None:
         before = self.training.config
         try:
-            self.training.change(turned(before, command.name, command.value))
+            self.training.change(before.turned(command.name, command.value))
         except ValueError as error:
             self._told.append(Refused(command, str(error)))
             return
-        value = attrgetter(command.name)
+        name = before.name_now(command.name)
+        value = attrgetter(name)
         after = value(self.training.config)
         if after != value(before):
-            self._alter(command.name, value(before), after, self._amends(command.name, after))
+            self._alter(name, value(before), after, self._amends(name, after))
         self._told.append(self._look()[1])
 
     def _teach(self, command: AddDemonstrations) -> None:

@@ -20,7 +20,6 @@ from ai.training.session import (
     Saved,
     SwarmState,
     live,
-    turned,
 )
 from game.core import texts
 from game.core.collection import LibraryError
@@ -174,6 +173,6 @@ class LanderRun(TrainingRun):
 
 def _turned(config: Config, name: str, value: Any) -> Config:
     try:
-        return turned(config, name, value)
+        return config.turned(name, value)
     except ValueError:  # the worker has accepted the value already: only the display is concerned
         return config

@@ -11,7 +11,9 @@ from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
 from ai.training.loop import LANDER_SYMMETRY
 
-SMALL = Config(hidden=(16,), batch_size=8, updates=2, warm_up=8, replay_size=200, n_step=1, num_envs=4, mirror=False)
+SMALL = Config(
+    hidden=(16,), batch_size=8, gradient_steps=2, learning_starts=8, replay_size=200, n_step=1, num_envs=4, mirror=False
+)
 
 
 def result(observation, reward, terminated, truncated=None):
@@ -63,7 +65,7 @@ def test_an_update_moves_only_the_chosen_action_towards_its_target():
 
 
 def test_the_target_network_is_copied_every_so_many_steps():
-    agent = fed(SMALL.changed(target_every=4, target_rate=1.0, updates=3))
+    agent = fed(SMALL.changed(target_update_interval=4, tau=1.0, gradient_steps=3))
     first = agent.target.values.copy()
     agent.learn()
     assert np.array_equal(agent.target.values, first)
@@ -73,20 +75,20 @@ def test_the_target_network_is_copied_every_so_many_steps():
 
 
 def test_a_soft_target_follows_by_its_rate():
-    agent = fed(SMALL.changed(target_every=1, target_rate=0.25, updates=1))
+    agent = fed(SMALL.changed(target_update_interval=1, tau=0.25, gradient_steps=1))
     before = agent.target.values.copy()
     agent.learn()
     assert agent.target.values == pytest.approx(0.75 * before + 0.25 * agent.online.values, abs=1e-6)
 
 
 def test_nothing_is_learned_before_the_warm_up():
-    agent = fed(SMALL.changed(warm_up=41))
+    agent = fed(SMALL.changed(learning_starts=41))
     assert agent.learn() is None
     assert agent.train_count == 0
 
 
 def test_a_memory_that_is_pruned_below_the_warm_up_does_not_stop_learning():
-    agent = fed(SMALL.changed(warm_up=60, replay_size=100, replay_prune=90), count=56)
+    agent = fed(SMALL.changed(learning_starts=60, replay_size=100, replay_prune=90), count=56)
     assert agent.learn() is None
     sizes, learnt = [], []
     for seed in range(1, 10):
@@ -122,7 +124,7 @@ def test_the_same_seed_gives_the_same_network_bit_for_bit(changes):
 def test_it_learns_a_problem_whose_answer_is_known():
     """Two actions, one paid: Q must come out as the reward, and the policy as the paid action."""
     agent = DeepQAgent(3, 2, SMALL.changed(learning_rate=5e-3, final_learning_rate=5e-3, reward_scale=1.0,
-                                           batch_size=32, updates=10, fly_target=False))  # fmt: skip
+                                           batch_size=32, gradient_steps=10, fly_target=False))  # fmt: skip
     rng = np.random.default_rng(0)
     for _ in range(60):
         states = rng.normal(size=(4, 3)).astype(np.float32)
@@ -210,14 +212,14 @@ def fed_with_successes(config):
 
 
 def test_loss_and_mean_q_tell_of_all_memories_not_of_the_successes_of_the_second_pass():
-    both, first = fed_with_successes(SMALL.changed(updates=1)), fed(SMALL.changed(updates=1))
+    both, first = fed_with_successes(SMALL.changed(gradient_steps=1)), fed(SMALL.changed(gradient_steps=1))
     assert both.learn() == first.learn() == both.loss
     assert both.mean_q == first.mean_q
     assert both.optimizer.steps == 2 * first.optimizer.steps
 
 
 def test_the_target_counts_training_calls_and_the_second_pass_belongs_to_its_call():
-    agent = fed_with_successes(SMALL.changed(target_every=5, target_rate=1.0, updates=1))
+    agent = fed_with_successes(SMALL.changed(target_update_interval=5, tau=1.0, gradient_steps=1))
     first, changed = agent.target.values.copy(), []
     for _ in range(15):
         before = agent.target.values.copy()
@@ -230,7 +232,7 @@ def test_the_target_counts_training_calls_and_the_second_pass_belongs_to_its_cal
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_save_and_load(tmp_path, preset):
-    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, PRESETS[preset].changed(warm_up=1))
+    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, PRESETS[preset].changed(learning_starts=1))
     agent.save(tmp_path / "agent")
     loaded = DeepQAgent.load(tmp_path / "agent")
     states = np.random.default_rng(0).normal(size=(10, NUM_FEATURES)).astype(np.float32)

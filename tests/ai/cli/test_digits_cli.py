@@ -27,7 +27,7 @@ from ai.nn import (
 from main import main
 
 ROOT = Path(__file__).parents[3]
-SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, averaging=0.9)
+SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, ema_decay=0.9)
 
 
 @pytest.fixture(scope="module")
@@ -153,10 +153,10 @@ def test_train_resume_evaluate(tmp_path, capsys):
     ):  # fmt: skip
         assert main(["train-digits", "--resume", run, *changes]) == 1
         assert named in capsys.readouterr().err
-    assert main(["train-digits", "--resume", run, "--epochs", "3", "--seed", "0", "--set", "smoothing=0.1"]) == 0
+    assert main(["train-digits", "--resume", run, "--epochs", "3", "--seed", "0", "--set", "label_smoothing=0.1"]) == 0
     described = json.loads((tmp_path / "run" / "training.json").read_text())
     assert described["preset"] == "classic"
-    assert described["changes"] == {"hidden": [16], "held_out": 100, "epochs": 3, "smoothing": 0.1}
+    assert described["changes"] == {"hidden": [16], "held_out": 100, "epochs": 3, "label_smoothing": 0.1}
     assert described["epochs"] == 3
     assert len(described["history"]) == 3
     assert not (tmp_path / "run" / "last.npz").exists(), "there is nothing to go on with"
@@ -211,7 +211,7 @@ def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, 
     if trouble == "full":
         monkeypatch.setattr(ai.digits.checkpoints, "atomic_folder", full)
     held_out = 0 if trouble == "unmeasured" else 100
-    small = ["--preset", "classic", "--set", "hidden=[8]", "--set", f"held_out={held_out}", "--set", "averaging=0"]
+    small = ["--preset", "classic", "--set", "hidden=[8]", "--set", f"held_out={held_out}", "--set", "ema_decay=0"]
     run = tmp_path / "run"
     assert main(["train-digits", *small, "--output", str(run)]) == 1
     told = capsys.readouterr().err

@@ -78,7 +78,7 @@ class TestLearningOthersEnvironments:
 
     def test_cart_pole_is_learnt_kept_evaluated_and_gone_on_with(self, tmp_path, capsys):
         run = tmp_path / "run"
-        assert train_cart_pole(run, 10_000, "--set", "epsilon_decisions=5000", "--set", "warm_up=500") == 0
+        assert train_cart_pole(run, 10_000, "--set", "epsilon_decisions=5000", "--set", "learning_starts=500") == 0
         assert "mean return" in capsys.readouterr().out
         described = json.loads((run / "training.json").read_text())
         assert (described["env"], described["preset"]) == ("CartPole-v1", "gym")
@@ -97,7 +97,7 @@ class TestLearningOthersEnvironments:
         assert "--spawn is for the lander" in capsys.readouterr().err
 
     def test_the_same_seed_gives_the_same_network(self):
-        runs = [Training(gym_config("CartPole-v1").changed(warm_up=64, updates=1), 5) for _ in range(2)]
+        runs = [Training(gym_config("CartPole-v1").changed(learning_starts=64, gradient_steps=1), 5) for _ in range(2)]
         for training in runs:
             for _ in range(40):
                 training.advance()
@@ -190,7 +190,7 @@ class TestOurLanderForOthers:
         assert flights > 10
 
     def test_the_deep_q_agent_takes_it_from_there(self):
-        training = Training(gym_config(LANDER).changed(num_envs=2, warm_up=8, updates=1))
+        training = Training(gym_config(LANDER).changed(num_envs=2, learning_starts=8, gradient_steps=1))
         for _ in range(20):
             training.advance()
         assert training.agent.train_count > 0

@@ -30,10 +30,11 @@ from ai.training.session import (
     SwarmState,
     agent_of,
     live,
-    turned,
 )
 
-TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000, spawn="near")
+TINY = Config(
+    hidden=(8,), num_envs=32, learning_starts=64, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near"
+)
 
 
 @pytest.fixture
@@ -166,8 +167,8 @@ def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     told_in(run, 30)
     answer, _ = run.send(ChangeSetting("learning_rate", 0.05))
     assert answer == SettingChange(29 * 32, "learning_rate", TINY.learning_rate, 0.05)
-    answer, _ = run.send(ChangeSetting("weights.time", -1.0))
-    assert answer == SettingChange(29 * 32, "weights.time", TINY.weights.time, -1.0)
+    answer, _ = run.send(ChangeSetting("reward_weights.time", -1.0))
+    assert answer == SettingChange(29 * 32, "reward_weights.time", TINY.reward_weights.time, -1.0)
     assert of(SwarmState, next(run))[0].decisions == 30 * 32
 
 
@@ -176,7 +177,7 @@ def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     [
         ("no_such_knob", 1, "no setting"),
         ("", 1, "no setting"),
-        ("weights.charm", 1.0, "no setting"),
+        ("reward_weights.charm", 1.0, "no setting"),
         ("discount.time", 1.0, "no setting"),
         ("hidden", (4,), "cannot change"),
         ("num_envs", 4, "cannot change"),
@@ -185,9 +186,9 @@ def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
         ("learning_rate", "fast", "between"),
         ("batch_size", 2.5, "whole"),
         ("double", 1, "yes or no"),
-        ("weights.time", float("inf"), "finite"),
-        ("weights.time", None, "finite"),
-        ("weights", 3, "finite"),
+        ("reward_weights.time", float("inf"), "finite"),
+        ("reward_weights.time", None, "finite"),
+        ("reward_weights", 3, "finite"),
     ],
 )
 def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin, name, value, words):
@@ -202,11 +203,12 @@ def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin, name,
 
 
 def live_knobs():
-    return [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "weights"]
+    return [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "reward_weights"]
 
 
 ELSEWHERE = {
-    "batch_size": 64, "updates": 3, "mirror": False, "double": False, "fly_target": False, "target_every": 7,
+    "batch_size": 64, "gradient_steps": 3, "mirror": False, "double": False, "fly_target": False,
+    "target_update_interval": 7,
     "success_pass": True, "success_batch_size": 16, "epsilon_decisions": 100, "epsilon_decay": 0.91,
     "steadiness": 0.5, "discount": 0.9,
 }  # fmt: skip
@@ -216,7 +218,9 @@ ELSEWHERE = {
 def test_every_live_knob_makes_a_difference(begin, name):
     # What a knob needs for its effect to show within a few flights.
     config = TINY.changed(success_pass=name == "success_batch_size", n_step=3, gradient_clip=0.5)
-    config = config.changed(epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, horizon=1000, reward_scale=1.0)
+    config = config.changed(
+        epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, schedule_decisions=1000, reward_scale=1.0
+    )
     config = config.changed(epsilon_decisions=0 if name == "epsilon_decay" else 2000)
     value = ELSEWHERE.get(name, getattr(config, name) * 0.8)
     run, quiet = begin(config), begin(config)
@@ -241,16 +245,18 @@ def test_every_live_knob_makes_a_difference(begin, name):
 def test_turned_weights_pay_in_the_run_that_goes_on(begin):
     run = begin(TINY.changed(spawn="fixed"))
     told_in(run, 20)
-    run.send(ChangeSetting("weights.time", -100.0))
+    run.send(ChangeSetting("reward_weights.time", -100.0))
     before = of(SwarmState, next(run))[0].earned
     after = of(SwarmState, next(run))[0].earned
     assert ((after - before) < -300).all()  # four physics steps
 
 
 def test_turning_gives_a_configuration():
-    assert turned(TINY, "weights.feet", 2.0) == TINY.changed(weights=replace(TINY.weights, feet=2.0))
-    assert turned(TINY, "weights", RewardWeights(feet=3.0)).weights.feet == 3.0
-    assert turned(TINY, "updates", 2) == TINY.changed(updates=2)
+    assert TINY.turned("reward_weights.feet", 2.0) == TINY.changed(
+        reward_weights=replace(TINY.reward_weights, feet=2.0)
+    )
+    assert TINY.turned("reward_weights", RewardWeights(feet=3.0)).reward_weights.feet == 3.0
+    assert TINY.turned("gradient_steps", 2) == TINY.changed(gradient_steps=2)
 
 
 def test_it_goes_back_to_a_checkpoint_and_time_goes_on(begin):
@@ -270,11 +276,11 @@ def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
     history = History()
     for message in told_in(run, 100):
         history.append(message)
-    change, _ = run.send(ChangeSetting("updates", 2))
+    change, _ = run.send(ChangeSetting("gradient_steps", 2))
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
     again = begin(Config(), 99, resume=tmp_path / "run")
     first = next(again)
-    assert of(RunStarted, first) == [RunStarted(TINY.changed(updates=2), 5, 99 * 32)]
+    assert of(RunStarted, first) == [RunStarted(TINY.changed(gradient_steps=2), 5, 99 * 32)]
     assert np.array_equal(of(NetworkState, first)[0].values, DeepQAgent.load(tmp_path / "run" / "last").online.values)
     kept = History.read(tmp_path / "run")
     assert np.array_equal(kept.points, history.points, equal_nan=True)

@@ -37,7 +37,9 @@ from game.ui.widget import Widget
 from game.ui.widgets import Choice
 from tests.support.driver import Driver
 
-SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1)
+SMALL = PRESETS["modern"].changed(
+    num_envs=4, hidden=(8,), learning_starts=64, replay_size=1000, batch_size=16, gradient_steps=1
+)
 
 
 @pytest.fixture
@@ -316,7 +318,7 @@ def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp
 
 
 def test_numbers_that_run_away_are_told(train: Driver) -> None:
-    wild = SMALL.changed(cost="mse", reward_scale=1.0, weights=RewardWeights(terminal=1e30))
+    wild = SMALL.changed(cost="mse", reward_scale=1.0, reward_weights=RewardWeights(terminal=1e30))
     train.top.knobs.set_config(wild, 0)
     train.key(pygame.K_RETURN)
     train.wait(lambda: train.top.lander_run.state is WorkerState.FAILED, 60)
