@@ -27,8 +27,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.agent import build_network
 from ai.agent.config import PRESETS, Config
+from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn.inspection import NetworkHealth
 from ai.training.history import Point

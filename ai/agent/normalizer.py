@@ -21,7 +21,7 @@ class Normalizer:
         self.squares: Doubles = np.zeros(num_features)  # summed squares of the distances from the mean
         self._refresh()
 
-    def watch(self, observations: Floats) -> None:
+    def update(self, observations: Floats) -> None:
         """Update mean and deviation by n more observations (n, features) (Chan, Golub and LeVeque 1983)."""
         new, mean = len(observations), observations.mean(axis=0, dtype=float)
         shift, total = mean - self.mean, self.count + new
@@ -31,7 +31,7 @@ class Normalizer:
         self._refresh()
 
     def __call__(self, observations: Floats) -> Floats:
-        """Scale observations (n, features)."""
+        """Return observations (n, features) in standard deviations from the mean, clipped at REACH, float32."""
         scaled: Floats = np.clip((observations - self._shift) * self._factor, -REACH, REACH)
         return scaled
 

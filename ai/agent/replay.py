@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ai.agent.config import Config
 from ai.common.environment import Doubles, Floats, Ints
 
 
@@ -26,7 +27,15 @@ class MemoryCell(NamedTuple):
 
 
 class ReplayBuffer:
-    """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once."""
+    """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once.
+
+    Drawing is uniform, with replacement (Lin 1992). Raises ValueError for a `prune` outside 1 to `capacity`.
+
+    Attributes:
+        cells: the transitions as views, each (capacity, ...), in no particular order.
+        importance: exponent of the importance-sampling weights, without effect where drawing is uniform.
+
+    """
 
     def __init__(self, capacity: int, num_features: int, prune: int = 1) -> None:
         if not 1 <= prune <= capacity:
@@ -42,6 +51,7 @@ class ReplayBuffer:
         self.start = 0  # where the oldest lies
         self.size = 0
         self.added = 0  # ever, dropped ones included
+        self.importance = 0.0
 
     def __len__(self) -> int:
         return self.size
@@ -89,8 +99,8 @@ def _fields(records: NDArray[np.void]) -> MemoryCell:
 class PrioritisedReplayBuffer(ReplayBuffer):
     """Prioritised replay: sampling with probability proportional to |error|^exponent (Schaul et al. 2016).
 
-    New ones get the largest priority seen, so that each is drawn soon. `importance`, which the owner raises
-    towards 1, says how far the weights undo the bias that this brings.
+    New ones get the largest priority seen, so that each is drawn soon. `importance`, which the agent raises
+    towards 1, is the exponent β by which the weights undo the bias that this brings; `exponent` is the paper's α.
     """
 
     def __init__(
@@ -165,3 +175,12 @@ class SumTree:
             left_over -= left * right
             nodes += right
         return nodes - self.first_leaf
+
+
+def make_replay(config: Config, num_features: int) -> ReplayBuffer:
+    """Make the empty replay buffer of a configuration, for observations of so many features."""
+    if config.prioritised:
+        return PrioritisedReplayBuffer(
+            config.replay_size, num_features, config.replay_prune, config.priority_exponent, config.importance_exponent
+        )
+    return ReplayBuffer(config.replay_size, num_features, config.replay_prune)

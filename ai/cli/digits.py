@@ -97,7 +97,7 @@ def _resumed(arguments: argparse.Namespace) -> DigitTraining:
     training = resume_digit_run(arguments.resume)
     wanted = _config(arguments, training.config)
     refuse_fixed(training.config, wanted, training.seed, arguments.seed)
-    training.change(wanted)
+    training.apply_live(wanted)
     return training
 
 
@@ -112,7 +112,7 @@ def _keep_training(training: DigitTraining, seconds: float | None, output: Path)
                 _advance(training, seconds, output, stop)
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
-                training.rewind()
+                training.restore_best()
             # Save before measuring, which takes a while: the user may stop the program meanwhile.
             output, described = keep(partial(save_digit_run, training), output)
         if not stopped:

@@ -72,7 +72,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.agent.agent import KIND
+    from ai.agent.storage import KIND
     from ai.nn.folder import claimed_folder
     from ai.training.checkpoints import TrainingClock
 
@@ -113,7 +113,7 @@ def _resumed(arguments: argparse.Namespace) -> Training:
     training = resume_run(arguments.resume, env=arguments.env)
     wanted = _config(arguments, training.config)
     refuse_fixed(training.config, wanted, training.seed, arguments.seed)
-    training.change(wanted)
+    training.apply_live(wanted)
     if arguments.validation is not None:
         training.validation_episodes = arguments.validation
     return training
@@ -121,7 +121,7 @@ def _resumed(arguments: argparse.Namespace) -> Training:
 
 def _keep_training(training: Training, clock: TrainingClock, output: Path) -> int:
     """Train, keep what comes of it, and return the exit code."""
-    from ai.training.checkpoints import rewind, save_run
+    from ai.training.checkpoints import save_run
 
     stopped = ""
     try:
@@ -130,7 +130,7 @@ def _keep_training(training: Training, clock: TrainingClock, output: Path) -> in
                 _advance(training, clock, output, stop)
             except FloatingPointError as error:
                 stopped = f"training stopped: {error}. "
-                rewind(training)
+                training.restore_best()
             # Save before measuring, which takes seconds: the user may stop the program meanwhile.
             output, _ = keep(partial(save_run, training), output)
         if not stopped:

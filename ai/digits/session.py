@@ -219,7 +219,7 @@ class _LiveDigits:
         if isinstance(command, RestoreBest):
             return self._go_back()
         try:
-            self.training.change(self.training.config.turned(command.name, command.value))
+            self.training.apply_live(self.training.config.turned(command.name, command.value))
         except ValueError as error:
             return [Refused(command, str(error))]
         name = self.training.config.name_now(command.name)
@@ -229,7 +229,7 @@ class _LiveDigits:
         if self._best is None:
             return []
         accuracy, values = self._best
-        self.training.go_back(values)
+        self.training.restore(values)
         self._reading = None  # it was reading for the network that is gone
         return [DigitSettingChanged(self.training.seconds, REVERTED, accuracy)]
 

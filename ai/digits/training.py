@@ -88,7 +88,7 @@ class DigitTraining:
         fall = 0.5 + 0.5 * math.cos(math.pi * share)
         return rise * (config.final_learning_rate + (config.learning_rate - config.final_learning_rate) * fall)
 
-    def change(self, config: DigitConfig) -> None:
+    def apply_live(self, config: DigitConfig) -> None:
         """Go on with other live knobs; the others stay as they are."""
         self.config = self.config.with_live(config)
 
@@ -161,16 +161,16 @@ class DigitTraining:
             return None
         return next((int(each["epoch"]) for each in reversed(self.history) if each.get("held_out") == self.best), None)
 
-    def go_back(self, values: Array) -> None:
+    def restore(self, values: Array) -> None:
         """Restore the network and its average to the parameters `values` (parameters,); reset the optimizer."""
         self.classifier.network.values = values
         self.average[...] = values
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
 
-    def rewind(self) -> None:
+    def restore_best(self) -> None:
         """Restore the best network so far, if there is one: training cannot go on from a diverged one."""
         if self.best_values is not None:
-            self.go_back(self.best_values)
+            self.restore(self.best_values)
 
     def best_classifier(self) -> DigitClassifier:
         """Return the classifier that read the images held out best, or the current one."""
@@ -191,7 +191,7 @@ def run_digits(
     while not training.done:
         changed = yield training.advance()
         if changed is not None:
-            training.change(changed)
+            training.apply_live(changed)
 
 
 def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> float:

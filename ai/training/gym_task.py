@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.agent.agent import Symmetry
 from ai.agent.config import Config
+from ai.agent.symmetry import Symmetry
 from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.lander.pilots import Pilot
 from ai.training.task import checked_score
@@ -154,11 +154,11 @@ class GymTask:
         """Make the environments to train with."""
         return self._env(self.config.num_envs, rng)
 
-    def change(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
+    def apply_live(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
         """Take over the live knobs of another configuration."""
         self.config = config
 
-    def follow(self, decisions: int, env: Env) -> None:
+    def update_env(self, decisions: int, env: Env) -> None:
         """Do nothing: an environment of Gymnasium does not change with experience."""
 
     def _env(self, num_envs: int, rng: np.random.Generator) -> GymEnv:

@@ -70,7 +70,7 @@ class Checkpoint:
     decisions: int
     success: float
     values: Floats  # (parameters,) float32
-    scale: dict[str, Any] | None = None  # of the observations, as RunningScale.to_json gives it
+    normalizer: dict[str, Any] | None = None  # of the observations, as Normalizer.to_json gives it
 
 
 @dataclass(frozen=True)
@@ -206,7 +206,8 @@ class History:
             "alterations": [_written(alteration) for alteration in self.alterations],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
-                {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.scale}
+                {"seconds": each.seconds, "decisions": each.decisions, "success": each.success,
+                 "scale": each.normalizer}
                 for each in self.checkpoints
             ],
         }  # fmt: skip

@@ -101,7 +101,7 @@ def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
         raise ValueError(
             f"the checkpoint has {len(checkpoint.values)} parameters, the network {len(agent.online.values)}"
         )
-    agent.go_back(checkpoint.values, _scale_of(agent, checkpoint))
+    agent.restore(checkpoint.values, _normalizer_of(agent, checkpoint))
     agent.decisions = checkpoint.decisions
     return agent
 
@@ -136,7 +136,7 @@ class _LiveRun:
         self.training, self.history, self.env = training, history, training.env
         history.reward_scale = training.config.reward_scale
         training.clock = clock
-        training.witness = self._see
+        training.on_step = self._see
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
         self._trial: _ValidationFlights | None = None
         self._sight = self._seen(self.env.outcome)
@@ -262,8 +262,8 @@ class _LiveRun:
                 f"the network was not finite after learning step {agent.train_count}; "
                 f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
             )
-        scale = agent.scale.to_json() if agent.scale else None
-        return Checkpoint(self.training.seconds, agent.decisions, success, values, scale)
+        normalizer = agent.normalizer.to_json() if agent.normalizer else None
+        return Checkpoint(self.training.seconds, agent.decisions, success, values, normalizer)
 
     def _try_the_network(self, before: int) -> None:
         """Fly a little of the validation flights, if it is time for them; the networks are those of `Training`."""
@@ -280,13 +280,13 @@ class _LiveRun:
         trial, self._trial = self._trial, None
         trial.go_on()
         assert trial.score is not None
-        best = self.training.consider(trial.score, trial.agent)
+        best = self.training.keep_if_best(trial.score, trial.agent)
         self._note(Validation(trial.agent.decisions, trial.score.success, trial.score.mean_return, best))
 
     def _change(self, command: ChangeSetting) -> None:
         before = self.training.config
         try:
-            self.training.change(before.turned(command.name, command.value))
+            self.training.apply_live(before.turned(command.name, command.value))
         except ValueError as error:
             self._told.append(Refused(command, str(error)))
             return
@@ -339,7 +339,7 @@ class _LiveRun:
 
     def _go_back(self, checkpoint: Checkpoint) -> None:
         agent = self.training.agent
-        agent.go_back(checkpoint.values, _scale_of(agent, checkpoint))
+        agent.restore(checkpoint.values, _normalizer_of(agent, checkpoint))
 
     def _keep_if_due(self, folder: Path, now: float) -> None:
         """Start a save in a thread when it is time, and tell when one did not succeed."""
@@ -362,15 +362,15 @@ class _LiveRun:
         return _trouble(self._write(folder))
 
 
-def _scale_of(agent: DeepQAgent, checkpoint: Checkpoint) -> Normalizer | None:
-    if checkpoint.scale is None:
+def _normalizer_of(agent: DeepQAgent, checkpoint: Checkpoint) -> Normalizer | None:
+    if checkpoint.normalizer is None:
         return None
-    scale = Normalizer(agent.num_features)
+    normalizer = Normalizer(agent.num_features)
     try:
-        scale.load(checkpoint.scale)
+        normalizer.load(checkpoint.normalizer)
     except (KeyError, TypeError) as error:
         raise ValueError(f"the checkpoint's scale of observations makes no sense: {error}") from error
-    return scale
+    return normalizer
 
 
 def _trouble(writing: Future[None]) -> str:

@@ -3,9 +3,10 @@ import json
 import numpy as np
 import pytest
 
-from ai.agent.agent import DeepQAgent, Symmetry
+from ai.agent.agent import DeepQAgent
 from ai.agent.config import PRESETS, Config
 from ai.agent.replay import MemoryCell
+from ai.agent.symmetry import Symmetry
 from ai.common.environment import StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError
@@ -28,7 +29,7 @@ def fed(config, count=40, seed=0):
     for _ in range(count // 4):
         states = rng.normal(size=(4, 3)).astype(np.float32)
         after = rng.normal(size=(4, 3)).astype(np.float32)
-        agent.remember(states, rng.integers(0, 2, 4), result(after, rng.normal(size=4), rng.random(4) < 0.3))
+        agent.store(states, rng.integers(0, 2, 4), result(after, rng.normal(size=4), rng.random(4) < 0.3))
     return agent
 
 
@@ -38,7 +39,7 @@ def test_bellman_targets_by_hand():
     cell = MemoryCell(states, states, np.zeros(3, dtype=int), np.ones(3, dtype=np.float32),
                       np.array([False, True, False]), np.array([1, 1, 4]))  # fmt: skip
     values = agent.target.predict(states).max(axis=1)
-    assert agent._targets(cell)[0] == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
+    assert agent.targets(cell)[0] == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
 
 
 def test_double_q_lets_the_online_network_pick():
@@ -48,7 +49,7 @@ def test_double_q_lets_the_online_network_pick():
     cell = MemoryCell(states, states, np.zeros(20, dtype=int), np.zeros(20, dtype=np.float32),
                       np.zeros(20, dtype=bool), np.ones(20, dtype=int))  # fmt: skip
     best = agent.online.predict(states).argmax(axis=1)
-    assert agent._targets(cell)[0] == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
+    assert agent.targets(cell)[0] == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
 
 
 def test_an_update_moves_only_the_chosen_action_towards_its_target():
@@ -59,7 +60,7 @@ def test_an_update_moves_only_the_chosen_action_towards_its_target():
     slope = []
     original = agent.online.backward_propagate
     agent.online.backward_propagate = lambda error: (slope.append(error.copy()), original(error))
-    agent._update(states, np.array([0]), target, np.ones(1, dtype=np.float32))
+    agent.gradient_step(states, np.array([0]), target, np.ones(1, dtype=np.float32))
     assert slope[0] == pytest.approx(np.array([[-2.0, 0.0]]))
     assert abs(agent.online.predict(states)[0, 0] - target[0]) < 1
 
@@ -130,7 +131,7 @@ def test_it_learns_a_problem_whose_answer_is_known():
         states = rng.normal(size=(4, 3)).astype(np.float32)
         actions = rng.integers(0, 2, 4)
         paid = (actions == (states[:, 0] > 0)).astype(np.float32)
-        agent.remember(states, actions, result(states, paid, np.ones(4, dtype=bool)))
+        agent.store(states, actions, result(states, paid, np.ones(4, dtype=bool)))
         agent.learn()
     states = rng.normal(size=(500, 3)).astype(np.float32)
     assert (agent.act(states) == (states[:, 0] > 0)).mean() > 0.93
@@ -141,7 +142,7 @@ def test_the_success_pass_learns_from_good_endings_only():
     states = rng.normal(size=(2, 3)).astype(np.float32)
     for step in range(6):
         ended = np.array([step == 5] * 2)
-        agent.remember(states, np.array([0, 1]), result(states, [step, 100 + step], ended), np.array([True, False]))
+        agent.store(states, np.array([0, 1]), result(states, [step, 100 + step], ended), np.array([True, False]))
     assert len(agent.successes) == 6
     assert agent.successes.cells.action[:6].tolist() == [0] * 6
 
@@ -150,14 +151,14 @@ def test_a_mirrored_memory_is_its_own_mirror_image_twice():
     rng = np.random.default_rng(0)
     states = rng.normal(size=(6, NUM_FEATURES)).astype(np.float32)
     cell = MemoryCell(states.copy(), states[::-1].copy(), np.arange(NUM_ACTIONS), np.zeros(6), np.zeros(6, bool))
-    mirrored = LANDER_SYMMETRY.apply(cell, 6)
+    mirrored = LANDER_SYMMETRY.apply(cell, 6, 6)
     assert mirrored.action.tolist() == [0, 2, 1, 3, 5, 4]
     assert np.array_equal(mirrored.state[:, 7], states[:, 8])
     assert np.array_equal(mirrored.state[:, 0], -states[:, 0])
     assert np.array_equal(mirrored.next_state, mirrored.state[::-1])
     assert np.array_equal(cell.state, states)  # what was given stays as it is
     assert cell.action.tolist() == list(range(6))
-    again = LANDER_SYMMETRY.apply(mirrored, 6)
+    again = LANDER_SYMMETRY.apply(mirrored, 6, 6)
     assert np.array_equal(again.state, states)
     assert again.action.tolist() == list(range(6))
 
@@ -167,13 +168,13 @@ def test_half_of_each_batch_is_learnt_in_the_mirror(changes):
     agent = fed(SMALL.changed(mirror=True, **changes))
     agent.symmetry = Symmetry(np.array([100, 1, 1], np.float32), np.array([2, 1, 0]), np.array([1, 0]))
     agent.replay.cells.state[:] += 3  # where means are 0, it makes no difference when a state is scaled
-    if agent.scale:
-        agent.scale.watch(agent.replay.cells.state[:40] * np.array([60, 1, 1], np.float32))
-    sample, update, drawn, learnt = agent.replay.sample, agent._update, [], []
+    if agent.normalizer:
+        agent.normalizer.update(agent.replay.cells.state[:40] * np.array([60, 1, 1], np.float32))
+    sample, update, drawn, learnt = agent.replay.sample, agent.gradient_step, [], []
     agent.replay.sample = lambda *how: drawn.append(sample(*how)) or drawn[0]
-    agent._update = lambda *batch: learnt.append([part.copy() for part in batch]) or update(*batch)
+    agent.gradient_step = lambda *batch: learnt.append([part.copy() for part in batch]) or update(*batch)
     agent.learn()
-    scale = agent.scale or (lambda states: states)
+    scale = agent.normalizer or (lambda states: states)
     assert len(learnt) == 2
     for number, (states, actions, *_) in enumerate(learnt):
         cells = drawn[0][0]

@@ -23,7 +23,7 @@ def trained(config: Config, change: dict[str, float], at: int, until: int) -> Tr
     training = Training(config, 3, evaluate_every=0)
     while training.agent.decisions < until:
         if training.agent.decisions == at:
-            training.change(config.changed(**change))
+            training.apply_live(config.changed(**change))
         training.advance()
     return training
 
@@ -72,7 +72,7 @@ def test_what_is_not_turned_on_changes_nothing():
     assert "schedule_decisions" in idle(PRESETS["classic"])
     assert "schedule_decisions" not in idle(PRESETS["classic"].changed(final_touchdown_limits=0.5))
     assert DIGIT_PRESETS["classic"].unused() == {"filters": "convolutions", "kernel": "convolutions"}
-    assert DIGIT_PRESETS["modern"].changed(augmentation=0.0).unused() == {"original": "augmentation"}
+    assert DIGIT_PRESETS["modern"].changed(augmentation=0.0).unused() == {"unaugmented": "augmentation"}
 
 
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():

@@ -21,7 +21,7 @@ def test_a_running_scale_is_the_scale_of_all_it_saw():
     seen = (rng.normal(size=(60, 3)) * [5.0, 0.01, 0.0] + [100.0, -1.0, 3.0]).astype(np.float32)
     scale = Normalizer(3)
     for part in (seen[:1], seen[1:20], seen[20:]):
-        scale.watch(part)
+        scale.update(part)
     assert scale.mean == pytest.approx(seen.mean(axis=0, dtype=float))
     scaled = scale(seen)
     assert scaled.dtype == np.float32
@@ -89,7 +89,7 @@ class TestLearningOthersEnvironments:
         assert measured["mean_length"] == measured["mean_return"]
         assert 0 <= measured["success"] <= 1
         resumed, best = resume_run(run), DeepQAgent.load(run)
-        assert resumed.agent.scale.to_json() == DeepQAgent.load(run / "last").scale.to_json()
+        assert resumed.agent.normalizer.to_json() == DeepQAgent.load(run / "last").normalizer.to_json()
         assert np.array_equal(resumed.best_agent().q_values(np.ones(4)), best.q_values(np.ones(4)))
         assert main(["train", "--resume", str(run), "--decisions", "10400"]) == 0
         assert json.loads((run / "training.json").read_text())["decisions"] == 10_400
@@ -104,7 +104,7 @@ class TestLearningOthersEnvironments:
         first, second = (training.agent for training in runs)
         assert first.train_count > 0
         assert np.array_equal(first.online.values, second.online.values)
-        assert first.scale.to_json() == second.scale.to_json()
+        assert first.normalizer.to_json() == second.normalizer.to_json()
 
     def test_the_contract_of_an_environment_holds(self):
         env = GymTask(gym_config("CartPole-v1")).make_env(np.random.default_rng(0))

@@ -90,7 +90,7 @@ def same(one, other):
     assert len(one.checkpoints) == len(other.checkpoints)
     for first, second in zip(one.checkpoints, other.checkpoints, strict=True):
         assert (first.decisions, first.seconds, first.success) == (second.decisions, second.seconds, second.success)
-        assert first.scale == second.scale
+        assert first.normalizer == second.normalizer
         assert np.array_equal(first.values, second.values)
         assert second.values.dtype == np.float32
 

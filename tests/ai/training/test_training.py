@@ -74,7 +74,7 @@ def test_the_generator_takes_changed_knobs():
 
 def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
     training, _ = advanced(decisions=2)
-    training.change(SMALL.changed(hidden=(3,), num_envs=2, n_step=3, gradient_steps=3))
+    training.apply_live(SMALL.changed(hidden=(3,), num_envs=2, n_step=3, gradient_steps=3))
     assert training.config == training.agent.config == SMALL.changed(gradient_steps=3)
     assert training.advance().decisions == 24
 
