@@ -226,7 +226,7 @@ def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, 
 
 @pytest.mark.usefixtures("few")
 def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, capsys, monkeypatch):
-    def advance(training, seconds, output, stop):
+    def advance(seconds, training, output, stop):
         output.mkdir()
         (output / "diary").write_text("dear")
 
