@@ -12,7 +12,7 @@ from ai.agent.schedule import exploration_of_each
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
-from ai.training import session as module
+from ai.training import autosave
 from ai.training.checkpoints import resume_run
 from ai.training.history import PARTS, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
@@ -65,7 +65,7 @@ def of(kind, told):
 def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
     monkeypatch.setattr(LanderTask, "evaluate_every", 640)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
-    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
     config = TINY.changed(**changes)
     run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
     told = told_in(run, 1)
@@ -304,13 +304,13 @@ def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
 
 
 def test_it_keeps_itself_by_the_clock(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 2)
-    monkeypatch.setattr(module, "KEEP_SECONDS", 1e9)
-    run.gi_frame.f_locals["run"]._writing.result()
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 1e9)
+    run.gi_frame.f_locals["run"]._autosave.wait()
     told_in(run, 2)  # one more was due
-    run.gi_frame.f_locals["run"]._writing.result()
+    run.gi_frame.f_locals["run"]._autosave.wait()
     kept = resume_run(tmp_path / "keep").agent.decisions
     assert kept > 32
     told_in(run, 20)
@@ -322,7 +322,7 @@ def full(*_):
 
 
 def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 10)
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
