@@ -16,7 +16,7 @@ from ai.digits.config import DigitConfig
 from ai.digits.training import DigitTraining
 from ai.nn import Array
 from ai.training.history import REVERTED
-from ai.training.messages import ChangeSetting, Refused, Save
+from ai.training.messages import ChangeSetting, Refused, Save, Saved, problem_of
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 KEEP_SECONDS: Final = 20.0
@@ -86,8 +86,8 @@ class DigitSettingChanged:
 
 
 @dataclass(frozen=True)
-class DigitRunSaved:
-    """Message that the run has been saved, or why it has not.
+class DigitRunSaved(Saved):
+    """Result of a save, with what has been measured of the network that was saved.
 
     Attributes:
         test: the accuracy on the test images, once it is finished.
@@ -95,8 +95,6 @@ class DigitRunSaved:
 
     """
 
-    folder: Path
-    problem: str = ""
     test: float | None = None
     epoch: int | None = None
 
@@ -293,4 +291,4 @@ class _LiveDigits:
         try:
             return "", save_digit_run(self.training, folder, final=final).get("test")
         except (OSError, ValueError) as error:
-            return getattr(error, "strerror", None) or str(error), None
+            return problem_of(error), None

@@ -9,7 +9,7 @@ from typing import Final
 from ai.training.checkpoints import snapshot
 from ai.training.history import History
 from ai.training.loop import Training
-from ai.training.messages import Saved
+from ai.training.messages import Saved, problem_of
 
 KEEP_SECONDS: Final = 10.0  # between two saves
 
@@ -34,7 +34,7 @@ class Autosave:
             return []
         told = []
         if self._writing is not None and self._writing.done():
-            problem, self._writing = _problem_of(self._writing), None
+            problem, self._writing = _outcome_of(self._writing), None
             if problem and problem != self._problem:
                 told.append(Saved(self._folder, problem))
             self._problem = problem
@@ -45,12 +45,12 @@ class Autosave:
 
     def save(self, folder: Path) -> Saved:
         """Save to a folder, and wait until it is done."""
-        return Saved(folder, _problem_of(self._write(folder)))
+        return Saved(folder, _outcome_of(self._write(folder)))
 
     def wait(self) -> None:
         """Wait until a save that is under way has ended."""
         if self._writing is not None:
-            _problem_of(self._writing)
+            _outcome_of(self._writing)
 
     def end(self) -> None:
         """Save what has not been saved, and wait until it is on the disk."""
@@ -64,12 +64,10 @@ class Autosave:
         return self._writer.submit(snapshot(self._training, self._history).save, folder)
 
 
-def _problem_of(writing: Future[None]) -> str:
+def _outcome_of(writing: Future[None]) -> str:
     """Wait for a save, and return why it failed, if it did."""
     try:
         writing.result()
-    except OSError as error:
-        return error.strerror or str(error)
-    except ValueError as error:
-        return str(error)
+    except (OSError, ValueError) as error:
+        return problem_of(error)
     return ""

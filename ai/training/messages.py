@@ -95,6 +95,11 @@ class Refused:
     problem: str
 
 
+def problem_of(error: Exception) -> str:
+    """Return an error in the words of a message: those of the system for a file, else its own."""
+    return getattr(error, "strerror", None) or str(error)
+
+
 Message = (
     RunStarted | SwarmState | NetworkState | InForce | Point | Checkpoint | Validation | SettingChange | Saved | Refused
 )

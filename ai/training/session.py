@@ -43,6 +43,7 @@ from ai.training.messages import (
     Save,
     Saved,
     SwarmState,
+    problem_of,
 )
 from ai.training.validation_flights import ValidationFlights
 
@@ -261,7 +262,7 @@ class _LiveRun:
             new = [lesson for lesson in read(command.path) if lesson not in self._learned_from]
             used = teach(agent, new)
         except (OSError, ValueError) as error:
-            self._messages.append(Refused(command, getattr(error, "strerror", None) or str(error)))
+            self._messages.append(Refused(command, problem_of(error)))
             return
         self._learned_from.update(new)
         if not used:
