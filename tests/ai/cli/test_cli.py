@@ -50,6 +50,13 @@ def test_train_evaluate_resume(tmp_path, capsys):
         (["evaluate", "--model", "nowhere"], "nowhere"),
         (["evaluate", "--model", "nowhere", "--episodes", "0"], "--episodes"),
         (["evaluate", "--model", "nowhere", "--spawn", "mars"], "--spawn is one of"),
+        (["train-digits"], "--output"),
+        (["train-digits", "--output", "x", "--preset", "magic"], "--preset is one of"),
+        (["train-digits", "--output", "x", "--set", "warp=9"], "warp=9"),
+        (["train-digits", "--output", "x", "--epochs", "0"], "epochs lies between"),
+        (["train-digits", "--output", "x", "--seconds", "0"], "--seconds lies between"),
+        (["train-digits", "--resume", "nowhere"], "nowhere"),
+        (["evaluate-digits", "--model", "nowhere"], "nowhere"),
     ],
 )
 def test_what_cannot_be_done_is_said_in_a_line(arguments, message, capsys, tmp_path, monkeypatch):
