@@ -65,7 +65,7 @@ def test_a_history_shows_the_same_marks_by_the_words_of_now():
     assert history.points[-1].tolist() == expected["last_point"]
     assert [each.decisions for each in history.checkpoints] == expected["checkpoints"]
     names = ["gradient_steps", "target_update_interval", "tau", "reward_weights.time"]
-    assert [vars(mark) for mark in history.alterations] == [
+    assert [vars(mark) for mark in history.setting_changes] == [
         {**then, "name": name} for then, name in zip(expected["alterations"], names, strict=True)
     ]
 
@@ -81,7 +81,7 @@ def test_a_run_of_then_goes_on_and_is_saved_under_the_names_of_now(tmp_path):
     saved = json.loads((tmp_path / "kept" / "last" / "config.json").read_text(encoding="utf-8"))["config"]
     assert (saved["gradient_steps"], saved["reward_weights"]["time"]) == (7, -0.5)
     assert not saved.keys() & RENAMED.keys()
-    marks = [mark.name for mark in History.read(tmp_path / "kept").alterations]
+    marks = [mark.name for mark in History.read(tmp_path / "kept").setting_changes]
     assert marks == [
         "gradient_steps", "target_update_interval", "tau", "reward_weights.time", "gradient_steps",
         "reward_weights.time",

@@ -13,12 +13,19 @@ REACH: Final = 10.0  # standard deviations from the mean at which values are cli
 
 
 class Normalizer:
-    """Running mean and standard deviation, which scale observations to mean 0 and standard deviation 1."""
+    """Running mean and standard deviation, which scale observations to mean 0 and standard deviation 1.
+
+    Attributes:
+        count: observations so far.
+        mean: (features,) of them, in the environment's units.
+        squares: (features,) summed squares of their distances from the mean.
+
+    """
 
     def __init__(self, num_features: int) -> None:
         self.count = 0
         self.mean: Doubles = np.zeros(num_features)
-        self.squares: Doubles = np.zeros(num_features)  # summed squares of the distances from the mean
+        self.squares: Doubles = np.zeros(num_features)
         self._refresh()
 
     def update(self, observations: Floats) -> None:

@@ -73,7 +73,7 @@ class ReplayBuffer:
         return rows
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
-        """Draw `count` transitions; return them, where they lie, and the weight of each in the cost."""
+        """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,)."""
         rows = rng.integers(self.size, size=count)
         rows += self.start
         rows %= self.capacity
@@ -118,7 +118,10 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         return rows
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
-        """Draw `count` transitions; return them, where they lie, and the weight of each in the cost."""
+        """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,).
+
+        Weights are (size · probability)^-importance, relative to the largest of those drawn.
+        """
         # One draw from each of `count` equal parts of the total: less noise than independent draws.
         rows = self.tree.find((np.arange(count) + rng.random(count)) / count * self.tree.total)
         rng.shuffle(rows)
@@ -138,7 +141,10 @@ class PrioritisedReplayBuffer(ReplayBuffer):
 
 
 class SumTree:
-    """A binary tree of sums: priorities are set, and found by cumulative weight, in O(log capacity) batches."""
+    """Binary tree of sums (Schaul et al. 2016, appendix B.2.1).
+
+    Batches of priorities are set, and found by cumulative weight, in O(log capacity) operations of NumPy.
+    """
 
     def __init__(self, capacity: int) -> None:
         self.depth = max(1, int(np.ceil(np.log2(capacity))))

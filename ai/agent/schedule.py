@@ -53,12 +53,12 @@ def geometric(start: float, end: float, factor: float, done: int) -> float:
 
 
 def learning_rate(config: Config, decisions: int) -> float:
-    """Return the learning rate after so many decisions."""
+    """Return the learning rate after so many decisions: it falls in a straight line over the schedule."""
     return linear(config.learning_rate, config.final_learning_rate, decisions, config.schedule_decisions)
 
 
 def importance(config: Config, decisions: int) -> float:
-    """Return the importance-sampling exponent, which says how far the bias of prioritised replay is corrected."""
+    """Return the importance-sampling exponent β, which rises to 1 over the schedule (Schaul et al. 2016, 3.4)."""
     return linear(config.importance_exponent, 1.0, decisions, config.schedule_decisions)
 
 
@@ -75,7 +75,10 @@ def exploration(config: Config, decisions: int, episodes: int) -> float:
 
 
 def exploration_of_each(config: Config, epsilon: float) -> Doubles:
-    """Return each lander's ε, (num_envs,): bold ones go on finding what careful ones never try."""
+    """Return the ε of each lander, (num_envs,): from `epsilon` for the first to a larger one for the last.
+
+    As in Horgan et al. 2018, they are powers of one ε: bold landers go on finding what careful ones never try.
+    """
     reach = np.linspace(1.0, 1.0 - config.epsilon_spread, config.num_envs)
     return np.asarray(epsilon**reach)
 

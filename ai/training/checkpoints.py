@@ -89,7 +89,7 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 3), "best": training.best.to_json() if training.best else None,
-        "flights": training.flights.to_json(),
+        "flights": training.statistics.to_json(),
     }  # fmt: skip
     return Snapshot(
         described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
@@ -140,7 +140,9 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             training.best_values, training.best_normalizer = best.network.values.copy(), best.normalizer
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         training.seconds = float(number_of(described["seconds"], 0))
-        training.flights.load(described.get("flights", EpisodeStatistics(0).to_json()))  # older runs do not have them
+        training.statistics.load(
+            described.get("flights", EpisodeStatistics(0).to_json())
+        )  # older runs do not have them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error

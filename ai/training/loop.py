@@ -86,7 +86,7 @@ class Training:
         self.episodes = 0
         self._evaluated: int | None = None  # how many decisions the network had taken that was measured last
         self._moments: deque[float] = deque(maxlen=100)
-        self.flights = EpisodeStatistics(self.env.num_envs)
+        self.statistics = EpisodeStatistics(self.env.num_envs)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
 
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
@@ -102,26 +102,29 @@ class Training:
         return exploration(self.agent.config, self.agent.decisions, self.episodes)
 
     def advance(self) -> Progress:
-        """Let every lander take one decision, learn from it, and evaluate if it is time."""
-        agent, flights = self.agent, self.flights
+        """Let every lander take one decision, learn from it, and evaluate if it is time.
+
+        Raises DivergenceError, a FloatingPointError, when a number is no longer finite.
+        """
+        agent, statistics = self.agent, self.statistics
         before, epsilon = agent.decisions, self.epsilon
         self.task.update_env(agent.decisions, self.env)
         each = exploration_of_each(agent.config, epsilon)
         actions, result = agent.train_step(self.env, self.observation, each, self._held)
-        flights.add(result)
+        statistics.add(result)
         if self.on_step is not None:
             self.on_step(result)
         self.observation = result.observation
         if result.ended.any():
             self.episodes += int(result.ended.sum())
-            flights.finish(result)
+            statistics.finish(result)
             self.observation = self.env.reset(result.ended)
         self._held = np.where(result.ended, 0, actions)
         evaluation = self.evaluate() if passed(before, agent.decisions, self.evaluate_every or 0) else None
         return Progress(
             agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
-            flights.success, flights.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
-            flights.shares, flights.parts, evaluation, self.best,
+            statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
+            statistics.shares, statistics.parts, evaluation, self.best,
         )  # fmt: skip
 
     def _pace(self) -> float:
@@ -194,7 +197,11 @@ def passed(before: int, now: int, every: int) -> bool:
 
 
 def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Config | None, None]:
-    """Train without end, yielding after each decision of all landers; send a Config to change the live knobs."""
+    """Train without end, yielding after each decision of all landers; send a Config to change the live knobs.
+
+    `options` are those of `Training`. Raises what `task_of` raises, and DivergenceError when a number is no longer
+    finite.
+    """
     training = Training(config, seed, **options)
     while True:
         changed = yield training.advance()

@@ -54,7 +54,7 @@ __all__ = [
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
 NETWORK_SECONDS: Final = 0.25
-TAUGHT: Final = "demonstrations"  # the name of the alteration that gives it some to learn from
+TAUGHT: Final = "demonstrations"  # the name of the change that gives it some to learn from
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
 
@@ -201,7 +201,7 @@ class _LiveRun:
         env, training = self.env, self.training
         return SwarmState(
             env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
-            outcome.astype(np.int8), training.flights.earned.astype(np.float32), training.agent.decisions,
+            outcome.astype(np.int8), training.statistics.earned.astype(np.float32), training.agent.decisions,
         )  # fmt: skip
 
     def _network_state(self) -> NetworkState:
@@ -217,7 +217,7 @@ class _LiveRun:
         return self._network_state(), in_force(training.config, training.agent.decisions, training.episodes)
 
     def _point(self, progress: Progress) -> Point:
-        flown = 1.0 if self.training.flights.known else np.nan
+        flown = 1.0 if self.training.statistics.known else np.nan
         learnt = 1.0 if self.training.agent.train_count > self._began_learning else np.nan
         landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
@@ -281,7 +281,7 @@ class _LiveRun:
         self._turned_at[name] = now
         if last is None:
             return False
-        earlier = next(each for each in reversed(self.history.alterations) if each.name == name)
+        earlier = next(each for each in reversed(self.history.setting_changes) if each.name == name)
         amends = now - last < TURNING_SECONDS or earlier.decisions == self.training.agent.decisions
         if amends and earlier.before == after:  # back where it was: the mark will be gone
             del self._turned_at[name]

@@ -95,7 +95,9 @@ class LanderRun(TrainingRun):
     @property
     def lessons(self) -> int:
         """Number of demonstrations this run has learnt from."""
-        return sum(each.after for each in self.history.alterations if each.name == TAUGHT and type(each.after) is int)
+        return sum(
+            each.after for each in self.history.setting_changes if each.name == TAUGHT and type(each.after) is int
+        )
 
     def teach(self, demonstrations: Path) -> None:
         """Let the run also learn from a file of demonstrations; `poll` reports it."""

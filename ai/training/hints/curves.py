@@ -71,7 +71,7 @@ class RecentCurves:
     def damaged_at(self) -> int | None:
         """Return when steps that were far too long began, in decisions; None if none since it last went back."""
         config, began = self.config, None
-        changes = [each for each in self.history.alterations if each.name in (*RATES, REVERTED)]
+        changes = [each for each in self.history.setting_changes if each.name in (*RATES, REVERTED)]
         since = self.history["decisions"][-1]
         for each in [*reversed(changes), None]:
             if rate_too_high(config, int(since)):

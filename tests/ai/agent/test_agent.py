@@ -8,8 +8,8 @@ from ai.agent.config import PRESETS, Config
 from ai.agent.replay import MemoryCell
 from ai.agent.symmetry import Symmetry
 from ai.common.environment import StepResult
-from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
-from ai.nn import ModelFormatError
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
+from ai.nn import SGD, ModelFormatError
 from ai.training.loop import LANDER_SYMMETRY
 
 SMALL = Config(
@@ -295,3 +295,26 @@ def test_an_optimizer_state_that_fits_is_taken(tmp_path):
     fed(SMALL).save(tmp_path / "agent")
     np.savez(tmp_path / "agent" / "optimizer.npz", **ADAM)
     assert DeepQAgent.load(tmp_path / "agent").optimizer.steps == 3
+
+
+def test_an_agent_learns_from_the_replay_and_with_the_optimizer_that_it_is_handed():
+    given, steps = fed(SMALL).replay, SGD(0.1)
+    agent = DeepQAgent(3, 2, SMALL, replay=given, optimizer=steps)
+    before = agent.online.values.copy()
+    agent.learn()
+    assert agent.replay is given
+    assert steps.steps == agent.train_count == SMALL.gradient_steps
+    assert not np.array_equal(agent.online.values, before)
+    usual = DeepQAgent(3, 2, SMALL)
+    assert (len(usual.replay), usual.replay.capacity, usual.optimizer.steps) == (0, SMALL.replay_size, 0)
+
+
+def test_one_step_of_training_acts_stores_and_learns():
+    env, agent = LanderEnv(4, 0, "near"), DeepQAgent(config=SMALL.changed(learning_starts=4))
+    observation = env.reset()
+    actions, after = agent.train_step(env, observation, 0.0, np.zeros(4, np.intp))
+    stored = agent.replay.at(np.arange(4))
+    assert np.array_equal(stored.state, observation)
+    assert np.array_equal(stored.next_state, after.observation)
+    assert np.array_equal(stored.action, actions)
+    assert (agent.decisions, agent.train_count) == (4, SMALL.gradient_steps)

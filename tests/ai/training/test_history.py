@@ -85,7 +85,7 @@ def test_the_checkpoint_of_a_moment_is_the_last_one_before_it():
 
 def same(one, other):
     assert np.array_equal(one.points, other.points)
-    assert one.alterations == other.alterations
+    assert one.setting_changes == other.setting_changes
     assert one.validations == other.validations
     assert len(one.checkpoints) == len(other.checkpoints)
     for first, second in zip(one.checkpoints, other.checkpoints, strict=True):

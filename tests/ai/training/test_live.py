@@ -285,7 +285,7 @@ def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
     kept = History.read(tmp_path / "run")
     assert np.array_equal(kept.points, history.points, equal_nan=True)
     assert [each.decisions for each in kept.checkpoints] == [each.decisions for each in history.checkpoints]
-    assert kept.alterations == [change]
+    assert kept.setting_changes == [change]
     sights = of(SwarmState, told_in(again, 3))
     assert sights[-1].decisions == 102 * 32
     assert resume_run(tmp_path / "run").best is None  # nobody has tried it yet
@@ -444,26 +444,26 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
         turn("discount", value)
         clock.now += 0.3
         told += told_in(run, 1)
-    (mark,) = history.alterations
+    (mark,) = history.setting_changes
     assert (mark.before, mark.after, mark.decisions) == (TINY.discount, 0.9, 32 * 32)
     turn("learning_rate", 0.1)
     clock.now += 5.0
     told_in(run, 1)
     turn("discount", 0.85)
-    assert [(each.name, each.before, each.after) for each in history.alterations] == [
+    assert [(each.name, each.before, each.after) for each in history.setting_changes] == [
         ("discount", TINY.discount, 0.9), ("learning_rate", TINY.learning_rate, 0.1), ("discount", 0.9, 0.85),
     ]  # fmt: skip
     clock.now += 5.0
     turn("discount", 0.8)  # it rests: nothing was learnt with the value before
     turn("discount", 0.9)  # and back to where it was
-    assert [each.name for each in history.alterations] == ["discount", "learning_rate"]
+    assert [each.name for each in history.setting_changes] == ["discount", "learning_rate"]
     turn("discount", 0.82)
-    assert [each.after for each in history.alterations] == [0.9, 0.1, 0.82], "the mark of before stays"
+    assert [each.after for each in history.setting_changes] == [0.9, 0.1, 0.82], "the mark of before stays"
     turn("discount", 0.9)
     turn("discount", 0.9)
     turn("discount", 0.9)  # nothing is turned
     kept = run.gi_frame.f_locals["run"].history
-    assert kept.alterations == history.alterations
+    assert kept.setting_changes == history.setting_changes
     assert run.gi_frame.f_locals["run"].training.config.discount == 0.9
 
 

@@ -193,7 +193,7 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     train.wait(scene.lander_run.library.runs)
     (run,) = scene.lander_run.library.runs()
     assert "trained on you" in run.name
-    assert sum(each.name == TAUGHT for each in History.read(run.folder).alterations) == 1
+    assert sum(each.name == TAUGHT for each in History.read(run.folder).setting_changes) == 1
 
 
 def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
@@ -201,7 +201,7 @@ def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
     scene = train.top
     scene.knobs.turn("discount", 0.9)
     train.wait(lambda: scene.lander_run.config.discount == 0.9)
-    assert scene.lander_run.history.alterations[-1].name == "discount"
+    assert scene.lander_run.history.setting_changes[-1].name == "discount"
     scene.knobs.turn("n_step", 3)
     assert scene.knobs.waiting == ["n_step"]
     assert scene.lander_run.config.n_step == SMALL.n_step
