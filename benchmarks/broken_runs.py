@@ -27,8 +27,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.agent import build_network
 from ai.agent.config import PRESETS, Config
+from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn.inspection import NetworkHealth
 from ai.training.history import Point
@@ -45,9 +45,10 @@ LATE: Final = 180_000  # decisions after which modern should land
 PATIENCE: Final = 40.0  # seconds of the processor for one run
 _MANTISSA: Final = 12  # bits that are kept of a number
 TURNED: Final = (
-    "discount", "n_step", "batch_size", "updates", "gradient_clip", "horizon", "output_scale", "replay_size",
-    "warm_up", "target_every", "target_rate", "epsilon_start", "epsilon_end", "epsilon_decay", "epsilon_decisions",
-    "epsilon_spread", "random_main", "steadiness", "num_envs", "frame_skip", "care", "reward_scale",
+    "discount", "n_step", "batch_size", "gradient_steps", "gradient_clip", "schedule_decisions", "output_scale",
+    "replay_size", "learning_starts", "target_update_interval", "tau", "epsilon_start", "epsilon_end",
+    "epsilon_decay", "epsilon_decisions", "epsilon_spread", "random_main", "steadiness", "num_envs", "frame_skip",
+    "final_touchdown_limits", "reward_scale",
 )  # fmt: skip
 
 

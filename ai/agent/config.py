@@ -23,20 +23,21 @@ class Config(Knobs):
     # fmt: off
     learning_rate: float = knob(2e-3, "Learning rate: how far each step moves the weights.",
                                 "learning", low=1e-5, high=1.0, log=True, live=True)
-    final_learning_rate: float = knob(3e-4, "Final learning rate, reached in a straight line over the horizon.",
+    final_learning_rate: float = knob(3e-4, "Final learning rate, reached in a straight line over the schedule.",
                                       "learning", low=1e-6, high=1.0, log=True, live=True)
     discount: float = knob(0.985, "Discount γ: how much a reward one decision later is worth.",
                            "learning", low=0.8, high=0.9999, live=True)
     n_step: int = knob(10, "n-step return: rewards summed before the network's own estimate takes over.",
                        "learning", low=1, high=20)
     batch_size: int = knob(256, "Batch size: memories in each learning step.", "learning", low=8, high=1024, live=True)
-    updates: int = knob(12, "Learning steps after each decision of all landers.", "learning", low=1, high=32, live=True)
+    gradient_steps: int = knob(12, "Gradient steps after each decision of all landers.",
+                               "learning", low=1, high=32, live=True, formerly="updates")
     optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("huber", "Cost function: how an error is measured.", "learning", choices=("mse", "huber"))
     gradient_clip: float = knob(10.0, "Gradient clipping: the longest gradient allowed.",
                                 "learning", low=0.1, high=100.0, log=True, live=True)
-    horizon: int = knob(600_000, "Decisions over which the learning rate falls and care sets in.",
-                        "learning", low=1_000, high=10_000_000, log=True)
+    schedule_decisions: int = knob(600_000, "Decisions in which the learning rate falls and touchdown limits tighten.",
+                                   "learning", low=1_000, high=10_000_000, log=True, formerly="horizon")
 
     hidden: tuple[int, ...] = knob((64, 64), "Units in each hidden layer.", "network", low=1, high=1024,
                                    offers=((16, 16), (32, 32), (64, 64), (128, 128), (256, 256), (64, 64, 64)))
@@ -50,7 +51,8 @@ class Config(Knobs):
 
     replay_size: int = knob(1_000_000, "Replay buffer size, in memories.", "memory", low=100, high=1_000_000, log=True)
     replay_prune: int = knob(1, "Oldest memories dropped when the buffer is full.", "memory", low=1, high=100_000)
-    warm_up: int = knob(5_000, "Memories collected before learning.", "memory", low=1, high=50_000)
+    learning_starts: int = knob(5_000, "Memories collected before learning.",
+                                "memory", low=1, high=50_000, formerly="warm_up")
     prioritised: bool = knob(False, "Prioritised replay: by size of error.", "memory")
     priority_exponent: float = knob(0.6, "Priority exponent: 0 is uniform, 1 in proportion to error.",
                                     "memory", low=0.0, high=1.0, needs="prioritised")
@@ -62,10 +64,10 @@ class Config(Knobs):
                                    "memory", low=4, high=512, live=True, needs="success_pass")
 
     double: bool = knob(True, "Double Q-learning: one network chooses, the other judges.", "target", live=True)
-    target_every: int = knob(1, "Learning steps between two updates of the target network.",
-                             "target", low=1, high=10_000, log=True, live=True)
-    target_rate: float = knob(0.005, "Target update rate τ: 1 copies the network, less follows softly.",
-                              "target", low=0.0001, high=1.0, log=True, live=True)
+    target_update_interval: int = knob(1, "Gradient steps between two updates of the target network.",
+                                       "target", low=1, high=10_000, log=True, live=True, formerly="target_every")
+    tau: float = knob(0.005, "Target update rate τ: 1 copies the network, less follows softly.",
+                      "target", low=0.0001, high=1.0, log=True, live=True, formerly="target_rate")
     fly_target: bool = knob(True, "Fly with the target network, which is steadier.", "target", live=True)
 
     epsilon_start: float = knob(1.0, "Initial ε: share of random actions.", "exploration", low=0.0, high=1.0)
@@ -86,18 +88,20 @@ class Config(Knobs):
     num_envs: int = knob(256, "Landers flown at once.", "lander", low=1, high=1024)
     frame_skip: int = knob(4, "Physics steps per decision.", "lander", low=1, high=12)
     spawn: str = knob("thorough", "Where flights begin.", "lander", choices=(CURRICULUM, *SPAWNS))
-    care: float = knob(0.8, "Touchdown limits by the end of the horizon, as a share of the real ones.",
-                       "lander", low=0.3, high=1.0)
+    final_touchdown_limits: float = knob(0.8, "Touchdown limits after the schedule, as a share of the real ones.",
+                                         "lander", low=0.3, high=1.0, formerly="care")
     reward_scale: float = knob(0.01, "Factor on rewards before the network sees them.",
                                "lander", low=0.0001, high=1.0, log=True)
-    weights: RewardWeights = knob(_HASTE, "Weight of each part of the reward.", "lander", live=True)  # noqa: RUF009
+    reward_weights: RewardWeights = knob(_HASTE, "Weight of each part of the reward.",  # noqa: RUF009
+                                         "lander", live=True, formerly="weights")
     # fmt: on
 
     def problems(self) -> list[str]:
         """Return what is wrong with the values, a sentence each."""
         problems = super().problems()
-        if not _pays(self.weights):
-            problems.append(f"weights are finite numbers, one for each part of the reward, not {shown(self.weights)}")
+        if not _pays(self.reward_weights):
+            given = shown(self.reward_weights)
+            problems.append(f"reward_weights are finite numbers, one for each part of the reward, not {given}")
         if self.env == "":
             problems.append("env is the name of an environment, and was empty")
         if not problems and self.replay_prune > self.replay_size:
@@ -107,7 +111,7 @@ class Config(Knobs):
     @classmethod
     def value_from_json(cls, name: str, value: Any) -> Any:
         """Return the value of a field from what a file holds of it; what cannot be one raises TypeError."""
-        return RewardWeights(**value) if name == "weights" else super().value_from_json(name, value)
+        return RewardWeights(**value) if name == "reward_weights" else super().value_from_json(name, value)
 
 
 def _pays(weights: Any) -> bool:
@@ -118,11 +122,11 @@ def _pays(weights: Any) -> bool:
 PRESETS: Final[dict[str, Config]] = {
     "modern": Config(),
     "classic": Config(
-        learning_rate=1e-3, final_learning_rate=1e-3, horizon=300_000, discount=0.99, n_step=1, batch_size=64,
-        updates=1, optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh", layer_normalisation=False,
-        output_scale=1.0, replay_size=1500, replay_prune=1000, warm_up=64, mirror=False, success_pass=True,
-        double=False, target_every=50, target_rate=1.0, fly_target=False, epsilon_decay=0.999,
-        epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0, care=1.0,
-        spawn=CURRICULUM, reward_scale=0.1, weights=RewardWeights(time=-0.1),
+        learning_rate=1e-3, final_learning_rate=1e-3, schedule_decisions=300_000, discount=0.99, n_step=1,
+        batch_size=64, gradient_steps=1, optimizer="sgd", cost="mse", hidden=(128, 128), activation="tanh",
+        layer_normalisation=False, output_scale=1.0, replay_size=1500, replay_prune=1000, learning_starts=64,
+        mirror=False, success_pass=True, double=False, target_update_interval=50, tau=1.0, fly_target=False,
+        epsilon_decay=0.999, epsilon_decisions=0, epsilon_spread=0.0, random_main=0.5, num_envs=1, steadiness=0.0,
+        final_touchdown_limits=1.0, spawn=CURRICULUM, reward_scale=0.1, reward_weights=RewardWeights(time=-0.1),
     ),
 }  # fmt: skip

@@ -11,7 +11,10 @@ from ai.common.environment import Bools, Floats, Ints
 
 
 class NStep:
-    """Sums the rewards of up to `n` decisions into one transition (Sutton and Barto 2018, section 7.1)."""
+    """N-step returns: sums the rewards of up to `n` decisions into one transition (Sutton and Barto 2018, 7.1).
+
+    Transitions of an episode's last decisions are shorter. `discount` is γ, for each decision; it may be changed.
+    """
 
     def __init__(self, n: int, discount: float) -> None:
         self.n, self.discount = n, discount
@@ -20,8 +23,10 @@ class NStep:
     def add(
         self, state: Floats, action: Ints, reward: Floats, next_state: Floats, terminal: Bools, ended: Bools
     ) -> tuple[MemoryCell, Ints]:
-        """Take one decision of every slot; return the transitions that are now complete, and their slots.
+        """Take one decision of each of n slots; return the m transitions that are now complete, and their slots (m,).
 
+        `state` and `next_state` are (n, features), the others (n,). `terminal` marks a next state without value,
+        `ended` any end of an episode. A transition's `reward` is the discounted sum, its `steps` how many it has.
         Slots that have ended before and wait for a reset must not be passed on with a new decision.
         """
         if self._states is None or self._states.shape[1:] != state.shape:
@@ -65,7 +70,10 @@ class Episodes:
         self._parts: dict[int, list[MemoryCell]] = {}
 
     def add(self, cells: MemoryCell, slots: Ints, ended: Bools, success: Bools) -> Iterator[MemoryCell]:
-        """Take new transitions with their slots; yield every successful episode that is now whole."""
+        """Take m new transitions with their slots (m,); yield every successful episode that is now whole.
+
+        `ended` and `success` (n,) are of all slots.
+        """
         for slot in np.unique(slots).tolist():
             mine = slots == slot
             self._parts.setdefault(slot, []).append(MemoryCell(*(part[mine] for part in cells)))

@@ -13,15 +13,22 @@ REACH: Final = 10.0  # standard deviations from the mean at which values are cli
 
 
 class Normalizer:
-    """Running mean and standard deviation, which scale observations to mean 0 and standard deviation 1."""
+    """Running mean and standard deviation, which scale observations to mean 0 and standard deviation 1.
+
+    Attributes:
+        count: observations so far.
+        mean: (features,) of them, in the environment's units.
+        squares: (features,) summed squares of their distances from the mean.
+
+    """
 
     def __init__(self, num_features: int) -> None:
         self.count = 0
         self.mean: Doubles = np.zeros(num_features)
-        self.squares: Doubles = np.zeros(num_features)  # summed squares of the distances from the mean
+        self.squares: Doubles = np.zeros(num_features)
         self._refresh()
 
-    def watch(self, observations: Floats) -> None:
+    def update(self, observations: Floats) -> None:
         """Update mean and deviation by n more observations (n, features) (Chan, Golub and LeVeque 1983)."""
         new, mean = len(observations), observations.mean(axis=0, dtype=float)
         shift, total = mean - self.mean, self.count + new
@@ -31,7 +38,7 @@ class Normalizer:
         self._refresh()
 
     def __call__(self, observations: Floats) -> Floats:
-        """Scale observations (n, features)."""
+        """Return observations (n, features) in standard deviations from the mean, clipped at REACH, float32."""
         scaled: Floats = np.clip((observations - self._shift) * self._factor, -REACH, REACH)
         return scaled
 

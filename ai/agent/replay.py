@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ai.agent.config import Config
 from ai.common.environment import Doubles, Floats, Ints
 
 
@@ -26,7 +27,15 @@ class MemoryCell(NamedTuple):
 
 
 class ReplayBuffer:
-    """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once."""
+    """Replay buffer of the last `capacity` transitions. When it is full, the oldest `prune` are dropped at once.
+
+    Drawing is uniform, with replacement (Lin 1992). Raises ValueError for a `prune` outside 1 to `capacity`.
+
+    Attributes:
+        cells: the transitions as views, each (capacity, ...), in no particular order.
+        importance: exponent of the importance-sampling weights, without effect where drawing is uniform.
+
+    """
 
     def __init__(self, capacity: int, num_features: int, prune: int = 1) -> None:
         if not 1 <= prune <= capacity:
@@ -42,6 +51,7 @@ class ReplayBuffer:
         self.start = 0  # where the oldest lies
         self.size = 0
         self.added = 0  # ever, dropped ones included
+        self.importance = 0.0
 
     def __len__(self) -> int:
         return self.size
@@ -63,7 +73,7 @@ class ReplayBuffer:
         return rows
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
-        """Draw `count` transitions; return them, where they lie, and the weight of each in the cost."""
+        """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,)."""
         rows = rng.integers(self.size, size=count)
         rows += self.start
         rows %= self.capacity
@@ -89,8 +99,8 @@ def _fields(records: NDArray[np.void]) -> MemoryCell:
 class PrioritisedReplayBuffer(ReplayBuffer):
     """Prioritised replay: sampling with probability proportional to |error|^exponent (Schaul et al. 2016).
 
-    New ones get the largest priority seen, so that each is drawn soon. `importance`, which the owner raises
-    towards 1, says how far the weights undo the bias that this brings.
+    New ones get the largest priority seen, so that each is drawn soon. `importance`, which the agent raises
+    towards 1, is the exponent β by which the weights undo the bias that this brings; `exponent` is the paper's α.
     """
 
     def __init__(
@@ -108,7 +118,10 @@ class PrioritisedReplayBuffer(ReplayBuffer):
         return rows
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
-        """Draw `count` transitions; return them, where they lie, and the weight of each in the cost."""
+        """Draw `count` transitions; return them, the rows where they lie, and their weights in the cost, (count,).
+
+        Weights are (size · probability)^-importance, relative to the largest of those drawn.
+        """
         # One draw from each of `count` equal parts of the total: less noise than independent draws.
         rows = self.tree.find((np.arange(count) + rng.random(count)) / count * self.tree.total)
         rng.shuffle(rows)
@@ -128,7 +141,10 @@ class PrioritisedReplayBuffer(ReplayBuffer):
 
 
 class SumTree:
-    """A binary tree of sums: priorities are set, and found by cumulative weight, in O(log capacity) batches."""
+    """Binary tree of sums (Schaul et al. 2016, appendix B.2.1).
+
+    Batches of priorities are set, and found by cumulative weight, in O(log capacity) operations of NumPy.
+    """
 
     def __init__(self, capacity: int) -> None:
         self.depth = max(1, int(np.ceil(np.log2(capacity))))
@@ -165,3 +181,12 @@ class SumTree:
             left_over -= left * right
             nodes += right
         return nodes - self.first_leaf
+
+
+def make_replay(config: Config, num_features: int) -> ReplayBuffer:
+    """Make the empty replay buffer of a configuration, for observations of so many features."""
+    if config.prioritised:
+        return PrioritisedReplayBuffer(
+            config.replay_size, num_features, config.replay_prune, config.priority_exponent, config.importance_exponent
+        )
+    return ReplayBuffer(config.replay_size, num_features, config.replay_prune)

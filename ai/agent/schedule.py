@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
 # Settings that define schedules, each with the one that acts in its place once it has no effect.
 _SCHEDULED: Final = {
-    "learning_rate": "final_learning_rate", "final_learning_rate": "learning_rate", "horizon": "final_learning_rate",
-    "care": "horizon", "epsilon_start": "epsilon_end", "epsilon_end": "epsilon_start", "epsilon_decay": "epsilon_end",
+    "learning_rate": "final_learning_rate", "final_learning_rate": "learning_rate",
+    "schedule_decisions": "final_learning_rate", "final_touchdown_limits": "schedule_decisions",
+    "epsilon_start": "epsilon_end", "epsilon_end": "epsilon_start", "epsilon_decay": "epsilon_end",
     "epsilon_decisions": "epsilon_end", "epsilon_spread": "num_envs",
 }  # fmt: skip
 
@@ -52,18 +53,18 @@ def geometric(start: float, end: float, factor: float, done: int) -> float:
 
 
 def learning_rate(config: Config, decisions: int) -> float:
-    """Return the learning rate after so many decisions."""
-    return linear(config.learning_rate, config.final_learning_rate, decisions, config.horizon)
+    """Return the learning rate after so many decisions: it falls in a straight line over the schedule."""
+    return linear(config.learning_rate, config.final_learning_rate, decisions, config.schedule_decisions)
 
 
 def importance(config: Config, decisions: int) -> float:
-    """Return the importance-sampling exponent, which says how far the bias of prioritised replay is corrected."""
-    return linear(config.importance_exponent, 1.0, decisions, config.horizon)
+    """Return the importance-sampling exponent β, which rises to 1 over the schedule (Schaul et al. 2016, 3.4)."""
+    return linear(config.importance_exponent, 1.0, decisions, config.schedule_decisions)
 
 
-def care(config: Config, decisions: int) -> float:
+def touchdown_limits(config: Config, decisions: int) -> float:
     """Return the limits of a touchdown after so many decisions, as a share of the real ones."""
-    return linear(1.0, config.care, decisions, config.horizon)
+    return linear(1.0, config.final_touchdown_limits, decisions, config.schedule_decisions)
 
 
 def exploration(config: Config, decisions: int, episodes: int) -> float:
@@ -74,7 +75,10 @@ def exploration(config: Config, decisions: int, episodes: int) -> float:
 
 
 def exploration_of_each(config: Config, epsilon: float) -> Doubles:
-    """Return each lander's ε, (num_envs,): bold ones go on finding what careful ones never try."""
+    """Return the ε of each lander, (num_envs,): from `epsilon` for the first to a larger one for the last.
+
+    As in Horgan et al. 2018, they are powers of one ε: bold landers go on finding what careful ones never try.
+    """
     reach = np.linspace(1.0, 1.0 - config.epsilon_spread, config.num_envs)
     return np.asarray(epsilon**reach)
 
@@ -107,5 +111,6 @@ def _scheduled(config: Config, decisions: int, episodes: int) -> tuple[float, ..
     """Return all scheduled values at one moment, rounded so that they can be compared."""
     each = exploration_of_each(config, exploration(config, decisions, episodes))
     corrected = importance(config, decisions) if config.prioritised else 0.0
-    decided = (learning_rate(config, decisions), care(config, decisions), corrected, float(each[0]), float(each[-1]))
+    limits = touchdown_limits(config, decisions)
+    decided = (learning_rate(config, decisions), limits, corrected, float(each[0]), float(each[-1]))
     return tuple(round(value, 12) for value in decided)

@@ -89,6 +89,7 @@ def configured(preset: Settings, given: list[str]) -> Settings:
     changes = {}
     for change in given:
         name, equals, text = change.partition("=")
+        name = preset.name_now(name)
         if not equals or name not in preset.to_json():
             raise ValueError(f"--set takes NAME=VALUE with the name of a setting, not {change!r}")
         try:

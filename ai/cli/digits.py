@@ -7,52 +7,31 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 import time
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ai.cli.command_line import (
-    REFUSED,
-    SECONDS,
-    SEEDS,
-    configured,
-    exit_code,
-    fail,
-    fail_diverged,
-    folder,
-    keep,
-    keep_checkpoint,
-    out_of_range,
-    reason,
-    refuse_fixed,
-    stoppable,
-)
+from ai.cli.command_line import REFUSED, SECONDS, SEEDS, configured, fail, folder, out_of_range, reason
+from ai.cli.training_run import RunCommand, add_run_options, show_progress, train
 
 if TYPE_CHECKING:
     from ai.digits.config import DigitConfig
-    from ai.digits.training import DigitTraining
+    from ai.digits.training import DigitProgress, DigitTraining
 
 
 def add_commands(commands: Any) -> None:
     """Add `train-digits` and `evaluate-digits` to a parser's sub-commands."""
-    train = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
-    train.add_argument("--preset", help="modern, classic, or as-described, the recipe of one epoch that the classic"
+    teach = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
+    teach.add_argument("--preset", help="modern, classic, or as-described, the recipe of one epoch that the classic"
                        " one grew from (default: modern)")  # fmt: skip
-    train.add_argument("--output", type=folder, metavar="DIR", help="where to keep the network")
-    train.add_argument("--resume", type=folder, metavar="DIR",
-                       help="go on with what an earlier run kept there, by its settings; --set and --preset may"
-                            " change those that can change while a run goes on")  # fmt: skip
-    train.add_argument("--seed", type=int, help="what all chance follows from (default: 0)")
-    train.add_argument("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
-    train.add_argument("--seconds", type=float,
+    add_run_options(teach, "dropout=0.5")
+    teach.add_argument("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
+    teach.add_argument("--seconds", type=float,
                        help="stop when the whole run, resumed or not, has trained for so many seconds, even if there"
                             " are epochs to come")  # fmt: skip
-    train.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
-                       help="change a setting of the preset, such as --set dropout=0.5")  # fmt: skip
-    train.set_defaults(run=_train)
+    teach.set_defaults(run=_train)
 
     evaluate = commands.add_parser("evaluate-digits", help="measure how well a network reads MNIST's test images")
     evaluate.add_argument("--model", type=folder, required=True, metavar="DIR")
@@ -61,95 +40,51 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
+    from ai.digits.checkpoints import resume_digit_run, save_digit_run
     from ai.digits.classifier import KIND
-    from ai.nn.folder import claimed_folder
+    from ai.digits.training import DigitTraining
 
-    output = arguments.output or arguments.resume
-    if output is None:
+    if arguments.resume is None and arguments.output is None:
         return fail("say where to keep the network: --output DIR, or --resume DIR")
     if problem := out_of_range(arguments, seed=SEEDS, seconds=SECONDS):
         return fail(problem)
-    with ExitStack() as claims:
-        try:
-            training = _begun(arguments) if arguments.resume is None else _resumed(arguments)
-            if arguments.seconds is not None and training.seconds >= arguments.seconds:
-                raise ValueError(
-                    f"this run has trained for {training.seconds:,.1f} seconds already; --seconds is of the whole run:"
-                    " ask for more"
-                )
-            claims.enter_context(claimed_folder(output, KIND))
-        except REFUSED as error:
-            return fail(reason(error))
-        return _keep_training(training, arguments.seconds, output)
+    seconds: float | None = arguments.seconds
+
+    def used_up(training: DigitTraining) -> str:
+        if seconds is None or training.seconds < seconds:
+            return ""
+        spent = f"this run has trained for {training.seconds:,.1f} seconds already"
+        return f"{spent}; --seconds is of the whole run: ask for more"
+
+    def verdict(_: DigitTraining, described: dict[str, Any]) -> str:
+        return f"{described['test']:.2%} of MNIST's test images read right"
+
+    return train(arguments, RunCommand(
+        KIND, partial(_config, arguments), DigitTraining, resume_digit_run, used_up, partial(_advance, seconds),
+        save_digit_run, verdict,
+    ))  # fmt: skip
 
 
-def _begun(arguments: argparse.Namespace) -> DigitTraining:
-    """Return a new run; raises ValueError for settings that make no sense, MnistError without images."""
-    from ai.digits.training import DigitTraining
-
-    return DigitTraining(_config(arguments), arguments.seed or 0)
-
-
-def _resumed(arguments: argparse.Namespace) -> DigitTraining:
-    """Return the run to go on with, its live settings changed as asked; raises ValueError where they are not live."""
-    from ai.digits.checkpoints import resume_digit_run
-
-    training = resume_digit_run(arguments.resume)
-    wanted = _config(arguments, training.config)
-    refuse_fixed(training.config, wanted, training.seed, arguments.seed)
-    training.change(wanted)
-    return training
-
-
-def _keep_training(training: DigitTraining, seconds: float | None, output: Path) -> int:
-    """Train, keep what comes of it, and return the exit code."""
-    from ai.digits.checkpoints import save_digit_run
-
-    stopped = ""
-    try:
-        with stoppable() as stop:
-            try:
-                _advance(training, seconds, output, stop)
-            except FloatingPointError as error:
-                stopped = f"training stopped: {error}. "
-                training.rewind()
-            # Save before measuring, which takes a while: the user may stop the program meanwhile.
-            output, described = keep(partial(save_digit_run, training), output)
-        if not stopped:
-            output, described = keep(partial(save_digit_run, training, final=True), output)
-    except OSError as error:
-        return fail(f"{stopped}could not write to {output}: {error.strerror or error}")
-    except ValueError as error:
-        return fail(f"{stopped}{error}")
-    if stopped:
-        return fail_diverged(stopped, output, measured=training.best is not None)
-    print(f"kept in {output}: {described['test']:.2%} of MNIST's test images read right")
-    return exit_code(stop)
-
-
-def _advance(training: DigitTraining, seconds: float | None, output: Path, stop: list[int]) -> None:
+def _advance(seconds: float | None, training: DigitTraining, output: Path, stop: list[int]) -> None:
     """Train until the last epoch, the clock or the user says stop, and keep the work after each epoch."""
-    from tqdm import tqdm
-
     from ai.digits.checkpoints import save_digit_run
 
-    form = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
-    trouble = ""
-    with tqdm(total=training.steps, initial=training.step, desc="training", bar_format=form, disable=None) as bar:
-        while not training.done and not stop:
+    def steps() -> Iterator[DigitProgress]:
+        while not training.done and (seconds is None or training.seconds < seconds):
             began = time.monotonic()
             progress = training.advance()
             training.seconds += time.monotonic() - began
-            bar.update(1)
-            best = f", held out {progress.best:.2%}" if progress.best is not None else ""
-            bar.set_postfix_str(f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}", refresh=False)
-            if progress.step % training.steps_per_epoch == 0 and not training.done:
-                new = keep_checkpoint(partial(save_digit_run, training), output)
-                if new and new != trouble:
-                    bar.write(new, file=sys.stderr)
-                trouble = new
-            if seconds is not None and training.seconds >= seconds:
-                break
+            yield progress
+
+    def shown(progress: DigitProgress) -> tuple[int, str]:
+        best = f", held out {progress.best:.2%}" if progress.best is not None else ""
+        return progress.step, f"epoch {progress.epoch:.1f}, loss {progress.loss:.3f}{best}"
+
+    def checkpoint(progress: DigitProgress) -> Callable[[Path], object] | None:
+        ended = progress.step % training.steps_per_epoch == 0 and not training.done
+        return partial(save_digit_run, training) if ended else None
+
+    show_progress(steps(), training.steps, training.step, shown, checkpoint, output, stop)
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:

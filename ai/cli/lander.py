@@ -7,34 +7,18 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
-from contextlib import ExitStack
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli.command_line import (
-    EPISODES,
-    REFUSED,
-    SECONDS,
-    SEEDS,
-    configured,
-    exit_code,
-    fail,
-    fail_diverged,
-    folder,
-    keep,
-    keep_checkpoint,
-    out_of_range,
-    reason,
-    refuse_fixed,
-    stoppable,
-)
+from ai.cli.command_line import EPISODES, REFUSED, SECONDS, SEEDS, configured, fail, folder, out_of_range, reason
+from ai.cli.training_run import RunCommand, add_run_options, show_progress, train
 
 if TYPE_CHECKING:
     from ai.agent.config import Config
     from ai.training.checkpoints import TrainingClock
-    from ai.training.loop import Training
+    from ai.training.loop import Progress, Training
     from ai.training.task import Score
 
 DECISIONS: Final = (1, 10**12)
@@ -42,24 +26,18 @@ DECISIONS: Final = (1, 10**12)
 
 def add_commands(commands: Any) -> None:
     """Add `train` and `evaluate` to a parser's sub-commands."""
-    train = commands.add_parser("train", help="teach a network to land, or to master another environment")
-    train.add_argument("--env", metavar="NAME",
+    teach = commands.add_parser("train", help="teach a network to land, or to master another environment")
+    teach.add_argument("--env", metavar="NAME",
                        help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)")  # fmt: skip
-    train.add_argument("--preset", help="modern or classic (default: modern; for --env, settings of its own)")
-    train.add_argument("--seed", type=int, help="what all chance follows from (default: 0)")
-    train.add_argument("--seconds", type=float,
+    teach.add_argument("--preset", help="modern or classic (default: modern; for --env, settings of its own)")
+    teach.add_argument("--seconds", type=float,
                        help="stop when the whole run, resumed or not, has trained for so many seconds")  # fmt: skip
-    train.add_argument("--decisions", type=int,
+    teach.add_argument("--decisions", type=int,
                        help="stop when the whole run, resumed or not, has taken so many decisions; begun anew with"
                             " the same seed, it gives the same network")  # fmt: skip
-    train.add_argument("--output", type=folder, metavar="DIR", help="where to keep the network")
-    train.add_argument("--resume", type=folder, metavar="DIR",
-                       help="go on with what an earlier run kept there, by its settings; --set and --preset may"
-                            " change those that can change while a run goes on")  # fmt: skip
-    train.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
-                       help="change a setting of the preset, such as --set n_step=5")  # fmt: skip
-    train.add_argument("--validation", type=int, metavar="N", help="episodes that choose the best network")
-    train.set_defaults(run=_train)
+    add_run_options(teach, "n_step=5")
+    teach.add_argument("--validation", type=int, metavar="N", help="episodes that choose the best network")
+    teach.set_defaults(run=_train)
 
     evaluate = commands.add_parser("evaluate", help="measure how well a network does")
     evaluate.add_argument("--model", type=folder, required=True, metavar="DIR")
@@ -72,9 +50,9 @@ def add_commands(commands: Any) -> None:
 
 
 def _train(arguments: argparse.Namespace) -> int:
-    from ai.agent.agent import KIND
-    from ai.nn.folder import claimed_folder
-    from ai.training.checkpoints import TrainingClock
+    from ai.agent.storage import KIND
+    from ai.training.checkpoints import TrainingClock, resume_run, save_run
+    from ai.training.loop import Training
 
     if arguments.resume is None and arguments.output is None:
         return fail("say where to keep the network: --output DIR, or --resume DIR")
@@ -83,93 +61,48 @@ def _train(arguments: argparse.Namespace) -> int:
     problem = out_of_range(arguments, seed=SEEDS, seconds=SECONDS, decisions=DECISIONS, validation=EPISODES)
     if problem:
         return fail(problem)
-    output = arguments.output or arguments.resume
     clock = TrainingClock(arguments.seconds, arguments.decisions)
-    with ExitStack() as claims:
-        try:
-            training = _begun(arguments) if arguments.resume is None else _resumed(arguments)
-            if clock.share(training) >= 1.0:
-                raise ValueError(
-                    f"this run has taken {training.agent.decisions:,} decisions in {training.seconds:,.1f} seconds"
-                    " already; --decisions and --seconds are of the whole run: ask for more"
-                )
-            claims.enter_context(claimed_folder(output, KIND))
-        except REFUSED as error:
-            return fail(reason(error))
-        return _keep_training(training, clock, output)
+
+    def begin(config: Config, seed: int) -> Training:
+        return Training(config, seed, validation_episodes=arguments.validation)
+
+    def resume(folder: Path) -> Training:
+        training = resume_run(folder, env=arguments.env)
+        if arguments.validation is not None:
+            training.validation_episodes = arguments.validation
+        return training
+
+    return train(arguments, RunCommand(
+        KIND, partial(_config, arguments), begin, resume, partial(_used_up, clock), partial(_advance, clock), save_run,
+        lambda training, _: str(training.best),
+    ))  # fmt: skip
 
 
-def _begun(arguments: argparse.Namespace) -> Training:
-    """Return a new run; raises what `task_of` raises, and ValueError for settings that make no sense."""
-    from ai.training.loop import Training
-
-    return Training(_config(arguments), arguments.seed or 0, validation_episodes=arguments.validation)
-
-
-def _resumed(arguments: argparse.Namespace) -> Training:
-    """Return the run to go on with, its live settings changed as asked; raises ValueError where they are not live."""
-    from ai.training.checkpoints import resume_run
-
-    training = resume_run(arguments.resume, env=arguments.env)
-    wanted = _config(arguments, training.config)
-    refuse_fixed(training.config, wanted, training.seed, arguments.seed)
-    training.change(wanted)
-    if arguments.validation is not None:
-        training.validation_episodes = arguments.validation
-    return training
+def _used_up(clock: TrainingClock, training: Training) -> str:
+    if clock.share(training) < 1.0:
+        return ""
+    return (
+        f"this run has taken {training.agent.decisions:,} decisions in {training.seconds:,.1f} seconds"
+        " already; --decisions and --seconds are of the whole run: ask for more"
+    )
 
 
-def _keep_training(training: Training, clock: TrainingClock, output: Path) -> int:
-    """Train, keep what comes of it, and return the exit code."""
-    from ai.training.checkpoints import rewind, save_run
-
-    stopped = ""
-    try:
-        with stoppable() as stop:
-            try:
-                _advance(training, clock, output, stop)
-            except FloatingPointError as error:
-                stopped = f"training stopped: {error}. "
-                rewind(training)
-            # Save before measuring, which takes seconds: the user may stop the program meanwhile.
-            output, _ = keep(partial(save_run, training), output)
-        if not stopped:
-            output, _ = keep(partial(save_run, training, final=True), output)
-    except OSError as error:
-        return fail(f"{stopped}could not write to {output}: {error.strerror or error}")
-    except ValueError as error:
-        return fail(f"{stopped}Nothing new is kept in {output}: {error}")
-    if stopped:
-        return fail_diverged(stopped, output, measured=training.best is not None)
-    print(f"kept in {output}: {training.best}")
-    return exit_code(stop)
-
-
-def _advance(training: Training, clock: TrainingClock, output: Path, stop: list[int]) -> None:
+def _advance(clock: TrainingClock, training: Training, output: Path, stop: list[int]) -> None:
     """Train until the clock or the user says stop, with a progress bar, keeping the work now and then."""
-    from tqdm import tqdm
-
     from ai.agent.config import LANDER
     from ai.training.checkpoints import save_run
 
-    lander, trouble = training.config.env == LANDER, ""
-    form = "{desc} {percentage:3.0f}%|{bar}| {elapsed}<{remaining} {postfix}"
-    with tqdm(total=1000, desc="training", bar_format=form, disable=None) as bar:
-        for progress in clock.run(training):
-            bar.update(int(clock.share(training) * 1000) - bar.n)
-            best = f" best {progress.best.figure}" if progress.best else ""
-            recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
-            bar.set_postfix_str(
-                f"{recent} of the last 100, ε {progress.epsilon:.2f},"
-                f" {progress.decisions:,} decisions{best}", refresh=False,
-            )  # fmt: skip
-            if stop:
-                break
-            if clock.checkpoint_due():
-                new = keep_checkpoint(partial(save_run, training), output)
-                if new and new != trouble:
-                    bar.write(new, file=sys.stderr)
-                trouble = new
+    def shown(progress: Progress) -> tuple[int, str]:
+        best = f" best {progress.best.figure}" if progress.best else ""
+        lander = training.config.env == LANDER
+        recent = f"landed {progress.success_rate:.0%}" if lander else f"return {progress.mean_return:.1f}, mean"
+        words = f"{recent} of the last 100, ε {progress.epsilon:.2f}, {progress.decisions:,} decisions{best}"
+        return int(clock.share(training) * 1000), words
+
+    def checkpoint(_: Progress) -> Callable[[Path], None] | None:
+        return partial(save_run, training) if clock.checkpoint_due() else None
+
+    show_progress(clock.run(training), 1000, 0, shown, checkpoint, output, stop)
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:

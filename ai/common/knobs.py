@@ -1,6 +1,8 @@
 """Settings as a dataclass whose fields describe themselves, for commands, screens and files alike.
 
-A field's metadata hold a sentence of help, its group, its range, and whether it may change while a run goes on.
+A field's metadata hold a sentence of help, its group, its range, and whether it may change while a run goes on. A
+field that was renamed says what it was called `formerly`: saved settings are read under both names, for ever, and
+written under the present one.
 """
 
 from __future__ import annotations
@@ -29,11 +31,12 @@ def knob(
     live: bool = False,
     offers: tuple[Any, ...] = (),
     needs: str = "",
+    formerly: str = "",
 ) -> Any:
     """Describe a field: its help, group, range or choices, scale, and whether it may change during a run.
 
     `offers` are a few values for a screen to propose, where the range says too little. `needs` names another field:
-    while that is off or 0, this one has no effect.
+    while that is off or 0, this one has no effect. `formerly` is the field's name in older files.
     """
     described = {
         "help": help,
@@ -45,6 +48,7 @@ def knob(
         "live": live,
         "offers": offers,
         "needs": needs,
+        "formerly": formerly,
     }
     return field(default=default, metadata=described)
 
@@ -74,7 +78,8 @@ class Knobs:
 
     @classmethod
     def from_json(cls, values: Mapping[str, Any]) -> Self:
-        """Read what `to_json` wrote; unknown names and values out of range raise ValueError."""
+        """Read what `to_json` wrote, now or under former names; raises ValueError for unknown names and bad values."""
+        values = cls.renamed(values)
         unknown = sorted(set(values) - {item.name for item in fields(cls)})
         if unknown:
             raise ValueError(f"unknown settings: {', '.join(unknown)}")
@@ -84,6 +89,22 @@ class Knobs:
             raise ValueError(f"settings cannot be read: {error}") from error
 
     @classmethod
+    def name_now(cls, name: str) -> str:
+        """Return the present name of a setting, given that or a former one; a part after a dot stays as it is."""
+        head, dot, part = name.partition(".")
+        former = {item.metadata["formerly"]: item.name for item in fields(cls)}
+        return f"{former[head]}{dot}{part}" if head and head in former else name
+
+    @classmethod
+    def renamed(cls, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Return values by present names, given by present or former ones; raises ValueError for one given twice."""
+        named = {cls.name_now(name): value for name, value in values.items()}
+        if len(named) < len(values):
+            twice = sorted(name for name in values if cls.name_now(name) != name and cls.name_now(name) in values)
+            raise ValueError(f"settings given under their present and a former name: {', '.join(twice)}")
+        return named
+
+    @classmethod
     def value_from_json(cls, name: str, value: Any) -> Any:  # noqa: ARG003
         """Return the value of a field from what a file holds of it; what cannot be one raises TypeError."""
         return tuple(value) if isinstance(value, list) else value
@@ -91,6 +112,21 @@ class Knobs:
     def changed(self, **values: Any) -> Self:
         """Return a copy with some fields changed, checked like any other."""
         return replace(self, **values)
+
+    def turned(self, name: str, value: Any) -> Self:
+        """Return a copy with one live knob turned, named by its field, or "field.part" where that has parts.
+
+        Raises ValueError for a name that no setting has, for one that is not live, and for a value out of range.
+        """
+        name = self.name_now(name)
+        head, _, part = name.partition(".")
+        live = {item.name: item.metadata["live"] for item in fields(self)}
+        whole = getattr(self, head) if head in live else None
+        if head not in live or (part and (not is_dataclass(whole) or part not in vars(whole))):
+            raise ValueError(f"there is no setting called {name}")
+        if not live[head]:
+            raise ValueError(f"{head} cannot change while a run goes on")
+        return self.changed(**{head: replace(whole, **{part: value}) if part else value})  # type: ignore[type-var]
 
     @classmethod
     def live_names(cls) -> tuple[str, ...]:

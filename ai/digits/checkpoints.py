@@ -53,7 +53,7 @@ def resume_digit_run(folder: str | Path, **options: Any) -> DigitTraining:
     try:
         described = read_json(inside(folder, TRAINING_FILE))
         preset = DIGIT_PRESETS[described["preset"]].to_json()
-        config = DigitConfig.from_json(preset | described["changes"])
+        config = DigitConfig.from_json(preset | DigitConfig.renamed(described["changes"]))
         training = DigitTraining(config, count_of(described["seed"], most=10**40), **options)
         training.step, training.seconds = count_of(described["step"]), float(number_of(described["seconds"], 0))
         training.best = None if described["held_out"] is None else float(number_of(described["held_out"]))

@@ -35,15 +35,17 @@ class DigitConfig(Knobs):
                                 "learning", low=1e-5, high=1.0, log=True, live=True)
     final_learning_rate: float = knob(1e-6, "Final learning rate, reached along half a cosine.",
                                       "learning", low=1e-7, high=1.0, log=True, live=True)
-    warm_up: float = knob(0.5, "Epochs over which the learning rate rises from 0.", "learning", low=0.0, high=10.0)
+    warm_up_epochs: float = knob(0.5, "Epochs over which the learning rate rises from 0.",
+                                 "learning", low=0.0, high=10.0, formerly="warm_up")
     epochs: int = knob(12, "Epochs: passes over all training images.", "learning", low=1, high=1000)
     batch_size: int = knob(50, "Batch size: images in each learning step.", "learning", low=1, high=5000)
     optimizer: str = knob("adam", "Optimizer: how a gradient becomes a step.", "learning", choices=tuple(OPTIMIZERS))
     cost: str = knob("softmax_cross_entropy", "Cost function: measures the error.", "learning", choices=tuple(COSTS))
-    smoothing: float = knob(0.05, "Label smoothing: share of each label given to all digits alike.",
-                            "learning", low=0.0, high=0.5, live=True)
-    averaging: float = knob(0.998, "Decay of the moving average of weights that is kept; 0 keeps the last.",
-                            "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999))
+    label_smoothing: float = knob(0.05, "Label smoothing: share of each label given to all digits alike.",
+                            "learning", low=0.0, high=0.5, live=True, formerly="smoothing")
+    ema_decay: float = knob(0.998, "Decay of the moving average of weights that is kept; 0 keeps the last.",
+                            "learning", low=0.0, high=0.9999, offers=(0.0, 0.9, 0.98, 0.99, 0.995, 0.998, 0.999),
+                            formerly="averaging")
     held_out: int = knob(5_000, "Validation images, never learnt from, to pick the best by.",
                          "learning", low=0, high=30_000)
 
@@ -60,8 +62,8 @@ class DigitConfig(Knobs):
 
     augmentation: float = knob(1.0, "Augmentation: how far images are bent, slanted and turned.",
                                "images", low=0.0, high=2.0, live=True)
-    original: float = knob(0.1, "Share of images left without augmentation.", "images", low=0.0, high=1.0, live=True,
-                           needs="augmentation")
+    unaugmented: float = knob(0.1, "Share of images left without augmentation.", "images", low=0.0, high=1.0, live=True,
+                           needs="augmentation", formerly="original")
     # fmt: on
 
     def problems(self) -> list[str]:
@@ -115,13 +117,13 @@ def build_digit_network(config: DigitConfig, rng: np.random.Generator) -> Neural
 DIGIT_PRESETS: Final[dict[str, DigitConfig]] = {
     "modern": DigitConfig(),
     "classic": DigitConfig(
-        learning_rate=3e-3, cost="mse", smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
-        output_activation=True, dropout=0.0, augmentation=0.8, original=0.2, epochs=60, batch_size=100,
+        learning_rate=3e-3, cost="mse", label_smoothing=0.0, convolutions=False, hidden=(100, 50), activation="tanh",
+        output_activation=True, dropout=0.0, augmentation=0.8, unaugmented=0.2, epochs=60, batch_size=100,
     ),
     # The classic network as it was first described: all 60,000 images once, and plain steps.
     "as-described": DigitConfig(
-        learning_rate=0.2, final_learning_rate=0.2, warm_up=0.0, epochs=1, batch_size=500, optimizer="sgd",
-        cost="mse", smoothing=0.0, averaging=0.0, held_out=0, convolutions=False, hidden=(100, 50),
+        learning_rate=0.2, final_learning_rate=0.2, warm_up_epochs=0.0, epochs=1, batch_size=500, optimizer="sgd",
+        cost="mse", label_smoothing=0.0, ema_decay=0.0, held_out=0, convolutions=False, hidden=(100, 50),
         activation="tanh", output_activation=True, dropout=0.0, augmentation=0.0,
     ),
 }  # fmt: skip

@@ -13,10 +13,10 @@ import numpy.typing as npt
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.config import DigitConfig
-from ai.digits.training import LIVE, DigitTraining
+from ai.digits.training import DigitTraining
 from ai.nn import Array
 from ai.training.history import REVERTED
-from ai.training.messages import ChangeSetting, Refused, Save
+from ai.training.messages import ChangeSetting, Refused, Save, Saved, problem_of
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 KEEP_SECONDS: Final = 20.0
@@ -86,8 +86,8 @@ class DigitSettingChanged:
 
 
 @dataclass(frozen=True)
-class DigitRunSaved:
-    """Message that the run has been saved, or why it has not.
+class DigitRunSaved(Saved):
+    """Result of a save, with what has been measured of the network that was saved.
 
     Attributes:
         test: the accuracy on the test images, once it is finished.
@@ -95,8 +95,6 @@ class DigitRunSaved:
 
     """
 
-    folder: Path
-    problem: str = ""
     test: float | None = None
     epoch: int | None = None
 
@@ -219,18 +217,17 @@ class _LiveDigits:
         if isinstance(command, RestoreBest):
             return self._go_back()
         try:
-            if command.name not in LIVE:
-                raise ValueError(f"{command.name} cannot change while a run goes on")
-            self.training.change(self.training.config.changed(**{command.name: command.value}))
+            self.training.apply_live(self.training.config.turned(command.name, command.value))
         except ValueError as error:
             return [Refused(command, str(error))]
-        return [DigitSettingChanged(self.training.seconds, command.name, command.value)]
+        name = self.training.config.name_now(command.name)
+        return [DigitSettingChanged(self.training.seconds, name, command.value)]
 
     def _go_back(self) -> list[Message]:
         if self._best is None:
             return []
         accuracy, values = self._best
-        self.training.go_back(values)
+        self.training.restore(values)
         self._reading = None  # it was reading for the network that is gone
         return [DigitSettingChanged(self.training.seconds, REVERTED, accuracy)]
 
@@ -294,4 +291,4 @@ class _LiveDigits:
         try:
             return "", save_digit_run(self.training, folder, final=final).get("test")
         except (OSError, ValueError) as error:
-            return getattr(error, "strerror", None) or str(error), None
+            return problem_of(error), None

@@ -82,13 +82,13 @@ class DigitTraining:
     @property
     def learning_rate(self) -> float:
         """Learning rate: it rises in a straight line, then falls along half a cosine (Loshchilov & Hutter 2017)."""
-        config, warm = self.config, self.config.warm_up * self.steps_per_epoch
+        config, warm = self.config, self.config.warm_up_epochs * self.steps_per_epoch
         rise = min(1.0, (self.step + 1) / warm) if warm else 1.0
         share = min(1.0, self.step / self.steps)
         fall = 0.5 + 0.5 * math.cos(math.pi * share)
         return rise * (config.final_learning_rate + (config.learning_rate - config.final_learning_rate) * fall)
 
-    def change(self, config: DigitConfig) -> None:
+    def apply_live(self, config: DigitConfig) -> None:
         """Go on with other live knobs; the others stay as they are."""
         self.config = self.config.with_live(config)
 
@@ -102,8 +102,8 @@ class DigitTraining:
         batch = self._order[place * config.batch_size : (place + 1) * config.batch_size]
         rng = np.random.default_rng((self.seed, 2, self.step))
         images, labels = self._changed(self.images[batch], rng), self.labels[batch]
-        targets = np.full((len(batch), 10), config.smoothing / 10, np.float32)
-        targets[np.arange(len(batch)), labels] += 1 - config.smoothing
+        targets = np.full((len(batch), 10), config.label_smoothing / 10, np.float32)
+        targets[np.arange(len(batch)), labels] += 1 - config.label_smoothing
 
         self.optimizer.learning_rate = rate = self.learning_rate
         for layer in network.layers:
@@ -114,7 +114,7 @@ class DigitTraining:
         loss = network.correct(outputs, targets, self.optimizer)
         self.step += 1
         # A young average follows faster, so that it soon forgets the initial weights.
-        keep = min(config.averaging, self.step / (self.step + 10))
+        keep = min(config.ema_decay, self.step / (self.step + 10))
         if keep:
             self.average += (1 - keep) * (network.values - self.average)
         else:
@@ -132,7 +132,7 @@ class DigitTraining:
         if not self.config.augmentation:
             return images
         changed = augment(images, rng, Strength().times(self.config.augmentation))
-        same = rng.random(len(images)) < self.config.original
+        same = rng.random(len(images)) < self.config.unaugmented
         changed[same] = images[same]
         return changed
 
@@ -161,16 +161,16 @@ class DigitTraining:
             return None
         return next((int(each["epoch"]) for each in reversed(self.history) if each.get("held_out") == self.best), None)
 
-    def go_back(self, values: Array) -> None:
+    def restore(self, values: Array) -> None:
         """Restore the network and its average to the parameters `values` (parameters,); reset the optimizer."""
         self.classifier.network.values = values
         self.average[...] = values
         self.optimizer = OPTIMIZERS[self.config.optimizer](self.config.learning_rate)
 
-    def rewind(self) -> None:
+    def restore_best(self) -> None:
         """Restore the best network so far, if there is one: training cannot go on from a diverged one."""
         if self.best_values is not None:
-            self.go_back(self.best_values)
+            self.restore(self.best_values)
 
     def best_classifier(self) -> DigitClassifier:
         """Return the classifier that read the images held out best, or the current one."""
@@ -191,7 +191,7 @@ def run_digits(
     while not training.done:
         changed = yield training.advance()
         if changed is not None:
-            training.change(changed)
+            training.apply_live(changed)
 
 
 def accuracy(classifier: DigitClassifier, images: Images, labels: Labels) -> float:

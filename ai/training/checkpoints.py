@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
-from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from ai.agent.agent import KIND, LAST, DeepQAgent
+from ai.agent.agent import DeepQAgent
 from ai.agent.config import LANDER, PRESETS
+from ai.agent.storage import KIND, LAST, write_agent
 from ai.common.knobs import nearest_preset
 from ai.nn import ModelFormatError, atomic_folder
 from ai.nn.files import count_of, inside, number_of, read_json
@@ -69,8 +69,8 @@ class Snapshot:
     def save(self, folder: str | Path) -> None:
         """Write it, whole or not at all; raises OSError if it cannot be written."""
         with atomic_folder(folder, KIND) as temporary:
-            self.best.write(temporary)
-            self.last.write(temporary / LAST)
+            write_agent(self.best.saved(), temporary)
+            write_agent(self.last.saved(), temporary / LAST)
             if self.history is not None:
                 self.history.write(temporary)
             (temporary / TRAINING_FILE).write_text(json.dumps(self.described, indent=2) + "\n", encoding="utf-8")
@@ -89,7 +89,7 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
         "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
         "episodes": training.episodes, "landings": training.env.landings,
         "seconds": round(training.seconds, 3), "best": training.best.to_json() if training.best else None,
-        "flights": training.flights.to_json(),
+        "flights": training.statistics.to_json(),
     }  # fmt: skip
     return Snapshot(
         described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
@@ -110,12 +110,6 @@ def save_run(training: Training, folder: str | Path, final: bool = False) -> Non
         score = training.task.evaluate(kept.best, training.task.test_episodes, TEST_SEED)
         kept.described["evaluation"] = score.to_json()
     kept.save(folder)
-
-
-def rewind(training: Training) -> None:
-    """Restore the best networks found so far, if there are any: training cannot go on from diverged ones."""
-    if training.best_values is not None:
-        training.agent.go_back(training.best_values, deepcopy(training.best_scale))
 
 
 def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
@@ -143,14 +137,16 @@ def resume_run(folder: str | Path, *, env: str | None = None) -> Training:
             if best.network.values.shape != training.agent.network.values.shape:
                 raise ValueError("the best network and the last one are of different sizes")
             training.best = _read_score(training, described["best"])
-            training.best_values, training.best_scale = best.network.values.copy(), best.scale
+            training.best_values, training.best_normalizer = best.network.values.copy(), best.normalizer
         training.episodes, training.env.landings = count_of(described["episodes"]), count_of(described["landings"])
         training.seconds = float(number_of(described["seconds"], 0))
-        training.flights.load(described.get("flights", EpisodeStatistics(0).to_json()))  # older runs do not have them
+        training.statistics.load(
+            described.get("flights", EpisodeStatistics(0).to_json())
+        )  # older runs do not have them
     except (KeyError, TypeError, ValueError, ArithmeticError) as error:
         said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else error
         raise ModelFormatError(folder, [f"{TRAINING_FILE}: {said}"]) from error
-    training.agent.take_over(last)
+    training.agent.copy_from(last)
     return training
 
 

@@ -160,7 +160,7 @@ def _fly_together(
     """Fly demonstrations over the same ground side by side; give the transitions of each, or None."""
     count, skip = len(demonstrations), config.frame_skip
     hills = None if ground is None else hilly(np.random.default_rng(ground))
-    env = LanderEnv(count, 0, spawn, frame_skip=1, ground=hills, weights=config.weights)
+    env = LanderEnv(count, 0, spawn, frame_skip=1, ground=hills, weights=config.reward_weights)
     lengths = np.array([len(demonstration.actions) for demonstration in demonstrations])
     actions = np.zeros((-(-lengths.max() // skip) * skip, count), np.intp)
     for slot, demonstration in enumerate(demonstrations):

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ai.agent.agent import Symmetry
 from ai.agent.config import Config
+from ai.agent.symmetry import Symmetry
 from ai.common.environment import SUCCESS, Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.lander.pilots import Pilot
 from ai.training.task import checked_score
@@ -22,9 +22,9 @@ FAILED: Final = 2
 # Found by trial on CartPole-v1 and LunarLander-v3; docs/environments.md has the measurements.
 GYM: Final = Config(
     env="CartPole-v1", num_envs=16, frame_skip=1, normalise_inputs=True, mirror=False, steadiness=0.0,
-    learning_rate=2e-3, final_learning_rate=3e-4, horizon=700_000, discount=0.995, n_step=3, batch_size=128,
-    updates=4, replay_size=1_000_000, warm_up=5_000, epsilon_decisions=40_000, epsilon_end=0.05, epsilon_spread=0.7,
-    hidden=(64, 64), target_rate=0.005, reward_scale=0.01,
+    learning_rate=2e-3, final_learning_rate=3e-4, schedule_decisions=700_000, discount=0.995, n_step=3,
+    batch_size=128, gradient_steps=4, replay_size=1_000_000, learning_starts=5_000, epsilon_decisions=40_000,
+    epsilon_end=0.05, epsilon_spread=0.7, hidden=(64, 64), tau=0.005, reward_scale=0.01,
 )  # fmt: skip
 
 
@@ -154,11 +154,11 @@ class GymTask:
         """Make the environments to train with."""
         return self._env(self.config.num_envs, rng)
 
-    def change(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
+    def apply_live(self, config: Config, env: Env) -> None:  # noqa: ARG002 - nothing of an environment is live
         """Take over the live knobs of another configuration."""
         self.config = config
 
-    def follow(self, decisions: int, env: Env) -> None:
+    def update_env(self, decisions: int, env: Env) -> None:
         """Do nothing: an environment of Gymnasium does not change with experience."""
 
     def _env(self, num_envs: int, rng: np.random.Generator) -> GymEnv:

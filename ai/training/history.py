@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
+from ai.agent.config import Config
 from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
 from ai.lander.rewards import REWARDS
@@ -23,7 +24,7 @@ COLUMNS: Final = (
 )  # fmt: skip
 SHARES: Final = ("landed", "crashed", "out_of_bounds", "timed_out")  # in the order of ai.lander.environment.Outcome
 PARTS: Final = tuple(REWARDS)
-REVERTED: Final = "checkpoint"  # the name of the alteration that goes back to one
+REVERTED: Final = "checkpoint"  # the name of the change that goes back to one
 TURNING_SECONDS: Final = 1.0  # between two changes of a knob that is still being turned
 HISTORY_FILE: Final = "history.npz"
 CAPACITY: Final = 4000  # points
@@ -69,14 +70,14 @@ class Checkpoint:
     decisions: int
     success: float
     values: Floats  # (parameters,) float32
-    scale: dict[str, Any] | None = None  # of the observations, as RunningScale.to_json gives it
+    normalizer: dict[str, Any] | None = None  # of the observations, as Normalizer.to_json gives it
 
 
 @dataclass(frozen=True)
 class SettingChange:
     """Change of a knob during the run.
 
-    `amends` says that it replaces the last alteration of that name: the values that a drag passes through act only
+    `amends` says that it replaces the last change of that name: the values that a drag passes through act only
     for a moment, and only the last one counts.
     """
 
@@ -115,7 +116,7 @@ class History:
 
     def __init__(self) -> None:
         self.checkpoints: list[Checkpoint] = []
-        self.alterations: list[SettingChange] = []
+        self.setting_changes: list[SettingChange] = []
         self.validations: list[Validation] = []
         self.reward_scale = 1.0
         self._table: Doubles = np.empty((CAPACITY, len(_COLUMN)))
@@ -148,7 +149,7 @@ class History:
             case Checkpoint():
                 self._append_checkpoint(entry)
             case SettingChange():
-                self._append_alteration(entry)
+                self._append_setting_change(entry)
             case Validation():
                 self.validations.append(entry)
 
@@ -163,13 +164,13 @@ class History:
         row[len(_NUMBERS) :] = point.parts
         self._told += 1
 
-    def _append_alteration(self, entry: SettingChange) -> None:
+    def _append_setting_change(self, entry: SettingChange) -> None:
         if entry.amends:
-            last = next(each for each in reversed(self.alterations) if each.name == entry.name)
-            self.alterations.remove(last)
+            last = next(each for each in reversed(self.setting_changes) if each.name == entry.name)
+            self.setting_changes.remove(last)
             entry = replace(entry, before=last.before, amends=False)
         if entry.before != entry.after:  # otherwise the knob is back where it was
-            self.alterations.append(entry)
+            self.setting_changes.append(entry)
 
     def _append_checkpoint(self, checkpoint: Checkpoint) -> None:
         self.checkpoints.append(checkpoint)
@@ -193,7 +194,7 @@ class History:
         """Return one that stays as it is while this one goes on; the checkpoints' networks are shared."""
         twin = copy(self)
         twin._table = self._table.copy()
-        twin.checkpoints, twin.alterations = self.checkpoints.copy(), self.alterations.copy()
+        twin.checkpoints, twin.setting_changes = self.checkpoints.copy(), self.setting_changes.copy()
         twin.validations = self.validations.copy()
         return twin
 
@@ -202,10 +203,11 @@ class History:
         described = {
             "version": _VERSION, "columns": list(_COLUMN), "reward_scale": self.reward_scale,
             "stride": self._stride, "told": self._told,
-            "alterations": [_written(alteration) for alteration in self.alterations],
+            "alterations": [_written(change) for change in self.setting_changes],
             "validations": [asdict(validation) for validation in self.validations],
             "checkpoints": [
-                {"seconds": each.seconds, "decisions": each.decisions, "success": each.success, "scale": each.scale}
+                {"seconds": each.seconds, "decisions": each.decisions, "success": each.success,
+                 "scale": each.normalizer}
                 for each in self.checkpoints
             ],
         }  # fmt: skip
@@ -254,7 +256,7 @@ class History:
             _checkpoint(told, row.astype(np.float32))
             for told, row in zip(described["checkpoints"], values, strict=True)
         ]
-        self.alterations = [_alteration(told) for told in described["alterations"]]
+        self.setting_changes = [_setting_change(told) for told in described["alterations"]]
         self.validations = [_validation(told) for told in described["validations"]]
 
 
@@ -280,12 +282,13 @@ def _checkpoint(told: dict[str, Any], values: Floats) -> Checkpoint:
     )
 
 
-def _alteration(told: dict[str, Any]) -> SettingChange:
+def _setting_change(told: dict[str, Any]) -> SettingChange:
     if not isinstance(told["name"], str):
         raise ValueError(f"{brief(repr(told['name']), 40)} is no name of a knob")
     if not isinstance(told["after"], bool | int | float | str):
         raise ValueError(f"{brief(repr(told['after']), 40)} is no value of a knob")
-    return SettingChange(count_of(told["decisions"]), told["name"], told["before"], told["after"])
+    name = Config.name_now(told["name"])  # an older run has the names of its day
+    return SettingChange(count_of(told["decisions"]), name, told["before"], told["after"])
 
 
 def _validation(told: dict[str, Any]) -> Validation:
@@ -309,6 +312,6 @@ def _above_zero(scale: Any) -> float:
     return float(scale)
 
 
-def _written(alteration: SettingChange) -> dict[str, Any]:
-    """Return an alteration as a file holds it: `amends` only matters before it is in a history."""
-    return {name: value for name, value in asdict(alteration).items() if name != "amends"}
+def _written(change: SettingChange) -> dict[str, Any]:
+    """Return a setting change as a file holds it: `amends` only matters before it is in a history."""
+    return {name: value for name, value in asdict(change).items() if name != "amends"}

@@ -8,9 +8,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.agent import Symmetry
 from ai.agent.config import CURRICULUM, Config
-from ai.agent.schedule import care
+from ai.agent.schedule import touchdown_limits
+from ai.agent.symmetry import Symmetry
 from ai.common.environment import Doubles, Env, Floats
 from ai.lander.environment import (
     LIMITS,
@@ -116,19 +116,19 @@ class LanderTask:
         """Make the landers to train with."""
         config = self.config
         spawn = Curriculum() if config.spawn == CURRICULUM else config.spawn
-        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.weights)
+        return LanderEnv(config.num_envs, rng, spawn, config.frame_skip, weights=config.reward_weights)
 
-    def change(self, config: Config, env: Env) -> None:
+    def apply_live(self, config: Config, env: Env) -> None:
         """Take over the live knobs of another configuration, here and in the landers."""
         self.config = config
         self.action_chances = _action_chances(config)
         if isinstance(env, LanderEnv):
-            env.weights = config.weights
+            env.weights = config.reward_weights
 
-    def follow(self, decisions: int, env: Env) -> None:
-        """Tighten the limits of a touch with experience, from the real ones to `config.care` of them."""
+    def update_env(self, decisions: int, env: Env) -> None:
+        """Tighten the limits of a touchdown over the schedule, from the real ones to a share of them."""
         if isinstance(env, LanderEnv):
-            env.limits = LIMITS.stricter(care(self.config, decisions))
+            env.limits = LIMITS.stricter(touchdown_limits(self.config, decisions))
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Evaluation:
         """Fly so many flights at once from random spawns."""

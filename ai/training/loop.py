@@ -1,4 +1,9 @@
-"""Training loop as a generator, with evaluation and the choice of the best checkpoint."""
+"""Training loop as a generator, with evaluation and the choice of the best checkpoint.
+
+What happens in one decision, from the observation to the update of the target network, is on one page of
+`ai.agent.agent`: `DeepQAgent.train_step`, with the list of all that differs from the papers. Here is what goes on
+around it: schedules of the environment, episodes that end and begin, statistics, measurements.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +18,9 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
+from ai.agent.network import make_optimizer
 from ai.agent.normalizer import Normalizer
+from ai.agent.replay import make_replay
 from ai.agent.schedule import exploration, exploration_of_each
 from ai.common.environment import Env, Floats, StepResult
 from ai.training.lander_task import LANDER_SYMMETRY, Evaluation, evaluate
@@ -60,10 +67,10 @@ class Training:
     env: Env = field(init=False)
     best: Score | None = None
     best_values: Floats | None = None
-    best_scale: Normalizer | None = None
+    best_normalizer: Normalizer | None = None
     seconds: float = 0.0  # spent, as the caller counts them
     clock: Callable[[], float] = time.monotonic
-    witness: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
+    on_step: Callable[[StepResult], None] | None = None  # is shown every step, before ended slots begin anew
 
     def __post_init__(self) -> None:
         self.task = task_of(self.config)
@@ -72,20 +79,21 @@ class Training:
         if self.validation_episodes is None:
             self.validation_episodes = self.task.validation_episodes
         agent_rng, env_rng = np.random.default_rng(self.seed).spawn(2)
-        self.agent = self._new_agent(self.config, agent_rng)
+        replay, optimizer = make_replay(self.config, self.task.num_features), make_optimizer(self.config)
+        self.agent = self._new_agent(self.config, agent_rng, replay=replay, optimizer=optimizer)
         self.env = self.task.make_env(env_rng)
         self.observation = self.env.reset()
         self.episodes = 0
         self._evaluated: int | None = None  # how many decisions the network had taken that was measured last
         self._moments: deque[float] = deque(maxlen=100)
-        self.flights = EpisodeStatistics(self.env.num_envs)
+        self.statistics = EpisodeStatistics(self.env.num_envs)
         self._held = np.zeros(self.env.num_envs, dtype=np.intp)
 
-    def _new_agent(self, config: Config, rng: np.random.Generator | None = None) -> DeepQAgent:
+    def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
         task = self.task
         return DeepQAgent(
             task.num_features, task.num_actions, config, rng,
-            symmetry=task.symmetry, action_chances=task.action_chances,
+            symmetry=task.symmetry, action_chances=task.action_chances, **parts,
         )  # fmt: skip
 
     @property
@@ -94,28 +102,29 @@ class Training:
         return exploration(self.agent.config, self.agent.decisions, self.episodes)
 
     def advance(self) -> Progress:
-        """Let every lander take one decision, learn from it, and evaluate if it is time."""
-        agent, env, flights = self.agent, self.env, self.flights
+        """Let every lander take one decision, learn from it, and evaluate if it is time.
+
+        Raises DivergenceError, a FloatingPointError, when a number is no longer finite.
+        """
+        agent, statistics = self.agent, self.statistics
         before, epsilon = agent.decisions, self.epsilon
-        self.task.follow(agent.decisions, env)
-        actions = agent.act(self.observation, exploration_of_each(agent.config, epsilon), self._held)
-        result = env.step(actions)
-        agent.remember(self.observation, actions, result, result.succeeded)
+        self.task.update_env(agent.decisions, self.env)
+        each = exploration_of_each(agent.config, epsilon)
+        actions, result = agent.train_step(self.env, self.observation, each, self._held)
+        statistics.add(result)
+        if self.on_step is not None:
+            self.on_step(result)
         self.observation = result.observation
-        flights.add(result)
-        if self.witness is not None:
-            self.witness(result)
         if result.ended.any():
             self.episodes += int(result.ended.sum())
-            flights.finish(result)
-            self.observation = env.reset(result.ended)
+            statistics.finish(result)
+            self.observation = self.env.reset(result.ended)
         self._held = np.where(result.ended, 0, actions)
-        agent.learn()
         evaluation = self.evaluate() if passed(before, agent.decisions, self.evaluate_every or 0) else None
         return Progress(
             agent.decisions, agent.decisions * self.config.frame_skip, agent.train_count, self.episodes,
-            flights.success, flights.mean_return, agent.loss, agent.mean_q, epsilon, env.stage, self._pace(),
-            flights.shares, flights.parts, evaluation, self.best,
+            statistics.success, statistics.mean_return, agent.loss, agent.mean_q, epsilon, self.env.stage, self._pace(),
+            statistics.shares, statistics.parts, evaluation, self.best,
         )  # fmt: skip
 
     def _pace(self) -> float:
@@ -125,11 +134,11 @@ class Training:
         steps = (len(self._moments) - 1) * self.env.num_envs * self.config.frame_skip
         return steps / spent if spent > 0 else 0.0
 
-    def change(self, config: Config) -> None:
+    def apply_live(self, config: Config) -> None:
         """Take over the live knobs of another configuration; the others stay as they are."""
         self.config = config = self.config.with_live(config)
-        self.task.change(config, self.env)
-        self.agent.change(config)
+        self.task.apply_live(config, self.env)
+        self.agent.apply_live(config)
         self.agent.action_chances = self.task.action_chances
 
     def evaluate(self) -> Score:
@@ -137,7 +146,7 @@ class Training:
         assert self.validation_episodes is not None
         self._evaluated = self.agent.decisions
         score = self.task.evaluate(self.agent, self.validation_episodes, VALIDATION_SEED)
-        self.consider(score, self.agent)
+        self.keep_if_best(score, self.agent)
         return score
 
     def conclude(self) -> None:
@@ -145,27 +154,36 @@ class Training:
         if self._evaluated != self.agent.decisions:
             self.evaluate()
 
-    def consider(self, score: Score, agent: DeepQAgent) -> bool:
+    def keep_if_best(self, score: Score, agent: DeepQAgent) -> bool:
         """Keep an agent's network if its score is the best so far, and say whether it is."""
         best = score.better_than(self.best)
         if best:
-            self.best, self.best_values, self.best_scale = score, agent.network.values.copy(), deepcopy(agent.scale)
+            self.best, self.best_values, self.best_normalizer = (
+                score,
+                agent.network.values.copy(),
+                deepcopy(agent.normalizer),
+            )
         return best
 
     def best_agent(self) -> DeepQAgent:
         """Return an agent that flies with the best network found so far."""
         agent = self._new_agent(self.agent.config)
-        values = self.agent.network.values if self.best_values is None else self.best_values
-        agent.online.values = agent.target.values = values
-        agent.scale = deepcopy(self.agent.scale if self.best_values is None else self.best_scale)
+        if self.best_values is None:
+            agent.restore(self.agent.network.values, deepcopy(self.agent.normalizer))
+        else:
+            agent.restore(self.best_values, deepcopy(self.best_normalizer))
         agent.decisions, agent.train_count = self.agent.decisions, self.agent.train_count
         return agent
 
+    def restore_best(self) -> None:
+        """Restore the best networks so far, if there are any: training cannot go on from diverged ones."""
+        if self.best_values is not None:
+            self.agent.restore(self.best_values, deepcopy(self.best_normalizer))
+
     def last_agent(self) -> DeepQAgent:
-        """Return an agent as the one that learns is now, without its memories; it stays as it is."""
+        """Return a copy of the agent that learns, with an empty replay buffer."""
         agent = self._new_agent(self.agent.config)
-        agent.take_over(self.agent)
-        agent.scale = deepcopy(self.agent.scale)
+        agent.copy_from(self.agent)
         return agent
 
 
@@ -179,9 +197,13 @@ def passed(before: int, now: int, every: int) -> bool:
 
 
 def run(config: Config, seed: int = 0, **options: Any) -> Generator[Progress, Config | None, None]:
-    """Train without end, yielding after each decision of all landers; send a Config to change the live knobs."""
+    """Train without end, yielding after each decision of all landers; send a Config to change the live knobs.
+
+    `options` are those of `Training`. Raises what `task_of` raises, and DivergenceError when a number is no longer
+    finite.
+    """
     training = Training(config, seed, **options)
     while True:
         changed = yield training.advance()
         if changed is not None:
-            training.change(changed)
+            training.apply_live(changed)

@@ -52,7 +52,7 @@ class NetworkState:
 
 @dataclass(frozen=True)
 class ChangeSetting:
-    """Command to turn a live knob, by its field's name in Config; "weights.time" is one of the reward's weights."""
+    """Command to turn a live knob, by its field's name in Config; "reward_weights.time" is a part of the reward."""
 
     name: str
     value: Any
@@ -93,6 +93,11 @@ class Refused:
 
     command: ChangeSetting | RestoreCheckpoint | AddDemonstrations
     problem: str
+
+
+def problem_of(error: Exception) -> str:
+    """Return an error in the words of a message: those of the system for a file, else its own."""
+    return getattr(error, "strerror", None) or str(error)
 
 
 Message = (

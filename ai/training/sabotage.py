@@ -18,9 +18,9 @@ _SMALLEST_MEMORY: Final = 100
 
 # Settings that each changes, given the base configuration.
 SABOTAGES: Final[dict[str, Callable[[Config], dict[str, Any]]]] = {
-    "no_target": lambda _: {"target_every": 1, "target_rate": 1.0},
+    "no_target": lambda _: {"target_update_interval": 1, "tau": 1.0},
     "no_replay": lambda c: {"replay_size": max(_SMALLEST_MEMORY, c.batch_size), "replay_prune": 1},
-    "no_shaping": lambda c: {"weights": RewardWeights(**{**vars(c.weights), **_TERMINAL_ALONE})},
+    "no_shaping": lambda c: {"reward_weights": RewardWeights(**{**vars(c.reward_weights), **_TERMINAL_ALONE})},
     "no_exploration": lambda _: {"epsilon_start": 0.0, "epsilon_end": 0.0, "epsilon_spread": 0.0},
     "rate_times_100": lambda c: {
         "learning_rate": min(1.0, 100 * c.learning_rate),

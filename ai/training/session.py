@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import fields, replace
-from itertools import repeat
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, Final
@@ -19,7 +16,8 @@ from ai.agent.normalizer import Normalizer
 from ai.agent.schedule import InForce, in_force
 from ai.common.environment import Ints, StepResult
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
-from ai.training.checkpoints import resume_run, snapshot
+from ai.training.autosave import Autosave
+from ai.training.checkpoints import resume_run
 from ai.training.demonstrations import Demonstration, read, taught, teach
 from ai.training.history import (
     PARTS,
@@ -32,8 +30,7 @@ from ai.training.history import (
     SettingChange,
     Validation,
 )
-from ai.training.lander_task import Evaluation, trial
-from ai.training.loop import Progress, Training, passed
+from ai.training.loop import Progress, Training
 from ai.training.messages import (
     AddDemonstrations,
     ChangeSetting,
@@ -46,18 +43,18 @@ from ai.training.messages import (
     Save,
     Saved,
     SwarmState,
+    problem_of,
 )
-from ai.training.task import VALIDATION_SEED
+from ai.training.validation_flights import ValidationFlights
 
 __all__ = [
     "CAREFUL", "REVERTED", "TAUGHT", "AddDemonstrations", "ChangeSetting", "NetworkState", "Refused",
-    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "agent_of", "live", "turned",
+    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "agent_of", "live",
 ]  # fmt: skip
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
-INSIGHT_SECONDS: Final = 0.25
-KEEP_SECONDS: Final = 10.0
-TAUGHT: Final = "demonstrations"  # the name of the alteration that gives it some to learn from
+NETWORK_SECONDS: Final = 0.25
+TAUGHT: Final = "demonstrations"  # the name of the change that gives it some to learn from
 NOTHING_PAID: Final = (0.0,) * len(PARTS)
 CAREFUL: Final = 0  # the lander with the fewest random actions; the last one has the most (Config.epsilon_spread)
 
@@ -89,7 +86,7 @@ def live(
             command = yield told
             told = run.advance() if command is None else run.carry_out(command)
     except FloatingPointError:
-        run.rewind()
+        run.restore_last_checkpoint()
         raise
     finally:
         run.end()
@@ -102,41 +99,9 @@ def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
         raise ValueError(
             f"the checkpoint has {len(checkpoint.values)} parameters, the network {len(agent.online.values)}"
         )
-    agent.go_back(checkpoint.values, _scale_of(agent, checkpoint))
+    agent.restore(checkpoint.values, _normalizer_of(agent, checkpoint))
     agent.decisions = checkpoint.decisions
     return agent
-
-
-def turned(config: Config, name: str, value: Any) -> Config:
-    """Return the configuration with one live knob turned, named as in Change; raises ValueError if it can't be."""
-    name, _, part = name.partition(".")
-    knobs = {knob.name: knob.metadata["live"] for knob in fields(Config)}
-    if name not in knobs or (part and (name, part in vars(config.weights)) != ("weights", True)):
-        raise ValueError(f"there is no setting called {name}{part and '.'}{part}")
-    if not knobs[name]:
-        raise ValueError(f"{name} cannot change while a run goes on")
-    return config.changed(**{name: replace(config.weights, **{part: value}) if part else value})
-
-
-class _ValidationFlights:
-    """Validation flights of a network as it is at the start, a few decisions at a time."""
-
-    def __init__(self, training: Training) -> None:
-        assert training.validation_episodes is not None
-        self.agent = training.last_agent()
-        self.score: Evaluation | None = None
-        self._flights = trial(self.agent, training.validation_episodes, VALIDATION_SEED, "random",
-                              training.config.frame_skip)  # fmt: skip
-
-    def go_on(self, decisions: int | None = None) -> bool:
-        """Take so many decisions, or all that are left; return whether the trial is done."""
-        if self.score is None:  # flights that are over would have no score a second time
-            try:
-                for _ in range(decisions) if decisions else repeat(None):
-                    next(self._flights)
-            except StopIteration as done:
-                self.score = done.value
-        return self.score is not None
 
 
 class _LiveRun:
@@ -148,23 +113,18 @@ class _LiveRun:
         self.training, self.history, self.env = training, history, training.env
         history.reward_scale = training.config.reward_scale
         training.clock = clock
-        training.witness = self._see
+        training.on_step = self._on_step
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
-        self._trial: _ValidationFlights | None = None
-        self._sight = self._seen(self.env.outcome)
-        self._folder = keep
-        self._kept = training.agent.decisions
-        self._keep_at = training.clock() + KEEP_SECONDS
-        self._insight_at = 0.0
+        self._validation = ValidationFlights(training)
+        self._autosave = Autosave(training, history, keep)
+        self._swarm_state = self._swarm_state_of(self.env.outcome)
+        self._network_state_at = 0.0
         self._point_at = 0
         self._checkpoint_at = training.agent.decisions + self._checkpoint_every
-        self._trouble = ""
         self._began_learning = training.agent.train_count
         self._turned_at: dict[str, float] = {}  # by the clock, when each knob was turned last
-        self._lessons: set[Demonstration] = set()
-        self._writer = ThreadPoolExecutor(max_workers=1)
-        self._writing: Future[None] | None = None
-        self._told: list[Message] = []
+        self._learned_from: set[Demonstration] = set()
+        self._messages: list[Message] = []
 
     @property
     def _checkpoint_every(self) -> int:
@@ -174,9 +134,13 @@ class _LiveRun:
     def begin(self) -> tuple[Message, ...]:
         """Say how the run begins."""
         training = self.training
-        self._told = [RunStarted(training.config, training.seed, training.agent.decisions), self._sight, *self._look()]
+        self._messages = [
+            RunStarted(training.config, training.seed, training.agent.decisions),
+            self._swarm_state,
+            *self._state_messages(),
+        ]
         if not self.history.checkpoints:
-            self._note(self._checkpoint(0.0))
+            self._record(self._checkpoint(0.0))
         return self._flush()
 
     def advance(self) -> tuple[Message, ...]:
@@ -184,21 +148,20 @@ class _LiveRun:
         training = self.training
         began, before = training.clock(), training.agent.decisions
         progress = training.advance()
-        self._try_the_network(before)
+        self._record_validation(self._validation.go_on(before, 1 + self.env.num_envs // 256))
         now = training.clock()
         training.seconds += now - began
-        self._told.append(self._sight)
-        if now >= self._insight_at:
-            self._insight_at = now + INSIGHT_SECONDS
-            self._told += self._look()
+        self._messages.append(self._swarm_state)
+        if now >= self._network_state_at:
+            self._network_state_at = now + NETWORK_SECONDS
+            self._messages += self._state_messages()
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
-            self._note(self._point(progress))
+            self._record(self._point(progress))
         if progress.decisions >= self._checkpoint_at:
-            self._note(self._checkpoint(progress.success_rate))
+            self._record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
-        if self._folder is not None:
-            self._keep_if_due(self._folder, now)
+        self._messages += self._autosave.go_on(now)
         return self._flush()
 
     def carry_out(self, command: Command) -> tuple[Message, ...]:
@@ -207,56 +170,54 @@ class _LiveRun:
             case ChangeSetting():
                 self._change(command)
             case RestoreCheckpoint():
-                self._revert(command)
+                self._restore_checkpoint(command)
             case AddDemonstrations():
                 self._teach(command)
             case Save(folder):
-                self._finish_trial()
-                self._told.append(Saved(folder, self._save(folder)))
+                self._record_validation(self._validation.finish())
+                self._messages.append(self._autosave.save(folder))
         return self._flush()
 
-    def rewind(self) -> None:
+    def restore_last_checkpoint(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
-        self._go_back(self.history.checkpoints[-1])
+        self._restore(self.history.checkpoints[-1])
 
     def end(self) -> None:
         """Save what has not been saved, and wait until it is on the disk."""
-        if self._folder is not None and self._kept != self.training.agent.decisions:
-            self._save(self._folder)
-        self._writer.shutdown()
+        self._autosave.end()
 
     def _flush(self) -> tuple[Message, ...]:
-        told, self._told = tuple(self._told), []
+        told, self._messages = tuple(self._messages), []
         return told
 
-    def _note(self, entry: Entry) -> None:
+    def _record(self, entry: Entry) -> None:
         self.history.append(entry)
-        self._told.append(entry)
+        self._messages.append(entry)
 
-    def _see(self, result: StepResult) -> None:
-        self._sight = self._seen(result.outcome)
+    def _on_step(self, result: StepResult) -> None:
+        self._swarm_state = self._swarm_state_of(result.outcome)
 
-    def _seen(self, outcome: Ints) -> SwarmState:
+    def _swarm_state_of(self, outcome: Ints) -> SwarmState:
         env, training = self.env, self.training
         return SwarmState(
             env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
-            outcome.astype(np.int8), training.flights.earned.astype(np.float32), training.agent.decisions,
+            outcome.astype(np.int8), training.statistics.earned.astype(np.float32), training.agent.decisions,
         )  # fmt: skip
 
-    def _insight(self) -> NetworkState:
+    def _network_state(self) -> NetworkState:
         agent = self.training.agent
         return NetworkState(
             agent.online.values.copy(), agent.online.gradients.copy(), self.training.observation[CAREFUL].copy(),
             agent.decisions,
         )  # fmt: skip
 
-    def _look(self) -> tuple[NetworkState, InForce]:
+    def _state_messages(self) -> tuple[NetworkState, InForce]:
         """Return what is sent a few times a second, and whenever a command has changed it."""
         training = self.training
-        return self._insight(), in_force(training.config, training.agent.decisions, training.episodes)
+        return self._network_state(), in_force(training.config, training.agent.decisions, training.episodes)
 
     def _point(self, progress: Progress) -> Point:
-        flown = 1.0 if self.training.flights.known else np.nan
+        flown = 1.0 if self.training.statistics.known else np.nan
         learnt = 1.0 if self.training.agent.train_count > self._began_learning else np.nan
         landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
@@ -274,58 +235,45 @@ class _LiveRun:
                 f"the network was not finite after learning step {agent.train_count}; "
                 f"most likely the learning rate of {agent.optimizer.learning_rate:g} is too high"
             )
-        scale = agent.scale.to_json() if agent.scale else None
-        return Checkpoint(self.training.seconds, agent.decisions, success, values, scale)
+        normalizer = agent.normalizer.to_json() if agent.normalizer else None
+        return Checkpoint(self.training.seconds, agent.decisions, success, values, normalizer)
 
-    def _try_the_network(self, before: int) -> None:
-        """Fly a little of the validation flights, if it is time for them; the networks are those of `Training`."""
-        training = self.training
-        if passed(before, training.agent.decisions, training.task.evaluate_every):
-            self._finish_trial()
-            self._trial = _ValidationFlights(training)
-        elif self._trial is not None and self._trial.go_on(1 + self.env.num_envs // 256):
-            self._finish_trial()
-
-    def _finish_trial(self) -> None:
-        if self._trial is None:
-            return
-        trial, self._trial = self._trial, None
-        trial.go_on()
-        assert trial.score is not None
-        best = self.training.consider(trial.score, trial.agent)
-        self._note(Validation(trial.agent.decisions, trial.score.success, trial.score.mean_return, best))
+    def _record_validation(self, validation: Validation | None) -> None:
+        if validation is not None:
+            self._record(validation)
 
     def _change(self, command: ChangeSetting) -> None:
         before = self.training.config
         try:
-            self.training.change(turned(before, command.name, command.value))
+            self.training.apply_live(before.turned(command.name, command.value))
         except ValueError as error:
-            self._told.append(Refused(command, str(error)))
+            self._messages.append(Refused(command, str(error)))
             return
-        value = attrgetter(command.name)
+        name = before.name_now(command.name)
+        value = attrgetter(name)
         after = value(self.training.config)
         if after != value(before):
-            self._alter(command.name, value(before), after, self._amends(command.name, after))
-        self._told.append(self._look()[1])
+            self._record_change(name, value(before), after, self._amends(name, after))
+        self._messages.append(self._state_messages()[1])
 
     def _teach(self, command: AddDemonstrations) -> None:
         agent = self.training.agent
         try:
-            new = [lesson for lesson in read(command.path) if lesson not in self._lessons]
+            new = [lesson for lesson in read(command.path) if lesson not in self._learned_from]
             used = teach(agent, new)
         except (OSError, ValueError) as error:
-            self._told.append(Refused(command, getattr(error, "strerror", None) or str(error)))
+            self._messages.append(Refused(command, problem_of(error)))
             return
-        self._lessons.update(new)
+        self._learned_from.update(new)
         if not used:
-            self._told.append(Refused(command, "there are no landings that this run has not learnt from already"))
+            self._messages.append(Refused(command, "there are no landings that this run has not learnt from already"))
             return
         if not self.training.config.success_pass:
             self._change(ChangeSetting("success_pass", taught(self.training.config).success_pass))
-        self._alter(TAUGHT, None, used)
+        self._record_change(TAUGHT, None, used)
 
-    def _alter(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
-        self._note(SettingChange(self.training.agent.decisions, name, before, after, amends))
+    def _record_change(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
+        self._record(SettingChange(self.training.agent.decisions, name, before, after, amends))
 
     def _amends(self, name: str, after: Any) -> bool:
         """Whether a knob is still being turned: a moment after the last time, or without a decision in between."""
@@ -333,63 +281,32 @@ class _LiveRun:
         self._turned_at[name] = now
         if last is None:
             return False
-        earlier = next(each for each in reversed(self.history.alterations) if each.name == name)
+        earlier = next(each for each in reversed(self.history.setting_changes) if each.name == name)
         amends = now - last < TURNING_SECONDS or earlier.decisions == self.training.agent.decisions
         if amends and earlier.before == after:  # back where it was: the mark will be gone
             del self._turned_at[name]
         return amends
 
-    def _revert(self, command: RestoreCheckpoint) -> None:
+    def _restore_checkpoint(self, command: RestoreCheckpoint) -> None:
         checkpoint = self.history.checkpoint_at(command.decisions)
         if checkpoint is None:
-            self._told.append(Refused(command, "this run has no checkpoints yet"))
+            self._messages.append(Refused(command, "this run has no checkpoints yet"))
             return
-        self._go_back(checkpoint)
-        self._alter(REVERTED, None, checkpoint.decisions)
-        self._told += self._look()
+        self._restore(checkpoint)
+        self._record_change(REVERTED, None, checkpoint.decisions)
+        self._messages += self._state_messages()
 
-    def _go_back(self, checkpoint: Checkpoint) -> None:
+    def _restore(self, checkpoint: Checkpoint) -> None:
         agent = self.training.agent
-        agent.go_back(checkpoint.values, _scale_of(agent, checkpoint))
-
-    def _keep_if_due(self, folder: Path, now: float) -> None:
-        """Start a save in a thread when it is time, and tell when one did not succeed."""
-        if self._writing is not None and self._writing.done():
-            trouble = _trouble(self._writing)
-            if trouble and trouble != self._trouble:
-                self._told.append(Saved(folder, trouble))
-            self._trouble, self._writing = trouble, None
-        if self._writing is None and now >= self._keep_at:
-            self._keep_at = now + KEEP_SECONDS
-            self._writing = self._write(folder)
-
-    def _write(self, folder: Path) -> Future[None]:
-        if folder == self._folder:
-            self._kept = self.training.agent.decisions
-        return self._writer.submit(snapshot(self.training, self.history).save, folder)
-
-    def _save(self, folder: Path) -> str:
-        """Save, wait until it is done, and return what went wrong."""
-        return _trouble(self._write(folder))
+        agent.restore(checkpoint.values, _normalizer_of(agent, checkpoint))
 
 
-def _scale_of(agent: DeepQAgent, checkpoint: Checkpoint) -> Normalizer | None:
-    if checkpoint.scale is None:
+def _normalizer_of(agent: DeepQAgent, checkpoint: Checkpoint) -> Normalizer | None:
+    if checkpoint.normalizer is None:
         return None
-    scale = Normalizer(agent.num_features)
+    normalizer = Normalizer(agent.num_features)
     try:
-        scale.load(checkpoint.scale)
+        normalizer.load(checkpoint.normalizer)
     except (KeyError, TypeError) as error:
         raise ValueError(f"the checkpoint's scale of observations makes no sense: {error}") from error
-    return scale
-
-
-def _trouble(writing: Future[None]) -> str:
-    """Wait for a save, and return why it failed, if it did."""
-    try:
-        writing.result()
-    except OSError as error:
-        return error.strerror or str(error)
-    except ValueError as error:
-        return str(error)
-    return ""
+    return normalizer

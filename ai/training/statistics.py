@@ -15,7 +15,10 @@ OUTCOMES: Final = 4  # an environment has that many at the most; 0, going on, is
 
 
 class EpisodeStatistics:
-    """Episode statistics: sums over every slot's current episode, and the last hundred that ended."""
+    """Episode statistics: sums over every slot's current episode, and the last hundred that ended.
+
+    Returns and parts of the reward are in points, exploration included.
+    """
 
     def __init__(self, num_envs: int) -> None:
         self.earned: Doubles = np.zeros(num_envs)  # in each slot's episode so far

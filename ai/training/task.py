@@ -6,8 +6,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ai.agent.agent import Symmetry
 from ai.agent.config import Config
+from ai.agent.symmetry import Symmetry
 from ai.common.environment import Env, Floats
 from ai.lander.pilots import Pilot
 from ai.nn.files import brief, number_of
@@ -58,10 +58,10 @@ class Task(Protocol):
     def make_env(self, rng: np.random.Generator) -> Env:
         """Make the environment to train in."""
 
-    def change(self, config: Config, env: Env) -> None:
+    def apply_live(self, config: Config, env: Env) -> None:
         """Take over the live knobs of another configuration, here and in an environment that `make_env` made."""
 
-    def follow(self, decisions: int, env: Env) -> None:
+    def update_env(self, decisions: int, env: Env) -> None:
         """Bring what changes with experience up to date in an environment that `make_env` made."""
 
     def evaluate(self, pilot: Pilot, episodes: int, seed: int) -> Score:

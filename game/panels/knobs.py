@@ -41,7 +41,7 @@ class KnobsPanel:
         config: configuration to begin with.
         seed: seed to begin with.
         on_change: called with the name and value of every knob that changes; during a run, only of those that may.
-            Names are those of the configuration ("weights.time" for a part of the reward, "seed" for the seed).
+            Names are those of the configuration ("reward_weights.time" for a part of the reward, "seed" for the seed).
         on_restart: called with a configuration and seed for a new run, once the player has applied them.
         run_kind: the kind of run, with its presets and knobs.
 

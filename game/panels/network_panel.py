@@ -8,8 +8,8 @@ from typing import Final, get_args
 import numpy as np
 import pygame
 
-from ai.agent.agent import build_network
 from ai.agent.config import Config
+from ai.agent.network import build_network
 from ai.lander.environment import ACTION_NAMES, NUM_ACTIONS, NUM_FEATURES
 from ai.nn import NeuralNetwork
 from ai.nn.inspection import NetworkHealth

@@ -137,10 +137,10 @@ def _shown(run: History, name: str) -> Doubles:
 def _ticks(history: History) -> list[Tick]:
     """Return the marks on the axis: checkpoints and changed knobs."""
     ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds)) for each in history.checkpoints]
-    if history.alterations and len(history):
-        when = np.interp([each.decisions for each in history.alterations], history["decisions"], history["seconds"])
+    if history.setting_changes and len(history):
+        when = np.interp([each.decisions for each in history.setting_changes], history["decisions"], history["seconds"])
         together: list[tuple[float, list[str]]] = []
-        for each, seconds in zip(history.alterations, when.tolist(), strict=True):
+        for each, seconds in zip(history.setting_changes, when.tolist(), strict=True):
             if not together or seconds - together[-1][0] >= _TOGETHER:
                 together.append((seconds, []))
             together[-1][1].append(_told(each))

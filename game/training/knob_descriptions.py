@@ -13,7 +13,7 @@ from game.core import texts
 
 KnobKind = Literal["slider", "switch", "words"]
 REWARD: Final = "reward"  # the page of the reward weights
-WEIGHTS: Final = "weights"
+WEIGHTS: Final = "reward_weights"
 _LADDER: Final = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)  # steps of a scale, times a power of ten
 _SHARES: Final = (0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)  # factors of a weight's default
 _COSTS: Final = (0.0, -0.01, -0.02, -0.03, -0.05, -0.1, -0.2, -0.3, -0.5, -1.0)  # for a weight whose default is 0
@@ -59,7 +59,7 @@ class KnobDescription:
     def write(self, config: Configuration, value: Any) -> Configuration:
         """Return the configuration with another value; raises ValueError for an invalid one."""
         if self.part:
-            value = RewardWeights(**{**asdict(config.weights), self.part: value})
+            value = RewardWeights(**{**asdict(config.reward_weights), self.part: value})
         return config.changed(**{self.field: value})
 
 

@@ -20,7 +20,6 @@ from ai.training.session import (
     Saved,
     SwarmState,
     live,
-    turned,
 )
 from game.core import texts
 from game.core.collection import LibraryError
@@ -96,7 +95,9 @@ class LanderRun(TrainingRun):
     @property
     def lessons(self) -> int:
         """Number of demonstrations this run has learnt from."""
-        return sum(each.after for each in self.history.alterations if each.name == TAUGHT and type(each.after) is int)
+        return sum(
+            each.after for each in self.history.setting_changes if each.name == TAUGHT and type(each.after) is int
+        )
 
     def teach(self, demonstrations: Path) -> None:
         """Let the run also learn from a file of demonstrations; `poll` reports it."""
@@ -174,6 +175,6 @@ class LanderRun(TrainingRun):
 
 def _turned(config: Config, name: str, value: Any) -> Config:
     try:
-        return turned(config, name, value)
+        return config.turned(name, value)
     except ValueError:  # the worker has accepted the value already: only the display is concerned
         return config

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from ai.agent.agent import LAST
 from ai.agent.config import LANDER
+from ai.agent.storage import LAST
 from ai.nn.files import brief, count_of, inside, number_of, read_json
 from ai.training.checkpoints import TRAINING_FILE
 from game.core import texts

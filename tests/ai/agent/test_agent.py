@@ -3,15 +3,18 @@ import json
 import numpy as np
 import pytest
 
-from ai.agent.agent import DeepQAgent, Symmetry
+from ai.agent.agent import DeepQAgent
 from ai.agent.config import PRESETS, Config
 from ai.agent.replay import MemoryCell
+from ai.agent.symmetry import Symmetry
 from ai.common.environment import StepResult
-from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
-from ai.nn import ModelFormatError
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
+from ai.nn import SGD, ModelFormatError
 from ai.training.loop import LANDER_SYMMETRY
 
-SMALL = Config(hidden=(16,), batch_size=8, updates=2, warm_up=8, replay_size=200, n_step=1, num_envs=4, mirror=False)
+SMALL = Config(
+    hidden=(16,), batch_size=8, gradient_steps=2, learning_starts=8, replay_size=200, n_step=1, num_envs=4, mirror=False
+)
 
 
 def result(observation, reward, terminated, truncated=None):
@@ -26,7 +29,7 @@ def fed(config, count=40, seed=0):
     for _ in range(count // 4):
         states = rng.normal(size=(4, 3)).astype(np.float32)
         after = rng.normal(size=(4, 3)).astype(np.float32)
-        agent.remember(states, rng.integers(0, 2, 4), result(after, rng.normal(size=4), rng.random(4) < 0.3))
+        agent.store(states, rng.integers(0, 2, 4), result(after, rng.normal(size=4), rng.random(4) < 0.3))
     return agent
 
 
@@ -36,7 +39,7 @@ def test_bellman_targets_by_hand():
     cell = MemoryCell(states, states, np.zeros(3, dtype=int), np.ones(3, dtype=np.float32),
                       np.array([False, True, False]), np.array([1, 1, 4]))  # fmt: skip
     values = agent.target.predict(states).max(axis=1)
-    assert agent._targets(cell)[0] == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
+    assert agent.targets(cell)[0] == pytest.approx([1 + 0.9 * values[0], 1.0, 1 + 0.9**4 * values[2]], rel=1e-5)
 
 
 def test_double_q_lets_the_online_network_pick():
@@ -46,7 +49,7 @@ def test_double_q_lets_the_online_network_pick():
     cell = MemoryCell(states, states, np.zeros(20, dtype=int), np.zeros(20, dtype=np.float32),
                       np.zeros(20, dtype=bool), np.ones(20, dtype=int))  # fmt: skip
     best = agent.online.predict(states).argmax(axis=1)
-    assert agent._targets(cell)[0] == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
+    assert agent.targets(cell)[0] == pytest.approx(0.9 * agent.target.predict(states)[np.arange(20), best], rel=1e-5)
 
 
 def test_an_update_moves_only_the_chosen_action_towards_its_target():
@@ -57,13 +60,13 @@ def test_an_update_moves_only_the_chosen_action_towards_its_target():
     slope = []
     original = agent.online.backward_propagate
     agent.online.backward_propagate = lambda error: (slope.append(error.copy()), original(error))
-    agent._update(states, np.array([0]), target, np.ones(1, dtype=np.float32))
+    agent.gradient_step(states, np.array([0]), target, np.ones(1, dtype=np.float32))
     assert slope[0] == pytest.approx(np.array([[-2.0, 0.0]]))
     assert abs(agent.online.predict(states)[0, 0] - target[0]) < 1
 
 
 def test_the_target_network_is_copied_every_so_many_steps():
-    agent = fed(SMALL.changed(target_every=4, target_rate=1.0, updates=3))
+    agent = fed(SMALL.changed(target_update_interval=4, tau=1.0, gradient_steps=3))
     first = agent.target.values.copy()
     agent.learn()
     assert np.array_equal(agent.target.values, first)
@@ -73,20 +76,20 @@ def test_the_target_network_is_copied_every_so_many_steps():
 
 
 def test_a_soft_target_follows_by_its_rate():
-    agent = fed(SMALL.changed(target_every=1, target_rate=0.25, updates=1))
+    agent = fed(SMALL.changed(target_update_interval=1, tau=0.25, gradient_steps=1))
     before = agent.target.values.copy()
     agent.learn()
     assert agent.target.values == pytest.approx(0.75 * before + 0.25 * agent.online.values, abs=1e-6)
 
 
 def test_nothing_is_learned_before_the_warm_up():
-    agent = fed(SMALL.changed(warm_up=41))
+    agent = fed(SMALL.changed(learning_starts=41))
     assert agent.learn() is None
     assert agent.train_count == 0
 
 
 def test_a_memory_that_is_pruned_below_the_warm_up_does_not_stop_learning():
-    agent = fed(SMALL.changed(warm_up=60, replay_size=100, replay_prune=90), count=56)
+    agent = fed(SMALL.changed(learning_starts=60, replay_size=100, replay_prune=90), count=56)
     assert agent.learn() is None
     sizes, learnt = [], []
     for seed in range(1, 10):
@@ -122,13 +125,13 @@ def test_the_same_seed_gives_the_same_network_bit_for_bit(changes):
 def test_it_learns_a_problem_whose_answer_is_known():
     """Two actions, one paid: Q must come out as the reward, and the policy as the paid action."""
     agent = DeepQAgent(3, 2, SMALL.changed(learning_rate=5e-3, final_learning_rate=5e-3, reward_scale=1.0,
-                                           batch_size=32, updates=10, fly_target=False))  # fmt: skip
+                                           batch_size=32, gradient_steps=10, fly_target=False))  # fmt: skip
     rng = np.random.default_rng(0)
     for _ in range(60):
         states = rng.normal(size=(4, 3)).astype(np.float32)
         actions = rng.integers(0, 2, 4)
         paid = (actions == (states[:, 0] > 0)).astype(np.float32)
-        agent.remember(states, actions, result(states, paid, np.ones(4, dtype=bool)))
+        agent.store(states, actions, result(states, paid, np.ones(4, dtype=bool)))
         agent.learn()
     states = rng.normal(size=(500, 3)).astype(np.float32)
     assert (agent.act(states) == (states[:, 0] > 0)).mean() > 0.93
@@ -139,7 +142,7 @@ def test_the_success_pass_learns_from_good_endings_only():
     states = rng.normal(size=(2, 3)).astype(np.float32)
     for step in range(6):
         ended = np.array([step == 5] * 2)
-        agent.remember(states, np.array([0, 1]), result(states, [step, 100 + step], ended), np.array([True, False]))
+        agent.store(states, np.array([0, 1]), result(states, [step, 100 + step], ended), np.array([True, False]))
     assert len(agent.successes) == 6
     assert agent.successes.cells.action[:6].tolist() == [0] * 6
 
@@ -148,14 +151,14 @@ def test_a_mirrored_memory_is_its_own_mirror_image_twice():
     rng = np.random.default_rng(0)
     states = rng.normal(size=(6, NUM_FEATURES)).astype(np.float32)
     cell = MemoryCell(states.copy(), states[::-1].copy(), np.arange(NUM_ACTIONS), np.zeros(6), np.zeros(6, bool))
-    mirrored = LANDER_SYMMETRY.apply(cell, 6)
+    mirrored = LANDER_SYMMETRY.apply(cell, 6, 6)
     assert mirrored.action.tolist() == [0, 2, 1, 3, 5, 4]
     assert np.array_equal(mirrored.state[:, 7], states[:, 8])
     assert np.array_equal(mirrored.state[:, 0], -states[:, 0])
     assert np.array_equal(mirrored.next_state, mirrored.state[::-1])
     assert np.array_equal(cell.state, states)  # what was given stays as it is
     assert cell.action.tolist() == list(range(6))
-    again = LANDER_SYMMETRY.apply(mirrored, 6)
+    again = LANDER_SYMMETRY.apply(mirrored, 6, 6)
     assert np.array_equal(again.state, states)
     assert again.action.tolist() == list(range(6))
 
@@ -165,13 +168,13 @@ def test_half_of_each_batch_is_learnt_in_the_mirror(changes):
     agent = fed(SMALL.changed(mirror=True, **changes))
     agent.symmetry = Symmetry(np.array([100, 1, 1], np.float32), np.array([2, 1, 0]), np.array([1, 0]))
     agent.replay.cells.state[:] += 3  # where means are 0, it makes no difference when a state is scaled
-    if agent.scale:
-        agent.scale.watch(agent.replay.cells.state[:40] * np.array([60, 1, 1], np.float32))
-    sample, update, drawn, learnt = agent.replay.sample, agent._update, [], []
+    if agent.normalizer:
+        agent.normalizer.update(agent.replay.cells.state[:40] * np.array([60, 1, 1], np.float32))
+    sample, update, drawn, learnt = agent.replay.sample, agent.gradient_step, [], []
     agent.replay.sample = lambda *how: drawn.append(sample(*how)) or drawn[0]
-    agent._update = lambda *batch: learnt.append([part.copy() for part in batch]) or update(*batch)
+    agent.gradient_step = lambda *batch: learnt.append([part.copy() for part in batch]) or update(*batch)
     agent.learn()
-    scale = agent.scale or (lambda states: states)
+    scale = agent.normalizer or (lambda states: states)
     assert len(learnt) == 2
     for number, (states, actions, *_) in enumerate(learnt):
         cells = drawn[0][0]
@@ -210,14 +213,14 @@ def fed_with_successes(config):
 
 
 def test_loss_and_mean_q_tell_of_all_memories_not_of_the_successes_of_the_second_pass():
-    both, first = fed_with_successes(SMALL.changed(updates=1)), fed(SMALL.changed(updates=1))
+    both, first = fed_with_successes(SMALL.changed(gradient_steps=1)), fed(SMALL.changed(gradient_steps=1))
     assert both.learn() == first.learn() == both.loss
     assert both.mean_q == first.mean_q
     assert both.optimizer.steps == 2 * first.optimizer.steps
 
 
 def test_the_target_counts_training_calls_and_the_second_pass_belongs_to_its_call():
-    agent = fed_with_successes(SMALL.changed(target_every=5, target_rate=1.0, updates=1))
+    agent = fed_with_successes(SMALL.changed(target_update_interval=5, tau=1.0, gradient_steps=1))
     first, changed = agent.target.values.copy(), []
     for _ in range(15):
         before = agent.target.values.copy()
@@ -230,7 +233,7 @@ def test_the_target_counts_training_calls_and_the_second_pass_belongs_to_its_cal
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_save_and_load(tmp_path, preset):
-    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, PRESETS[preset].changed(warm_up=1))
+    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, PRESETS[preset].changed(learning_starts=1))
     agent.save(tmp_path / "agent")
     loaded = DeepQAgent.load(tmp_path / "agent")
     states = np.random.default_rng(0).normal(size=(10, NUM_FEATURES)).astype(np.float32)
@@ -292,3 +295,26 @@ def test_an_optimizer_state_that_fits_is_taken(tmp_path):
     fed(SMALL).save(tmp_path / "agent")
     np.savez(tmp_path / "agent" / "optimizer.npz", **ADAM)
     assert DeepQAgent.load(tmp_path / "agent").optimizer.steps == 3
+
+
+def test_an_agent_learns_from_the_replay_and_with_the_optimizer_that_it_is_handed():
+    given, steps = fed(SMALL).replay, SGD(0.1)
+    agent = DeepQAgent(3, 2, SMALL, replay=given, optimizer=steps)
+    before = agent.online.values.copy()
+    agent.learn()
+    assert agent.replay is given
+    assert steps.steps == agent.train_count == SMALL.gradient_steps
+    assert not np.array_equal(agent.online.values, before)
+    usual = DeepQAgent(3, 2, SMALL)
+    assert (len(usual.replay), usual.replay.capacity, usual.optimizer.steps) == (0, SMALL.replay_size, 0)
+
+
+def test_one_step_of_training_acts_stores_and_learns():
+    env, agent = LanderEnv(4, 0, "near"), DeepQAgent(config=SMALL.changed(learning_starts=4))
+    observation = env.reset()
+    actions, after = agent.train_step(env, observation, 0.0, np.zeros(4, np.intp))
+    stored = agent.replay.at(np.arange(4))
+    assert np.array_equal(stored.state, observation)
+    assert np.array_equal(stored.next_state, after.observation)
+    assert np.array_equal(stored.action, actions)
+    assert (agent.decisions, agent.train_count) == (4, SMALL.gradient_steps)

@@ -20,7 +20,7 @@ def test_every_setting_tells_a_screen_how_to_show_it():
 def test_presets_survive_a_file():
     for preset in PRESETS.values():
         assert Config.from_json(preset.to_json()) == preset
-    changed = PRESETS["classic"].changed(weights=RewardWeights(time=0.0), hidden=(8,))
+    changed = PRESETS["classic"].changed(reward_weights=RewardWeights(time=0.0), hidden=(8,))
     assert Config.from_json(changed.to_json()) == changed
 
 
@@ -28,7 +28,7 @@ def test_classic_is_the_agent_first_described():
     classic = PRESETS["classic"]
     assert classic.hidden == (128, 128)
     assert (classic.activation, classic.cost, classic.optimizer) == ("tanh", "mse", "sgd")
-    assert (classic.replay_size, classic.replay_prune, classic.target_every) == (1500, 1000, 50)
+    assert (classic.replay_size, classic.replay_prune, classic.target_update_interval) == (1500, 1000, 50)
     assert (classic.epsilon_start, classic.epsilon_decay, classic.epsilon_end) == (1.0, 0.999, 0.05)
     assert classic.success_pass
     assert classic.success_batch_size < classic.batch_size
@@ -58,13 +58,13 @@ def test_classic_is_the_agent_first_described():
         ({"num_envs": np.True_}, "num_envs is not a yes or no"),
         ({"learning_rate": np.float32("inf")}, "learning_rate lies between"),
         ({"learning_rate": "fast"}, "learning_rate lies between"),
-        ({"horizon": 10**400}, r"horizon is a whole number, not 1000+…"),
-        ({"horizon": 10**5000}, "horizon is a whole number, not a number of very many digits"),
+        ({"schedule_decisions": 10**400}, r"schedule_decisions is a whole number, not 1000+…"),
+        ({"schedule_decisions": 10**5000}, "schedule_decisions is a whole number, not a number of very many digits"),
         ({"env": None}, "env is a text, not None"),
         ({"env": 5}, "env is a text"),
         ({"spawn": "x" * 100_000}, "spawn is one of .*x{20}…$"),
-        ({"weights": RewardWeights(time=True)}, "weights are finite numbers"),
-        ({"weights": RewardWeights(time=10**400)}, "weights are finite numbers"),
+        ({"reward_weights": RewardWeights(time=True)}, "reward_weights are finite numbers"),
+        ({"reward_weights": RewardWeights(time=10**400)}, "reward_weights are finite numbers"),
     ],
 )
 def test_a_setting_out_of_range_is_named(changes, message):
@@ -75,9 +75,9 @@ def test_a_setting_out_of_range_is_named(changes, message):
 def test_numbers_of_numpy_are_plain_numbers():
     weights = RewardWeights(time=np.float32(-0.5), switch=np.int64(0))
     given = {"num_envs": np.int64(8), "learning_rate": np.float32(0.5), "double": np.False_,
-             "hidden": (np.int32(16), 8), "weights": weights}  # fmt: skip
+             "hidden": (np.int32(16), 8), "reward_weights": weights}  # fmt: skip
     plain = {"num_envs": 8, "learning_rate": 0.5, "double": False, "hidden": (16, 8),
-             "weights": RewardWeights(time=-0.5, switch=0)}  # fmt: skip
+             "reward_weights": RewardWeights(time=-0.5, switch=0)}  # fmt: skip
     config = Config().changed(**given)
     assert config == Config().changed(**plain)
     assert Config.from_json(json.loads(json.dumps(config.to_json()))) == config

@@ -12,7 +12,8 @@ from ai.training.loop import Training
 from ai.training.session import ChangeSetting, SwarmState, live
 
 TINY = Config(
-    hidden=(8,), num_envs=16, warm_up=32, batch_size=16, updates=1, replay_size=2000, spawn="near", horizon=1000,
+    hidden=(8,), num_envs=16, learning_starts=32, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near",
+    schedule_decisions=1000,
     epsilon_decisions=500, epsilon_start=0.5,
 )  # fmt: skip
 LIVE = [item.name for item in fields(Config) if item.metadata["live"]]
@@ -22,7 +23,7 @@ def trained(config: Config, change: dict[str, float], at: int, until: int) -> Tr
     training = Training(config, 3, evaluate_every=0)
     while training.agent.decisions < until:
         if training.agent.decisions == at:
-            training.change(config.changed(**change))
+            training.apply_live(config.changed(**change))
         training.advance()
     return training
 
@@ -68,10 +69,10 @@ def test_schedules_leave_their_settings_behind_one_by_one(preset, decisions, epi
 
 def test_what_is_not_turned_on_changes_nothing():
     assert {"priority_exponent", "importance_exponent"} <= set(idle(PRESETS["modern"]))
-    assert "horizon" in idle(PRESETS["classic"])
-    assert "horizon" not in idle(PRESETS["classic"].changed(care=0.5))
+    assert "schedule_decisions" in idle(PRESETS["classic"])
+    assert "schedule_decisions" not in idle(PRESETS["classic"].changed(final_touchdown_limits=0.5))
     assert DIGIT_PRESETS["classic"].unused() == {"filters": "convolutions", "kernel": "convolutions"}
-    assert DIGIT_PRESETS["modern"].changed(augmentation=0.0).unused() == {"original": "augmentation"}
+    assert DIGIT_PRESETS["modern"].changed(augmentation=0.0).unused() == {"unaugmented": "augmentation"}
 
 
 def test_what_a_run_says_is_in_force_is_what_it_learns_and_flies_with():

@@ -17,7 +17,10 @@ from ai.training.task import VALIDATION_SEED
 from main import main
 
 ROOT = Path(__file__).parents[3]
-SMALL = [f"--set={change}" for change in ("num_envs=8", "hidden=[8]", "batch_size=16", "warm_up=32", "updates=1")]
+SMALL = [
+    f"--set={change}"
+    for change in ("num_envs=8", "hidden=[8]", "batch_size=16", "learning_starts=32", "gradient_steps=1")
+]
 
 
 def test_train_evaluate_resume(tmp_path, capsys):
@@ -47,6 +50,13 @@ def test_train_evaluate_resume(tmp_path, capsys):
         (["evaluate", "--model", "nowhere"], "nowhere"),
         (["evaluate", "--model", "nowhere", "--episodes", "0"], "--episodes"),
         (["evaluate", "--model", "nowhere", "--spawn", "mars"], "--spawn is one of"),
+        (["train-digits"], "--output"),
+        (["train-digits", "--output", "x", "--preset", "magic"], "--preset is one of"),
+        (["train-digits", "--output", "x", "--set", "warp=9"], "warp=9"),
+        (["train-digits", "--output", "x", "--epochs", "0"], "epochs lies between"),
+        (["train-digits", "--output", "x", "--seconds", "0"], "--seconds lies between"),
+        (["train-digits", "--resume", "nowhere"], "nowhere"),
+        (["evaluate-digits", "--model", "nowhere"], "nowhere"),
     ],
 )
 def test_what_cannot_be_done_is_said_in_a_line(arguments, message, capsys, tmp_path, monkeypatch):
@@ -114,7 +124,7 @@ def test_a_request_to_end_reaches_a_process_and_its_work_is_kept(tmp_path):
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_a_pause_past_a_checkpoint_changes_nothing_that_is_kept(tmp_path, monkeypatch, preset):
     """Same seed, same network: when the clock asks for a checkpoint, that saves, and chooses nothing."""
-    changes = ["num_envs=8", "hidden=[8]", "batch_size=16", "warm_up=32", "updates=1"]
+    changes = ["num_envs=8", "hidden=[8]", "batch_size=16", "learning_starts=32", "gradient_steps=1"]
     monkeypatch.setattr(LanderTask, "evaluate_every", 320)
     saves = []
 
@@ -177,18 +187,18 @@ def test_what_can_change_in_a_run_is_changed_when_it_is_resumed_and_the_rest_is_
     before = {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
     resume = ["train", "--resume", str(run), "--decisions", "160"]
     for changes, named in (
-        (["--set", "hidden=[9]"], "hidden"), (["--set", "n_step=3", "--set", "updates=2"], "n_step"),
+        (["--set", "hidden=[9]"], "hidden"), (["--set", "n_step=3", "--set", "gradient_steps=2"], "n_step"),
         (["--seed", "4"], "seed"), (["--preset", "classic"], "optimizer"), (["--env", "CartPole-v1"], "env"),
-        (["--decisions", "80"], "whole run"), (["--set", "updates=0"], "updates lies"),
+        (["--decisions", "80"], "whole run"), (["--set", "gradient_steps=0"], "gradient_steps lies"),
     ):  # fmt: skip
         assert main([*resume, *changes]) == 1
         told = capsys.readouterr().err
         assert named in told
         assert "epsilon_end" not in told, "that can change"
         assert before == {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
-    assert main([*resume, "--set", "updates=2", "--set", "hidden=[8]", "--seed", "3", "--env", "lander"]) == 0
+    assert main([*resume, "--set", "gradient_steps=2", "--set", "hidden=[8]", "--seed", "3", "--env", "lander"]) == 0
     agent = DeepQAgent.load(run / "last")
-    assert (agent.config.updates, agent.config.hidden, agent.decisions) == (2, (8,), 160)
+    assert (agent.config.gradient_steps, agent.config.hidden, agent.decisions) == (2, (8,), 160)
     assert json.loads((run / "training.json").read_text())["seed"] == 3
 
 

@@ -29,7 +29,9 @@ from main import main
 
 ROOT = Path(__file__).parents[3]
 MODEL = str(ROOT / "models" / "lander" / "modern")
-SMALL = PRESETS["modern"].changed(num_envs=2, hidden=(4,), batch_size=8, warm_up=8, updates=1, replay_size=100)
+SMALL = PRESETS["modern"].changed(
+    num_envs=2, hidden=(4,), batch_size=8, learning_starts=8, gradient_steps=1, replay_size=100
+)
 DIGITS = DIGIT_PRESETS["classic"].changed(hidden=(4,), held_out=100)
 
 TRAIN = ["train", "--output", "new", "--decisions", "100"]
@@ -58,8 +60,8 @@ SETTINGS = [
     "hidden=[]", "hidden=1", "hidden=[[1]]", f"hidden={DEEP}", "hidden=[1e999]", "hidden=[0]", "hidden=[-1]",
     "hidden={}", f"hidden=[1{'0' * 400}]", "learning_rate=NaN", "learning_rate=Infinity", "learning_rate=-1",
     "learning_rate=0", "learning_rate=[]", "learning_rate={}", "learning_rate=null", 'learning_rate="1"',
-    "learning_rate=", "n_step=1e999", "n_step=2.0", f"n_step=1{'0' * 400}", f"n_step={'9' * 5_000}", "weights=3",
-    "weights=null", "weights=[]", 'weights={"time": 1e999}', f'weights={{"time": 1{"0" * 400}}}',
+    "learning_rate=", "n_step=1e999", "n_step=2.0", f"n_step=1{'0' * 400}", f"n_step={'9' * 5_000}",
+    "reward_weights=3", "weights=null", "weights=[]", 'weights={"time": 1e999}', f'weights={{"time": 1{"0" * 400}}}',
     'weights={"time": null}', 'weights={"x": 1}', 'weights={"time": "x"}', 'weights={"time": NaN}', "optimizer=[]",
     "optimizer={}", "optimizer=null", "spawn=null", "spawn={}", "batch_size=true", "double=1", "double=null",
     "replay_size=0", "num_envs=0", "num_envs=1e9", "frame_skip=-1", "discount=1.1", "epsilon_start=2",
@@ -68,7 +70,8 @@ DIGIT_SETTINGS = [
     "", "=", "x=1", "filters=[]", "filters=[8,8,8,8,8,8]", "filters=[1e999]", "kernel=0", "kernel=9e9", "hidden=[]",
     "hidden=null", f"hidden={DEEP}", "epochs=0", "epochs=1e9", "epochs=1.5", "held_out=-1", "held_out=60000",
     "batch_size=0", "dropout=1", "dropout=NaN", "cost=null", "cost=[]", "convolutions=2", "augmentation=-1",
-    "augmentation=1e999", "averaging=1", "warm_up=-1", "smoothing=2", "activation={}", "final_learning_rate=0",
+    "augmentation=1e999", "ema_decay=1", "warm_up_epochs=-1", "label_smoothing=2", "activation={}",
+    "final_learning_rate=0",
 ]  # fmt: skip
 
 CASES: list[list[str]] = [
@@ -211,7 +214,7 @@ def test_a_run_whose_file_makes_no_sense_is_not_gone_on_with(refused, runs, cont
 def test_a_history_with_nonsense_for_numbers_is_named(tmp_path, entry, value):
     history = History()
     history.append(Checkpoint(0.0, 0, 0.0, np.zeros(3, np.float32)))
-    history.append(SettingChange(5, "updates", 1, 2))
+    history.append(SettingChange(5, "gradient_steps", 1, 2))
     history.append(Validation(7, 0.5, 1.0, True))
     history.write(tmp_path)
     assert len(History.read(tmp_path).checkpoints) == 1
@@ -245,7 +248,10 @@ def test_a_terminal_that_knows_few_letters_ends_no_command(encoding, tmp_path, m
     terminal = Terminal(encoding), Terminal(encoding)
     monkeypatch.setattr(sys, "stdout", terminal[0])
     monkeypatch.setattr(sys, "stderr", terminal[1])
-    small = [f"--set={each}" for each in ("num_envs=2", "hidden=[4]", "batch_size=8", "warm_up=8", "updates=1")]
+    small = [
+        f"--set={each}"
+        for each in ("num_envs=2", "hidden=[4]", "batch_size=8", "learning_starts=8", "gradient_steps=1")
+    ]
     assert main(["train", "--decisions", "40", "--validation", "2", "--output", STRANGE, *small]) == 0
     assert "kept in m" in terminal[0].shown
     assert main(["evaluate", "--model", STRANGE, "--episodes", "2"]) == 0  # no landing: dashes for times

@@ -21,7 +21,7 @@ from ai.digits.training import DigitTraining, confusion
 from ai.training.history import REVERTED
 from ai.training.messages import ChangeSetting, Refused, Save
 
-SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, averaging=0.9)
+SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=200, batch_size=50, ema_decay=0.9)
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +143,9 @@ def test_without_images_held_out_there_is_no_confusion(data):
 
 
 def test_numbers_that_run_away_end_the_run_with_a_reason(data, tmp_path):
-    wild = SMALL.changed(optimizer="sgd", learning_rate=1.0, activation="relu", output_activation=False, warm_up=0.0)
+    wild = SMALL.changed(
+        optimizer="sgd", learning_rate=1.0, activation="relu", output_activation=False, warm_up_epochs=0.0
+    )
     with pytest.raises(FloatingPointError, match="learning rate"):
         for _ in live_digits(wild.changed(hidden=(512, 512), epochs=20), keep=tmp_path / "run", data=data):
             pass

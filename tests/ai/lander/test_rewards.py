@@ -44,12 +44,12 @@ def test_discounted_a_decision_near_the_pad_is_worth_less_than_its_time_costs(pr
     rng = np.random.default_rng(1)
     some = situation(rng.uniform(0, 20, 500), rng.uniform(0, 5, 500), rng.uniform(0, 4, 500), rng.uniform(0, 1, 500))
     rest = Situation(*(np.zeros(500) for _ in range(4)))
-    potential = config.weights.alignment - shaped(some, rest, config.weights)
+    potential = config.reward_weights.alignment - shaped(some, rest, config.reward_weights)
     most = (1 - config.discount) * potential.max()
-    bound = (1 - config.discount) * config.weights.alignment
-    assert potential.max() <= config.weights.alignment
+    bound = (1 - config.discount) * config.reward_weights.alignment
+    assert potential.max() <= config.reward_weights.alignment
     assert most <= bound == pytest.approx({"modern": 0.45, "classic": 0.30}[preset])
-    time = -config.weights.time * config.frame_skip
+    time = -config.reward_weights.time * config.frame_skip
     assert time == pytest.approx({"modern": 1.6, "classic": 0.4}[preset])
     assert bound < time
 

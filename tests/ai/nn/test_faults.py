@@ -14,8 +14,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ai.agent.agent import KIND, DeepQAgent
+from ai.agent.agent import DeepQAgent
 from ai.agent.config import PRESETS
+from ai.agent.storage import KIND, write_agent
 from ai.digits.classifier import DigitClassifier
 from ai.nn import (
     ActivationFunctions,
@@ -465,8 +466,8 @@ def test_a_reader_that_puts_the_old_folder_back_does_not_stop_a_save(run, monkey
 def test_two_writers_of_one_folder_never_mix(tmp_path):
     with atomic_folder(tmp_path / "run", KIND) as first, atomic_folder(tmp_path / "run", KIND) as second:
         assert first != second
-        DeepQAgent(config=SMALL).write(first)
-        DeepQAgent(config=SMALL).write(second)
+        write_agent(DeepQAgent(config=SMALL).saved(), first)
+        write_agent(DeepQAgent(config=SMALL).saved(), second)
     assert DeepQAgent.load(tmp_path / "run")
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from ai.agent.agent import build_network
 from ai.agent.config import Config
+from ai.agent.network import build_network
 from ai.nn import (
     ActivationFunctions,
     ActivationLayer,

@@ -14,10 +14,8 @@ import pytest
 
 from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import idle
-from ai.lander.rewards import RewardWeights
 from ai.training.hints import Adviser, Hint, RecentCurves
 from ai.training.history import REVERTED, Checkpoint, History, Point, SettingChange
-from ai.training.session import turned
 
 FILE = Path(__file__).with_name("broken_runs.npz")
 
@@ -35,14 +33,15 @@ def recordings() -> tuple[list[str], dict[str, Recording]]:
     with np.load(FILE, allow_pickle=False) as arrays:
         told = json.loads(str(arrays["described"]))
         return told["columns"], {
-            name: Recording(config_of(case), arrays[name].T.astype(float), [tuple(turn) for turn in case["turns"]])
+            " ".join(map(Config.name_now, name.split())): Recording(
+                config_of(case), arrays[name].T.astype(float), [tuple(turn) for turn in case["turns"]]
+            )
             for name, case in told["cases"].items()
         }
 
 
 def config_of(case: dict[str, Any]) -> Config:
-    changes = {name: RewardWeights(**value) if name == "weights" else value for name, value in case["changes"].items()}
-    return PRESETS[case["preset"]].changed(**changes)
+    return Config.from_json(PRESETS[case["preset"]].to_json() | Config.renamed(case["changes"]))
 
 
 @dataclass
@@ -70,7 +69,7 @@ def watch(name: str) -> Watched:
         shares = [told.pop(name) for name in ("dead_share", "clipped_share")]
         while turns and told["decisions"] > turns[0][0]:
             at, knob, value = turns.pop(0)
-            new = turned(config, knob, value)
+            new = config.turned(knob, value)
             history.append(SettingChange(at, knob, attrgetter(knob)(config), attrgetter(knob)(new)))
             config = new
         if told["decisions"] >= checkpoint_at:
@@ -125,7 +124,7 @@ def test_a_rate_that_is_too_high_is_named_and_nothing_else_is_blamed(name: str):
     sane = said.config
     for knob, value in hint.remedy.items():
         assert knob in ("learning_rate", "final_learning_rate")
-        sane = turned(sane, knob, value)
+        sane = sane.turned(knob, value)
     assert max(sane.learning_rate, sane.final_learning_rate) < 0.01
     assert hint.back_to == 0
 
@@ -164,16 +163,19 @@ NAMED = {
     "modern sabotage no_replay": ("small_memory", {"replay_size"}),
     "modern num_envs 1": ("overfed", {"num_envs"}),
     "modern sabotage one_lander": ("overfed", {"num_envs"}),
-    "classic updates 32": ("overfed", {"updates"}),
-    "modern target_every 10000": ("target_stands", {"target_every"}),
-    "modern target_rate 0.0001": ("target_stands", {"target_rate"}),
-    "classic target_every 10000": ("target_stands", {"target_every"}),
-    "classic target_rate 0.0001": ("target_stands", {"target_every", "target_rate"}),
+    "classic gradient_steps 32": ("overfed", {"gradient_steps"}),
+    "modern target_update_interval 10000": ("target_stands", {"target_update_interval"}),
+    "modern tau 0.0001": ("target_stands", {"tau"}),
+    "classic target_update_interval 10000": ("target_stands", {"target_update_interval"}),
+    "classic tau 0.0001": ("target_stands", {"target_update_interval", "tau"}),
     "classic batch_size 1024": ("small_memory", {"replay_size"}),
     "classic gradient_clip 0.1": ("clipped", {"gradient_clip"}),
     "modern sabotage short_sight": ("short_sight", {"discount"}),
     "modern sabotage plain_steps": ("crashes", {"optimizer"}),
-    "modern sabotage no_shaping": ("no_guide", {"weights.distance", "weights.speed", "weights.alignment"}),
+    "modern sabotage no_shaping": (
+        "no_guide",
+        {"reward_weights.distance", "reward_weights.speed", "reward_weights.alignment"},
+    ),
 }
 
 
@@ -195,6 +197,6 @@ def test_a_remedy_changes_what_is_set_and_acts():
     for name, run in recordings()[1].items():
         for _, hint in watch(name).hints:
             for knob, value in hint.remedy.items():
-                settings = [run.config, *(turned(run.config, turn[1], turn[2]) for turn in run.turns)]
+                settings = [run.config, *(run.config.turned(turn[1], turn[2]) for turn in run.turns)]
                 assert any(attrgetter(knob)(config) != value for config in settings), (name, knob)
                 assert knob not in idle(run.config, 1, 1), (name, knob)

@@ -24,7 +24,7 @@ def landings():
 def test_a_landing_is_remembered_as_if_the_agent_had_flown_it(landings):
     config = MODERN.changed(n_step=1)
     (cells,) = relive(landings[:1], config)
-    env = LanderEnv(1, landings[0].seed, "near", frame_skip=4, weights=config.weights)
+    env = LanderEnv(1, landings[0].seed, "near", frame_skip=4, weights=config.reward_weights)
     observation, pilot, total = env.reset(), ScriptedPilot(), 0.0
     for row in range(len(cells.action)):
         assert np.array_equal(cells.state[row], observation[0])
@@ -88,7 +88,7 @@ def test_flights_are_relived_together_as_alone(landings):
 
 @pytest.mark.parametrize("preset", ["modern", "classic"])
 def test_an_agent_learns_from_demonstrations_alone(landings, preset):
-    agent = DeepQAgent(config=taught(PRESETS[preset]).changed(warm_up=64), rng=np.random.default_rng(0))
+    agent = DeepQAgent(config=taught(PRESETS[preset]).changed(learning_starts=64), rng=np.random.default_rng(0))
     teach(agent, landings)
     (cells,) = relive(landings[:1], agent.config)
 
@@ -97,7 +97,7 @@ def test_an_agent_learns_from_demonstrations_alone(landings, preset):
 
     before = agreement()
     assert agent.learn() is not None
-    assert agent.optimizer.steps == 2 * agent.config.updates  # the second pass is over the successes
+    assert agent.optimizer.steps == 2 * agent.config.gradient_steps  # the second pass is over the successes
     for _ in range(150):
         agent.learn()
     assert agreement() != before

@@ -21,7 +21,7 @@ def test_a_running_scale_is_the_scale_of_all_it_saw():
     seen = (rng.normal(size=(60, 3)) * [5.0, 0.01, 0.0] + [100.0, -1.0, 3.0]).astype(np.float32)
     scale = Normalizer(3)
     for part in (seen[:1], seen[1:20], seen[20:]):
-        scale.watch(part)
+        scale.update(part)
     assert scale.mean == pytest.approx(seen.mean(axis=0, dtype=float))
     scaled = scale(seen)
     assert scaled.dtype == np.float32
@@ -78,7 +78,7 @@ class TestLearningOthersEnvironments:
 
     def test_cart_pole_is_learnt_kept_evaluated_and_gone_on_with(self, tmp_path, capsys):
         run = tmp_path / "run"
-        assert train_cart_pole(run, 10_000, "--set", "epsilon_decisions=5000", "--set", "warm_up=500") == 0
+        assert train_cart_pole(run, 10_000, "--set", "epsilon_decisions=5000", "--set", "learning_starts=500") == 0
         assert "mean return" in capsys.readouterr().out
         described = json.loads((run / "training.json").read_text())
         assert (described["env"], described["preset"]) == ("CartPole-v1", "gym")
@@ -89,7 +89,7 @@ class TestLearningOthersEnvironments:
         assert measured["mean_length"] == measured["mean_return"]
         assert 0 <= measured["success"] <= 1
         resumed, best = resume_run(run), DeepQAgent.load(run)
-        assert resumed.agent.scale.to_json() == DeepQAgent.load(run / "last").scale.to_json()
+        assert resumed.agent.normalizer.to_json() == DeepQAgent.load(run / "last").normalizer.to_json()
         assert np.array_equal(resumed.best_agent().q_values(np.ones(4)), best.q_values(np.ones(4)))
         assert main(["train", "--resume", str(run), "--decisions", "10400"]) == 0
         assert json.loads((run / "training.json").read_text())["decisions"] == 10_400
@@ -97,14 +97,14 @@ class TestLearningOthersEnvironments:
         assert "--spawn is for the lander" in capsys.readouterr().err
 
     def test_the_same_seed_gives_the_same_network(self):
-        runs = [Training(gym_config("CartPole-v1").changed(warm_up=64, updates=1), 5) for _ in range(2)]
+        runs = [Training(gym_config("CartPole-v1").changed(learning_starts=64, gradient_steps=1), 5) for _ in range(2)]
         for training in runs:
             for _ in range(40):
                 training.advance()
         first, second = (training.agent for training in runs)
         assert first.train_count > 0
         assert np.array_equal(first.online.values, second.online.values)
-        assert first.scale.to_json() == second.scale.to_json()
+        assert first.normalizer.to_json() == second.normalizer.to_json()
 
     def test_the_contract_of_an_environment_holds(self):
         env = GymTask(gym_config("CartPole-v1")).make_env(np.random.default_rng(0))
@@ -190,7 +190,7 @@ class TestOurLanderForOthers:
         assert flights > 10
 
     def test_the_deep_q_agent_takes_it_from_there(self):
-        training = Training(gym_config(LANDER).changed(num_envs=2, warm_up=8, updates=1))
+        training = Training(gym_config(LANDER).changed(num_envs=2, learning_starts=8, gradient_steps=1))
         for _ in range(20):
             training.advance()
         assert training.agent.train_count > 0

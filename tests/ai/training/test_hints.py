@@ -158,18 +158,18 @@ def test_what_a_flight_can_pay_follows_the_weights():
         ("loss_explodes", points(), MODERN.changed(learning_rate=1e-5, final_learning_rate=1e-6),
          {"learning_rate": 1e-5}),
         ("q_runs_away", points(), MODERN.changed(double=False), {"double": True}),
-        ("q_runs_away", points(), sabotaged(MODERN, "no_target"), {"target_rate": 0.005}),
+        ("q_runs_away", points(), sabotaged(MODERN, "no_target"), {"tau": 0.005}),
         ("crashes", points(), sabotaged(MODERN, "plain_steps"), {"optimizer": "adam"}),
         ("rate_too_high", points(), sabotaged(MODERN, "rate_times_100"),
          {"learning_rate": 2e-3, "final_learning_rate": 3e-4}),
         ("short_sight", points(), sabotaged(MODERN, "short_sight"), {"discount": 0.985}),
         ("no_guide", points(), sabotaged(MODERN, "no_shaping"),
-         {"weights.distance": 0.5, "weights.speed": 0.05, "weights.alignment": 30.0}),
+         {"reward_weights.distance": 0.5, "reward_weights.speed": 0.05, "reward_weights.alignment": 30.0}),
         ("hovers", points(), sabotaged(MODERN, "no_exploration"), {"epsilon_end": 0.05}),
         ("hovers", points(), sabotaged(MODERN, "uniform_actions"), {"random_main": 0.3}),
         ("hovers", points(), sabotaged(MODERN, "no_practice"), {"spawn": "practice"}),
-        ("hovers", points(), MODERN.changed(weights=RewardWeights(time=0.0)), {"weights.time": -0.2}),
-        ("hovers", points(), MODERN, {"weights.time": -0.6}),
+        ("hovers", points(), MODERN.changed(reward_weights=RewardWeights(time=0.0)), {"reward_weights.time": -0.2}),
+        ("hovers", points(), MODERN, {"reward_weights.time": -0.6}),
         ("overfed", points(), sabotaged(MODERN, "one_lander"), {"num_envs": 256}),
         ("random", points(), MODERN.changed(epsilon_end=0.5), {"epsilon_end": 0.05}),
         ("clipped", points(), MODERN.changed(gradient_clip=0.1), {"gradient_clip": 10.0}),
@@ -187,7 +187,7 @@ def test_remedies_follow_what_is_set(name: str, curve: Curve, config: Config, cu
 def test_a_configuration_takes_every_remedy(name: str, base: str):
     for knob, value in remedy(name, points(), PRESETS[base]).items():
         field, _, part = knob.partition(".")
-        weights = replace(PRESETS[base].weights, **{part: value}) if part else None
+        weights = replace(PRESETS[base].reward_weights, **{part: value}) if part else None
         PRESETS[base].changed(**{field: weights or value})
 
 
@@ -252,9 +252,9 @@ def test_an_applied_hint_goes_and_can_be_undone_and_does_not_come_back_at_once()
     run = history(points(**HOVERS), seconds=40.0 + REST)
     shown = watch(adviser, run)
     assert shown[-1] is not None
-    assert adviser.apply() == {"weights.time": -0.6}
+    assert adviser.apply() == {"reward_weights.time": -0.6}
     assert adviser.can_undo
-    assert adviser.undo() == {"weights.time": -0.4}
+    assert adviser.undo() == {"reward_weights.time": -0.4}
     assert not adviser.can_undo
     assert adviser.undo() == {}
 
@@ -318,7 +318,7 @@ def live(config: Config, decisions: int, pace: float) -> list[str]:
 
 
 def test_nothing_is_said_of_a_run_that_starts_well():
-    assert set(live(MODERN.changed(updates=1), 30_000, 1_000)) == {""}
+    assert set(live(MODERN.changed(gradient_steps=1), 30_000, 1_000)) == {""}
 
 
 @pytest.mark.parametrize(("name", "hint"), [("no_replay", "small_memory"), ("one_lander", "overfed")])

@@ -85,12 +85,12 @@ def test_the_checkpoint_of_a_moment_is_the_last_one_before_it():
 
 def same(one, other):
     assert np.array_equal(one.points, other.points)
-    assert one.alterations == other.alterations
+    assert one.setting_changes == other.setting_changes
     assert one.validations == other.validations
     assert len(one.checkpoints) == len(other.checkpoints)
     for first, second in zip(one.checkpoints, other.checkpoints, strict=True):
         assert (first.decisions, first.seconds, first.success) == (second.decisions, second.seconds, second.success)
-        assert first.scale == second.scale
+        assert first.normalizer == second.normalizer
         assert np.array_equal(first.values, second.values)
         assert second.values.dtype == np.float32
 

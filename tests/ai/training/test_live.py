@@ -12,7 +12,7 @@ from ai.agent.schedule import exploration_of_each
 from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
-from ai.training import session as module
+from ai.training import autosave
 from ai.training.checkpoints import resume_run
 from ai.training.history import PARTS, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
@@ -30,10 +30,11 @@ from ai.training.session import (
     SwarmState,
     agent_of,
     live,
-    turned,
 )
 
-TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000, spawn="near")
+TINY = Config(
+    hidden=(8,), num_envs=32, learning_starts=64, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near"
+)
 
 
 @pytest.fixture
@@ -64,7 +65,7 @@ def of(kind, told):
 def test_without_commands_it_is_the_training_it_would_be_headless(begin, tmp_path, changes, monkeypatch):
     monkeypatch.setattr(LanderTask, "evaluate_every", 640)
     monkeypatch.setattr(LanderTask, "validation_episodes", 5)
-    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
     config = TINY.changed(**changes)
     run, headless = begin(config, 3, keep=tmp_path / "keep"), Training(config, 3)
     told = told_in(run, 1)
@@ -166,8 +167,8 @@ def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     told_in(run, 30)
     answer, _ = run.send(ChangeSetting("learning_rate", 0.05))
     assert answer == SettingChange(29 * 32, "learning_rate", TINY.learning_rate, 0.05)
-    answer, _ = run.send(ChangeSetting("weights.time", -1.0))
-    assert answer == SettingChange(29 * 32, "weights.time", TINY.weights.time, -1.0)
+    answer, _ = run.send(ChangeSetting("reward_weights.time", -1.0))
+    assert answer == SettingChange(29 * 32, "reward_weights.time", TINY.reward_weights.time, -1.0)
     assert of(SwarmState, next(run))[0].decisions == 30 * 32
 
 
@@ -176,7 +177,7 @@ def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     [
         ("no_such_knob", 1, "no setting"),
         ("", 1, "no setting"),
-        ("weights.charm", 1.0, "no setting"),
+        ("reward_weights.charm", 1.0, "no setting"),
         ("discount.time", 1.0, "no setting"),
         ("hidden", (4,), "cannot change"),
         ("num_envs", 4, "cannot change"),
@@ -185,9 +186,9 @@ def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
         ("learning_rate", "fast", "between"),
         ("batch_size", 2.5, "whole"),
         ("double", 1, "yes or no"),
-        ("weights.time", float("inf"), "finite"),
-        ("weights.time", None, "finite"),
-        ("weights", 3, "finite"),
+        ("reward_weights.time", float("inf"), "finite"),
+        ("reward_weights.time", None, "finite"),
+        ("reward_weights", 3, "finite"),
     ],
 )
 def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin, name, value, words):
@@ -202,11 +203,12 @@ def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin, name,
 
 
 def live_knobs():
-    return [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "weights"]
+    return [knob.name for knob in fields(Config) if knob.metadata["live"] and knob.name != "reward_weights"]
 
 
 ELSEWHERE = {
-    "batch_size": 64, "updates": 3, "mirror": False, "double": False, "fly_target": False, "target_every": 7,
+    "batch_size": 64, "gradient_steps": 3, "mirror": False, "double": False, "fly_target": False,
+    "target_update_interval": 7,
     "success_pass": True, "success_batch_size": 16, "epsilon_decisions": 100, "epsilon_decay": 0.91,
     "steadiness": 0.5, "discount": 0.9,
 }  # fmt: skip
@@ -216,7 +218,9 @@ ELSEWHERE = {
 def test_every_live_knob_makes_a_difference(begin, name):
     # What a knob needs for its effect to show within a few flights.
     config = TINY.changed(success_pass=name == "success_batch_size", n_step=3, gradient_clip=0.5)
-    config = config.changed(epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, horizon=1000, reward_scale=1.0)
+    config = config.changed(
+        epsilon_start=0.5, epsilon_end=0.2, steadiness=0.0, schedule_decisions=1000, reward_scale=1.0
+    )
     config = config.changed(epsilon_decisions=0 if name == "epsilon_decay" else 2000)
     value = ELSEWHERE.get(name, getattr(config, name) * 0.8)
     run, quiet = begin(config), begin(config)
@@ -241,16 +245,18 @@ def test_every_live_knob_makes_a_difference(begin, name):
 def test_turned_weights_pay_in_the_run_that_goes_on(begin):
     run = begin(TINY.changed(spawn="fixed"))
     told_in(run, 20)
-    run.send(ChangeSetting("weights.time", -100.0))
+    run.send(ChangeSetting("reward_weights.time", -100.0))
     before = of(SwarmState, next(run))[0].earned
     after = of(SwarmState, next(run))[0].earned
     assert ((after - before) < -300).all()  # four physics steps
 
 
 def test_turning_gives_a_configuration():
-    assert turned(TINY, "weights.feet", 2.0) == TINY.changed(weights=replace(TINY.weights, feet=2.0))
-    assert turned(TINY, "weights", RewardWeights(feet=3.0)).weights.feet == 3.0
-    assert turned(TINY, "updates", 2) == TINY.changed(updates=2)
+    assert TINY.turned("reward_weights.feet", 2.0) == TINY.changed(
+        reward_weights=replace(TINY.reward_weights, feet=2.0)
+    )
+    assert TINY.turned("reward_weights", RewardWeights(feet=3.0)).reward_weights.feet == 3.0
+    assert TINY.turned("gradient_steps", 2) == TINY.changed(gradient_steps=2)
 
 
 def test_it_goes_back_to_a_checkpoint_and_time_goes_on(begin):
@@ -270,16 +276,16 @@ def test_a_saved_run_can_be_flown_and_gone_on_with(begin, tmp_path):
     history = History()
     for message in told_in(run, 100):
         history.append(message)
-    change, _ = run.send(ChangeSetting("updates", 2))
+    change, _ = run.send(ChangeSetting("gradient_steps", 2))
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
     again = begin(Config(), 99, resume=tmp_path / "run")
     first = next(again)
-    assert of(RunStarted, first) == [RunStarted(TINY.changed(updates=2), 5, 99 * 32)]
+    assert of(RunStarted, first) == [RunStarted(TINY.changed(gradient_steps=2), 5, 99 * 32)]
     assert np.array_equal(of(NetworkState, first)[0].values, DeepQAgent.load(tmp_path / "run" / "last").online.values)
     kept = History.read(tmp_path / "run")
     assert np.array_equal(kept.points, history.points, equal_nan=True)
     assert [each.decisions for each in kept.checkpoints] == [each.decisions for each in history.checkpoints]
-    assert kept.alterations == [change]
+    assert kept.setting_changes == [change]
     sights = of(SwarmState, told_in(again, 3))
     assert sights[-1].decisions == 102 * 32
     assert resume_run(tmp_path / "run").best is None  # nobody has tried it yet
@@ -298,13 +304,13 @@ def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
 
 
 def test_it_keeps_itself_by_the_clock(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 2)
-    monkeypatch.setattr(module, "KEEP_SECONDS", 1e9)
-    run.gi_frame.f_locals["run"]._writing.result()
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 1e9)
+    run.gi_frame.f_locals["run"]._autosave.wait()
     told_in(run, 2)  # one more was due
-    run.gi_frame.f_locals["run"]._writing.result()
+    run.gi_frame.f_locals["run"]._autosave.wait()
     kept = resume_run(tmp_path / "keep").agent.decisions
     assert kept > 32
     told_in(run, 20)
@@ -316,7 +322,7 @@ def full(*_):
 
 
 def test_a_full_disk_is_told_once_and_training_goes_on(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "KEEP_SECONDS", 0.0)
+    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
     run = begin(TINY, keep=tmp_path / "keep")
     told_in(run, 10)
     assert of(Saved, run.send(Save(tmp_path / "run"))) == [Saved(tmp_path / "run")]
@@ -438,26 +444,26 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
         turn("discount", value)
         clock.now += 0.3
         told += told_in(run, 1)
-    (mark,) = history.alterations
+    (mark,) = history.setting_changes
     assert (mark.before, mark.after, mark.decisions) == (TINY.discount, 0.9, 32 * 32)
     turn("learning_rate", 0.1)
     clock.now += 5.0
     told_in(run, 1)
     turn("discount", 0.85)
-    assert [(each.name, each.before, each.after) for each in history.alterations] == [
+    assert [(each.name, each.before, each.after) for each in history.setting_changes] == [
         ("discount", TINY.discount, 0.9), ("learning_rate", TINY.learning_rate, 0.1), ("discount", 0.9, 0.85),
     ]  # fmt: skip
     clock.now += 5.0
     turn("discount", 0.8)  # it rests: nothing was learnt with the value before
     turn("discount", 0.9)  # and back to where it was
-    assert [each.name for each in history.alterations] == ["discount", "learning_rate"]
+    assert [each.name for each in history.setting_changes] == ["discount", "learning_rate"]
     turn("discount", 0.82)
-    assert [each.after for each in history.alterations] == [0.9, 0.1, 0.82], "the mark of before stays"
+    assert [each.after for each in history.setting_changes] == [0.9, 0.1, 0.82], "the mark of before stays"
     turn("discount", 0.9)
     turn("discount", 0.9)
     turn("discount", 0.9)  # nothing is turned
     kept = run.gi_frame.f_locals["run"].history
-    assert kept.alterations == history.alterations
+    assert kept.setting_changes == history.setting_changes
     assert run.gi_frame.f_locals["run"].training.config.discount == 0.9
 
 

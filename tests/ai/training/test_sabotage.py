@@ -26,7 +26,9 @@ def test_each_takes_something_away_from_modern(name: str):
 
 @pytest.mark.parametrize(("base", "name"), CASES)
 def test_each_is_a_configuration_that_learns(base: str, name: str):
-    small = PRESETS[base].changed(num_envs=min(8, PRESETS[base].num_envs), batch_size=16, updates=1, warm_up=16)
+    small = PRESETS[base].changed(
+        num_envs=min(8, PRESETS[base].num_envs), batch_size=16, gradient_steps=1, learning_starts=16
+    )
     training = Training(sabotaged(small, name), evaluate_every=0)
     for _ in range(120 if training.env.num_envs == 1 else 30):
         training.advance()
@@ -43,7 +45,7 @@ def test_taken_away_twice_is_gone_no_more_than_once(base: str, name: str):
 
 
 def test_only_the_end_of_a_flight_pays_without_shaping():
-    weights = sabotaged(PRESETS["classic"], "no_shaping").weights
+    weights = sabotaged(PRESETS["classic"], "no_shaping").reward_weights
     assert {name: value for name, value in vars(weights).items() if value} == {"terminal": 120.0}
 
 

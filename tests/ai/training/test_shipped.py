@@ -15,22 +15,23 @@ def differences(name):
     made = Config.from_json(json.loads((folder / "config.json").read_text(encoding="utf-8"))["config"])
     made, preset = (json.loads(json.dumps(config.to_json())) for config in (made, PRESETS[name]))
     differ = {setting: value for setting, value in made.items() if value != preset[setting]}
-    assert json.loads((folder / "training.json").read_text(encoding="utf-8"))["changes"] == differ
+    changes = json.loads((folder / "training.json").read_text(encoding="utf-8"))["changes"]
+    assert Config.renamed(changes) == differ
     return differ
 
 
 def test_readme_names_every_setting_in_which_the_shipped_modern_network_differs():
     differ = differences("modern")
     assert len(differ) == 7
-    usual = vars(PRESETS["modern"].weights)
-    weights = {part: pays for part, pays in differ["weights"].items() if pays != usual[part]}
+    usual = vars(PRESETS["modern"].reward_weights)
+    weights = {part: pays for part, pays in differ["reward_weights"].items() if pays != usual[part]}
     assert set(weights) == {"switch", "time"}
     said = [
         "with seven settings of its own",
         f"layers of {differ['hidden'][0]}",
-        f"{differ['updates']} learning steps a decision",
+        f"{differ['gradient_steps']} learning steps a decision",
         f"replay of {differ['replay_size']:,}",
-        f"to {differ['final_learning_rate']} over {differ['horizon']:,} decisions",
+        f"to {differ['final_learning_rate']} over {differ['schedule_decisions']:,} decisions",
         f"steadiness {differ['steadiness']}",
         f"time −{-weights['time']}, switch −{-weights['switch']}",
     ]

@@ -11,7 +11,9 @@ from ai.nn import ModelFormatError
 from ai.training.checkpoints import TrainingClock, resume_run, save_run
 from ai.training.loop import Evaluation, Training, evaluate, run
 
-SMALL = Config(hidden=(16,), batch_size=16, updates=1, warm_up=32, replay_size=2000, num_envs=8, spawn="near")
+SMALL = Config(
+    hidden=(16,), batch_size=16, gradient_steps=1, learning_starts=32, replay_size=2000, num_envs=8, spawn="near"
+)
 QUICK = {"evaluate_every": 0, "validation_episodes": 4}
 
 
@@ -72,8 +74,8 @@ def test_the_generator_takes_changed_knobs():
 
 def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
     training, _ = advanced(decisions=2)
-    training.change(SMALL.changed(hidden=(3,), num_envs=2, n_step=3, updates=3))
-    assert training.config == training.agent.config == SMALL.changed(updates=3)
+    training.apply_live(SMALL.changed(hidden=(3,), num_envs=2, n_step=3, gradient_steps=3))
+    assert training.config == training.agent.config == SMALL.changed(gradient_steps=3)
     assert training.advance().decisions == 24
 
 
@@ -109,8 +111,8 @@ def test_a_run_is_kept_and_gone_on_with(tmp_path):
     assert described["decisions"] == 240
     assert described["preset"] == "modern"
     assert described["changes"] == {
-        "hidden": [16], "batch_size": 16, "updates": 1, "warm_up": 32, "replay_size": 2000, "num_envs": 8,
-        "spawn": "near",
+        "hidden": [16], "batch_size": 16, "gradient_steps": 1, "learning_starts": 32, "replay_size": 2000,
+        "num_envs": 8, "spawn": "near",
     }  # fmt: skip
     assert described["evaluation"]["episodes"] == 1000
     resumed = resume_run(tmp_path / "run")
@@ -166,7 +168,7 @@ def test_a_curriculum_run_climbs_its_stages():
 
 
 def test_care_sets_in_over_the_horizon():
-    training = Training(SMALL.changed(care=0.5, horizon=1000), evaluate_every=0)
+    training = Training(SMALL.changed(final_touchdown_limits=0.5, schedule_decisions=1000), evaluate_every=0)
     held = []
     for _ in range(127):
         held.append(training.env.limits.touch_speed / LIMITS.touch_speed)

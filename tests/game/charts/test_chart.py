@@ -599,7 +599,7 @@ def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
         run.append(replace(HEALTHY, seconds=float(number), decisions=1000.0 * number))
     for name in ("learning_rate", "final_learning_rate", "discount", "n_step", "updates"):
         run.append(SettingChange(10_000, name, 0, 1))
-    run.append(SettingChange(20_000, "updates", 1, 2))
+    run.append(SettingChange(20_000, "gradient_steps", 1, 2))
     marks = [tick for tick in _ticks(run) if tick.kind == "knob"]
     assert [tick.x for tick in marks] == [10.0, 20.0]
     assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"

@@ -20,7 +20,7 @@ from game.flight import networks
 from game.panels.run_page import row
 from game.training.library import Library, read_run
 
-SMALL = Config(hidden=(8,), num_envs=4, warm_up=16, replay_size=100, batch_size=16)
+SMALL = Config(hidden=(8,), num_envs=4, learning_starts=16, replay_size=100, batch_size=16)
 DESCRIBED = {
     "env": "lander", "preset": "modern", "changes": {"care": 0.8}, "seed": 3, "decisions": 5000, "updates": 9,
     "episodes": 7, "landings": 2, "seconds": 61.5, "best": {"success": 0.75, "mean_return": 1.0},

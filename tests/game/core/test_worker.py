@@ -31,7 +31,7 @@ from tests.support.chores import Echo, Latest, Tick, Trace
 ROOT = Path(__file__).parents[3]
 LIMIT = 60.0  # seconds
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="signals")
-TINY = Config(hidden=(8,), num_envs=32, warm_up=64, batch_size=16, updates=1, replay_size=2000)
+TINY = Config(hidden=(8,), num_envs=32, learning_starts=64, batch_size=16, gradient_steps=1, replay_size=2000)
 
 
 @pytest.fixture

@@ -169,9 +169,9 @@ def test_the_presets_own_value_is_a_stop_as_well(panel: tuple[Driver, Panel]):
 def test_a_weight_below_zero_grows_to_the_right(panel: tuple[Driver, Panel]):
     game, scene = panel
     turn_to(game, scene, "reward")
-    scene.form.focus(scene.knob("weights.time"))
+    scene.form.focus(scene.knob("reward_weights.time"))
     game.key(pygame.K_RIGHT)
-    assert scene.heard == [("weights.time", -0.6)]
+    assert scene.heard == [("reward_weights.time", -0.6)]
 
 
 def test_switches_and_words_for_keyboard_pad_and_mouse(panel: tuple[Driver, Panel]):

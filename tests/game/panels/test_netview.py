@@ -4,8 +4,8 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.agent import build_network
 from ai.agent.config import Config
+from ai.agent.network import build_network
 from ai.lander.environment import ACTION_NAMES, FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
 from game.core import texts

@@ -37,7 +37,9 @@ from game.ui.widget import Widget
 from game.ui.widgets import Choice
 from tests.support.driver import Driver
 
-SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1)
+SMALL = PRESETS["modern"].changed(
+    num_envs=4, hidden=(8,), learning_starts=64, replay_size=1000, batch_size=16, gradient_steps=1
+)
 
 
 @pytest.fixture
@@ -191,7 +193,7 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     train.wait(scene.lander_run.library.runs)
     (run,) = scene.lander_run.library.runs()
     assert "trained on you" in run.name
-    assert sum(each.name == TAUGHT for each in History.read(run.folder).alterations) == 1
+    assert sum(each.name == TAUGHT for each in History.read(run.folder).setting_changes) == 1
 
 
 def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
@@ -199,7 +201,7 @@ def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
     scene = train.top
     scene.knobs.turn("discount", 0.9)
     train.wait(lambda: scene.lander_run.config.discount == 0.9)
-    assert scene.lander_run.history.alterations[-1].name == "discount"
+    assert scene.lander_run.history.setting_changes[-1].name == "discount"
     scene.knobs.turn("n_step", 3)
     assert scene.knobs.waiting == ["n_step"]
     assert scene.lander_run.config.n_step == SMALL.n_step
@@ -316,7 +318,7 @@ def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp
 
 
 def test_numbers_that_run_away_are_told(train: Driver) -> None:
-    wild = SMALL.changed(cost="mse", reward_scale=1.0, weights=RewardWeights(terminal=1e30))
+    wild = SMALL.changed(cost="mse", reward_scale=1.0, reward_weights=RewardWeights(terminal=1e30))
     train.top.knobs.set_config(wild, 0)
     train.key(pygame.K_RETURN)
     train.wait(lambda: train.top.lander_run.state is WorkerState.FAILED, 60)

@@ -51,8 +51,8 @@ def test_stops_are_numbers_that_people_choose():
     assert KNOBS["n_step"].stops == tuple(range(1, 21))
     assert {0.9, 0.98, 0.985, 0.99, 0.999} < set(KNOBS["discount"].stops)
     assert {0.0, 0.01, 0.05} < set(KNOBS["epsilon_end"].stops)
-    assert KNOBS["weights.time"].stops[0] == 0.0
-    assert KNOBS["weights.time"].stops[-1] < KNOBS["weights.time"].stops[1] < 0
+    assert KNOBS["reward_weights.time"].stops[0] == 0.0
+    assert KNOBS["reward_weights.time"].stops[-1] < KNOBS["reward_weights.time"].stops[1] < 0
 
 
 def test_stops_reach_from_end_to_end():
@@ -133,7 +133,7 @@ def test_a_preset_waits_whole_in_a_run(run_settings: RunSettings, heard: list[An
 def test_a_sabotage_of_live_knobs_alone_takes_effect_at_once(run_settings: RunSettings, heard: list[Any]):
     run_settings.set_running(True)
     run_settings.load(("modern", "no_target"))
-    assert heard == [("target_rate", 1.0)]
+    assert heard == [("tau", 1.0)]
     assert not run_settings.waiting
     assert not run_settings.changed
 
@@ -167,9 +167,9 @@ def test_an_impossible_value_changes_nothing_and_is_explained(run_settings: RunS
 
 
 def test_parts_of_the_reward_are_named_apart(run_settings: RunSettings, heard: list[Any]):
-    run_settings.turn("weights.time", -0.6)
-    assert heard == [("weights.time", -0.6)]
-    assert run_settings.config.weights == replace(PRESETS["modern"].weights, time=-0.6)
+    run_settings.turn("reward_weights.time", -0.6)
+    assert heard == [("reward_weights.time", -0.6)]
+    assert run_settings.config.reward_weights == replace(PRESETS["modern"].reward_weights, time=-0.6)
 
 
 def test_a_configuration_from_elsewhere_is_named_after_what_is_nearest(run_settings: RunSettings, heard: list[Any]):

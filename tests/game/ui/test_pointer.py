@@ -6,8 +6,8 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.agent.agent import build_network
 from ai.agent.config import Config
+from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from game.flight.flight import Flight
 from game.flight.logbook import Records

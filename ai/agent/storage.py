@@ -1,0 +1,164 @@
+"""An agent on disk: a folder with its settings and counts, both networks, and the state of its optimizer.
+
+The format knows the parts of an agent, not the agent: `ai.agent.agent` turns itself into a `SavedAgent` and back.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ai.agent.config import Config
+from ai.agent.network import build_network, make_optimizer
+from ai.agent.normalizer import Normalizer
+from ai.common.environment import Floats
+from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
+from ai.nn.budget import WIDEST
+from ai.nn.files import brief, count_of, inside, read_arrays, read_json
+from ai.nn.folder import NETWORK, FolderKind
+from ai.nn.optimizers import Optimizer
+
+FORMAT: Final = "tranquility agent"
+VERSION: Final = 1
+AGENT_FILE: Final = "config.json"
+OPTIMIZER_FILE: Final = "optimizer.npz"
+LAST: Final = "last"  # folder within a run's: the agent to resume from
+_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
+KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
+_SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
+
+
+@dataclass
+class SavedAgent:
+    """All that is saved of an agent: everything but its replay buffers and its random generator."""
+
+    num_features: int
+    num_actions: int
+    config: Config
+    decisions: int  # taken so far
+    train_count: int  # gradient steps taken so far
+    online: NeuralNetwork
+    target: NeuralNetwork
+    optimizer: Optimizer
+    normalizer: Normalizer | None  # of observations; None unless `config.normalise_inputs`
+
+
+def save_agent(agent: SavedAgent, folder: str | Path) -> None:
+    """Write an agent to a folder, whole or not at all.
+
+    Raises OSError if it cannot be written, FileExistsError if the folder holds something else.
+    """
+    with atomic_folder(folder, KIND) as temporary:
+        write_agent(agent, temporary)
+
+
+def write_agent(agent: SavedAgent, folder: Path) -> None:
+    """Write an agent's files into a new folder; `save_agent` does so safely. Raises OSError."""
+    described = {
+        "format": FORMAT, "version": VERSION, "features": agent.num_features, "actions": agent.num_actions,
+        "decisions": agent.decisions, "train_count": agent.train_count, "config": agent.config.to_json(),
+    }  # fmt: skip
+    if agent.normalizer:
+        described["scale"] = agent.normalizer.to_json()
+    folder.mkdir(parents=True, exist_ok=True)
+    agent.online.save(folder / "online")
+    agent.target.save(folder / "target")
+    np.savez(folder / OPTIMIZER_FILE, allow_pickle=False, **agent.optimizer.state())
+    (folder / AGENT_FILE).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+
+
+def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
+    """Read what `save_agent` wrote. Raises ModelFormatError, which names everything that is wrong.
+
+    Reading imports no code that a file names: an agent for an environment "module:Name" is refused, unless the
+    caller names that same `env`.
+    """
+    folder = Path(folder)
+    recover_folder(folder)
+    described = _read_description(folder)
+    try:
+        config = Config.from_json(described["config"])
+        _check_env(config.env, env)
+        features, actions = (count_of(described[name], 1, WIDEST) for name in ("features", "actions"))
+        network = build_network(features, actions, config, np.random.default_rng(0))
+        decisions, train_count = count_of(described["decisions"]), count_of(described["train_count"])
+        normalizer = Normalizer(features) if config.normalise_inputs else None
+        if normalizer:
+            normalizer.load(described["scale"])
+    except (KeyError, TypeError, ValueError, ArithmeticError) as error:
+        said = f"{error.args[0]} is missing" if isinstance(error, KeyError) else brief(error)
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {said}"]) from error
+    problems: list[str] = []
+    online, target = (_read_network(folder, name, network, problems) for name in ("online", "target"))
+    optimizer = make_optimizer(config)
+    try:
+        optimizer.load_state(_read_state(inside(folder, OPTIMIZER_FILE), optimizer, network.values), network.values)
+    except OSError as error:
+        problems.append(f"{OPTIMIZER_FILE}: {error.strerror or error}")
+    except (ValueError, KeyError) as error:
+        problems.append(f"{OPTIMIZER_FILE}: {error}")
+    if problems:
+        raise ModelFormatError(folder, problems)
+    return SavedAgent(features, actions, config, decisions, train_count, online, target, optimizer, normalizer)
+
+
+def _read_description(folder: Path) -> dict[str, Any]:
+    """Read the file of settings and counts; raises ModelFormatError unless it is of this format and version."""
+    try:
+        described = read_json(inside(folder, AGENT_FILE))
+    except OSError as error:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {error.strerror or error}"]) from error
+    except ValueError as error:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
+    if not isinstance(described, dict) or described.get("format") != FORMAT:
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: this is no {FORMAT}"])
+    if described.get("version") != VERSION:
+        said = brief(repr(described.get("version")), 40)
+        raise ModelFormatError(folder, [f"{AGENT_FILE}: version {said}, not {VERSION}"])
+    return described
+
+
+def _check_env(env: str, named: str | None) -> None:
+    """Raise ValueError for an environment whose name would import code, unless the user has named it."""
+    if not isinstance(env, str) or (":" in env and env != named):
+        raise ValueError(
+            f"it is for the environment {brief(repr(env), 100)}, which is code that a file may not start; "
+            "if you trust it, name it yourself with --env"
+        )
+
+
+def _read_network(folder: Path, name: str, like: NeuralNetwork, problems: list[str]) -> NeuralNetwork:
+    """Read a network of the sizes of `like`; return that itself, and add to `problems`, if there is none."""
+    try:
+        network = NeuralNetwork.load(inside(folder, name))
+        if _sizes(network) == _sizes(like):
+            return network
+        problems.append(f"{name}: its sizes are not those of the agent's settings")
+    except ModelFormatError as error:
+        problems += [f"{name}: {problem}" for problem in error.problems]
+    except OSError as error:
+        problems.append(f"{name}: {error.strerror or error}")
+    return like
+
+
+def _sizes(network: NeuralNetwork) -> list[Any]:
+    """Return the dtype, layer types and shapes, which two networks must share to take each other's parameters."""
+    return [network.dtype, *((type(layer), dict(layer.shapes)) for layer in network.layers)]
+
+
+def _read_state(path: Path, optimizer: Optimizer, values: Floats) -> dict[str, Any]:
+    """Read the arrays of an optimizer of the parameters `values`; raises OSError, or ValueError for any others."""
+    remembers = optimizer.remembers
+
+    def expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+        steps = name == "steps" and shape == () and dtype.kind in "iu"
+        if not steps and not (
+            name in remembers and shape == values.shape and dtype.kind == "f" and dtype.itemsize <= 8
+        ):
+            raise ValueError(f"{name} is no state of {type(optimizer).__name__} of {len(values):,} parameters")
+
+    return read_arrays(path, len(remembers) * values.size * 8 + _SLACK, expect)

@@ -1,0 +1,110 @@
+"""Recent curves of a training run, as hints look at them."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Final
+
+import numpy as np
+
+from ai.agent.config import Config
+from ai.agent.schedule import learning_rate
+from ai.common.environment import Doubles
+from ai.training.history import REVERTED, History
+
+ENOUGH: Final = 150_000  # decisions after which the modern preset lands nearly always
+COLLAPSE: Final = 3  # times a hundred flights for which a share must have been there, and must have gone
+RATES: Final = ("learning_rate", "final_learning_rate")
+_FLIGHTS: Final = 1_000  # flights after which a run with few landers should have learned something
+# Rates above which no step is sensible, by the optimizer. Modern still learns at 0.03, not at 0.1; classic's values
+# have diverged at 0.1.
+_TOO_HIGH: Final = {"adam": 0.05, "momentum": 0.01, "sgd": 0.05}
+
+
+class RecentCurves:
+    """Recent curves of a run, with the questions about them that several rules ask.
+
+    Where known, `dead_share` is the share of hidden units that never come alive, and `clipped_share` that of the
+    gradients which were cut short.
+    """
+
+    def __init__(
+        self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
+    ) -> None:
+        self.history, self.config = history, config
+        self.dead_share, self.clipped_share = dead_share, clipped_share
+        self.count = len(history.points)
+
+    def last(self, name: str, points: int = 8) -> float:
+        """Median of a column over the last points that are finite; NaN without any."""
+        return median(self.history[name][-points:])
+
+    def is_late(self) -> bool:
+        """Whether a run should be landing by now."""
+        return self.last("decisions", 1) >= ENOUGH or self.last("episodes", 1) >= _FLIGHTS
+
+    def gained(self, name: str, share: float = 0.3) -> float:
+        """Return how much a column rose from the first to the second half of the last share of the run."""
+        decisions = self.history["decisions"]
+        first, middle = np.searchsorted(decisions, decisions[-1] * np.array([1.0 - share, 1.0 - share / 2]))
+        values = self.history[name]
+        return mean(values[middle:]) - mean(values[first:middle])
+
+    def by_hundreds(self) -> Doubles:
+        """Return the share that landed of each successive hundred flights of this stage: none counts twice."""
+        history = self.history
+        here = (history["stage"] == history["stage"][-1]) & np.isfinite(history["success"])
+        episodes, success = history["episodes"][here], history["success"][here]
+        if not len(episodes):
+            return np.empty(0)
+        ends = np.arange(episodes[-1], max(episodes[0], 100.0) - 1.0, -100.0)[::-1]
+        shares: Doubles = success[np.searchsorted(episodes, ends)]
+        return shares
+
+    def best(self) -> float:
+        """Return the largest share that landed, in this stage, over so many flights that it is not chance."""
+        shares = self.by_hundreds()
+        if len(shares) < COLLAPSE:
+            return 0.0
+        return float(np.lib.stride_tricks.sliding_window_view(shares, COLLAPSE).min(axis=1).max())
+
+    def damaged_at(self) -> int | None:
+        """Return when steps that were far too long began, in decisions; None if none since it last went back."""
+        config, began = self.config, None
+        changes = [each for each in self.history.setting_changes if each.name in (*RATES, REVERTED)]
+        since = self.history["decisions"][-1]
+        for each in [*reversed(changes), None]:
+            if rate_too_high(config, int(since)):
+                began = 0 if each is None else each.decisions
+            if each is None or each.name == REVERTED:
+                break
+            since = each.decisions
+            with suppress(ValueError):  # a file may say what no knob can be
+                config = config.changed(**{each.name: each.before})
+        return began
+
+    def best_moment(self) -> int | None:
+        """Return how many decisions the run had taken at its best checkpoint; None without any."""
+        checkpoints = self.history.checkpoints
+        return max(checkpoints, key=lambda each: each.success).decisions if checkpoints else None
+
+
+def rate_too_high(config: Config, decisions: int) -> bool:
+    """Whether the learning rate after so many decisions is one at which no step is sensible."""
+    return learning_rate(config, decisions) > _TOO_HIGH[config.optimizer]
+
+
+def _finite(values: Doubles) -> Doubles:
+    return values[np.isfinite(values)]
+
+
+def median(values: Doubles) -> float:
+    """Return the median of the finite values; NaN without any."""
+    values = _finite(values)
+    return float(np.median(values)) if len(values) else float("nan")
+
+
+def mean(values: Doubles) -> float:
+    """Return the mean of the finite values; NaN without any."""
+    values = _finite(values)
+    return float(values.mean()) if len(values) else float("nan")

@@ -1,0 +1,238 @@
+"""Rules of hints: conditions on the recent curves of a run, each with a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from ai.agent.config import Config
+from ai.lander.environment import LIMITS
+from ai.lander.rewards import FEET_STEPS_PAID, RewardWeights
+from ai.training.hints.curves import COLLAPSE, ENOUGH, RATES, RecentCurves, median, rate_too_high
+
+_FARTHEST: Final = 25.0  # metres from the pad, at the most
+_FASTEST: Final = 10.0  # m/s that a lander may gain or lose in a flight
+_FLIGHT: Final = 60.0 * LIMITS.time  # physics steps of the longest flight
+_FAR_SPAWNS: Final = ("random", "hard", "highest")  # of which none begins near the pad
+_SANE: Final = {"adam": (2e-3, 3e-4), "momentum": (1e-4, 1e-4), "sgd": (1e-3, 1e-3)}  # RATES, by the optimizer
+_TARGET_STEPS: Final = 8_000  # gradient steps after which a target should be nearly where the network is
+_PARTS: Final = ("distance", "speed", "alignment")  # of the reward, that say how close it is
+
+
+class HintRule(NamedTuple):
+    """Rule for one fault; `back_to` is the moment to go back to, in decisions."""
+
+    name: str
+    holds: Callable[[RecentCurves], bool]
+    remedy: Callable[[RecentCurves], Mapping[str, Any]] = lambda _: {}
+    back_to: Callable[[RecentCurves], int | None] = lambda _: None
+
+
+# Conditions
+
+
+def _damaged(run: RecentCurves) -> bool:
+    """Whether steps were far too long at some time, and the network still shows the damage."""
+    if run.damaged_at() is None or run.last("landed") > 0.5:
+        return False
+    return any(sign(run) for sign in (_loss_explodes, _q_runs_away, _dead_units, _collapsed, _crashes, _hovers))
+
+
+def _loss_explodes(run: RecentCurves) -> bool:
+    """Whether the loss is ten times what it was, or infinite; NaN means that it is not known."""
+    if np.isinf(run.history["loss"][-1]):
+        return True
+    before = median(run.history["loss"][-208:-8])
+    return run.count >= 60 and before > 0 and run.last("loss") > 10 * before
+
+
+def _q_runs_away(run: RecentCurves) -> bool:
+    """Whether the mean Q-value is beyond twice what a flight could earn or lose."""
+    if np.isinf(run.history["mean_q"][-1]):
+        return True
+    least, most = returns(run.config)
+    return run.last("mean_q") < 2 * least or run.last("mean_q") > 2 * most
+
+
+def _target_stands(run: RecentCurves) -> bool:
+    """Whether the target network lags far behind, and with it the targets, and the flights where it flies them."""
+    return run.config.target_update_interval / run.config.tau > _TARGET_STEPS
+
+
+def _short_sight(run: RecentCurves) -> bool:
+    """Whether the discount makes a reward a second later, after fifteen decisions, count for little."""
+    return run.is_late() and run.config.discount < 0.96 and run.last("landed") < 0.6
+
+
+def _no_guide(run: RecentCurves) -> bool:
+    """Whether no part of the reward tells a lander on its way that it comes closer."""
+    return (
+        run.is_late()
+        and run.last("landed") < 0.6
+        and not any(getattr(run.config.reward_weights, part) for part in _PARTS)
+    )
+
+
+def _dead_units(run: RecentCurves) -> bool:
+    """Whether more than half of the units give 0 for every input: then they can no longer learn."""
+    return run.config.activation == "relu" and (run.dead_share or 0.0) > 0.5
+
+
+def _collapsed(run: RecentCurves) -> bool:
+    best = run.best()
+    return best >= 0.6 and bool(run.by_hundreds()[-COLLAPSE:].max() <= best - 0.4)
+
+
+def _crashes(run: RecentCurves) -> bool:
+    return run.is_late() and run.last("crashed") + run.last("out_of_bounds") >= 0.85 and run.last("landed") <= 0.1
+
+
+def _hovers(run: RecentCurves) -> bool:
+    return run.is_late() and run.last("timed_out") >= 0.5 and run.last("landed") <= 0.3
+
+
+def _plateau(run: RecentCurves) -> bool:
+    late = run.is_late() and run.last("decisions", 1) >= 1.5 * ENOUGH
+    return late and 0.05 < run.last("success") < 0.85 and abs(run.gained("success")) < 0.04
+
+
+def _overfed(run: RecentCurves) -> bool:
+    """Whether each memory is learned from some hundred times: 64 times by `classic`, 8 times by `modern`."""
+    config = run.config
+    return config.gradient_steps * config.batch_size > 500 * config.num_envs
+
+
+def _clipped(run: RecentCurves) -> bool:
+    """Whether most gradients are clipped to one length: then the size of an error no longer counts."""
+    return (run.clipped_share or 0.0) > 0.6
+
+
+def returns(config: Config) -> tuple[float, float]:
+    """Return the least and the most that a flight could earn, as the network sees it."""
+    weights = config.reward_weights
+    shaped = 10 * weights.distance * _FARTHEST + 10 * weights.speed * _FASTEST + weights.alignment
+    steady = weights.tilt + weights.engine + weights.switch + weights.time  # at every physics step
+    lost = min(0.0, steady) * _FLIGHT - abs(shaped) - abs(weights.terminal)
+    won = max(0.0, steady) * _FLIGHT + abs(shaped) + abs(weights.terminal) + abs(weights.feet) * FEET_STEPS_PAID
+    return config.reward_scale * lost, config.reward_scale * won
+
+
+# Remedies
+
+
+def _sane_rates(run: RecentCurves) -> Mapping[str, Any]:
+    sane = zip(RATES, _SANE[run.config.optimizer], strict=True)
+    return {name: rate for name, rate in sane if getattr(run.config, name) > 10 * rate}
+
+
+def _before_damage(run: RecentCurves) -> int | None:
+    checkpoint = run.history.checkpoint_at(run.damaged_at() or 0)
+    return checkpoint.decisions if checkpoint else None
+
+
+def _slower(factor: float) -> Callable[[RecentCurves], Mapping[str, Any]]:
+    """Lower the learning rate, and what it falls to if that is higher."""
+
+    def remedy(run: RecentCurves) -> Mapping[str, Any]:
+        rate = max(1e-5, float(f"{run.config.learning_rate / factor:.1g}"))
+        lower = {"learning_rate": rate}
+        return lower | {"final_learning_rate": rate} if run.config.final_learning_rate > rate else lower
+
+    return remedy
+
+
+def _calm_q(run: RecentCurves) -> Mapping[str, Any]:
+    if not run.config.double:
+        return {"double": True}
+    if run.config.tau > 0.05 and run.config.target_update_interval < 50:
+        return {"tau": 0.005}
+    return _slower(10)(run)
+
+
+def _for_crashes(run: RecentCurves) -> Mapping[str, Any]:
+    config = run.config
+    if config.optimizer == "sgd" and config.learning_rate < 0.02:
+        return {"optimizer": "adam"}
+    return {}
+
+
+def _for_short_sight(config: Config) -> Mapping[str, Any]:
+    return {"discount": 0.985} if config.discount < 0.96 else {}
+
+
+def _for_hovering(run: RecentCurves) -> Mapping[str, Any]:
+    config, paid = run.config, RewardWeights()
+    if config.epsilon_end < 0.02:
+        return {"epsilon_end": 0.05}
+    if config.random_main > 0.4:
+        return {"random_main": 0.3}
+    if config.spawn in _FAR_SPAWNS:
+        return {"spawn": "practice"}
+    if config.reward_weights.time > paid.time:
+        return {"reward_weights.time": paid.time}
+    return _for_short_sight(config) or {"reward_weights.time": round(1.5 * config.reward_weights.time, 3)}
+
+
+def _usual_guide(_: RecentCurves) -> Mapping[str, Any]:
+    return {f"reward_weights.{part}": getattr(RewardWeights(), part) for part in _PARTS}
+
+
+def _for_plateau(run: RecentCurves) -> Mapping[str, Any]:
+    config = run.config
+    if config.n_step < 3:
+        return {"n_step": 10}
+    return _for_short_sight(config) or (_slower(3)(run) if config.learning_rate > 1e-4 else {})
+
+
+def _less_random(run: RecentCurves) -> Mapping[str, Any]:
+    config = run.config
+    if config.epsilon_end > 0.2:
+        return {"epsilon_end": 0.05}
+    if config.epsilon_decay == 1.0 and not config.epsilon_decisions:
+        return {"epsilon_decisions": 40_000}
+    return {"epsilon_decisions": 40_000} if config.epsilon_decisions else {"epsilon_decay": 0.995}
+
+
+def _more_memory(run: RecentCurves) -> Mapping[str, Any]:
+    return {"replay_size": max(10_000, 100 * run.config.batch_size)}
+
+
+def _nearer_target(run: RecentCurves) -> Mapping[str, Any]:
+    return {"target_update_interval": 50} if run.config.tau > 0.5 else {"target_update_interval": 1, "tau": 0.005}
+
+
+def _fewer_steps(run: RecentCurves) -> Mapping[str, Any]:
+    """Take fewer steps where there are many, or let more landers feed them."""
+    config = run.config
+    enough = 500 * config.num_envs // config.batch_size
+    return {"gradient_steps": enough} if config.gradient_steps > 12 and enough else {"num_envs": 256}
+
+
+def _longer(run: RecentCurves) -> Mapping[str, Any]:
+    """Let gradients be longer; where they already may be, let the steps be shorter."""
+    clip = run.config.gradient_clip
+    return {"gradient_clip": 10.0} if clip < 10.0 else _slower(3)(run)
+
+
+# The most severe first.
+RULES: Final = (
+    HintRule("rate_too_high", lambda run: rate_too_high(run.config, int(run.last("decisions", 1))), _sane_rates,
+         _before_damage),
+    HintRule("damaged", _damaged, back_to=_before_damage),
+    HintRule("loss_explodes", _loss_explodes, _slower(10)),
+    HintRule("q_runs_away", _q_runs_away, _calm_q),
+    HintRule("dead_units", _dead_units, lambda _: {"activation": "leaky_relu"}),
+    HintRule("collapsed", _collapsed, _slower(3), RecentCurves.best_moment),
+    HintRule("target_stands", _target_stands, _nearer_target),
+    HintRule("short_sight", _short_sight, lambda _: {"discount": 0.985}),
+    HintRule("no_guide", _no_guide, _usual_guide),
+    HintRule("crashes", _crashes, _for_crashes),
+    HintRule("hovers", _hovers, _for_hovering),
+    HintRule("small_memory", lambda run: run.config.replay_size < 8 * run.config.batch_size, _more_memory),
+    HintRule("overfed", _overfed, _fewer_steps),
+    HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
+    HintRule("clipped", _clipped, _longer),
+    HintRule("plateau", _plateau, _for_plateau),
+)  # fmt: skip

@@ -1,0 +1,65 @@
+"""Validation of a live run's network, a few decisions at a time, so that the landers never stand still for it."""
+
+from __future__ import annotations
+
+from itertools import repeat
+
+from ai.training.history import Validation
+from ai.training.lander_task import Evaluation, trial
+from ai.training.loop import Training, passed
+from ai.training.task import VALIDATION_SEED
+
+
+class ValidationFlights:
+    """Validation flights of a run's network as it is when they are due; the best network is kept in the Training.
+
+    The flights are those of `Training.evaluate`, of the same networks at the same moments.
+    """
+
+    def __init__(self, training: Training) -> None:
+        self._training = training
+        self._trial: _Trial | None = None
+
+    def go_on(self, before: int, decisions: int) -> Validation | None:
+        """Fly a little; return the result once there is one.
+
+        `before` are the decisions that the run had taken before its last one, `decisions` how many to take here.
+        """
+        finished = None
+        if passed(before, self._training.agent.decisions, self._training.task.evaluate_every):
+            finished = self.finish()
+            self._trial = _Trial(self._training)
+        elif self._trial is not None and self._trial.go_on(decisions):
+            finished = self.finish()
+        return finished
+
+    def finish(self) -> Validation | None:
+        """Fly all that is left of a trial; return its result, or None if there is none going on."""
+        if self._trial is None:
+            return None
+        trial, self._trial = self._trial, None
+        trial.go_on()
+        assert trial.score is not None
+        best = self._training.keep_if_best(trial.score, trial.agent)
+        return Validation(trial.agent.decisions, trial.score.success, trial.score.mean_return, best)
+
+
+class _Trial:
+    """Flights of a network as it is at the start."""
+
+    def __init__(self, training: Training) -> None:
+        assert training.validation_episodes is not None
+        self.agent = training.last_agent()
+        self.score: Evaluation | None = None
+        self._flights = trial(self.agent, training.validation_episodes, VALIDATION_SEED, "random",
+                              training.config.frame_skip)  # fmt: skip
+
+    def go_on(self, decisions: int | None = None) -> bool:
+        """Take so many decisions, or all that are left; return whether the trial is done."""
+        if self.score is None:  # flights that are over would have no score a second time
+            try:
+                for _ in range(decisions) if decisions else repeat(None):
+                    next(self._flights)
+            except StopIteration as done:
+                self.score = done.value
+        return self.score is not None

@@ -1,0 +1,132 @@
+"""Training of a digit network: a run, its settings, and what it saves."""
+
+import json
+
+import numpy as np
+import pytest
+
+from ai.digits.checkpoints import resume_digit_run, save_digit_run
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
+from ai.digits.mnist import load_part
+from ai.digits.training import LIVE, DigitTraining, run_digits
+from ai.nn import ModelFormatError
+
+SMALL = DIGIT_PRESETS["classic"].changed(hidden=(16,), epochs=3, held_out=100, batch_size=50, ema_decay=0.9)
+
+
+@pytest.fixture(scope="module")
+def data():
+    """600 images: enough to see a network learn."""
+    images, labels = load_part("test")
+    return images[:600], labels[:600]
+
+
+def test_a_run_learns_and_tells_how_it_stands(data):
+    progress = list(run_digits(SMALL, seed=1, data=data))
+    assert [one.step for one in progress] == list(range(1, 31))
+    assert progress[-1].epoch == 3
+    assert progress[-1].steps == 30
+    assert [one.step for one in progress if one.held_out is not None] == [10, 20, 30]
+    assert np.mean([one.loss for one in progress[-5:]]) < 0.9 * np.mean([one.loss for one in progress[:5]])
+    assert progress[-1].best == max(one.held_out for one in progress if one.held_out is not None)
+    assert progress[0].learning_rate < progress[8].learning_rate > progress[-1].learning_rate
+
+
+def test_the_same_seed_gives_the_same_network(data):
+    def values(seed):
+        training = DigitTraining(SMALL, seed, data)
+        for _ in range(5):
+            training.advance()
+        return training.classifier.network.values
+
+    np.testing.assert_array_equal(values(2), values(2))
+    assert not np.array_equal(values(2), values(3))
+
+
+def test_live_knobs_can_be_sent_and_the_others_stay(data):
+    run = run_digits(SMALL, data=data)
+    next(run)
+    assert run.send(SMALL.changed(learning_rate=1e-5, final_learning_rate=1e-6, hidden=(3,))).learning_rate <= 1e-5
+    assert {"learning_rate", "augmentation"} <= set(LIVE)
+    assert "hidden" not in LIVE
+
+
+def test_held_out_images_are_never_learnt_from(data):
+    training = DigitTraining(SMALL, data=data)
+    assert len(training.images) == 500
+    learnt = {image.tobytes() for image in training.images}
+    assert not [image for image in training.held_images if image.tobytes() in learnt]
+    with pytest.raises(ValueError, match="leaves none"):
+        DigitTraining(SMALL.changed(held_out=600), data=data)
+
+
+def test_a_resumed_run_goes_on_as_if_it_had_never_stopped(data, tmp_path):
+    config = SMALL.changed(dropout=0.3)
+    whole, first = DigitTraining(config, 5, data), DigitTraining(config, 5, data)
+    for _ in range(13):
+        first.advance()
+    save_digit_run(first, tmp_path / "run")
+    second = resume_digit_run(tmp_path / "run", data=data)
+    for training in (whole, second):
+        while not training.done:
+            training.advance()
+    np.testing.assert_array_equal(whole.classifier.network.values, second.classifier.network.values)
+    np.testing.assert_allclose(whole.average, second.average, atol=1e-7)
+    assert whole.best == second.best
+
+
+def test_a_run_that_cannot_go_on_says_so(data, tmp_path):
+    training = DigitTraining(SMALL, data=data)
+    training.advance()
+    save_digit_run(training, tmp_path / "run")
+    (tmp_path / "run" / "last.npz").write_bytes(b"nothing")
+    with pytest.raises(ModelFormatError, match=r"last\.npz"):
+        resume_digit_run(tmp_path / "run", data=data)
+    (tmp_path / "run" / "training.json").write_text("{}")
+    with pytest.raises(ModelFormatError, match=r"training\.json"):
+        resume_digit_run(tmp_path / "run", data=data)
+
+
+def test_a_gradient_that_is_not_finite_ends_the_run(data):
+    training = DigitTraining(SMALL, data=data)
+    training.classifier.network.values[:] = np.nan
+    with pytest.raises(
+        FloatingPointError, match="the cost was not finite at learning step 1; most likely the learning rate"
+    ):
+        training.advance()
+
+
+@pytest.mark.parametrize("preset", DIGIT_PRESETS)
+def test_presets_build_networks_of_ten_outputs(preset):
+    network = build_digit_network(DIGIT_PRESETS[preset], np.random.default_rng(0))
+    assert DigitClassifier(network).predict(np.zeros((2, 28, 28))).shape == (2, 10)
+
+
+def test_classic_is_the_network_as_first_described():
+    network = build_digit_network(DIGIT_PRESETS["classic"], np.random.default_rng(0))
+    assert [layer.outputs for layer in network.layers if layer.outputs] == [100, 50, 10]
+    assert [layer.activation.name for layer in network.layers if hasattr(layer, "activation")] == ["tanh"] * 3
+    assert network.cost.name == "mse"
+
+
+def test_settings_are_checked_and_survive_json():
+    assert DigitConfig.from_json(json.loads(json.dumps(SMALL.to_json()))) == SMALL
+    for wrong in ({"dropout": 1.5}, {"cost": "guess"}, {"epochs": 1.5}, {"hidden": [0]}, {"warp": 9}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            DigitConfig.from_json(wrong)
+    for item in DigitConfig.__dataclass_fields__.values():
+        assert item.metadata["help"].endswith(".")
+        assert item.metadata["group"] in ("learning", "network", "images")
+
+
+@pytest.mark.parametrize("few_values", [{"batch_size": 5000}, {"batch_size": 100, "filters": (256,), "kernel": 1}])
+def test_a_batch_cannot_ask_for_more_memory_than_there_is(few_values):
+    with pytest.raises(ValueError, match="batch_size is at most"):
+        DigitConfig(**few_values)
+    DIGIT_PRESETS["classic"].changed(batch_size=5000)
+
+
+def test_windows_that_do_not_fit_are_refused_before_there_is_a_run():
+    with pytest.raises(ValueError, match="a kernel of 9 does not fit"):
+        DigitConfig(filters=(16, 16, 16), kernel=9)

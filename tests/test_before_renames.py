@@ -1,0 +1,119 @@
+"""A run, a model, a digit run and a flight from before settings were renamed: they load unchanged, for ever."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ai.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.digits.checkpoints import resume_digit_run
+from ai.digits.config import DigitConfig
+from ai.training.checkpoints import resume_run
+from ai.training.history import History
+from ai.training.session import ChangeSetting, SettingChange, live
+from game.flight import flight_file
+from game.flight.replay import FlightReplay
+
+DATA = Path(__file__).parent / "data" / "before_renames"
+EXPECTED = json.loads((DATA / "expected.json").read_text(encoding="utf-8"))
+OBSERVATIONS = np.array(EXPECTED["observations"], np.float32)
+RENAMED = {
+    "horizon": "schedule_decisions", "updates": "gradient_steps", "target_rate": "tau",
+    "target_every": "target_update_interval", "warm_up": "learning_starts", "care": "final_touchdown_limits",
+    "weights": "reward_weights",
+}  # fmt: skip
+RENAMED_DIGITS = {
+    "warm_up": "warm_up_epochs", "smoothing": "label_smoothing", "averaging": "ema_decay", "original": "unaugmented",
+}  # fmt: skip
+
+
+def assert_same_settings(config, expected, renamed):
+    """The settings have the values of then, under the names of now, and are written under those alone."""
+    written = json.loads(json.dumps(config.to_json()))
+    assert written == {renamed.get(name, name): value for name, value in expected.items()}
+    assert written != expected
+
+
+def assert_same_values(values, expected):
+    """The network computes the same, but for rounding that differs from one processor to another."""
+    np.testing.assert_allclose(values, np.array(expected), rtol=1e-5, atol=1e-7)
+
+
+def test_a_model_loads_with_the_same_settings_and_values():
+    agent, expected = DeepQAgent.load(DATA / "model"), EXPECTED["model"]
+    assert_same_settings(agent.config, expected["config"], RENAMED)
+    assert_same_values(agent.q_values(OBSERVATIONS), expected["values"])
+    assert agent.decisions == expected["decisions"]
+
+
+def test_a_run_resumes_with_the_same_settings_networks_and_counts():
+    training, expected = resume_run(DATA / "run"), EXPECTED["run"]
+    assert_same_settings(training.config, expected["config"], RENAMED)
+    agent = training.agent
+    assert_same_values(agent.q_values(OBSERVATIONS), expected["values"])
+    assert_same_values(DeepQAgent.load(DATA / "run").q_values(OBSERVATIONS), expected["best"])
+    assert (agent.decisions, agent.train_count) == (expected["decisions"], expected["train_count"])
+    assert (training.episodes, training.seconds) == (expected["episodes"], expected["seconds"])
+
+
+def test_a_history_shows_the_same_marks_by_the_words_of_now():
+    history, expected = History.read(DATA / "run"), EXPECTED["run"]
+    assert len(history) == expected["points"]
+    assert history.points[-1].tolist() == expected["last_point"]
+    assert [each.decisions for each in history.checkpoints] == expected["checkpoints"]
+    names = ["gradient_steps", "target_update_interval", "tau", "reward_weights.time"]
+    assert [vars(mark) for mark in history.setting_changes] == [
+        {**then, "name": name} for then, name in zip(expected["alterations"], names, strict=True)
+    ]
+
+
+def test_a_run_of_then_goes_on_and_is_saved_under_the_names_of_now(tmp_path):
+    shutil.copytree(DATA / "run", tmp_path / "run")
+    run = live(Config(), keep=tmp_path / "kept", resume=tmp_path / "run")
+    for _ in range(3):
+        next(run)
+    assert run.send(ChangeSetting("updates", 7))[0] == SettingChange(1002, "gradient_steps", 3, 7)
+    assert run.send(ChangeSetting("weights.time", -0.5))[0] == SettingChange(1002, "reward_weights.time", -0.2, -0.5)
+    run.close()
+    saved = json.loads((tmp_path / "kept" / "last" / "config.json").read_text(encoding="utf-8"))["config"]
+    assert (saved["gradient_steps"], saved["reward_weights"]["time"]) == (7, -0.5)
+    assert not saved.keys() & RENAMED.keys()
+    marks = [mark.name for mark in History.read(tmp_path / "kept").setting_changes]
+    assert marks == [
+        "gradient_steps", "target_update_interval", "tau", "reward_weights.time", "gradient_steps",
+        "reward_weights.time",
+    ]  # fmt: skip
+
+
+def test_a_digit_run_resumes_with_the_same_settings_and_network():
+    rng, expected = np.random.default_rng(EXPECTED["digit_run"]["data_seed"]), EXPECTED["digit_run"]
+    images, labels = rng.random((40, 28, 28), dtype=np.float32), rng.integers(0, 10, 40)
+    training = resume_digit_run(DATA / "digit_run", data=(images, labels))
+    assert_same_settings(training.config, expected["config"], RENAMED_DIGITS)
+    assert training.step == expected["step"]
+    assert_same_values(training.best_classifier().predict(images[:3]), expected["values"])
+    training.advance()
+
+
+def test_a_flight_replays_to_the_pose_it_ended_in():
+    record = flight_file.read(DATA / "flight.json")
+    replay = FlightReplay(record)
+    replay.scout(replay.length)
+    replay.seek(replay.length)
+    assert replay.at == replay.length == 698
+    assert replay.faithful
+    assert record.entry.landed
+
+
+def test_a_setting_under_both_its_names_is_refused():
+    with pytest.raises(ValueError, match="former name: updates"):
+        Config.from_json({"updates": 3, "gradient_steps": 4})
+
+
+@pytest.mark.parametrize(("kind", "renamed"), [(Config, RENAMED), (DigitConfig, RENAMED_DIGITS)])
+def test_every_former_name_leads_to_one_setting_of_now(kind, renamed):
+    assert {former: kind.name_now(former) for former in renamed} == renamed
+    assert [name for name in kind().to_json() if kind.name_now(name) != name] == []
