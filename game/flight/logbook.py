@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.nn.files import parse_json, read_end
+from ai.nn.schema import read_as
 from game.core import texts
 from game.core.collection import Collection, LibraryError, free_path
 from game.flight import flight_file
@@ -96,8 +97,8 @@ class Records:
             return []
         for line in text.splitlines():
             try:
-                found.append(Entry(**parse_json(line)))
-            except (ValueError, TypeError):
+                found.append(read_as(Entry, parse_json(line), strict=True))
+            except ValueError:
                 damaged += bool(line.strip())
         if damaged:
             self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self.logbook)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-from ai.digits.checkpoints import TRAINING_FILE
+from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.classifier import DIGITS_FILE, NETWORK
-from ai.nn.files import read_json
 from game.core import texts
 from game.core.collection import claims
 
@@ -43,12 +42,13 @@ class SavedDigitModel:
     @property
     def said(self) -> str:
         """Text on its accuracy, from its small file; empty if unknown."""
-        described: dict[str, Any] = {}
-        with suppress(OSError, ValueError, TypeError):
-            described |= read_json(self.folder / TRAINING_FILE)
-        for key, words in (("test", texts.SHELF_TESTED), ("held_out", texts.SHELF_HELD_OUT)):
-            with suppress(KeyError, TypeError, ValueError, ArithmeticError):
-                return words.format(part=float(described[key]))
+        try:
+            summary = read_summary(self.folder)
+        except (OSError, ValueError):
+            return ""
+        for part, words in ((summary.test, texts.SHELF_TESTED), (summary.held_out, texts.SHELF_HELD_OUT)):
+            if part is not None:
+                return words.format(part=part)
         return ""
 
 

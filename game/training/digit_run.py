@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from ai.digits.checkpoints import LAST_FILE, TRAINING_FILE
+from ai.digits.checkpoints import LAST_FILE, read_summary
 from ai.digits.config import DigitConfig
 from ai.digits.session import (
     Confusion,
@@ -20,7 +20,7 @@ from ai.digits.session import (
     RestoreBest,
     live_digits,
 )
-from ai.nn.files import brief, read_json
+from ai.nn.files import brief
 from ai.nn.folder import CONFIG
 from ai.training.history import REVERTED, TURNING_SECONDS
 from ai.training.messages import Refused, Save
@@ -133,11 +133,11 @@ class DigitRun(TrainingRun):
         preset, seconds, part = "", self.curves.seconds, scores[-1].accuracy if scores else None
         if self.alive:
             return preset, seconds, part
-        with suppress(OSError, ValueError, KeyError, TypeError):
-            said = read_json(self.unsaved / TRAINING_FILE)
-            preset, seconds = brief(said["preset"], LONGEST_NAME), float(said["seconds"])
-            known = said.get("test", said["held_out"])
-            part = part if known is None else float(known)
+        with suppress(OSError, ValueError):
+            summary = read_summary(self.unsaved)
+            preset, seconds = brief(summary.preset, LONGEST_NAME), summary.seconds
+            known = summary.held_out if summary.test is None else summary.test
+            part = part if known is None else known
         return preset, seconds, part
 
     def begin(self, config: DigitConfig, seed: int, *, resume: bool = False, name: str = "") -> str:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from ai.agent.agent import LAST
 from ai.agent.config import LANDER
-from ai.nn.files import brief, count_of, inside, number_of, read_json
+from ai.nn.files import brief, inside, read_json
+from ai.nn.schema import Share, Within, read_as
 from ai.training.checkpoints import TRAINING_FILE
 from game.core import texts
 from game.core.collection import LONGEST_NAME, Collection, LibraryError, claims, leads_nowhere, reason, there, told
@@ -50,6 +51,28 @@ class SavedRun:
     problem: str = ""
 
 
+@dataclass(frozen=True)
+class _Environment:
+    env: str
+
+
+@dataclass(frozen=True)
+class _Best:
+    success: Share | None
+
+
+@dataclass(frozen=True)
+class _TrainingFile:
+    """Training file of a run, as far as the list of runs shows it."""
+
+    preset: str
+    changes: dict[str, Any]
+    seed: Annotated[int, Within(0, _MOST_SEED)]
+    decisions: Annotated[int, Within(0, _MOST)]
+    seconds: Annotated[float, Within(0, _MOST)]
+    best: _Best | None  # None for a young run, which has not been validated yet
+
+
 def read_run(folder: Path, name: str = "") -> SavedRun:
     """Return the summary of a run from its small file. Never raises: `problem` says what is wrong."""
     name = name or folder.name
@@ -66,30 +89,20 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
         described = read_json(inside(folder, TRAINING_FILE))
-        if described["env"] != LANDER:
-            problem = texts.RUN_ELSEWHERE.format(env=brief(described["env"], LONGEST_NAME))
+        if (env := read_as(_Environment, described).env) != LANDER:
+            problem = texts.RUN_ELSEWHERE.format(env=brief(env, LONGEST_NAME))
             return SavedRun(name, folder, saved, problem=problem)
-        last = (folder / LAST).is_dir()
-        return SavedRun(name, folder, saved, flyable=True, resumable=last, **_figures(described))
+        told = read_as(_TrainingFile, described)
+        return SavedRun(
+            name, folder, saved, brief(told.preset, LONGEST_NAME), len(told.changes), told.seed,
+            told.decisions, told.seconds, told.best.success if told.best else None,
+            flyable=True, resumable=(folder / LAST).is_dir(),
+        )  # fmt: skip
     except OSError as error:
         problem = brief(reason(error))
-    except (ValueError, KeyError, TypeError, ArithmeticError, RecursionError):
+    except ValueError:
         problem = texts.RUN_UNREADABLE.format(file=TRAINING_FILE)
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
-
-
-def _figures(described: dict[str, Any]) -> dict[str, Any]:
-    """Return the figures of a summary; raises ValueError, among others, for figures that no run can have."""
-    best = described["best"]  # a young run has not been validated yet
-    success = None if not best or best["success"] is None else float(number_of(best["success"]))
-    seed, decisions = count_of(described["seed"], most=_MOST_SEED), count_of(described["decisions"], most=_MOST)
-    seconds = float(number_of(described["seconds"], 0))
-    if not (seconds < _MOST and 0 <= (success or 0) <= 1):
-        raise ValueError("a figure that no run comes to")
-    return {
-        "preset": brief(described["preset"], LONGEST_NAME), "changes": len(described["changes"]), "seed": seed,
-        "decisions": decisions, "seconds": seconds, "success": success,
-    }  # fmt: skip
 
 
 class Library(Collection):

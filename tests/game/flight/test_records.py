@@ -1,6 +1,6 @@
 import json
 import os
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
+from ai.nn.schema import read_as
 from game.core import texts
 from game.flight import flight_file
 from game.flight import logbook as records
@@ -166,7 +167,7 @@ def test_damaged_lines_of_the_logbook_are_counted_and_the_rest_is_read(kept: Rec
 
 def test_a_line_cannot_lead_out_of_the_folder():
     with pytest.raises(ValueError, match="plain name"):
-        entry(file="../settings.json")
+        read_as(Entry, asdict(entry(file="../settings.json")))
 
 
 def test_without_a_disk_the_flight_is_lost_and_the_game_goes_on(tmp_path: Path):
