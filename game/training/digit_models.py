@@ -10,7 +10,7 @@ from typing import Final
 from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.classifier import DIGITS_FILE, NETWORK
 from game.core import texts
-from game.core.collection import claims
+from game.core.collection import Collection, ItemKind
 
 NAMES: Final = ("modern", "classic")  # names of the shipped networks
 PATIENCE: Final = 120.0  # seconds for a worker's turn: reading all test images takes long on a busy machine
@@ -52,6 +52,17 @@ class SavedDigitModel:
         return ""
 
 
+def _read_model(folder: Path, name: str) -> SavedDigitModel:  # noqa: ARG001 - a kind of item is given its name too
+    return SavedDigitModel(folder, folder / FIXES)
+
+
+class DigitModels(Collection[SavedDigitModel]):
+    """Collection of a player's own digit networks in `folder`."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder, ItemKind(PARTS, _read_model, texts.RUN_UNNAMED))
+
+
 def runs_dir(user_dir: Path) -> Path:
     """Return the folder of the player's runs."""
     return user_dir / FOLDER / RUNS
@@ -63,13 +74,9 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, SavedDigitModel]:
     A player's network with the name of a shipped one gets a distinct name, and is not left out.
     """
     found = {name: SavedDigitModel(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
-    with suppress(OSError):
-        for path in sorted(runs_dir(user_dir).iterdir(), key=lambda path: path.name.casefold()):
-            if claims(path, PARTS):
-                taken = path.name.casefold() in NAMES
-                found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = SavedDigitModel(
-                    path, path / FIXES
-                )
+    for model in DigitModels(runs_dir(user_dir)).items():
+        name = model.folder.name
+        found[texts.NETWORK_YOURS.format(name=name) if name.casefold() in NAMES else name] = model
     return found
 
 

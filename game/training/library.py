@@ -13,7 +13,8 @@ from ai.nn.files import brief, inside, read_json
 from ai.nn.schema import Share, Within, read_as
 from ai.training.checkpoints import TRAINING_FILE
 from game.core import texts
-from game.core.collection import LONGEST_NAME, Collection, LibraryError, claims, leads_nowhere, reason, there, told
+from game.core.collection import LONGEST_NAME, Collection, ItemKind, leads_nowhere, there
+from game.core.names import reason
 from game.flight.networks import PARTS, PLAYERS
 
 _CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of these is a run, complete or not
@@ -105,64 +106,15 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
-class Library(Collection):
-    """Library of runs in a player's folder. A method that fails raises LibraryError and changes nothing.
+RUNS: Final = ItemKind(_CLAIMS, read_run, texts.RUN_RESCUED)
 
-    Attributes:
-        problem: why `runs` could not read the folder; empty if it could.
 
-    """
+class Library(Collection[SavedRun]):
+    """Library of runs in a player's folder."""
 
     def __init__(self, user_dir: Path) -> None:
-        super().__init__(user_dir / PLAYERS, _CLAIMS)
-        self.problem = ""
+        super().__init__(user_dir / PLAYERS, RUNS)
 
     def runs(self) -> list[SavedRun]:
         """Return the summary of every run, the latest first, damaged ones too."""
-        self.problem = ""
-        try:
-            self.recover()
-            found = [read_run(path) for path in self.folder.iterdir() if claims(path, self.parts)]
-        except FileNotFoundError:
-            return []
-        except OSError as error:
-            self.problem = texts.LIBRARY_UNREADABLE.format(folder=self.folder, reason=reason(error))
-            return []
-        return sorted(found, key=lambda run: (-run.saved, run.name))
-
-    def delete(self, name: str) -> None:
-        """Delete a run; `undo_delete` restores it."""
-        self.throw_away(self.existing(name), name)
-
-    def import_folder(self, path: Path) -> Path:
-        """Copy a run into the library, numbered if its name is taken; return the path of the copy.
-
-        A file of the run may be given in place of its folder.
-        """
-        with told(texts.LIBRARY_NOT_IMPORTED, brief(path.name, LONGEST_NAME)):
-            folder = path if path.is_dir() else path.parent
-            if not any(there(folder / part) for part in self.parts):
-                raise LibraryError(texts.LIBRARY_NO_RUN.format(name=folder.name))
-        return super().import_folder(folder)
-
-    # The unnamed run
-
-    def claim(self) -> SavedRun | None:
-        """Lock `unsaved` against other games until `release`; return the summary of the run in it, if any."""
-        self.hold()
-        return self.rescued()
-
-    def rescued(self) -> SavedRun | None:
-        """Return the summary of the unnamed run with a suggested name, if any. Call before a training begins."""
-        if not self.left_behind:
-            return None
-        return read_run(self.unsaved, self.free_name(texts.RUN_RESCUED))
-
-    def keep_rescued(self, name: str) -> SavedRun:
-        """Name the unnamed run; return its summary."""
-        return read_run(self.name(self.unsaved, name))
-
-    def discard_rescued(self) -> None:
-        """Delete the unnamed run, if any; `undo_delete` restores it."""
-        if rescued := self.rescued():
-            self.throw_away(self.unsaved, rescued.name)
+        return sorted(self.items(), key=lambda run: (-run.saved, run.name))

@@ -76,7 +76,7 @@ def test_one_message_names_everything_that_is_wrong_and_is_short_all_the_same():
         "name is missing", "wheels[0].radius", "wheels[0].spokes", "wheels[1]", "locked",
     ]  # fmt: skip
     assert len(str(caught.value)) < 300
-    with pytest.raises(SchemaError, match="and more$") as caught:
+    with pytest.raises(SchemaError, match="; and more") as caught:
         read_as(Cart, WHOLE | {"wheels": ["x"] * 500})
     assert len(str(caught.value)) < 2000
 

@@ -230,7 +230,8 @@ def test_a_flight_can_be_thrown_away_and_brought_back_and_its_line_stays(kept: R
 
 
 def test_the_latest_that_were_thrown_away_can_be_brought_back(kept: Records, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(kept._files, "_most_thrown", 3)
+    monkeypatch.setattr(records, "_MOST_THROWN", 3)
+    kept = Records(kept.folder.parent)
     flight = fly()
     lines = [kept.keep(flight, NOON + second) for second in range(5)]
     for line in lines:
