@@ -16,7 +16,7 @@ from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
 from ai.agent.schedule import importance, learning_rate
 from ai.common.decision import Decision, decide
-from ai.common.environment import Bools, Floats, Ints, StepResult
+from ai.common.environment import Bools, Doubles, Floats, Ints, StepResult
 from ai.nn import (
     OPTIMIZERS,
     ActivationLayer,
@@ -88,7 +88,7 @@ class DeepQAgent:
         rng: np.random.Generator | None = None,
         *,
         symmetry: Symmetry | None = None,
-        action_chances: Floats | None = None,
+        action_chances: Doubles | None = None,
     ) -> None:
         self.num_features, self.num_actions = num_features, num_actions
         self.config = config or Config()
@@ -141,7 +141,7 @@ class DeepQAgent:
         values = self.q_values(observation)
         return decide(observation, values, held, steadiness=config.steadiness, reward_scale=config.reward_scale)
 
-    def act(self, observation: Floats, epsilon: float | Floats = 0.0, held: Ints | None = None) -> Ints:
+    def act(self, observation: Floats, epsilon: float | Doubles = 0.0, held: Ints | None = None) -> Ints:
         """Return ε-greedy actions (n,) for observations (n, features): random with chance `epsilon`, else by `decide`.
 
         `epsilon` is one number, or (n,) to let some slots explore more than others.
