@@ -48,7 +48,7 @@ from ai.agent.schedule import importance, learning_rate
 from ai.agent.storage import SavedAgent, read_agent, save_agent
 from ai.agent.symmetry import Symmetry
 from ai.common.decision import Decision, decide
-from ai.common.environment import Bools, Env, Floats, Ints, StepResult
+from ai.common.environment import Bools, Doubles, Env, Floats, Ints, StepResult
 from ai.nn import NeuralNetwork
 from ai.nn.optimizers import Optimizer
 
@@ -77,7 +77,7 @@ class DeepQAgent:
         rng: np.random.Generator | None = None,
         *,
         symmetry: Symmetry | None = None,
-        action_chances: Floats | None = None,
+        action_chances: Doubles | None = None,
         replay: ReplayBuffer | None = None,
         optimizer: Optimizer | None = None,
     ) -> None:
@@ -98,7 +98,9 @@ class DeepQAgent:
 
     # One decision of training, in the order in which it happens
 
-    def train_step(self, env: Env, observation: Floats, epsilon: float | Floats, held: Ints) -> tuple[Ints, StepResult]:
+    def train_step(
+        self, env: Env, observation: Floats, epsilon: float | Doubles, held: Ints
+    ) -> tuple[Ints, StepResult]:
         """Take one decision in all n slots of an environment, and learn; return the actions (n,) and their result.
 
         `observation` (n, features) is the environment's latest, `held` (n,) are the actions before. Raises
@@ -110,7 +112,7 @@ class DeepQAgent:
         self.learn()
         return actions, result
 
-    def act(self, observation: Floats, epsilon: float | Floats = 0.0, held: Ints | None = None) -> Ints:
+    def act(self, observation: Floats, epsilon: float | Doubles = 0.0, held: Ints | None = None) -> Ints:
         """Return ε-greedy actions (n,) for observations (n, features): random with chance `epsilon`, else by `decide`.
 
         `epsilon` is one number, or (n,) to let some slots explore more than others.

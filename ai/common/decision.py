@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ai.common.environment import Bools, Floats, Ints
 
 Array = NDArray[Any]
+Real = TypeVar("Real", np.float32, np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +90,7 @@ def decide(
     return Decision(observation, action, best, values, steadiness, reward_scale)
 
 
-def in_points(values: Floats, reward_scale: float) -> Floats:
+def in_points(values: NDArray[Real], reward_scale: float) -> NDArray[Real]:
     """Return a network's values as points of reward: it learns from rewards times `reward_scale`."""
-    points: Floats = values / values.dtype.type(reward_scale)
+    points: NDArray[Real] = values / values.dtype.type(reward_scale)
     return points

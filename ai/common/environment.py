@@ -9,9 +9,9 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-# Networks read and write float32, physics computes in float64.
-Floats = NDArray[np.floating[Any]]
-Doubles = NDArray[np.floating[Any]]
+# Networks read and write Floats, physics computes in Doubles; the type checker tells them apart.
+Floats = NDArray[np.float32]
+Doubles = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.intp]
 SUCCESS: Final = 1  # the outcome of an episode that ended well, in every environment; 0 is one that goes on

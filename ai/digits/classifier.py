@@ -13,9 +13,10 @@ from ai.digits.mnist import MnistError, load_mnist, load_part
 from ai.digits.preprocessing import SIDE, Image, Stages, preprocess, preprocess_strokes, stages
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.costs import softmax
-from ai.nn.files import brief, inside, read_json
+from ai.nn.files import inside, read_json
 from ai.nn.folder import CONFIG, FolderKind
 from ai.nn.folder import NETWORK as NETWORK_KIND
+from ai.nn.schema import check_header
 
 __all__ = [
     "DigitClassifier", "Image", "MnistError", "Stages", "load_mnist", "load_part", "preprocess",
@@ -108,14 +109,8 @@ def read_description(folder: str | Path) -> dict[str, Any]:
     folder = Path(folder)
     recover_folder(folder)
     try:
-        described = read_json(inside(folder, DIGITS_FILE))
+        return check_header(read_json(inside(folder, DIGITS_FILE)), FORMAT, (VERSION,))
     except OSError as error:
         raise ModelFormatError(folder, [f"{DIGITS_FILE}: {error.strerror or error}"]) from error
     except ValueError as error:
         raise ModelFormatError(folder, [f"{DIGITS_FILE}: {error}"]) from error
-    if not isinstance(described, dict) or described.get("format") != FORMAT:
-        raise ModelFormatError(folder, [f"{DIGITS_FILE}: this is no {FORMAT!r}"])
-    if described.get("version") != VERSION:
-        said = brief(repr(described.get("version")), 40)
-        raise ModelFormatError(folder, [f"{DIGITS_FILE}: version {said}, not {VERSION}"])
-    return described

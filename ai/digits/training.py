@@ -47,7 +47,7 @@ class DigitTraining:
     seconds: float = 0.0  # spent, as the caller counts them
     best: float | None = None
     best_values: Array | None = None
-    history: list[dict[str, float]] = field(default_factory=list)  # an entry for each epoch
+    history: list[dict[str, Any]] = field(default_factory=list)  # an entry for each epoch
 
     def __post_init__(self) -> None:
         images, labels = self.data or load_part(TRAIN)

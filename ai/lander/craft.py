@@ -110,7 +110,8 @@ class Craft:
     @property
     def time(self) -> Doubles:
         """Seconds flown, (n,)."""
-        return self.steps * DT
+        seconds: Doubles = np.multiply(self.steps, DT)
+        return seconds
 
     @property
     def fuel(self) -> Doubles:

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ai.common.environment import Bools, Doubles, Ints
 
@@ -69,7 +70,7 @@ def _aligned(situation: Situation) -> Doubles:
     return aligned
 
 
-REWARDS: Final[dict[str, Callable[[SituationChange, RewardWeights], Doubles]]] = {
+REWARDS: Final[dict[str, Callable[[SituationChange, RewardWeights], NDArray[np.floating[Any]]]]] = {
     "distance": lambda c, w: w.distance * 10.0 * (c.before.distance - c.after.distance),
     "speed": lambda c, w: w.speed * 10.0 * (c.before.speed - c.after.speed),
     "alignment": lambda c, w: w.alignment * (_aligned(c.after) - _aligned(c.before)),

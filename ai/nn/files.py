@@ -12,6 +12,7 @@ import math
 import os
 import secrets
 import stat
+import sys
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable
@@ -109,9 +110,11 @@ def parse_json(text: str, *, depth: int = DEPTH) -> Any:
     Raises ValueError for what is no JSON, is nested more deeply, or has numbers that are not finite or endless.
     """
     try:
-        value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+        value = _DECODER.decode(text)
     except RecursionError as error:
         raise ValueError("is nested too deeply") from error
+    if text.count("[") + text.count("{") <= depth:  # as in most files: no need to look how they are nested
+        return value
     level = _containers([value])
     for _ in range(depth):
         if not level:
@@ -137,6 +140,9 @@ def _finite(digits: str) -> float:
     return number
 
 
+_DECODER: Final = json.JSONDecoder(parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+
+
 def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
     """Return a whole number that a file has given; raises ValueError if it is none, or out of range."""
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
@@ -146,7 +152,7 @@ def count_of(value: Any, least: int = 0, most: int = MOST) -> int:
 
 def number_of(value: Any, least: float = -math.inf) -> float:
     """Return a finite number that a file has given, as it is; raises ValueError if it is none, or too small."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < math.inf:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
         raise ValueError(f"{brief(repr(value), 40)} is no finite number")
     if value < least:
         raise ValueError(f"{brief(repr(value), 40)} is below {least:g}")

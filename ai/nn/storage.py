@@ -21,6 +21,7 @@ from ai.nn.folder import CONFIG, NETWORK, recover_folder
 from ai.nn.images import ConvolutionLayer, FlattenLayer, MaxPoolingLayer
 from ai.nn.layers import ActivationLayer, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, check_fit
 from ai.nn.parameter import Array, Parameter
+from ai.nn.schema import check_header
 
 T = TypeVar("T")
 L = TypeVar("L", bound=Layer)
@@ -175,14 +176,7 @@ def _attempt(problems: list[str], where: str, read: Callable[..., T], *arguments
 def _read_config(folder: Path) -> dict[str, Any]:
     if not folder.is_dir():
         raise ValueError("this is a file, not a folder" if folder.exists() else "there is no such folder")
-    config = read_json(inside(folder, CONFIG))
-    if not isinstance(config, dict) or config.get("format") != FORMAT:
-        raise ValueError(f"does not say that this is a {FORMAT!r}")
-    if config.get("version") != VERSION:
-        raise ValueError(
-            f"format version {brief(repr(config.get('version')), 40)}; this program reads version {VERSION}"
-        )
-    return config
+    return check_header(read_json(inside(folder, CONFIG)), FORMAT, (VERSION,))
 
 
 def _make_layer(description: Any) -> Layer:

@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from ai.lander.ground import hilly
 from ai.lander.pilots import Pilot
 from ai.lander.spawns import SPAWNS
 from ai.nn.files import brief, read_json, write_text
+from ai.nn.schema import OneOf, SchemaError, Sized, Within, check_header, read_as, sound_fields
 
 FORMAT: Final = "tranquility demonstrations"
 VERSION: Final = 1
@@ -32,26 +33,29 @@ _LONGEST: Final = 25 * 60  # physics steps of a flight
 _SEEDS: Final = 2**128  # a seed is below
 _PADS: Final = 1000  # far more than any ground has
 
+_Seed = Annotated[int, Within(0, _SEEDS - 1)]
+_Action = Annotated[int, Within(0, NUM_ACTIONS - 1)]
+
 
 @dataclass(frozen=True)
 class Demonstration:
     """A flight that landed, or the end of one, after a takeover. Raises ValueError for what can't have been flown."""
 
-    seed: int
-    actions: tuple[int, ...]  # one for each physics step from the start
-    spawn: str = "random"
-    begins: int = 0  # the physics step from which on it is an example
-    ground: int | None = None  # seed of the hills; None for the plain
-    pad: int = 0  # number of the pad landed on
+    seed: _Seed
+    actions: Annotated[tuple[_Action, ...], Sized(_LONGEST, least=1)]  # one for each physics step from the start
+    spawn: Annotated[str, OneOf(SPAWNS)] = "random"
+    begins: _Seed = 0  # the physics step from which on it is an example
+    ground: _Seed | None = None  # seed of the hills; None for the plain
+    pad: Annotated[int, Within(0, _PADS - 1)] = 0  # number of the pad landed on
 
     def __post_init__(self) -> None:
-        whole = (self.seed, self.begins, self.pad, 0 if self.ground is None else self.ground, *self.actions)
-        if not all(type(number) is int and 0 <= number < _SEEDS for number in whole) or self.pad >= _PADS:
-            raise ValueError("seeds, steps, pad and actions of a demonstration are whole numbers from 0")
-        if self.spawn not in tuple(SPAWNS) or not 0 < len(self.actions) <= _LONGEST:
-            raise ValueError(f"this is no flight: {len(self.actions)} actions from spawn {brief(repr(self.spawn), 40)}")
-        if max(self.actions) >= NUM_ACTIONS:
-            raise ValueError(f"this is no flight: actions are below {NUM_ACTIONS}, and one was {max(self.actions)}")
+        if problems := sound_fields(Demonstration, vars(self))[1]:
+            raise ValueError(f"this is no flight: {SchemaError(problems)}")
+
+
+@dataclass(frozen=True)
+class _File:
+    flights: tuple[Demonstration, ...]
 
 
 def takeover(hands: Sequence[bool]) -> int:
@@ -134,18 +138,12 @@ def read(path: Path) -> list[Demonstration]:
     it, and OSError if it can't be read.
     """
     try:
-        described = read_json(path)
-        if described["format"] != FORMAT or described["version"] != VERSION:
-            raise ValueError(f"this is no {FORMAT}, version {VERSION}")
-        flights = described["flights"]
-        if not isinstance(flights, list):
-            raise ValueError("flights is to be a list")
-        return [Demonstration(**flight | {"actions": tuple(flight["actions"])}) for flight in flights[-MOST:]]
+        flights = check_header(read_json(path), FORMAT, (VERSION,)).get("flights")
+        newest = flights[-MOST:] if isinstance(flights, list) else flights
+        return list(read_as(_File, {"flights": newest}, strict=True).flights)
     except FileNotFoundError:
         return []
-    except RecursionError as error:
-        raise ValueError(f"{path} is nested too deeply") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except ValueError as error:
         raise ValueError(f"{path}: {brief(error)}") from error
 
 

@@ -122,7 +122,7 @@ class GymTask:
     """Task of learning the environment of Gymnasium that `config.env` names."""
 
     symmetry: Symmetry | None = None
-    action_chances: Floats | None = None
+    action_chances: Doubles | None = None
     evaluate_every, validation_episodes, test_episodes = 40_000, 100, 100
 
     def __init__(self, config: Config) -> None:

@@ -6,7 +6,7 @@ import json
 from copy import copy
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final
 
 import numpy as np
 
@@ -15,8 +15,9 @@ from ai.agent.normalizer import Normalizer
 from ai.common.environment import Doubles, Floats
 from ai.lander.rewards import REWARDS
 from ai.nn import ModelFormatError
-from ai.nn.files import brief, count_of, inside, number_of, parse_json, read_arrays, read_json
+from ai.nn.files import MOST, brief, inside, parse_json, read_arrays, read_json
 from ai.nn.files import described as array_said
+from ai.nn.schema import Above, Count, OneOf, Sized, Within, read_as
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",
@@ -81,7 +82,7 @@ class SettingChange:
     for a moment, and only the last one counts.
     """
 
-    decisions: int
+    decisions: Count
     name: str
     before: Any
     after: Any
@@ -92,10 +93,51 @@ class SettingChange:
 class Validation:
     """Validation of the network without exploration, in flights that are used neither to train nor to test it."""
 
-    decisions: int
+    decisions: Count
     success: float
     mean_return: float
     best: bool  # of the run so far
+
+
+# What a file holds of it
+
+
+@dataclass(frozen=True)
+class _CheckpointFile:
+    seconds: float
+    decisions: Count
+    success: float
+    scale: dict[str, Any] | None
+
+
+@dataclass(frozen=True)
+class _SettingChangeFile:
+    decisions: Count
+    name: str
+    before: Any
+    after: bool | int | float | str
+
+
+@dataclass(frozen=True)
+class _HistoryFile:
+    version: Annotated[int, OneOf((_VERSION,))]
+    columns: Annotated[tuple[str, ...], Sized(_MOST_COLUMNS)]
+    stride: Annotated[int, Within(1, MOST)]
+    told: Count
+    checkpoints: Annotated[tuple[_CheckpointFile, ...], Sized(MOST_CHECKPOINTS)]
+    alterations: tuple[_SettingChangeFile, ...]
+    validations: tuple[Validation, ...]
+    reward_scale: Annotated[float, Above(0)] | None = None  # None in files from before it was kept here
+
+
+@dataclass(frozen=True)
+class _RewardFile:
+    reward_scale: Annotated[float, Above(0)]
+
+
+@dataclass(frozen=True)
+class _AgentFile:
+    config: _RewardFile
 
 
 Entry = Point | Checkpoint | SettingChange | Validation
@@ -223,10 +265,9 @@ class History:
         history = cls()
         try:
             arrays = read_arrays(inside(folder, HISTORY_FILE), _MOST_VALUES * 4 + _MOST_TEXT * 8, _expect)
-            described = parse_json(str(arrays["described"]))
+            described = read_as(_HistoryFile, parse_json(str(arrays["described"])))
             history._restore(described, arrays["points"], arrays["values"])
-            scale = described.get("reward_scale")
-            history.reward_scale = _scale_beside(folder) if scale is None else _above_zero(scale)
+            history.reward_scale = described.reward_scale or _scale_beside(folder)
         except FileNotFoundError:
             return cls()
         except OSError as error:
@@ -236,28 +277,25 @@ class History:
             raise ModelFormatError(folder, [f"{HISTORY_FILE}: {said}"]) from error
         return history
 
-    def _restore(self, described: dict[str, Any], points: Doubles, values: Floats) -> None:
+    def _restore(self, described: _HistoryFile, points: Doubles, values: Floats) -> None:
         """Take over what was read; raises KeyError, TypeError or ValueError where it makes no sense."""
-        if described["version"] != _VERSION:
-            raise ValueError(f"version {described['version']!r}, not {_VERSION}")
-        if points.ndim != 2 or points.shape[1] != len(described["columns"]) or len(points) > CAPACITY:
+        if points.ndim != 2 or points.shape[1] != len(described.columns) or len(points) > CAPACITY:
             raise ValueError(f"points of shape {points.shape}")
-        self._length, self._stride, self._told = len(points), *map(count_of, (described["stride"], described["told"]))
-        if self._stride < 1 or self._told < self._length:
+        self._length, self._stride, self._told = len(points), described.stride, described.told
+        if self._told < self._length:
             raise ValueError(f"{self._length} points of {self._told}, at a stride of {self._stride}")
         # By name, so that a run from before a part was added can still be looked at.
         self.points[...] = 0.0
-        for column, name in enumerate(described["columns"]):
+        for column, name in enumerate(described.columns):
             if name in _COLUMN:
                 self.points[:, _COLUMN[name]] = points[:, column]
         if not np.isfinite(values).all():
             raise ValueError("checkpoints that are not finite")
         self.checkpoints = [
-            _checkpoint(told, row.astype(np.float32))
-            for told, row in zip(described["checkpoints"], values, strict=True)
+            _checkpoint(told, row.astype(np.float32)) for told, row in zip(described.checkpoints, values, strict=True)
         ]
-        self.setting_changes = [_setting_change(told) for told in described["alterations"]]
-        self.validations = [_validation(told) for told in described["validations"]]
+        self.setting_changes = [_setting_change(told) for told in described.alterations]
+        self.validations = list(described.validations)
 
 
 def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
@@ -272,44 +310,24 @@ def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
         raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
 
 
-def _checkpoint(told: dict[str, Any], values: Floats) -> Checkpoint:
-    """Read what is said of a checkpoint; raises KeyError, TypeError or ValueError for nonsense."""
-    scale = told["scale"]
-    if scale is not None:
-        Normalizer(len(scale["mean"])).load(scale)
-    return Checkpoint(
-        float(number_of(told["seconds"])), count_of(told["decisions"]), float(number_of(told["success"])), values, scale
-    )
+def _checkpoint(told: _CheckpointFile, values: Floats) -> Checkpoint:
+    """Return a checkpoint of a file; raises KeyError, TypeError or ValueError for a scale that is none."""
+    if told.scale is not None:
+        Normalizer(len(told.scale["mean"])).load(told.scale)
+    return Checkpoint(told.seconds, told.decisions, told.success, values, told.scale)
 
 
-def _setting_change(told: dict[str, Any]) -> SettingChange:
-    if not isinstance(told["name"], str):
-        raise ValueError(f"{brief(repr(told['name']), 40)} is no name of a knob")
-    if not isinstance(told["after"], bool | int | float | str):
-        raise ValueError(f"{brief(repr(told['after']), 40)} is no value of a knob")
-    name = Config.name_now(told["name"])  # an older run has the names of its day
-    return SettingChange(count_of(told["decisions"]), name, told["before"], told["after"])
-
-
-def _validation(told: dict[str, Any]) -> Validation:
-    return Validation(
-        count_of(told["decisions"]), float(number_of(told["success"])), float(number_of(told["mean_return"])),
-        bool(told["best"]),
-    )  # fmt: skip
+def _setting_change(told: _SettingChangeFile) -> SettingChange:
+    """Return a setting change of a file; an older run has the names of its day."""
+    return SettingChange(told.decisions, Config.name_now(told.name), told.before, told.after)
 
 
 def _scale_beside(folder: str | Path) -> float:
     """Return the reward scale of the network beside a history from before it told its own; 1 if there is none."""
     try:
-        return _above_zero(read_json(inside(folder, "config.json"))["config"]["reward_scale"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return read_as(_AgentFile, read_json(inside(folder, "config.json"))).config.reward_scale
+    except (OSError, ValueError):
         return 1.0
-
-
-def _above_zero(scale: Any) -> float:
-    if not number_of(scale) > 0:
-        raise ValueError(f"a reward scale of {brief(repr(scale), 40)} is not above 0")
-    return float(scale)
 
 
 def _written(change: SettingChange) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import numpy as np
 from ai.agent.config import CURRICULUM, Config
 from ai.agent.schedule import touchdown_limits
 from ai.agent.symmetry import Symmetry
-from ai.common.environment import Doubles, Env, Floats
+from ai.common.environment import Doubles, Env
 from ai.lander.environment import (
     LIMITS,
     MIRROR_ACTIONS,
@@ -110,7 +110,7 @@ class LanderTask:
     def __init__(self, config: Config) -> None:
         self.config = config
         self.symmetry: Symmetry | None = LANDER_SYMMETRY
-        self.action_chances: Floats | None = _action_chances(config)
+        self.action_chances: Doubles | None = _action_chances(config)
 
     def make_env(self, rng: np.random.Generator) -> LanderEnv:
         """Make the landers to train with."""
@@ -139,6 +139,6 @@ class LanderTask:
         return Evaluation(**checked_score(values, ("mean_time", "mean_fuel")))
 
 
-def _action_chances(config: Config) -> Floats:
+def _action_chances(config: Config) -> Doubles:
     main = config.random_main
     return np.array([1 - main] * 3 + [main] * 3) / 3

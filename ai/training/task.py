@@ -8,7 +8,7 @@ import numpy as np
 
 from ai.agent.config import Config
 from ai.agent.symmetry import Symmetry
-from ai.common.environment import Env, Floats
+from ai.common.environment import Doubles, Env
 from ai.lander.pilots import Pilot
 from ai.nn.files import brief, number_of
 
@@ -50,7 +50,7 @@ class Task(Protocol):
     num_features: int
     num_actions: int
     symmetry: Symmetry | None
-    action_chances: Floats | None  # (actions,) odds of random actions; None for uniform
+    action_chances: Doubles | None  # (actions,) odds of random actions; None for uniform
     evaluate_every: int  # decisions
     validation_episodes: int
     test_episodes: int

@@ -7,9 +7,10 @@ import os
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from ai.nn.files import parse_json, read_text, write_text
+from ai.nn.schema import Share, Within, sound_fields
 from game.core import texts
 from game.core.lock import held
 
@@ -30,20 +31,20 @@ class Settings:
     colour_safe: bool = False
     show_hints: bool = True
     text_size: str = "normal"  # a name of game.drawing.tokens.TEXT_SIZES
-    effects_volume: float = 0.9  # every number is a share; 0 to 1 unless `limits` says otherwise
-    interface_volume: float = 0.7
-    ambience_volume: float = 0.7
-    altitude_volume: float = 0.0  # volume of the tone that makes height and speed audible; 0 is off
+    effects_volume: Share = 0.9
+    interface_volume: Share = 0.7
+    ambience_volume: Share = 0.7
+    altitude_volume: Share = 0.0  # volume of the tone that makes height and speed audible; 0 is off
     model: str = ""  # name of the network last chosen to fly; empty for the shipped default
-    assist: float = 0.0  # assist level of the co-pilot
+    assist: Share = 0.0  # assist level of the co-pilot
     copilot: str = "tolerance"  # mode of the co-pilot, a Mode of ai.copilot.copilot
     three_pads: bool = False  # three pads among hills, instead of one on a plain
     hands: str = "own"  # handicap of the hands, a name of game.flight.handicap.HANDS
     check_flights: bool = False  # check flights: every fifth flight is flown without help
     teach: bool = False  # whether good landings are kept for a network to learn from
     explain: bool = True  # whether the co-pilot's panel is shown
-    gravity: float = field(default=1.0, metadata={"limits": GRAVITY_SHARES})  # share of normal gravity in free flights
-    pace: float = field(default=1.0, metadata={"limits": PACES})  # time scale of a flight
+    gravity: Annotated[float, Within(*GRAVITY_SHARES)] = 1.0  # share of normal gravity in free flights
+    pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them
     buttons: dict[str, Any] = field(default_factory=dict)  # the same for gamepads
     tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
@@ -60,24 +61,14 @@ class Settings:
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> Settings:
         """Make settings from a file's values; values of the wrong type or range are replaced by their defaults."""
-        settings = cls()
-        known = {each.name: each.metadata.get("limits", (0.0, 1.0)) for each in fields(cls)}
-        del known["unknown"], known["unread"]
-        for name in known.keys() & values.keys():
-            if _fits(values[name], getattr(settings, name), known[name]):
-                setattr(settings, name, values[name])
-        settings.unknown = {name: value for name, value in values.items() if name not in known}
-        return settings
+        known = {each.name for each in fields(cls)} - {"unknown", "unread"}
+        sound, _ = sound_fields(cls, {name: value for name, value in values.items() if name in known})
+        return cls(**sound, unknown={name: value for name, value in values.items() if name not in known})
 
 
 def changes(values: dict[str, Any], since: dict[str, Any]) -> dict[str, Any]:
     """Return those values that differ from `since`."""
     return {name: value for name, value in values.items() if name not in since or since[name] != value}
-
-
-def _fits(value: object, default: object, limits: tuple[float, float]) -> bool:
-    """Whether a value has its default's type and, if a number, lies within the limits; NaN does not."""
-    return type(value) is type(default) and (not isinstance(value, float) or limits[0] <= value <= limits[1])
 
 
 class SettingsFile:

@@ -8,9 +8,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
+from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.fix import Fixed, FixStep, fix
 from ai.digits.preprocessing import Image
-from ai.nn.files import read_json
+from ai.nn.folder import CONFIG
 from game.core import texts
 from game.core.worker import Worker, WorkerState
 from game.training.digit_models import PATIENCE, shelf
@@ -117,7 +118,8 @@ class FixRunner:
 
 def _accuracy(folder: Path) -> float | None:
     """Return the test accuracy stored in a network's folder; None if there is none."""
-    for file in ("config.json", "training.json"):
-        with suppress(OSError, ValueError, KeyError, TypeError):
-            return float(read_json(folder / file)["test"])
+    for file in (CONFIG, TRAINING_FILE):  # of a fix, and of a training
+        with suppress(OSError, ValueError):
+            if (test := read_summary(folder, file).test) is not None:
+                return test
     return None

@@ -15,8 +15,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.nn.files import parse_json, read_end
+from ai.nn.schema import read_as
 from game.core import texts
-from game.core.collection import Collection, LibraryError, free_path
+from game.core.names import LibraryError, free_path
+from game.core.trash import Trash
 from game.flight import flight_file
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
@@ -61,7 +63,7 @@ class Records:
     def __init__(self, user_dir: Path) -> None:
         self.folder = user_dir / FOLDER
         self.logbook = user_dir / LOGBOOK
-        self._files = Collection(self.folder, most_thrown=_MOST_THROWN)
+        self._trash = Trash(self.folder, _MOST_THROWN)
         self.problem = ""
 
     def keep(self, flight: Flight, when: float, **more: Any) -> Entry:
@@ -96,8 +98,8 @@ class Records:
             return []
         for line in text.splitlines():
             try:
-                found.append(Entry(**parse_json(line)))
-            except (ValueError, TypeError):
+                found.append(read_as(Entry, parse_json(line), strict=True))
+            except ValueError:
                 damaged += bool(line.strip())
         if damaged:
             self.problem = texts.FLIGHTS_DAMAGED.format(count=damaged, path=self.logbook)
@@ -115,15 +117,15 @@ class Records:
 
     def thrown(self) -> set[str]:
         """Return the names of the deleted files that can be restored."""
-        return self._files.deleted
+        return set(self._trash.names)
 
     def throw_away(self, name: str) -> bool:
         """Delete a flight's file so that it can be restored; the logbook keeps its line. False if that failed."""
-        return self._attempt(lambda: self._files.throw_away(self.folder / name, name))
+        return self._attempt(lambda: self._trash.add(self.folder / name, name))
 
     def bring_back(self, name: str) -> bool:
         """Restore a deleted file. False if that failed."""
-        return self._attempt(lambda: self._files.bring_back(name))
+        return self._attempt(lambda: self._trash.restore(name))
 
     def _attempt(self, deed: Callable[[], object]) -> bool:
         self.problem = ""

@@ -5,13 +5,12 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-from ai.digits.checkpoints import TRAINING_FILE
+from ai.digits.checkpoints import TRAINING_FILE, read_summary
 from ai.digits.classifier import DIGITS_FILE, NETWORK
-from ai.nn.files import read_json
 from game.core import texts
-from game.core.collection import claims
+from game.core.collection import Collection, ItemKind
 
 NAMES: Final = ("modern", "classic")  # names of the shipped networks
 PATIENCE: Final = 120.0  # seconds for a worker's turn: reading all test images takes long on a busy machine
@@ -43,13 +42,25 @@ class SavedDigitModel:
     @property
     def said(self) -> str:
         """Text on its accuracy, from its small file; empty if unknown."""
-        described: dict[str, Any] = {}
-        with suppress(OSError, ValueError, TypeError):
-            described |= read_json(self.folder / TRAINING_FILE)
-        for key, words in (("test", texts.SHELF_TESTED), ("held_out", texts.SHELF_HELD_OUT)):
-            with suppress(KeyError, TypeError, ValueError, ArithmeticError):
-                return words.format(part=float(described[key]))
+        try:
+            summary = read_summary(self.folder)
+        except (OSError, ValueError):
+            return ""
+        for part, words in ((summary.test, texts.SHELF_TESTED), (summary.held_out, texts.SHELF_HELD_OUT)):
+            if part is not None:
+                return words.format(part=part)
         return ""
+
+
+def _read_model(folder: Path, name: str) -> SavedDigitModel:  # noqa: ARG001 - a kind of item is given its name too
+    return SavedDigitModel(folder, folder / FIXES)
+
+
+class DigitModels(Collection[SavedDigitModel]):
+    """Collection of a player's own digit networks in `folder`."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder, ItemKind(PARTS, _read_model, texts.RUN_UNNAMED))
 
 
 def runs_dir(user_dir: Path) -> Path:
@@ -63,13 +74,9 @@ def shelf(models_dir: Path, user_dir: Path) -> dict[str, SavedDigitModel]:
     A player's network with the name of a shipped one gets a distinct name, and is not left out.
     """
     found = {name: SavedDigitModel(models_dir / "digits" / name, user_dir / FOLDER / name) for name in NAMES}
-    with suppress(OSError):
-        for path in sorted(runs_dir(user_dir).iterdir(), key=lambda path: path.name.casefold()):
-            if claims(path, PARTS):
-                taken = path.name.casefold() in NAMES
-                found[texts.NETWORK_YOURS.format(name=path.name) if taken else path.name] = SavedDigitModel(
-                    path, path / FIXES
-                )
+    for model in DigitModels(runs_dir(user_dir)).items():
+        name = model.folder.name
+        found[texts.NETWORK_YOURS.format(name=name) if name.casefold() in NAMES else name] = model
     return found
 
 

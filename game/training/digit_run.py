@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from ai.digits.checkpoints import LAST_FILE, TRAINING_FILE
+from ai.digits.checkpoints import LAST_FILE, read_summary
 from ai.digits.config import DigitConfig
 from ai.digits.session import (
     Confusion,
@@ -20,14 +20,14 @@ from ai.digits.session import (
     RestoreBest,
     live_digits,
 )
-from ai.nn.files import brief, read_json
+from ai.nn.files import brief
 from ai.nn.folder import CONFIG
 from ai.training.history import REVERTED, TURNING_SECONDS
 from ai.training.messages import Refused, Save
 from game.core import texts
-from game.core.collection import LONGEST_NAME, Collection, LibraryError
+from game.core.collection import LONGEST_NAME, LibraryError
 from game.core.worker import Worker
-from game.training.digit_models import PARTS, PATIENCE
+from game.training.digit_models import PATIENCE, DigitModels
 from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
 
 FALLEN: Final = 0.15  # drop of validation accuracy below its best at which a return to the best is offered
@@ -94,7 +94,7 @@ class DigitRun(TrainingRun):
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
-        self.collection = Collection(folder, PARTS)
+        self.collection = DigitModels(folder)
         self.config, self.seed, self.steps = DigitConfig(), 0, 0
         self.begun = False
         self.curves = DigitCurves()
@@ -133,11 +133,11 @@ class DigitRun(TrainingRun):
         preset, seconds, part = "", self.curves.seconds, scores[-1].accuracy if scores else None
         if self.alive:
             return preset, seconds, part
-        with suppress(OSError, ValueError, KeyError, TypeError):
-            said = read_json(self.unsaved / TRAINING_FILE)
-            preset, seconds = brief(said["preset"], LONGEST_NAME), float(said["seconds"])
-            known = said.get("test", said["held_out"])
-            part = part if known is None else float(known)
+        with suppress(OSError, ValueError):
+            summary = read_summary(self.unsaved)
+            preset, seconds = brief(summary.preset, LONGEST_NAME), summary.seconds
+            known = summary.held_out if summary.test is None else summary.test
+            part = part if known is None else known
         return preset, seconds, part
 
     def begin(self, config: DigitConfig, seed: int, *, resume: bool = False, name: str = "") -> str:
@@ -192,7 +192,7 @@ class DigitRun(TrainingRun):
                 self._saving.append(folder)
                 self._send(Save(folder))
             else:
-                self.collection.name(self.unsaved, name)
+                self.collection.keep_rescued(name)
         except LibraryError as error:
             return str(error)
         return ""
@@ -244,7 +244,7 @@ class DigitRun(TrainingRun):
         """Move an unnamed run aside, to where it can be restored by hand; return why that failed, or ""."""
         if self.kept:
             try:
-                self.collection.throw_away(self.unsaved, texts.RUN_UNNAMED)
+                self.collection.discard_rescued()
             except LibraryError as error:
                 return str(error)
         return ""

@@ -5,14 +5,16 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from ai.agent.config import LANDER
 from ai.agent.storage import LAST
-from ai.nn.files import brief, count_of, inside, number_of, read_json
+from ai.nn.files import brief, inside, read_json
+from ai.nn.schema import Share, Within, read_as
 from ai.training.checkpoints import TRAINING_FILE
 from game.core import texts
-from game.core.collection import LONGEST_NAME, Collection, LibraryError, claims, leads_nowhere, reason, there, told
+from game.core.collection import LONGEST_NAME, Collection, ItemKind, leads_nowhere, there
+from game.core.names import reason
 from game.flight.networks import PARTS, PLAYERS
 
 _CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of these is a run, complete or not
@@ -50,6 +52,28 @@ class SavedRun:
     problem: str = ""
 
 
+@dataclass(frozen=True)
+class _Environment:
+    env: str
+
+
+@dataclass(frozen=True)
+class _Best:
+    success: Share | None
+
+
+@dataclass(frozen=True)
+class _TrainingFile:
+    """Training file of a run, as far as the list of runs shows it."""
+
+    preset: str
+    changes: dict[str, Any]
+    seed: Annotated[int, Within(0, _MOST_SEED)]
+    decisions: Annotated[int, Within(0, _MOST)]
+    seconds: Annotated[float, Within(0, _MOST)]
+    best: _Best | None  # None for a young run, which has not been validated yet
+
+
 def read_run(folder: Path, name: str = "") -> SavedRun:
     """Return the summary of a run from its small file. Never raises: `problem` says what is wrong."""
     name = name or folder.name
@@ -66,90 +90,31 @@ def read_run(folder: Path, name: str = "") -> SavedRun:
             flyable = missing == [TRAINING_FILE]
             return SavedRun(name, folder, saved, flyable=flyable, problem=texts.RUN_INCOMPLETE.format(file=missing[0]))
         described = read_json(inside(folder, TRAINING_FILE))
-        if described["env"] != LANDER:
-            problem = texts.RUN_ELSEWHERE.format(env=brief(described["env"], LONGEST_NAME))
+        if (env := read_as(_Environment, described).env) != LANDER:
+            problem = texts.RUN_ELSEWHERE.format(env=brief(env, LONGEST_NAME))
             return SavedRun(name, folder, saved, problem=problem)
-        last = (folder / LAST).is_dir()
-        return SavedRun(name, folder, saved, flyable=True, resumable=last, **_figures(described))
+        told = read_as(_TrainingFile, described)
+        return SavedRun(
+            name, folder, saved, brief(told.preset, LONGEST_NAME), len(told.changes), told.seed,
+            told.decisions, told.seconds, told.best.success if told.best else None,
+            flyable=True, resumable=(folder / LAST).is_dir(),
+        )  # fmt: skip
     except OSError as error:
         problem = brief(reason(error))
-    except (ValueError, KeyError, TypeError, ArithmeticError, RecursionError):
+    except ValueError:
         problem = texts.RUN_UNREADABLE.format(file=TRAINING_FILE)
     return SavedRun(name, folder, saved, flyable=True, problem=problem)
 
 
-def _figures(described: dict[str, Any]) -> dict[str, Any]:
-    """Return the figures of a summary; raises ValueError, among others, for figures that no run can have."""
-    best = described["best"]  # a young run has not been validated yet
-    success = None if not best or best["success"] is None else float(number_of(best["success"]))
-    seed, decisions = count_of(described["seed"], most=_MOST_SEED), count_of(described["decisions"], most=_MOST)
-    seconds = float(number_of(described["seconds"], 0))
-    if not (seconds < _MOST and 0 <= (success or 0) <= 1):
-        raise ValueError("a figure that no run comes to")
-    return {
-        "preset": brief(described["preset"], LONGEST_NAME), "changes": len(described["changes"]), "seed": seed,
-        "decisions": decisions, "seconds": seconds, "success": success,
-    }  # fmt: skip
+RUNS: Final = ItemKind(_CLAIMS, read_run, texts.RUN_RESCUED)
 
 
-class Library(Collection):
-    """Library of runs in a player's folder. A method that fails raises LibraryError and changes nothing.
-
-    Attributes:
-        problem: why `runs` could not read the folder; empty if it could.
-
-    """
+class Library(Collection[SavedRun]):
+    """Library of runs in a player's folder."""
 
     def __init__(self, user_dir: Path) -> None:
-        super().__init__(user_dir / PLAYERS, _CLAIMS)
-        self.problem = ""
+        super().__init__(user_dir / PLAYERS, RUNS)
 
     def runs(self) -> list[SavedRun]:
         """Return the summary of every run, the latest first, damaged ones too."""
-        self.problem = ""
-        try:
-            self.recover()
-            found = [read_run(path) for path in self.folder.iterdir() if claims(path, self.parts)]
-        except FileNotFoundError:
-            return []
-        except OSError as error:
-            self.problem = texts.LIBRARY_UNREADABLE.format(folder=self.folder, reason=reason(error))
-            return []
-        return sorted(found, key=lambda run: (-run.saved, run.name))
-
-    def delete(self, name: str) -> None:
-        """Delete a run; `undo_delete` restores it."""
-        self.throw_away(self.existing(name), name)
-
-    def import_folder(self, path: Path) -> Path:
-        """Copy a run into the library, numbered if its name is taken; return the path of the copy.
-
-        A file of the run may be given in place of its folder.
-        """
-        with told(texts.LIBRARY_NOT_IMPORTED, brief(path.name, LONGEST_NAME)):
-            folder = path if path.is_dir() else path.parent
-            if not any(there(folder / part) for part in self.parts):
-                raise LibraryError(texts.LIBRARY_NO_RUN.format(name=folder.name))
-        return super().import_folder(folder)
-
-    # The unnamed run
-
-    def claim(self) -> SavedRun | None:
-        """Lock `unsaved` against other games until `release`; return the summary of the run in it, if any."""
-        self.hold()
-        return self.rescued()
-
-    def rescued(self) -> SavedRun | None:
-        """Return the summary of the unnamed run with a suggested name, if any. Call before a training begins."""
-        if not self.left_behind:
-            return None
-        return read_run(self.unsaved, self.free_name(texts.RUN_RESCUED))
-
-    def keep_rescued(self, name: str) -> SavedRun:
-        """Name the unnamed run; return its summary."""
-        return read_run(self.name(self.unsaved, name))
-
-    def discard_rescued(self) -> None:
-        """Delete the unnamed run, if any; `undo_delete` restores it."""
-        if rescued := self.rescued():
-            self.throw_away(self.unsaved, rescued.name)
+        return sorted(self.items(), key=lambda run: (-run.saved, run.name))

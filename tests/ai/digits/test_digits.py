@@ -263,7 +263,7 @@ def test_networks_of_other_sizes_are_refused(tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("{", "config.json"), ("[]", "no 'tranquility digits'"), ('{"format": "tranquility digits", "version": 9}', "9")],
+    [("{", "config.json"), ("[]", "a 'tranquility digits'"), ('{"format": "tranquility digits", "version": 9}', "9")],
 )
 def test_a_damaged_folder_is_named(text, message, tmp_path):
     DigitClassifier(small_network()).save(tmp_path / "model")

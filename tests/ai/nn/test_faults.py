@@ -288,7 +288,7 @@ def test_a_history_is_checked_entry_by_entry(run):
 
 
 def test_hills_of_a_demonstration_have_a_seed():
-    with pytest.raises(ValueError, match="whole numbers"):
+    with pytest.raises(ValueError, match=r"ground: 'x' is no whole number"):
         Demonstration(0, (0,), ground="x")
 
 

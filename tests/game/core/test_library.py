@@ -14,7 +14,7 @@ from ai.agent.config import Config
 from ai.training.checkpoints import resume_run, save_run
 from ai.training.loop import Training
 from game.core import collection as module
-from game.core import texts
+from game.core import copying, texts
 from game.core.collection import LONGEST_NAME, UNSAVED, LibraryError, is_valid_name
 from game.flight import networks
 from game.panels.run_page import row
@@ -164,9 +164,9 @@ def test_what_is_no_plain_network_is_not_copied(
         case "deep":
             (strange / Path(*"abcdefghijkl")).mkdir(parents=True)
         case "many":
-            monkeypatch.setattr(module, "_MOST_FILES", 4)
+            monkeypatch.setattr(copying, "_MOST_FILES", 4)
         case "large":
-            monkeypatch.setattr(module, "_MOST_BYTES", 10)
+            monkeypatch.setattr(copying, "_MOST_BYTES", 10)
     with pytest.raises(LibraryError, match="strange is not copied"):
         library.import_folder(strange)
     assert library.runs() == []

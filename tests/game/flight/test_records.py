@@ -1,6 +1,6 @@
 import json
 import os
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from ai.lander.environment import Outcome
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
+from ai.nn.schema import read_as
 from game.core import texts
 from game.flight import flight_file
 from game.flight import logbook as records
@@ -166,7 +167,7 @@ def test_damaged_lines_of_the_logbook_are_counted_and_the_rest_is_read(kept: Rec
 
 def test_a_line_cannot_lead_out_of_the_folder():
     with pytest.raises(ValueError, match="plain name"):
-        entry(file="../settings.json")
+        read_as(Entry, asdict(entry(file="../settings.json")))
 
 
 def test_without_a_disk_the_flight_is_lost_and_the_game_goes_on(tmp_path: Path):
@@ -229,7 +230,8 @@ def test_a_flight_can_be_thrown_away_and_brought_back_and_its_line_stays(kept: R
 
 
 def test_the_latest_that_were_thrown_away_can_be_brought_back(kept: Records, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(kept._files, "_most_thrown", 3)
+    monkeypatch.setattr(records, "_MOST_THROWN", 3)
+    kept = Records(kept.folder.parent)
     flight = fly()
     lines = [kept.keep(flight, NOON + second) for second in range(5)]
     for line in lines:

@@ -1,0 +1,114 @@
+"""Values that a file has given: right ones are made a dataclass, wrong ones are named, all of them."""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+import pytest
+
+from ai.nn.schema import Above, OneOf, SchemaError, Share, Sized, Within, check_header, read_as, sound_fields
+
+
+@dataclass(frozen=True)
+class Wheel:
+    radius: Annotated[float, Above(0)]
+    spokes: Annotated[int, Within(3, 60)] = 32
+
+
+@dataclass(frozen=True)
+class Cart:
+    name: Annotated[str, Sized(8, least=1)]
+    wheels: tuple[Wheel, ...]
+    place: tuple[float, int] = (0.0, 0)
+    colour: Annotated[str, OneOf(("red", "blue"))] = "red"
+    worn: Share | None = None
+    locked: bool = False
+    load: int | str = 0
+    parts: dict[str, int | None] = field(default_factory=dict)
+    more: Any = None
+
+
+WHOLE = {"name": "hay", "wheels": [{"radius": 1}]}
+
+
+def test_values_become_a_dataclass_and_those_that_are_missing_its_defaults():
+    cart = read_as(Cart, WHOLE | {"place": [2, 3], "worn": 1, "load": "hay", "parts": {"axle": 1, "seat": None}})
+    assert cart == Cart("hay", (Wheel(1.0),), (2.0, 3), worn=1.0, load="hay", parts={"axle": 1, "seat": None})
+    assert isinstance(cart.wheels[0].radius, float)
+    assert read_as(Cart, WHOLE | {"worn": None, "more": [{}]}) == Cart("hay", (Wheel(1.0),), more=[{}])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"name": 1}, "name: 1 is no text"),
+        ({"name": ""}, "name: '' has a length of 0"),
+        ({"name": "x" * 9}, "not of 1 to 8"),
+        ({"wheels": {}}, "wheels: {} is no list"),
+        ({"wheels": [1]}, r"wheels\[0\]: 1 is no table"),
+        ({"wheels": [{"radius": 0}]}, r"wheels\[0\].radius: 0.0 is not above 0"),
+        ({"wheels": [{"radius": 1}, {}]}, r"wheels\[1\].radius is missing"),
+        ({"wheels": [{"radius": 1, "spokes": 2}]}, r"wheels\[0\].spokes: 2 is no whole number from 3 to 60"),
+        ({"wheels": [{"radius": 1, "spokes": 32.0}]}, "no whole number"),
+        ({"wheels": [{"radius": 1, "spokes": True}]}, "no whole number"),
+        ({"place": [1, 2, 3]}, "no list of 2"),
+        ({"place": [1, "x"]}, r"place\[1\]: 'x'"),
+        ({"colour": "green"}, "not one of red, blue"),
+        ({"colour": []}, "colour: .* is no text"),
+        ({"worn": 1.5}, "does not lie between 0 and 1"),
+        ({"worn": float("nan")}, "no finite number"),
+        ({"worn": 10**400}, "no finite number"),
+        ({"worn": False}, "no finite number"),
+        ({"locked": 1}, "neither true nor false"),
+        ({"load": 0.5}, "load: 0.5"),
+        ({"parts": {"axle": "x"}}, "parts.axle: 'x'"),
+        ({"parts": []}, "no table"),
+    ],
+)
+def test_what_is_wrong_is_named_with_its_place(wrong, said):
+    with pytest.raises(SchemaError, match=said):
+        read_as(Cart, WHOLE | wrong)
+
+
+def test_one_message_names_everything_that_is_wrong_and_is_short_all_the_same():
+    with pytest.raises(SchemaError) as caught:
+        read_as(Cart, {"wheels": [{"radius": -1, "spokes": 0}, 5], "locked": "y" * 1000})
+    assert [problem.partition(":")[0] for problem in caught.value.problems] == [
+        "name is missing", "wheels[0].radius", "wheels[0].spokes", "wheels[1]", "locked",
+    ]  # fmt: skip
+    assert len(str(caught.value)) < 300
+    with pytest.raises(SchemaError, match="; and more") as caught:
+        read_as(Cart, WHOLE | {"wheels": ["x"] * 500})
+    assert len(str(caught.value)) < 2000
+
+
+def test_fields_that_are_unknown_are_passed_over_or_refused():
+    assert read_as(Cart, WHOLE | {"bell": 1}) == read_as(Cart, WHOLE)
+    with pytest.raises(SchemaError, match="bell is unknown"):
+        read_as(Cart, WHOLE | {"bell": 1}, strict=True)
+    with pytest.raises(SchemaError, match=r"wheels\[0\].bell is unknown"):
+        read_as(Cart, WHOLE | {"wheels": [{"radius": 1, "bell": 1}]}, strict=True)
+    with pytest.raises(ValueError, match="no table"):
+        read_as(Cart, [])
+
+
+def test_sound_fields_are_told_from_the_others():
+    right, problems = sound_fields(Cart, {"name": "hay", "worn": 2, "locked": True, "bell": 1})
+    assert right == {"name": "hay", "locked": True}
+    assert [problem.partition(" ")[0] for problem in problems] == ["wheels", "worn:"]
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ([], "does not say that this is a 'cart'"),
+        ({"format": "car", "version": 1}, "'cart'"),
+        ({"format": "cart"}, "format version None; this program reads version 1 and 2"),
+        ({"format": "cart", "version": True}, "version True"),
+        ({"format": "cart", "version": "x" * 1000}, "version 'xxx"),
+    ],
+)
+def test_a_file_says_its_format_and_a_version_that_can_be_read(values, said):
+    with pytest.raises(ValueError, match=said) as caught:
+        check_header(values, "cart", (1, 2))
+    assert len(str(caught.value)) < 100
+    assert check_header({"format": "cart", "version": 2}, "cart", (1, 2))["version"] == 2
