@@ -20,7 +20,8 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
 from game.training.knob_descriptions import KnobDescription, figure
-from game.ui.entry import Entry, digits, draw_line
+from game.ui.entry import Entry, draw_line
+from game.ui.text_line import digits
 from game.ui.widget import PointsManager, Widget, mix
 from game.ui.widgets import draw_switch
 from game.ui.words import TextButtonRow
@@ -310,7 +311,7 @@ class SeedKnob(Entry):
     @property
     def start(self) -> tuple[float, float]:
         """Left end of the number, which is aligned to the right end of the row."""
-        return self.box.right - typeface.width(self.line.text, SMALL, "regular"), self.box.centery + 4.5
+        return self.box.right - typeface.width(self.line.shown, SMALL, "regular"), self.box.centery + 4.5
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the label and the number."""
