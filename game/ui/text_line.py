@@ -1,8 +1,8 @@
 """Editable line of text: pygame_gui's text entry line without its picture, which `game.ui.entry` draws in our type.
 
 pygame_gui keeps the text, the caret and the selection, and knows the keys, clicks and clipboard that change them.
-Here is added: steps by words, input methods, letters of any script, a pasted text that is fitted instead of refused,
-and a key repeat that is counted in steps. docs/adr/0014-what-pygame-gui-carries.md says why.
+Here is added: steps by words, input methods, a text that is fitted instead of refused when it is pasted, and a key
+repeat that is counted in steps. docs/adr/0014-what-pygame-gui-carries.md says why.
 """
 
 from __future__ import annotations
