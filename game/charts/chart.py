@@ -145,14 +145,11 @@ class Chart:
     def x_at(self, point: Point) -> float | None:
         """Return the x value under a point of the canvas, or None outside the chart."""
         plot = self.plot
-        if not plot.inflate(2 * _MARGIN, 0).collidepoint(point) and not self._on_foot(point):
+        foot = pygame.FRect(plot.x, plot.bottom, plot.width, _FOOT)
+        if not plot.inflate(2 * _MARGIN, 0).collidepoint(point) and not foot.collidepoint(point):
             return None
         share = min(max((point[0] - plot.x) / plot.width, 0.0), 1.0)
         return self._x_range[0] + share * (self._x_range[1] - self._x_range[0])
-
-    def _on_foot(self, point: Point) -> bool:
-        plot = self.plot
-        return plot.x <= point[0] <= plot.right and plot.bottom <= point[1] <= self.box.bottom
 
     def place(self, x: float, y: float) -> Point:
         """Return the point of the canvas for x and a value, clipped to the plot."""
@@ -173,7 +170,7 @@ class Chart:
         """Advance by 1/60 s: ease the limits, or jump `at_once`. On its `turn`, the next frame draws new numbers."""
         self._rested += 1
         if self._shown != self._goal:
-            self._shown = self._goal if at_once else _eased(self._shown, self._goal)
+            self._shown = self._goal if at_once else plotting.eased(self._shown, self._goal, _EASE)
             self._stale = True
         if turn and self.waiting:
             self.renew()
@@ -301,12 +298,3 @@ class Chart:
         away = {tick: abs(self.place(tick.x, 0.0)[0] - across) for tick in self._ticks}
         near = [tick for tick in self._ticks if away[tick] <= _REACH]
         return min(near, key=lambda tick: (tick.kind != "knob", away[tick]), default=None)
-
-
-def _eased(shown: Limits, goal: Limits) -> Limits:
-    """Return limits one step nearer to the goal, or the goal itself if it is very near or very far."""
-    wide, far = goal[1] - goal[0], max(abs(goal[0] - shown[0]), abs(goal[1] - shown[1]))
-    if far < 0.004 * wide or far > 20 * wide:
-        return goal
-    low, high = (old + (new - old) * _EASE for old, new in zip(shown, goal, strict=True))
-    return low, high

@@ -42,9 +42,9 @@ def trace_run(run: SavedSeries, axes: Axes, columns: int) -> Numbers:
     """Return the value of a run's smoothed line in each pixel column (columns,), NaN for no line."""
     low, high = axes.goal
     room = _ROOM * (high - low)
-    kept = np.where(np.isfinite(run.y), np.clip(run.y, low - room, high + room), np.nan)
+    heights = np.where(np.isfinite(run.y), np.clip(run.y, low - room, high + room), np.nan)
     radius = round(_SMOOTHING * columns) if run.series.smooth else 0
-    return plotting.trace(run.x, kept, axes.x_range, columns, radius)
+    return plotting.trace(run.x, heights, axes.x_range, columns, radius)
 
 
 def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Numbers, axes: Axes) -> None:
@@ -60,9 +60,9 @@ def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Number
         return clipped
 
     if not run.series.dash and run.series.smooth:
-        kept = plotting.thinned(run.x, run.y, axes.x_range, area.width)
-        columns = axes.across(run.x[kept], area.width)
-        dots = plotting.specks(columns, rows(run.y[kept]), size, _SPECK * scale)
+        shown = plotting.thinned(run.x, run.y, axes.x_range, area.width)
+        columns = axes.across(run.x[shown], area.width)
+        dots = plotting.specks(columns, rows(run.y[shown]), size, _SPECK * scale)
         _cover(sheet.surface, corner, colour, dots, _SPECK_ALPHA)
     heights = rows(values)
     dash = tuple(length * scale for length in run.series.dash)

@@ -17,7 +17,7 @@ Bools = npt.NDArray[np.bool_]
 Limits = tuple[float, float]
 
 _WILD: Final = 300.0  # a range this many times wider than the interquartile range is cut
-_KEPT: Final = 10.0  # interquartile ranges that are kept on either side then
+_WITHIN: Final = 10.0  # interquartile ranges on either side to which it is cut
 _STEPS: Final = (1.0, 2.0, 2.5, 5.0, 10.0)
 _STEEP: Final = 3.0  # slope in rows per column above which a line grows no thicker, or it would end in spikes
 _FAR: Final = -1e6  # a row outside the plot
@@ -68,7 +68,7 @@ def robust_range(values: Numbers) -> Limits | None:
     first, third = (float(one) for one in np.quantile(finite, (0.25, 0.75)))
     middle = third - first
     if middle > 0 and high / _WILD - low / _WILD > middle:
-        return max(low, first - _KEPT * middle), min(high, third + _KEPT * middle)
+        return max(low, first - _WITHIN * middle), min(high, third + _WITHIN * middle)
     return low, high
 
 
@@ -76,8 +76,8 @@ def grid(low: float, high: float, most: int = 4) -> Numbers:
     """Return two to `most` grid lines: evenly spaced round numbers that enclose low to high."""
     low, high = max(low, -1e300), min(high, 1e300)
     if high / 2 - low / 2 <= 1e-9 * max(abs(low), abs(high)):
-        pad = max(abs(low), abs(high)) / 10 or 1.0
-        low, high = low - pad, high + pad
+        around = max(abs(low), abs(high)) / 10 or 1.0
+        low, high = low - around, high + around
     wide = (high - low) / (most - 1)
     power = 10.0 ** math.floor(math.log10(wide))
     for step in (power * factor for factor in (*_STEPS, 20.0, 50.0)):
@@ -109,17 +109,26 @@ def steady_grid(span: Limits, before: Numbers | None, make: Callable[[float, flo
     return lines if lines[-1] - lines[0] < 0.6 * (before[-1] - before[0]) else before
 
 
+def eased(shown: Limits, goal: Limits, share: float) -> Limits:
+    """Return limits nearer to the goal by a share of the way, or the goal itself if it is very near or very far."""
+    wide, far = goal[1] - goal[0], max(abs(goal[0] - shown[0]), abs(goal[1] - shown[1]))
+    if far < 0.004 * wide or far > 20 * wide:
+        return goal
+    low, high = (old + (new - old) * share for old, new in zip(shown, goal, strict=True))
+    return low, high
+
+
 def thinned(x: Numbers, y: Numbers, x_range: Limits, count: int) -> npt.NDArray[np.intp]:
     """Return the indices of about `count` points at most: the lowest and the highest of each group of neighbours."""
-    kept = np.flatnonzero(np.isfinite(y) & (x >= x_range[0]) & (x <= x_range[1]))
-    if len(kept) <= count:
-        return kept
-    neighbours = -(-len(kept) // max(1, count // 2))
-    rows = -(-len(kept) // neighbours)
-    groups = np.pad(y[kept], (0, rows * neighbours - len(kept)), mode="edge").reshape(rows, neighbours)
+    shown = np.flatnonzero(np.isfinite(y) & (x >= x_range[0]) & (x <= x_range[1]))
+    if len(shown) <= count:
+        return shown
+    neighbours = -(-len(shown) // max(1, count // 2))
+    rows = -(-len(shown) // neighbours)
+    groups = np.pad(y[shown], (0, rows * neighbours - len(shown)), mode="edge").reshape(rows, neighbours)
     first = np.arange(rows) * neighbours
     ends = np.stack([first + groups.argmin(axis=1), first + groups.argmax(axis=1)])
-    return np.unique(kept[np.minimum(ends, len(kept) - 1)])
+    return np.unique(shown[np.minimum(ends, len(shown) - 1)])
 
 
 def trace(x: Numbers, y: Numbers, x_range: Limits, columns: int, radius: int) -> Numbers:
@@ -236,10 +245,10 @@ def alone(values: Numbers) -> list[int]:
 
 def starts(flags: Bools, at: Numbers, spacing: float) -> list[float]:
     """Return the positions `at` which runs of True begin, leaving out those less than `spacing` after another."""
-    kept: list[float] = []
+    places: list[float] = []
     begins = flags.copy()
     begins[1:] &= ~flags[:-1]
     for place in at[begins].tolist():
-        if not kept or place - kept[-1] >= spacing:
-            kept.append(place)
-    return kept
+        if not places or place - places[-1] >= spacing:
+            places.append(place)
+    return places

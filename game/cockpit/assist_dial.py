@@ -6,11 +6,11 @@ from typing import Final
 
 import pygame
 
+from game.cockpit.hud import Lamp, draw_title
 from game.core import texts
 from game.core.settings import Settings
 from game.drawing.canvas import Canvas
-from game.drawing.shapes import Shape
-from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, MUTE, NET, SMALL, VIEW_SIZE
 from game.flight.credit import FlownBy
 from game.input.controls import Command, translate
 
@@ -57,7 +57,7 @@ class AssistDial:
         at_once = self._settings.reduced_motion or self._dragged
         self._shown += (1.0 if at_once else _EASE) * (wanted - self._shown)
 
-    def draw(self, canvas: Canvas, text: str, stick: FlownBy, lamp: tuple[Shape, Colour, float]) -> None:
+    def draw(self, canvas: Canvas, text: str, stick: FlownBy, lamp: Lamp) -> None:
         """Write who flies, after a lamp of that shape, colour and glow, and draw the slider."""
         draw_title(canvas, text, lamp)
         left, right = _TRACK
@@ -76,13 +76,3 @@ class AssistDial:
 
     def _turn(self, assist: float) -> None:
         self._settings.assist = round(min(max(assist, 0.0), 1.0), 2)
-
-
-def draw_title(canvas: Canvas, text: str, lamp: tuple[Shape, Colour, float]) -> None:
-    """Write who flies, with a lamp before it."""
-    shape, colour, glow = lamp
-    width = canvas.text_width(text, size=TEXT)
-    canvas.text(text, (_MIDDLE + 9, 41), size=TEXT, align="centre")
-    spot = (_MIDDLE - width / 2 - 8, 36)
-    canvas.glow(spot, 16, colour, glow)
-    canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)

@@ -10,9 +10,9 @@ import pygame
 
 from ai.common.environment import Doubles
 from ai.lander.environment import Outcome
-from game.cockpit.assist_dial import AssistDial, draw_title
+from game.cockpit.assist_dial import AssistDial
 from game.cockpit.copilot_panel import PADS_HIGH, PANEL, CopilotPanel
-from game.cockpit.hud import CARD
+from game.cockpit.hud import CARD, draw_title
 from game.cockpit.overrides import Overrides
 from game.cockpit.track import FlownPath
 from game.core import texts

@@ -16,6 +16,7 @@ from ai.lander.rules import tenths
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
+from game.drawing.shapes import Shape
 from game.drawing.tokens import (
     FAINT,
     FIGURE,
@@ -37,7 +38,9 @@ from game.drawing.tokens import (
 from game.flight.outcomes import OutcomeCard, RivalOutcome
 from game.ui.hints import draw_hints, hints_width
 
-# Four columns on the left, two on the right: the pad stands in the middle.
+Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
+
+# Four columns on the left, two on the right: the landing pad stands in the middle.
 COLUMNS: Final = (64.0, 186.0, 308.0, 430.0, 1002.0, 1124.0)
 _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
@@ -148,17 +151,23 @@ def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
     canvas.text(readout.unit, (figure.right + gap, line - rise), size=SMALL, colour=MUTE)
 
 
-def draw_hand(canvas: Canvas, text: str, colour: Colour, sweep: float = 1.0) -> None:
-    """Draw who flies at the top; a line in their colour sweeps out from the middle along the view's edge."""
-    middle = VIEW_SIZE[0] / 2
-    width = canvas.text_width(text, size=TEXT)
+def draw_title(canvas: Canvas, text: str, lamp: Lamp, reach: float = 16.0) -> float:
+    """Write who flies, with a lamp before it that shines to `reach` points; return the text's width in points."""
+    shape, colour, glow = lamp
+    middle, width = VIEW_SIZE[0] / 2, canvas.text_width(text, size=TEXT)
     canvas.text(text, (middle + 9, 41), size=TEXT, align="centre")
-    canvas.glow((middle - width / 2 - 8, 36), 14, colour, 0.8)
-    canvas.dot((middle - width / 2 - 8, 36), 4, colour)
-    half = max(90.0, width / 2 + 14)
-    reach = half * sweep
-    canvas.pill((middle - half, 54, 2 * half, 2), FAINT, 0.5)
-    canvas.pill((middle - reach, 54, max(2.0, 2 * reach), 2), colour)
+    spot = (middle - width / 2 - 8, 36)
+    canvas.glow(spot, reach, colour, glow)
+    canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)
+    return width
+
+
+def draw_hand(canvas: Canvas, text: str, colour: Colour) -> None:
+    """Draw who flies at the top, over a line in their colour."""
+    half = max(90.0, draw_title(canvas, text, ("circle", colour, 0.8), reach=14.0) / 2 + 14)
+    line = (VIEW_SIZE[0] / 2 - half, 54, 2 * half, 2)
+    canvas.pill(line, FAINT, 0.5)
+    canvas.pill(line, colour)
 
 
 def draw_corner(canvas: Canvas, small: str, large: str, asked: str = "") -> None:

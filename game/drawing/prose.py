@@ -1,10 +1,11 @@
-"""Word wrap: sentences on as many lines as they need."""
+"""Word wrap: sentences on as many lines as they need, or as there is room for."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import INK, SMALL, Colour
 
 _LONGEST: Final = 4000  # characters: more than fit on a screen
 
@@ -19,3 +20,25 @@ def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
         else:
             lines[-1] = longer
     return lines
+
+
+def draw_wrapped(
+    canvas: Canvas,
+    text: str,
+    start: Point,
+    width: float,
+    *,
+    size: float = SMALL,
+    colour: Colour = INK,
+    leading: float = 16.0,
+    most: int | None = None,
+) -> float:
+    """Draw a text from its first baseline on, `leading` points from each line to the next, `most` lines at most.
+
+    Return the y of the baseline after the last line, in points.
+    """
+    x, y = start
+    for line in wrapped(canvas, text, size, width)[:most]:
+        canvas.text(line, (x, y), size=size, colour=colour)
+        y += leading
+    return y

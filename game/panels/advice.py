@@ -12,14 +12,13 @@ from ai.training.hints import Adviser, Hint
 from ai.training.history import History
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.prose import wrapped
+from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, LABEL, SMALL
 from game.training.knob_descriptions import told
 from game.ui.form import Form
 from game.ui.widgets import TextButton
 
 _WORD: Final = 62.0  # from one word to the next
-_LINE: Final = 16.0
 _LINES: Final = 2  # of room for a hint, also at the largest text size
 
 
@@ -80,12 +79,7 @@ class Advice:
             (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self.done)
         )
         canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
-        for number, line in enumerate(wrapped(canvas, said, SMALL, self._room)[:_LINES]):
-            canvas.text(line, (box.left + 14, box.top + 34 + _LINE * number), size=SMALL)
-
-    @property
-    def _room(self) -> float:
-        return self._box.width - 28
+        draw_wrapped(canvas, said, (box.left + 14, box.top + 34), box.width - 28, most=_LINES)
 
     def _lay(self, hint: Hint | None) -> None:
         """Add the buttons that fit the hint that is shown."""

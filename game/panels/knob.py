@@ -14,13 +14,10 @@ import numpy as np
 import pygame
 
 from game.core import texts
-from game.core.scene import Transition
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, PANEL, SMALL, Colour
 from game.input.controls import Command, translate
 from game.training.knob_descriptions import KnobDescription, figure
-from game.ui.entry import Entry, digits, draw_line
 from game.ui.widget import PointsManager, Widget, mix
 from game.ui.widgets import draw_switch
 from game.ui.words import TextButtonRow
@@ -28,7 +25,6 @@ from game.ui.words import TextButtonRow
 MARGIN: Final = 16  # left of the label, for the dot
 _TRACK: Final = (142.0, 62.0)  # from the label to the track, from the track to the right end
 _GAP: Final = 14.0  # between words
-_LONGEST_SEED: Final = 9  # digits
 _DIM: Final = mix(FAINT, MUTE, 0.45)  # of a knob that has no effect
 _NOTE: Final = LABEL - 1.5  # size of text over a track
 _CLEAR: Final = 9.0  # from the middle of the handle to that text
@@ -248,9 +244,7 @@ class WordsKnob(Knob):
 
     def press(self) -> None:
         """Take the word under the mouse; without one, the next."""
-        x, chosen = self.ui_manager.get_mouse_position()[0], self.values.index(self.value)
-        by_key = self.ringed or not self.box.collidepoint(x, self.box.centery)
-        self.turn(self.values[(chosen + 1) % len(self.values) if by_key else self.row.at(x, chosen)])
+        self.turn(self.values[self.row.pressed(self.mouse_x, self.values.index(self.value))])
 
     def shift(self, direction: int) -> bool:
         """Take the word to the left or right."""
@@ -267,60 +261,6 @@ class WordsKnob(Knob):
             canvas, self.box.centery + 4.5, self.values.index(self.value),
             ink=ink, line=self.colour, drop=5.5, thickness=2.0 if self.live else 1.0,
         )  # fmt: skip
-
-
-class SeedKnob(Entry):
-    """The random seed: typed, or stepped with the arrows. It takes a new run, as a run begins with it."""
-
-    live = False
-    changed = False
-
-    def __init__(
-        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, turn: Callable[[int], None]
-    ) -> None:
-        super().__init__(manager, box, label, "0", self._accept, limit=_LONGEST_SEED, fits=digits, size=SMALL)
-        self.help = texts.KNOB_SEED
-        self._turn, self.value, self.waits = turn, 0, False
-
-    def display(self, value: int, *, waits: bool) -> None:
-        """Show what the panel says."""
-        self.value, self.waits = value, waits
-        if not self.typing:
-            self.line.set(str(value))
-
-    def shift(self, direction: int) -> bool:
-        """Raise or lower the seed by one."""
-        self._turn(min(max(self.value + direction, 0), 10**_LONGEST_SEED - 1))
-        return True
-
-    def _accept(self, text: str) -> Transition | None:
-        self._turn(int(text))
-        return None
-
-    def ease(self, at_once: bool) -> None:
-        """Take what was typed once the focus is elsewhere."""
-        super().ease(at_once)
-        self.commit()
-
-    def commit(self) -> None:
-        """Take what was typed, unless it is still being typed."""
-        if not self.typing and self.line.text != str(self.value):
-            self._turn(int(self.line.text or self.value))
-
-    @property
-    def start(self) -> tuple[float, float]:
-        """Left end of the number, which is aligned to the right end of the row."""
-        return self.box.right - typeface.width(self.line.text, SMALL, "regular"), self.box.centery + 4.5
-
-    def paint(self, canvas: Canvas) -> None:
-        """Draw the label and the number."""
-        draw_row(canvas, self, changed=False)
-        x, baseline = self.start
-        if self.typing:
-            draw_line(canvas, self.line, (x, baseline), self.box.width, SMALL, typing=True)
-            canvas.line((min(x, self.box.right - 20), baseline + 5.5), (self.box.right, baseline + 5.5), HUMAN, 1)
-        else:
-            canvas.text(self.line.text, (x, baseline), size=SMALL, colour=HUMAN if self.waits else MUTE)
 
 
 @lru_cache(maxsize=1024)

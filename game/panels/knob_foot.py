@@ -8,10 +8,11 @@ import pygame
 
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.prose import wrapped
-from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL, Colour
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL
 from game.input.controls import Command, Controls
-from game.panels.knob import Knob, SeedKnob
+from game.panels.knob import Knob
+from game.panels.seed_knob import SeedKnob
 from game.training.knob_descriptions import figure, label
 from game.training.run_settings import RunSettings
 from game.ui.hints import draw_hints
@@ -19,7 +20,6 @@ from game.ui.widget import Widget
 
 HEIGHT: Final = 60  # points, at the bottom of the panel
 ANSWERS: Final = 42  # from the bottom to the top of a notice's buttons
-_LINE: Final = 16.0  # from a baseline to the next
 _ABOVE: Final = 40.0  # extra height for a longer text
 _NOTICE: Final = 50.0  # from the bottom to the top of a notice
 _EXPLAINED: Final = 78.0  # height of the text above it, from the first baseline
@@ -38,7 +38,8 @@ def draw_foot(
     first = box.bottom - HEIGHT + 22.0
     if run_settings.problem:
         canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
-        _write(canvas, run_settings.problem, (box.left + 18, first), box.width - 18, canvas.palette.warn)
+        place = box.left + 18, first
+        draw_wrapped(canvas, run_settings.problem, place, box.width - 18, colour=canvas.palette.warn)
     elif run_settings.waiting:
         if picking:
             told = (focused and focused.help) or "\n".join(
@@ -69,7 +70,7 @@ def _write_parts(canvas: Canvas, told: str, start: tuple[float, float], width: f
     """Write paragraphs: a muted explanation, and measurements below it."""
     x, y = start
     for number, part in enumerate(told.split("\n")):
-        y = _write(canvas, part, (x, y), width, INK if number else MUTE) + 6
+        y = draw_wrapped(canvas, part, (x, y), width, colour=INK if number else MUTE) + 6
 
 
 def _draw_marks(canvas: Canvas, box: pygame.Rect, widget: Knob | SeedKnob, controls: Controls) -> None:
@@ -88,12 +89,3 @@ def _listed(names: list[str]) -> str:
     """List the knobs that wait, as many as there is room for."""
     labels = list(dict.fromkeys(label(name.split(".")[0]) for name in names))
     return ", ".join(labels) if len(labels) < 3 else texts.KNOBS_MORE.format(first=labels[0], count=len(labels) - 1)
-
-
-def _write(canvas: Canvas, text: str, start: tuple[float, float], width: float, colour: Colour) -> float:
-    """Write a text on as many lines as it takes; return the baseline after the last."""
-    x, y = start
-    for line in wrapped(canvas, text, SMALL, width):
-        canvas.text(line, (x, y), size=SMALL, colour=colour)
-        y += _LINE
-    return y

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
+from functools import partial
 from typing import Any, Final
 
 import pygame
@@ -14,11 +15,12 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
 from game.panels import knob_foot
-from game.panels.knob import MARGIN, Knob, SeedKnob, SliderKnob, SwitchKnob, WordsKnob
+from game.panels.knob import MARGIN, Knob, SliderKnob, SwitchKnob, WordsKnob
+from game.panels.seed_knob import SeedKnob
 from game.training.knob_descriptions import Configuration, KnobDescription, label, pages
 from game.training.run_settings import LANDER, SEED, Named, RunKind, RunSettings
 from game.ui.form import Form
-from game.ui.widget import PointsManager, Widget, mix
+from game.ui.widget import Widget
 from game.ui.widgets import Choice, TextButton
 
 _KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
@@ -169,20 +171,36 @@ class KnobsPanel:
         """Make the head: the chosen preset large on the left (a press restores it), the others on the right."""
         box, named, manager = self._box, self._run_settings.holds, self._form.manager
         top = box.top + 5
-        chosen = _Title(manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named))
+        chosen = _Title(
+            manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named), size=TITLE
+        )
         others: list[tuple[str, Callable[[], None]]] = [
             (self._run_kind.word((base, "")), self._loads((base, "")))
             for base in self._run_kind.presets
             if (base, "") != named
         ]
         if self._run_kind.sabotages:
-            others.append((texts.SABOTAGE_LEAVE, self._leave) if self._picking else (texts.SABOTAGE, self._pick))
-        right, made = float(box.right), []
-        for name, press in reversed(others):
-            width = _width(name, SMALL)
-            made.append(TextButton(manager, (right - width, top, width, 24), name, press, size=SMALL))
-            right -= width + 14
-        return [chosen, *reversed(made)]
+            pick = partial(self._go, "body", picking=True)
+            leave = partial(self._go, "head")
+            others.append((texts.SABOTAGE_LEAVE, leave) if self._picking else (texts.SABOTAGE, pick))
+        return [chosen, *self._make_words(others, box.right, pygame.Rect(0, top, 14, 24), SMALL)]
+
+    def _make_words(
+        self,
+        words: Sequence[tuple[str, Callable[[], None]]],
+        right: float,
+        row: pygame.Rect,
+        size: float,
+        colour: Colour = MUTE,
+    ) -> list[Widget]:
+        """Make buttons in a row that ends at `right`; the row's width is the gap between them, in points."""
+        made: list[Widget] = []
+        for name, press in reversed(words):
+            width = _width(name, size)
+            box = (right - width, row.top, width, row.height)
+            made.insert(0, TextButton(self._form.manager, box, name, press, size=size, colour=colour))
+            right -= width + row.width
+        return made
 
     def _make_tabs(self) -> Choice:
         words = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self._pages]
@@ -198,7 +216,7 @@ class KnobsPanel:
                     _KINDS[description.kind](manager, self._row(len(rows)), description, self._turned, self._seek)
                 )
         if page == self._run_kind.seed_page:
-            rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), self._seeded))
+            rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), partial(self.turn, SEED)))
         return rows
 
     def _row(self, number: int) -> pygame.Rect:
@@ -227,26 +245,15 @@ class KnobsPanel:
 
     def _make_answers(self, answer: str) -> list[Widget]:
         """Make the buttons that apply or undo."""
-        words = {"apply": [(texts.KNOBS_UNDO, self._undo), (texts.KNOBS_APPLY, self._apply)],
-                 "undo": [(texts.KNOBS_UNDO, self._undo)]}  # fmt: skip
-        right, made = self._box.right - 14.0, []
-        for name, press in words.get(answer, []):
-            width = _width(name, TEXT)
-            made.append(
-                _Answer(
-                    self._form.manager, (right - width, self._box.bottom - knob_foot.ANSWERS, width, 28), name, press
-                )
-            )
-            right -= width + 18
-        return [*reversed(made)]
+        undo, apply = (texts.KNOBS_UNDO, self._undo), (texts.KNOBS_APPLY, self._apply)
+        words = {"apply": [apply, undo], "undo": [undo]}
+        row = pygame.Rect(0, self._box.bottom - knob_foot.ANSWERS, 18, 28)
+        return self._make_words(words.get(answer, []), self._box.right - 14.0, row, TEXT, HUMAN)
 
     # What the widgets ask for
 
     def _turned(self, description: KnobDescription, value: Any) -> None:
         self.turn(description.name, value)
-
-    def _seeded(self, seed: int) -> None:
-        self.turn(SEED, seed)
 
     def _turn_page(self, page: int) -> None:
         for widget in self._widgets:
@@ -258,52 +265,35 @@ class KnobsPanel:
 
     def _seek(self) -> None:
         """Move the focus to the buttons that apply and undo, if there are any."""
-        self._focus("answers")
+        self._go("answers", picking=self._picking)
 
-    def _focus(self, section: str) -> None:
-        """Move the focus to the first widget of a section."""
+    def _go(self, section: str, *, picking: bool = False) -> None:
+        """Show the list of sabotages, or else the knobs, and move the focus to the first widget of a section."""
+        self._picking = picking
+        self._lay()
         if widgets := self._sections[section][1]:
             self._form.focus(widgets[0])
 
     def _loads(self, named: Named) -> Callable[[], None]:
         def load() -> None:
             self._run_settings.load(named)
-            self._picking = bool(named[1] and self._run_settings.waiting)  # a sabotage's help stays as long as it waits
-            self._lay()
-            self._focus("answers" if self._picking else "head")
+            picking = bool(named[1] and self._run_settings.waiting)  # a sabotage's help stays as long as it waits
+            self._go("answers" if picking else "head", picking=picking)
 
         return load
-
-    def _pick(self) -> None:
-        self._picking = True
-        self._lay()
-        self._focus("body")
-
-    def _leave(self) -> None:
-        self._picking = False
-        self._lay()
-        self._focus("head")
 
     def _apply(self) -> None:
         self._picking = False
         self._run_settings.apply()
-        self._lay()
-        self._focus("tabs")
+        self._go("tabs")
 
     def _undo(self) -> None:
-        self._picking = False
         self._run_settings.undo()
-        self._lay()
-        self._focus("tabs")
+        self._go("tabs")
 
 
 class _Title(TextButton):
     """Name of the chosen preset: large, with a line under it."""
-
-    def __init__(
-        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
-    ) -> None:
-        super().__init__(manager, box, label, on_press, size=TITLE)
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the word and its line."""
@@ -311,19 +301,6 @@ class _Title(TextButton):
         box = self.box
         canvas.text(self.label, (box.left, box.top - 4 + _BASELINE), size=TITLE, colour=INK)
         canvas.line((box.left, box.top + 30), (box.left + box.width, box.top + 30), NET, 2)
-
-
-class _Answer(TextButton):
-    """Button that applies or undoes; amber, the player's colour."""
-
-    def __init__(
-        self, manager: PointsManager, box: pygame.typing.RectLike, label: str, on_press: Callable[[], None]
-    ) -> None:
-        super().__init__(manager, box, label, on_press, size=TEXT)
-
-    def tint(self) -> Colour:
-        """Colour of the button: amber, shifted to ink while in focus."""
-        return mix(HUMAN, INK, self.warmth)
 
 
 def _width(text: str, size: float) -> float:

@@ -7,7 +7,7 @@ from typing import Final
 from game.core import texts
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas, Point
-from game.drawing.prose import wrapped
+from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import FIGURE, INK, MUTE, SMALL, TITLE, Colour, Palette
 
 _LEADING: Final = 17.0
@@ -43,5 +43,4 @@ def draw_problem(canvas: Canvas, problem: str, corner: Point, width: float, most
     """Draw why a run has failed, in at most so many lines."""
     left, top = corner
     canvas.marker("cross", (left + 5, top - 4), 10, canvas.palette.warn)
-    for number, line in enumerate(wrapped(canvas, problem, SMALL, width - 20)[:most]):
-        canvas.text(line, (left + 18, top + _LEADING * number), size=SMALL, colour=canvas.palette.warn)
+    draw_wrapped(canvas, problem, (left + 18, top), width - 20, colour=canvas.palette.warn, leading=_LEADING, most=most)

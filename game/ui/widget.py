@@ -82,6 +82,12 @@ class Widget(UIElement):
         """The widget's box, in points."""
         return pygame.Rect(self.rect)
 
+    @property
+    def mouse_x(self) -> float | None:
+        """The mouse's x in points; None while keys or a gamepad are in use."""
+        x = float(self.ui_manager.get_mouse_position()[0])
+        return None if self.ringed or not self.box.collidepoint(x, self.box.centery) else x
+
     def press(self) -> Transition | None:
         """Activate the widget."""
         return None

@@ -31,9 +31,10 @@ class TextButton(Widget):
         *,
         size: float = TEXT,
         weight: Weight = "regular",
+        colour: Colour = MUTE,
     ) -> None:
         super().__init__(manager, box, label)
-        self._on_press, self._size, self._weight = on_press, size, weight
+        self._on_press, self._size, self._weight, self._colour = on_press, size, weight, colour
 
     @property
     def baseline(self) -> float:
@@ -43,6 +44,10 @@ class TextButton(Widget):
     def press(self) -> Transition | None:
         """Call the button's action."""
         return self._on_press()
+
+    def tint(self) -> Colour:
+        """Return the word's colour: its own, or ink when in focus."""
+        return mix(self._colour, INK, self.warmth)
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the word, and the growing line under it."""
@@ -212,16 +217,9 @@ class Choice(Widget):
             self.index = index
             self._on_change(index)
 
-    @property
-    def mouse_x(self) -> float | None:
-        """The mouse's x in points; None while keys or a gamepad are in use."""
-        x = float(self.ui_manager.get_mouse_position()[0])
-        return None if self.ringed or not self.box.collidepoint(x, self.box.centery) else x
-
     def press(self) -> Transition | None:
         """Choose the option under the mouse; without a mouse, the next option."""
-        x = self.mouse_x
-        self.choose((self.index + 1) % len(self.options) if x is None else self.row.at(x, self.index))
+        self.choose(self.row.pressed(self.mouse_x, self.index))
         return None
 
     def shift(self, direction: int) -> bool:

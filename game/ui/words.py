@@ -56,6 +56,10 @@ class TextButtonRow:
             return page.start - 1
         return max((number for number in page if self.lefts[number] - self._gap / 2 <= x), default=chosen)
 
+    def pressed(self, x: float | None, chosen: int) -> int:
+        """Return the number that a press chooses: that of the word at x, or without a mouse that of the next word."""
+        return (chosen + 1) % len(self.words) if x is None else self.at(x, chosen)
+
     def paint(
         self,
         canvas: Canvas,

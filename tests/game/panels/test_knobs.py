@@ -10,8 +10,9 @@ from ai.agent.schedule import in_force
 from game.core import texts
 from game.core.scene import Pop, Transition
 from game.drawing.canvas import Canvas
-from game.panels.knob import Knob, SeedKnob, SliderKnob
+from game.panels.knob import Knob, SliderKnob
 from game.panels.knobs import KnobsPanel
+from game.panels.seed_knob import SeedKnob
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.widgets import Choice, TextButton

@@ -7,11 +7,13 @@ from game.core.collection import fitting
 from game.core.scene import Pop, Transition
 from game.drawing.canvas import Canvas
 from game.input.bindings import Command
-from game.ui import entry
+from game.ui import text_line
 from game.ui.context import Context
-from game.ui.entry import EditedLine, Entry, digits, printable
+from game.ui.entry import Entry, first_shown
 from game.ui.form import Form
 from game.ui.listing import Listing
+from game.ui.text_line import Fits, TextLine, digits, printable
+from game.ui.widget import PointsManager
 from game.ui.widgets import TextButton
 from tests.support.driver import Driver
 
@@ -69,22 +71,26 @@ def write(game: Driver, text: str) -> None:
         game.post(pygame.KEYUP, key=code, mod=0, unicode=letter, scancode=0)
 
 
-def press(line: EditedLine, *keys: int, mod: int = 0) -> None:
+def line_of(text: str, limit: int = 40, fits: Fits = printable) -> TextLine:
+    return TextLine(PointsManager(), (0, 0, 300, 30), text, limit, fits)
+
+
+def press(line: TextLine, *keys: int, mod: int = 0) -> None:
     for key in keys:
-        line.take(pygame.event.Event(pygame.KEYDOWN, key=key, mod=mod))
+        line.process_event(pygame.event.Event(pygame.KEYDOWN, key=key, mod=mod))
 
 
 # A line
 
 
 def test_the_first_letter_takes_the_place_of_a_suggestion():
-    line = EditedLine("Modern")
+    line = line_of("Modern")
     line.insert("x")
     assert (line.text, line.caret) == ("x", 1)
 
 
 def test_a_moved_caret_keeps_the_suggestion():
-    line = EditedLine("Modern")
+    line = line_of("Modern")
     press(line, pygame.K_END)
     line.insert("!")
     press(line, pygame.K_HOME, pygame.K_RIGHT, pygame.K_DELETE)
@@ -94,13 +100,13 @@ def test_a_moved_caret_keeps_the_suggestion():
 
 
 def test_the_ends_of_a_line_are_the_end():
-    line = EditedLine("ab")
+    line = line_of("ab")
     press(line, pygame.K_HOME, pygame.K_LEFT, pygame.K_BACKSPACE, pygame.K_END, pygame.K_RIGHT, pygame.K_DELETE)
     assert (line.text, line.caret) == ("ab", 2)
 
 
 def test_everything_can_be_selected_and_deleted():
-    line = EditedLine("ab")
+    line = line_of("ab")
     press(line, pygame.K_END)
     press(line, pygame.K_a, mod=pygame.KMOD_LCTRL)
     press(line, pygame.K_BACKSPACE)
@@ -117,21 +123,21 @@ def test_everything_can_be_selected_and_deleted():
     ],
 )
 def test_only_what_fits_is_written(fits: Callable[[str], str], text: str, kept: str):
-    line = EditedLine("", fits=fits)
+    line = line_of("", fits=fits)
     line.insert(text)
     assert line.text == kept
 
 
 def test_a_line_is_never_longer_than_its_limit():
-    line = EditedLine("abc", limit=5)
+    line = line_of("abc", limit=5)
     line.place(1)
     line.insert("123456")
     assert line.text == "a12bc"
 
 
 def test_the_clipboard_is_pasted(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(entry, "_clipboard", lambda: "run/7\n")
-    line = EditedLine("", fits=fitting)
+    monkeypatch.setattr(text_line, "clipboard_paste", lambda: "run/7\n")
+    line = line_of("", fits=fitting)
     press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
     assert line.text == "run7"
 
@@ -141,23 +147,107 @@ def test_no_clipboard_is_no_text(monkeypatch: pytest.MonkeyPatch):
         raise pygame.error("no clipboard")
 
     monkeypatch.setattr(pygame.scrap, "get_text", broken)
-    line = EditedLine("a")
+    line = line_of("a")
     press(line, pygame.K_END)
     press(line, pygame.K_v, mod=pygame.KMOD_LCTRL)
     assert line.text == "a"
 
 
 def test_a_held_key_repeats_until_it_is_let_go():
-    line = EditedLine("x" * 30)
+    line = line_of("x" * 30)
     press(line, pygame.K_END, pygame.K_BACKSPACE)
     for _ in range(60):
-        line.update()
+        line.update(1 / 60)
     left = len(line.text)
     assert 0 < left < 25
-    line.take(pygame.event.Event(pygame.KEYUP, key=pygame.K_BACKSPACE, mod=0))
+    line.process_event(pygame.event.Event(pygame.KEYUP, key=pygame.K_BACKSPACE, mod=0))
     for _ in range(60):
-        line.update()
+        line.update(1 / 60)
     assert len(line.text) == left
+
+
+def test_shift_selects_and_a_letter_takes_its_place():
+    line = line_of("Modern")
+    press(line, pygame.K_END)
+    press(line, pygame.K_LEFT, pygame.K_LEFT, pygame.K_LEFT, pygame.K_RIGHT, mod=pygame.KMOD_LSHIFT)
+    assert line.selection == (4, 6)
+    line.insert("e")
+    assert (line.text, line.caret) == ("Modee", 5)
+    press(line, pygame.K_HOME, mod=pygame.KMOD_RSHIFT)
+    assert line.selection == (0, 5)
+    press(line, pygame.K_DELETE)
+    assert line.text == ""
+
+
+@pytest.mark.parametrize(
+    ("mod", "keys", "selection"),
+    [
+        (pygame.KMOD_LCTRL, [pygame.K_LEFT], (8, 8)),
+        (pygame.KMOD_LCTRL, [pygame.K_LEFT, pygame.K_LEFT], (4, 4)),
+        (pygame.KMOD_LALT, [pygame.K_LEFT] * 4, (0, 0)),
+        (pygame.KMOD_LCTRL, [pygame.K_LEFT, pygame.K_LEFT, pygame.K_RIGHT], (7, 7)),
+        (pygame.KMOD_LCTRL | pygame.KMOD_LSHIFT, [pygame.K_LEFT, pygame.K_LEFT], (4, 13)),
+    ],
+)
+def test_arrows_go_by_words(mod: int, keys: list[int], selection: tuple[int, int]):
+    line = line_of("one two three")
+    press(line, pygame.K_END)
+    press(line, *keys, mod=mod)
+    assert line.selection == selection
+
+
+def test_words_are_erased_in_both_directions_and_a_selection_alone():
+    line = line_of("one two three")
+    press(line, pygame.K_END)
+    press(line, pygame.K_BACKSPACE, mod=pygame.KMOD_LCTRL)
+    assert line.text == "one two "
+    press(line, pygame.K_HOME)
+    press(line, pygame.K_DELETE, mod=pygame.KMOD_LCTRL)
+    assert line.text == " two "
+    press(line, pygame.K_RIGHT, mod=pygame.KMOD_LSHIFT)
+    press(line, pygame.K_BACKSPACE, mod=pygame.KMOD_LCTRL)
+    assert line.text == "two "
+
+
+def test_what_is_selected_is_copied_or_cut(monkeypatch: pytest.MonkeyPatch):
+    copied: list[str] = []
+    monkeypatch.setattr(pygame.scrap, "put_text", copied.append)
+    line = line_of("one two")
+    press(line, pygame.K_HOME)
+    press(line, *[pygame.K_RIGHT] * 3, mod=pygame.KMOD_LSHIFT)
+    press(line, pygame.K_c, mod=pygame.KMOD_LCTRL)
+    assert (copied, line.text) == (["one"], "one two")
+    press(line, pygame.K_x, mod=pygame.KMOD_LCTRL)
+    assert (copied, line.text, line.caret) == (["one", "one"], " two", 0)
+
+
+def test_without_a_clipboard_nothing_is_lost(monkeypatch: pytest.MonkeyPatch):
+    def broken(_: str) -> None:
+        raise pygame.error("no clipboard")
+
+    monkeypatch.setattr(pygame.scrap, "put_text", broken)
+    line = line_of("one")
+    press(line, pygame.K_x, mod=pygame.KMOD_LCTRL)
+    assert line.text == "one"
+
+
+def test_composed_letters_are_shown_at_the_caret_and_are_text_once_they_are_done():
+    line = line_of("ab")
+    line.place(1)
+    line.process_event(pygame.event.Event(pygame.TEXTEDITING, text="に", start=1, length=0))
+    assert (line.text, line.shown, line.caret) == ("ab", "aにb", 2)
+    press(line, pygame.K_BACKSPACE)  # which is the input method's
+    assert line.shown == "aにb"
+    line.process_event(pygame.event.Event(pygame.TEXTINPUT, text="日本"))
+    assert (line.text, line.shown, line.caret) == ("a日本b", "a日本b", 3)
+
+
+def test_composed_letters_take_the_place_of_the_selection_and_may_be_given_up():
+    line = line_of("ab")
+    line.process_event(pygame.event.Event(pygame.TEXTEDITING, text="に", start=1, length=0))
+    assert (line.text, line.shown) == ("", "に")
+    line.process_event(pygame.event.Event(pygame.TEXTEDITING, text="", start=0, length=0))
+    assert line.shown == ""
 
 
 # An entry
@@ -263,10 +353,56 @@ def test_the_mouse_places_the_caret_and_a_nudge_does_not_take_the_focus(page: tu
     assert not scene.entry.typing
 
 
+def test_dragging_selects_and_two_clicks_select_a_word(page: tuple[Driver, Page]):
+    game, scene = page
+    left, right, y = 65, 300, 116
+    down, up = pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP
+    game.post(down, pos=game.to_window((left, y)), button=1)
+    assert scene.entry.line.selection == (0, 8)  # all of a suggestion
+    game.move((right, 600))
+    game.move((left, 600))
+    assert scene.entry.line.selection == (0, 0)
+    game.move((right, 600))
+    game.post(up, pos=game.to_window((right, 600)), button=1)
+    assert scene.entry.line.selection == (0, 8)
+    game.move((left, y))
+    assert scene.entry.line.selection == (0, 8)  # the button is up
+    game.frames(60)
+    for _ in range(2):
+        game.click((left + 20, y))
+    assert scene.entry.line.selection == (0, 6)
+    write(game, "x")
+    assert scene.entry.text == "x 3"
+
+
+def test_enter_and_escape_are_the_input_methods_while_it_composes(page: tuple[Driver, Page]):
+    game, scene = page
+    game.key(pygame.K_RETURN)
+    game.post(pygame.TEXTEDITING, text="に", start=1, length=0)
+    game.keys(pygame.K_RETURN, pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_TAB)
+    assert scene.form.typing
+    assert scene.log == []
+    game.post(pygame.TEXTINPUT, text="日")
+    game.key(pygame.K_RETURN)
+    assert scene.log == ["日"]
+
+
+def test_a_composition_ends_with_the_typing(page: tuple[Driver, Page]):
+    game, scene = page
+    game.key(pygame.K_RETURN)
+    game.post(pygame.TEXTEDITING, text="に", start=1, length=0)
+    game.click((80, 172))
+    game.frames(2)
+    assert (scene.entry.typing, scene.entry.line.composition) == (False, "")
+
+
 def test_a_long_text_keeps_its_caret_in_sight():
-    line = EditedLine("m" * 40)
-    assert entry.first_shown(line.text, 40, 15, 300) > 0
-    assert entry.first_shown(line.text, 0, 15, 300) == 0
+    text = "m" * 40
+    first = first_shown(text, 40, 15, 300)
+    assert first > 0
+    assert first_shown(text, 38, 15, 300, first) == first  # it stands still while the caret moves within it
+    assert first_shown(text, 0, 15, 300, first) == 0
+    assert first_shown(text[:3], 3, 15, 300, first) == 0
 
 
 # A listing
