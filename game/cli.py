@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import Any, Final
 
 from game.core import texts
+
+_FIRST: Final = "stack"
 
 
 def add_commands(commands: Any) -> None:
     """Add the command `physics` to a parser's sub-commands."""
     physics = commands.add_parser("physics", help=texts.CLI_PHYSICS)
-    names = list(texts.EXHIBITS)
-    physics.add_argument("--exhibit", choices=names, default=names[0], help=texts.CLI_EXHIBIT.format(name=names[0]))
+    names = sorted(texts.EXHIBITS)
+    physics.add_argument("--exhibit", choices=names, default=_FIRST, help=texts.CLI_EXHIBIT.format(name=_FIRST))
     physics.set_defaults(run=open_physics)
 
 

@@ -145,7 +145,7 @@ def why(decision: SharedDecision, values: QValues) -> Why:
     title, *lines = texts.INSIGHT_WHY[source.name]
     if not values.readable:
         return title, *texts.VALUES_DAMAGED
-    name = ACTION_NAMES[asked].capitalize()
+    name = texts.said(ACTION_NAMES[asked]).capitalize()
     if decision.mode is Mode.GUARDIAN:
         return title, *_guarded(decision, name)
     loss, allowed = values.loss(asked), values.allowed or 0.0
@@ -156,7 +156,7 @@ def why(decision: SharedDecision, values: QValues) -> Why:
     less, most = _told_apart(loss, allowed)
     if source is ActionSource.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
         lines[1] = texts.INSIGHT_EVERY_PAD
-    flown = ACTION_NAMES[values.flown]
+    flown = texts.said(ACTION_NAMES[values.flown])
     first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)
     return title, first, second
 
@@ -172,8 +172,8 @@ def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
     if gain <= 0.0:
         return texts.INSIGHT_SAME_GOOD.format(asked=name), ""
     less, most = _told_apart(gain, margin)
-    first = texts.INSIGHT_WORSE.format(asked=name, loss=less, best=ACTION_NAMES[best])
-    return first, texts.INSIGHT_MARGIN[gain > margin].format(allowed=most)
+    first = texts.INSIGHT_WORSE.format(asked=name, loss=less, best=texts.said(ACTION_NAMES[best]))
+    return first, texts.INSIGHT_MARGIN[bool(gain > margin)].format(allowed=most)
 
 
 def _told_apart(one: float, other: float) -> tuple[str, str]:

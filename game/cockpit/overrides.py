@@ -109,7 +109,7 @@ def difference(asked: int, flown: int) -> str:
     main, name = flown // 3 - asked // 3, texts.ENGINE_MAIN
     if main:
         words.append((texts.OVERRIDE_ADDS if main > 0 else texts.OVERRIDE_STOPS).format(engine=name))
-    before, after = (texts.ENGINES_STEER[action % 3] for action in (asked, flown))
+    before, after = (texts.ENGINES_STEER.get(action % 3, "") for action in (asked, flown))
     if before != after:
         form = texts.OVERRIDE_TURNS if before and after else texts.OVERRIDE_ADDS if after else texts.OVERRIDE_STOPS
         words.append(form.format(engine=after or before, other=before))

@@ -30,7 +30,7 @@ def name_problem(text: str) -> str:
     if not text.strip():
         return texts.NAME_EMPTY
     if len(text) > LONGEST_NAME:
-        return texts.NAME_LONG.format(most=LONGEST_NAME)
+        return texts.NAME_LONG.format(count=LONGEST_NAME)
     if fitting(text) != unicodedata.normalize("NFC", text):
         return texts.NAME_LETTERS
     if text[0] == "." or text[-1] == "." or text != text.strip():

@@ -149,7 +149,7 @@ class Credit:
             return self._difficulty.words
         points = landing_score(self._flight.env)
         beaten = self.counts and points > best > 0
-        return (texts.SCORE_BEST if beaten else texts.SCORE).format(points=points) if points else ""
+        return (texts.SCORE_BEST if beaten else texts.SCORE).format(count=points) if points else ""
 
     def reason(self, reason: str) -> str:
         """Return the text below a card's title: `reason`, or why a landing does not count."""

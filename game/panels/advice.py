@@ -109,7 +109,7 @@ class Advice:
     def _apply(self) -> None:
         back_to = self._hint.back_to if self._hint else None
         remedy = self.adviser.apply(went_back=back_to is not None)
-        went = [] if back_to is None else [texts.HINT_WENT_BACK.format(decisions=back_to)]
+        went = [] if back_to is None else [texts.HINT_WENT_BACK.format(count=back_to)]
         self.done = ", ".join([*([told(remedy)] if remedy else []), *went])
         for name, value in remedy.items():
             self._turn(name, value)

@@ -48,7 +48,7 @@ class NetworkPanel:
     def __init__(self, form: Form, on_closer: Callable[[], None]) -> None:
         self.large = False
         self._form = form
-        self._view = NetworkView(_SMALL, texts.INPUTS, ACTION_NAMES)
+        self._view = NetworkView(_SMALL, texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
         self._reward_bar = RewardBar(_STRIP)
         self._picture = _NETWORK
         width = typeface.width(texts.TRAIN_CLOSER, SMALL, "regular")

@@ -315,7 +315,7 @@ class NetworkView:
                 signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
         shown = len(column.units)
         if shown < column.total or not names:
-            words = (texts.NET_ALL if shown == column.total else texts.NET_SOME).format(shown=shown, total=column.total)
+            words = (texts.NET_ALL if shown == column.total else texts.NET_SOME).format(shown=shown, count=column.total)
             middle = (centres[0][0], self._last_line)
             signs.text(words, middle, size=LABEL - 1, colour=MUTE, align="centre")
 

@@ -92,7 +92,7 @@ def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
     """Draw which action is flown, for a pilot without Q-values; `top` is the first baseline."""
     for action, name in enumerate(ACTION_NAMES):
         y, here = top + _ROW * action, action == flown
-        canvas.text(name, (left, y), size=SMALL, colour=INK if here else MUTE, room=_NAME - 20)
+        canvas.text(texts.said(name), (left, y), size=SMALL, colour=INK if here else MUTE, room=_NAME - 20)
         if here:
             canvas.marker("triangle", (left + _NAME - 8, y - 4), 6, NET)
             canvas.text(texts.MIND_SCRIPTED_FLOWN, (left + _NAME, y), size=SMALL, colour=MUTE)
@@ -103,7 +103,9 @@ def _draw_row(canvas: Canvas, values: QValues, action: int, left: float, y: floa
     flown, feasible = action == values.flown, values.feasible[action]
     alpha = 1.0 if feasible or flown else 0.5
     colour = INK if flown else MUTE
-    canvas.text(ACTION_NAMES[action], (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20)
+    canvas.text(
+        texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20
+    )
     loss = values.loss(action)
     fraction = values.fraction(loss)
     tone = NET if flown else mix(FAINT, NET, 0.45 if feasible else 0.12)
@@ -133,12 +135,13 @@ def _draw_axis(canvas: Canvas, left: float, y: float, width: float) -> None:
 def decision_words(decision: Decision) -> Sequence[str]:
     """Explain in two lines why a network that decides alone flies one lander's action."""
     if decision.points is None:
-        return texts.Q_WEIGHS_NOTHING
+        return texts.Q_WEIGHS_NOTHING, ""
     if not np.isfinite(decision.points).all():
         return texts.VALUES_DAMAGED
     if not decision.kept[0]:
-        return texts.Q_BEST_FLOWN
-    names = {"kept": ACTION_NAMES[int(decision.action[0])].capitalize(), "best": ACTION_NAMES[int(decision.best[0])]}
+        return texts.Q_BEST_FLOWN, ""
+    kept, best = (texts.said(ACTION_NAMES[int(action[0])]) for action in (decision.action, decision.best))
+    names = {"kept": kept.capitalize(), "best": best}
     return [line.format(margin=f"{decision.margin:.3g}", **names) for line in texts.Q_KEPT]
 
 

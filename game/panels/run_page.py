@@ -58,7 +58,7 @@ def _draw_figures(canvas: Canvas, run: SavedRun, left: float) -> None:
 
 
 def _made(run: SavedRun) -> str:
-    settings = texts.RUN_SETTINGS.get(run.changes, texts.RUN_SETTINGS_MANY)
+    settings = texts.RUN_SETTINGS if run.changes else texts.RUN_AS_IS
     return texts.RUN_SEED.format(settings=settings.format(preset=run.preset, count=run.changes), seed=run.seed)
 
 

@@ -41,7 +41,7 @@ from game.ui.widgets import TextButton
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
-_OFFERED: Final = {name: DIGIT_PRESETS[name] for name in texts.PUPIL_PRESETS}
+_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in texts.PUPIL_PRESETS}
 DIGITS: Final = RunKind(tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.PUPIL_PRESETS, "images")
 _WIDTH: Final = 836.0  # of charts and matrix; the panel has the rest
 _LEFT: Final = 40.0

@@ -158,7 +158,7 @@ class MissionsScene:
         if best is None:
             return title, "–", ""
         if name == _DAILY:
-            return title, "", texts.SCORE.format(points=best.score)
+            return title, "", texts.SCORE.format(count=best.score)
         return title, texts.MEDALS[best.medal], f"{tenths(best.fuel):.1f} s"
 
     # The picture
@@ -199,7 +199,7 @@ class MissionsScene:
                 canvas.text(line, (_LEFT, _NETWORK + 19 * row), size=SMALL, colour=MUTE)
         if best:
             fuel, seconds = tenths(best.fuel), tenths(best.seconds)
-            words = texts.MISSION_BEST.format(fuel=fuel, seconds=seconds, points=best.score)
+            words = texts.MISSION_BEST.format(fuel=fuel, seconds=seconds, count=best.score)
             canvas.text(words, (_LEFT, 384), size=SMALL, colour=HUMAN)
 
     def _draw_medals(self, canvas: Canvas, name: str) -> None:

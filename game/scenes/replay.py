@@ -213,7 +213,7 @@ class ReplayScene:
 
         if self._export is None:
             answers: list[tuple[str, Callable[[], None]]] = [
-                (texts.EXPORT_KINDS[suffix], partial(self._begin_export, suffix))
+                (suffix[1:].upper(), partial(self._begin_export, suffix))
                 for suffix, kind in KINDS.items() if not kind.missing
             ]  # fmt: skip
             more = texts.EXPORT_GIF_ONLY if KINDS[".mp4"].missing else texts.EXPORT_MORE

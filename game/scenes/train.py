@@ -356,7 +356,7 @@ class TrainScene:
         height, line, share = 66, texts.TRAIN_BEGINS if self.lander_run.alive else texts.TRAIN_LINE, ""
         if len(history) and swarm_state is not None:
             line = texts.TRAIN_FIGURES.format(
-                count=len(swarm_state.outcome), seconds=history.points[-1][0], decisions=int(swarm_state.decisions)
+                landers=len(swarm_state.outcome), seconds=history.points[-1][0], count=int(swarm_state.decisions)
             )
             height, landed = _TITLE.height, history["success"][-1]
             share = "" if np.isnan(landed) else f"{100 * landed:.0f}"

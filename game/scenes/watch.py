@@ -312,7 +312,7 @@ class WatchScene:
 
     def _draw_words(self, canvas: Canvas) -> None:
         count = COUNTS[self._count]
-        crowd = texts.WATCH_ONE if count == 1 else texts.WATCH_MANY.format(count=count)
+        crowd = texts.WATCH_LANDERS.format(count=count)
         hud.draw_corner(canvas, texts.WATCH_TITLE, crowd)
         scripted = self._network.name == networks.SCRIPTED
         flies = (

@@ -13,12 +13,14 @@ from game.drawing.canvas import Canvas
 from game.panels.knob import Knob, SliderKnob
 from game.panels.knobs import KnobsPanel
 from game.panels.seed_knob import SeedKnob
+from game.training.knob_descriptions import knob_descriptions, pages
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.widgets import Choice, TextButton
 from tests.support.driver import Driver
 
 BOX = pygame.Rect(868, 20, 384, 404)
+PAGES = pages(knob_descriptions())
 
 
 class Panel:
@@ -80,7 +82,7 @@ def panel(open_game: Callable[..., Driver]) -> tuple[Driver, Panel]:
 
 
 def turn_to(game: Driver, scene: Panel, page: str) -> None:
-    number = list(texts.KNOB_PAGES).index(page)
+    number = PAGES.index(page)
     game.click((scene.tabs.row.lefts[number] + 4, scene.tabs.box.centery))
 
 
@@ -91,7 +93,7 @@ def at(knob: SliderKnob, fraction: float) -> tuple[float, float]:
 
 def test_every_page_is_inside_its_box(panel: tuple[Driver, Panel]):
     game, scene = panel
-    for page in texts.KNOB_PAGES:
+    for page in PAGES:
         turn_to(game, scene, page)
         knobs = [each for each in scene.form.widgets if isinstance(each, Knob | SeedKnob)]
         assert knobs
@@ -313,7 +315,7 @@ def test_a_refused_value_is_explained_on_the_panel(panel: tuple[Driver, Panel]):
 def test_all_states_are_drawn_at_any_size(panel: tuple[Driver, Panel], size: tuple[int, int]):
     game, scene = panel
     game.resize(size)
-    for page in texts.KNOB_PAGES:
+    for page in PAGES:
         turn_to(game, scene, page)
     scene.knobs.set_running(True)
     scene.knobs.turn("num_envs", 4)

@@ -218,7 +218,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     assert _row(entry)[-1] == flew(flight.recording.hands)
     won = [medal for medal in (1, 2, 3) if texts.MEDALS[medal] in page.words]
     assert won == [entry.medal] * bool(entry.medal)
-    best = [word for word in page.words if word == texts.SCORE_BEST.format(points=entry.score)]
+    best = [word for word in page.words if word == texts.SCORE_BEST.format(count=entry.score)]
     assert not best or entry.alone
     assert_book_agrees(reading, entry)
 
