@@ -8,7 +8,7 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Scene, Transition
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
@@ -119,12 +119,12 @@ class BindingCell(Widget):
         )
 
 
-class BindingsScene:
+class BindingsScene(Scene):
     """Table of all commands with their keys and gamepad buttons. Each change is saved at once."""
 
-    def enter(self, context: Context) -> None:
-        """Build the table."""
-        self._context, self._controls = context, context.controls
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._controls = context.controls
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
         self._form = form = Form(context, on_back=Pop)
         self._said = ""
@@ -176,9 +176,9 @@ class BindingsScene:
 
     def _changed(self, said: str) -> None:
         self._said = said
-        settings = self._context.settings
+        settings = self.context.settings
         settings.keys, settings.buttons = self._controls.keys.to_dict(), self._controls.buttons.to_dict()
-        self._context.apply_settings()
+        self.context.apply_settings()
 
     def _reset_all(self) -> None:
         self._controls.keys.reset()

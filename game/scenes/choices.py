@@ -36,19 +36,16 @@ _TOGGLE_ROW: Final = 58
 _CHART: Final = pygame.Rect(800, 152, 372, 176)
 
 
-class ChoicesScene:
+class ChoicesScene(Scene):
     """Choices scene over a flight. Each choice is saved the moment it is made; Escape or Fly goes back.
 
     A course fixes most options, so it offers fewer choices.
     """
 
-    def __init__(self, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False) -> None:
-        self._below, self._skill, self._begun, self._challenge = below, skill, begun, challenge
-
-    def enter(self, context: Context) -> None:
-        """Build the rows."""
-        self._context = context
-        self._behind = BlurredPicture(self._below, dimmed=0.7)
+    def __init__(self, context: Context, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False) -> None:
+        super().__init__(context)
+        self._skill, self._begun, self._challenge = skill, begun, challenge
+        self._behind = BlurredPicture(below, dimmed=0.7)
         self._taught = lessons(context.user_dir)
         self._form = form = Form(context, on_back=Pop)
         self._rows: dict[Widget, Callable[[], str]] = {}
@@ -69,8 +66,8 @@ class ChoicesScene:
 
     def _add_help(self) -> None:
         """Add the rows for how much the network helps, and when."""
-        settings = self._context.settings
-        word = self._context.controls.word
+        settings = self.context.settings
+        word = self.context.controls.word
         keys = {"less": word(Command.SLOWER), "more": word(Command.FASTER)}
         self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST,
                          lambda: texts.CHOICES_ASSIST_HELP[settings.assist > 0].format(**keys))  # fmt: skip
@@ -80,7 +77,7 @@ class ChoicesScene:
 
     def _add_starts(self) -> None:
         """Add the rows for the next flight's pads and for the handicap on its keys."""
-        settings, hands = self._context.settings, list(HANDS)
+        settings, hands = self.context.settings, list(HANDS)
         self._choice(texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
                      lambda index: self._changes("three_pads")(bool(index)),
                      lambda: texts.CHOICES_PADS_HELP[settings.three_pads])  # fmt: skip
@@ -88,9 +85,6 @@ class ChoicesScene:
         self._choice(texts.CHOICES_HANDS, words, _index(hands, settings.hands),
                      lambda index: self._changes("hands")(hands[index]),
                      lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))  # fmt: skip
-
-    def exit(self) -> None:
-        """Do nothing: every change is saved already."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the rows; the key that opened this scene closes it too."""
@@ -111,7 +105,7 @@ class ChoicesScene:
         if self._begun and not self._challenge:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
         self._draw_skill(canvas)
-        word = self._context.controls.word
+        word = self.context.controls.word
         hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
@@ -121,7 +115,7 @@ class ChoicesScene:
         return MARGIN, _FIRST + len(self._rows) * _ROW, _WIDTH, _ROW - 6
 
     def _add_slider(self, name: str, limits: tuple[float, float], label: str, help_: Callable[[], str]) -> None:
-        form, value = self._form, getattr(self._context.settings, name)
+        form, value = self._form, getattr(self.context.settings, name)
         slider = Slider(form.manager, self._box, label, value, limits, self._changes(name), step=0.1, figure=_percent)
         self._rows[form.add(slider)] = help_
 
@@ -133,8 +127,8 @@ class ChoicesScene:
 
     def _changes(self, name: str) -> Callable[[object], None]:
         def change(value: object) -> None:
-            setattr(self._context.settings, name, round(value, 2) if isinstance(value, float) else value)
-            self._context.apply_settings()
+            setattr(self.context.settings, name, round(value, 2) if isinstance(value, float) else value)
+            self.context.apply_settings()
 
         return change
 

@@ -14,7 +14,7 @@ from ai.training.history import REVERTED
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
 from game.core import texts
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Pop, Push, Scene, Transition, push
 from game.core.worker import WorkerState
 from game.digits.matrix import ConfusionMatrix
 from game.drawing import typeface
@@ -56,15 +56,11 @@ _EVERY: Final = 12  # frames between two drawings of the charts
 _BATCHES: Final = (MUTE, (2.0, 4.0))
 
 
-class DigitTrainingScene:
+class DigitTrainingScene(Scene):
     """Digit training scene: charts, confusion matrix and knobs."""
 
-    digit_run: DigitRun
-
-    knobs: KnobsPanel
-
-    def __init__(self) -> None:
-        self._context: Context | None = None
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self._was_running = self._alive = False
         self._frame = 0
         self._told: tuple[object, ...] = ()
@@ -73,17 +69,7 @@ class DigitTrainingScene:
         self.stop_word: TextButton | None = None
         self._back_word: TextButton | None = None
         self._in_force_told: tuple[float, DigitConfig, InForce] | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the screen; after a scene above has closed, resume the run."""
-        if self._context is not None:
-            if self._was_running:
-                self.digit_run.resume()
-            if self._asked and self.digit_run.alive:  # and the player chose not to replace it
-                self.knobs.set_config(self.digit_run.config, self.digit_run.seed)
-            self._asked = False
-            return
-        self._context, self._settings = context, context.settings
+        self._settings = context.settings
         self.digit_run = DigitRun(runs_dir(context.user_dir))
         self.digit_run.collection.hold()
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
@@ -100,6 +86,14 @@ class DigitTrainingScene:
         self.matrix = self._form.add(ConfusionMatrix(self._form.manager, _MATRIX))
         self._form.focus(self.start_word)
 
+    def resume(self) -> None:
+        """Resume the run."""
+        if self._was_running:
+            self.digit_run.resume()
+        if self._asked and self.digit_run.alive:  # and the player chose not to replace it
+            self.knobs.set_config(self.digit_run.config, self.digit_run.seed)
+        self._asked = False
+
     def exit(self) -> None:
         """Pause the run while another scene has the window."""
         self._was_running = self.digit_run.state in (WorkerState.RUNNING, WorkerState.STARTING)
@@ -107,9 +101,8 @@ class DigitTrainingScene:
 
     def close(self) -> None:
         """End the run's process; its latest network is kept."""
-        if self._context is not None:
-            self.digit_run.close()
-            self.digit_run.collection.release()
+        self.digit_run.close()
+        self.digit_run.collection.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, stop, knobs and the matrix."""
@@ -125,9 +118,8 @@ class DigitTrainingScene:
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
-        assert self._context is not None
         for note in self.digit_run.poll():
-            self._context.note(note)
+            self.context.note(note)
         if self.digit_run.begun:
             self.digit_run.begun = False
             self.knobs.set_config(self.digit_run.config, self.digit_run.seed)
@@ -225,10 +217,9 @@ class DigitTrainingScene:
         ]))  # fmt: skip
 
     def _run(self, config: DigitConfig, seed: int, resume: bool = False) -> None:
-        assert self._context is not None
         self._was_running = False
         if note := self.digit_run.begin(config, seed, resume=resume, name=self.knobs.name):
-            self._context.note(note)
+            self.context.note(note)
         self.matrix.set(None)
         if not resume:
             self.knobs.set_config(config, seed)
@@ -245,9 +236,8 @@ class DigitTrainingScene:
         self.digit_run.change(name, value)
 
     def _leave(self) -> Transition:
-        assert self._context is not None
         if self.digit_run.alive and self.digit_run.steps:
-            self._context.note(texts.TRAIN_KEPT)
+            self.context.note(texts.TRAIN_KEPT)
         self.digit_run.close()
         return Pop()
 
@@ -286,8 +276,7 @@ class DigitTrainingScene:
             return None
 
     def _say(self, words: str) -> None:
-        assert self._context is not None
-        self._context.note(words)
+        self.context.note(words)
 
     # The picture
 
@@ -338,7 +327,6 @@ class DigitTrainingScene:
             chart.set(series, (0.0, end), ticks)
 
     def _draw_title(self, canvas: Canvas) -> None:
-        assert self._context is not None
         digit_run, curves = self.digit_run, self.digit_run.curves
         line = texts.PUPIL_LOADING if digit_run.alive else texts.PUPIL_LINE
         if curves.points:
@@ -353,7 +341,7 @@ class DigitTrainingScene:
             read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
             line = texts.PUPIL_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
         draw_run_status(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
-        hints = self._form.hints or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
+        hints = self._form.hints or [(self.context.controls.word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)
 
     def _draw_said(self, canvas: Canvas) -> None:

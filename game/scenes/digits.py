@@ -13,7 +13,7 @@ import pygame
 
 from ai.digits.preprocessing import redrawn
 from game.core import texts
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Pop, Push, Scene, Transition, push
 from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.explanation import LEFT as EXPLANATION_LEFT
 from game.digits.explanation import STEPS, ExplanationView, StageSwitch
@@ -53,7 +53,7 @@ _DIGITS: Final = {
 }
 
 
-class DigitsScene:
+class DigitsScene(Scene):
     """Digits scene. `chosen` is the name of the network that is explained.
 
     Attributes:
@@ -62,10 +62,10 @@ class DigitsScene:
 
     """
 
-    def __init__(self, chosen: str = NAMES[0]) -> None:
+    def __init__(self, context: Context, chosen: str = NAMES[0]) -> None:
+        super().__init__(context)
         self.chosen = chosen
         self.pad = DrawingPad(PAD)
-        self._context: Context | None = None
         self._switches = Switches()
         self._sight = ExplanationView()
         self._seen = -1  # revision of the drawing that was read last
@@ -73,13 +73,6 @@ class DigitsScene:
         self._why: Explanation | None = None
         self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
-
-    def enter(self, context: Context) -> None:
-        """Load the networks and build the widgets the first time; later, refresh the list of networks."""
-        if self._context is not None:
-            self._see_networks()
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
         self._fixing = FixRunner(context.user_dir, context.models_dir)
         self._reader = Reader()
@@ -95,6 +88,19 @@ class DigitsScene:
         self._look_anew()
         self._offer_undo()
 
+    def resume(self) -> None:
+        """Refresh the list of networks."""
+        before = set(self._fixing.networks)
+        self._fixing.refresh()
+        if set(self._fixing.networks) == before:
+            return
+        if self.chosen not in self._fixing.networks:
+            self.chosen = NAMES[0]
+            self._look_anew()
+        tabs = self._make_tabs()
+        self._form.replace([self._tabs], [tabs])
+        self._tabs = tabs
+
     def exit(self) -> None:
         """End the current stroke."""
         self.pad.lift()
@@ -107,8 +113,7 @@ class DigitsScene:
     @property
     def canvas_rect(self) -> pygame.Rect:
         """The drawing area, in the window's pixels."""
-        assert self._context is not None
-        return self._context.in_window(self.pad.rect)
+        return self.context.in_window(self.pad.rect)
 
     @property
     def probabilities(self) -> Numbers | None:
@@ -288,19 +293,6 @@ class DigitsScene:
             self._form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT
         )
 
-    def _see_networks(self) -> None:
-        """Refresh the list of networks."""
-        before = set(self._fixing.networks)
-        self._fixing.refresh()
-        if set(self._fixing.networks) == before:
-            return
-        if self.chosen not in self._fixing.networks:
-            self.chosen = NAMES[0]
-            self._look_anew()
-        tabs = self._make_tabs()
-        self._form.replace([self._tabs], [tabs])
-        self._tabs = tabs
-
     def _choose(self, index: int) -> None:
         """Choose another network; if it can't be loaded, say so and keep the last one."""
         names, before = list(self._fixing.networks), self._pair
@@ -356,7 +348,6 @@ class DigitsScene:
         self.pad.clear()
 
     def _draw_words(self, canvas: Canvas) -> None:
-        assert self._context is not None
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
             draw_fix(canvas, self._fixing, same=self._fix_of == self.pad.revision)
         for number, line in enumerate(
@@ -368,7 +359,7 @@ class DigitsScene:
         lines = [line for words in reversed(problems) for line in wrapped(canvas, words, SMALL, _TABS[2])]
         for number, line in enumerate(lines[:_PROBLEM_LINES]):
             canvas.text(line, (LEFT, _PROBLEMS + 17 * number), size=SMALL, colour=canvas.palette.warn)
-        controls = self._context.controls
+        controls = self.context.controls
         word = controls.word
         keys = (word(Command.HANDOVER) if controls.pad_in_use else controls.key(pygame.K_z), word(Command.CHOICES))
         for key, widget in zip(keys, self._under, strict=True):

@@ -11,7 +11,7 @@ import pygame
 from ai.digits.dream import STEPS, ActivationMaximisation
 from ai.digits.preprocessing import SIDE
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Scene, Transition
 from game.digits.answer import LEFT, DigitRow, percent
 from game.digits.pictures import Numbers, picture
 from game.drawing import typeface
@@ -66,7 +66,7 @@ class DreamTile(Widget):
                     colour=INK if self.chosen else self.tint())  # fmt: skip
 
 
-class DreamScene:
+class DreamScene(Scene):
     """Dreams of all ten digits, one of them large. `drawing` (28, 28) is an optional starting image.
 
     Attributes:
@@ -75,31 +75,23 @@ class DreamScene:
 
     """
 
-    def __init__(self, classifier: DigitClassifier, digit: int = 0, drawing: Numbers | None = None) -> None:
+    def __init__(
+        self, context: Context, classifier: DigitClassifier, digit: int = 0, drawing: Numbers | None = None
+    ) -> None:
+        super().__init__(context)
         self.digit = digit if digit in range(_DIGITS) else 0
         self._classifier = classifier
         self._drawing = drawing if drawing is not None and drawing.any() else None
         self._calm, self._from_drawing = _CALM, False
-        self._context: Context | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the widgets, and start the dreams."""
-        if self._context is not None:
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(13), ember=0.2, stars=24)
         self._form = Form(context, on_back=Pop)
         self._add_widgets()
         self.restart()
 
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
-
     def restart(self) -> None:
         """Restart all dreams."""
-        assert self._context is not None
         start = self._drawing if self._from_drawing else None
-        seed = int(self._context.rng.integers(1 << 31))
+        seed = int(self.context.rng.integers(1 << 31))
         self.dreams = [
             ActivationMaximisation(self._classifier, digit, np.random.default_rng((seed, digit)), start, self._calm)
             for digit in range(_DIGITS)
@@ -198,8 +190,7 @@ class DreamScene:
             row.best = row.digit == self.digit
 
     def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls = self._context.controls
+        controls = self.context.controls
         pad, word = controls.pad_in_use, controls.word
         key = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}" if pad else "0 – 9"
         draw_hints(canvas, [

@@ -12,7 +12,7 @@ from ai.lander.rules import tenths
 from game.charts.chart import Chart, Series
 from game.charts.charts import Charts
 from game.core import texts
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
@@ -42,21 +42,18 @@ _FOOT: Final = 612
 _TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
 
 
-class LogbookScene:
+class LogbookScene(Scene):
     """Logbook scene: flights on the left, newest first; skill and actions on the chosen flight on the right."""
 
-    def __init__(self) -> None:
-        self._context: Context | None = None
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self._shown: list[Entry] = []
-
-    def enter(self, context: Context) -> None:
-        """Build the screen, or reload the flights."""
-        if self._context is None:
-            self._build(context)
+        self._build(context)
         self._reload()
 
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
+    def resume(self) -> None:
+        """Reload the flights, to which one may have been added."""
+        self._reload()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the widgets; the Delete key deletes a flight."""
@@ -68,8 +65,7 @@ class LogbookScene:
 
     def update(self) -> Transition | None:
         """Animate widgets and charts."""
-        assert self._context is not None
-        self._charts.update(self._context.settings.reduced_motion)
+        self._charts.update(self.context.settings.reduced_motion)
         return self._form.update()
 
     # What there is
@@ -84,7 +80,6 @@ class LogbookScene:
         return self.chosen is not None and self.chosen.file in self._kept
 
     def _build(self, context: Context) -> None:
-        self._context = context
         self._records = Records(context.user_dir)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
         self._form = Form(context, on_back=Pop)
@@ -157,13 +152,12 @@ class LogbookScene:
 
     def _read(self) -> Record | None:
         """Read the chosen flight; if it is damaged, tell the player and return None."""
-        assert self._context is not None
         if not self._replayable or self.chosen is None:
             return None
         try:
             return self._records.read(self.chosen.file)
         except ValueError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
             return None
 
     def _watch(self) -> Transition | None:
@@ -184,8 +178,7 @@ class LogbookScene:
 
     def _tell(self, done: bool, words: str) -> None:
         """Report what was done, or why it failed, and reload the list."""
-        assert self._context is not None
-        self._context.note(words if done else self._records.problem)
+        self.context.note(words if done else self._records.problem)
         self._reload()
         self._form.focus(self._list)
 
@@ -213,8 +206,7 @@ class LogbookScene:
         self._draw_hints(canvas)
 
     def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls = self._context.controls
+        controls = self.context.controls
         arrows = controls.arrows
         hints = [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
                  (controls.word(Command.BACK), texts.HINT_BACK)]  # fmt: skip

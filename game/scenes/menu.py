@@ -8,7 +8,7 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.scene import Quit, Transition, push
+from game.core.scene import Quit, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
 from game.input.controls import Command
@@ -28,18 +28,12 @@ _LINE: Final = 38
 ROWS: Final = ("play", "missions", "watch", "train", "digits", "physics", "logbook", "settings", "quit")
 
 
-class MenuScene:
+class MenuScene(Scene):
     """Main menu, the first screen."""
 
-    def __init__(self) -> None:
-        self._background = MenuBackground()
-        self._form: Form | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the column once; the focus stays where it was when coming back."""
-        self._background.enter(context)
-        if self._form is not None:
-            return
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._background = MenuBackground(context)
         self._controls = context.controls
         self._form = Form(context, on_back=self._back)
         self._lines: list[tuple[TextButton, str]] = []
@@ -49,34 +43,30 @@ class MenuScene:
             word = TextButton(self._form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
             self._lines.append((self._form.add(word), line))
 
-    def exit(self) -> None:
-        """Do nothing: the state is kept for the return."""
+    def resume(self) -> None:
+        """Follow a change of the settings; the focus stays where it was."""
+        self._background.resume()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the column."""
-        return self._column.handle_event(event)
+        return self._form.handle_event(event)
 
     def update(self) -> Transition | None:
         """Animate the column and the background."""
         self._background.update()
-        return self._column.update()
+        return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moon, the title, the column and the hints."""
         self._background.draw(canvas, alpha)
         canvas.text(texts.GAME, (MARGIN - 2, 208), size=_TITLE_SIZE, weight="extralight")
         canvas.text(texts.MENU_LINE, (MARGIN, 248), size=TEXT, colour=MUTE)
-        self._column.draw(canvas)
+        self._form.draw(canvas)
         for word, line in self._lines:
             if word.warmth > 0.02:
                 place = (MARGIN + 176, word.baseline)
                 canvas.text(line, place, size=TEXT, alpha=word.warmth)  # in ink: the dawn is bright
         self._draw_hints(canvas)
-
-    @property
-    def _column(self) -> Form:
-        assert self._form is not None, "the menu was never entered"
-        return self._form
 
     def _draw_hints(self, canvas: Canvas) -> None:
         arrows = self._controls.arrows
@@ -89,10 +79,10 @@ class MenuScene:
 
     def _back(self) -> Transition | None:
         """Move the focus to Quit; if it is there already, leave the game."""
-        last = self._column.widgets[-1]
-        if self._column.focused is last:
+        last = self._form.widgets[-1]
+        if self._form.focused is last:
             return Quit()
-        self._column.focus(last)
+        self._form.focus(last)
         return None
 
 

@@ -22,7 +22,7 @@ _FIRST_WORD: Final = 304
 _LINE: Final = 44
 
 
-class PauseScene:
+class PauseScene(Scene):
     """Pause menu over a scene, until the player resumes or leaves it.
 
     Args:
@@ -35,18 +35,24 @@ class PauseScene:
 
     def __init__(
         self,
+        context: Context,
         below: Scene,
         retry: Callable[[], None] | None = None,
         retry_word: str = texts.PAUSE_RETRY,
         more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
-        self._below, self._retry, self._retry_word, self._more = below, retry, retry_word, more
+        super().__init__(context)
+        self._behind = BlurredPicture(below)
+        self._retry, self._retry_word, self._more = retry, retry_word, more
+        self._build()
 
-    def enter(self, context: Context) -> None:
+    def resume(self) -> None:
+        """Name the entries anew, for a scene above may have changed them."""
+        self._build()
+
+    def _build(self) -> None:
         """Build the column of entries."""
-        self._controls = context.controls
-        self._form = Form(context, on_back=Pop)
-        self._behind = BlurredPicture(self._below)
+        self._form = Form(self.context, on_back=Pop)
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop)]
         if self._retry:
             rows.append((self._retry_word, self._begin_anew))
@@ -54,9 +60,6 @@ class PauseScene:
         for number, (label, press) in enumerate(rows):
             box = (MARGIN, _FIRST_WORD + number * _LINE, 420, _LINE)
             self._form.add(TextButton(self._form.manager, box, label, press, size=22, weight="light"))
-
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the column."""
@@ -71,7 +74,7 @@ class PauseScene:
         self._behind.draw(canvas)
         canvas.text(texts.PAUSE_TITLE, (MARGIN, 256), size=44, weight="extralight")
         self._form.draw(canvas)
-        word = self._controls.word
+        word = self.context.controls.word
         hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.PAUSE), texts.HINT_RESUME)]
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 

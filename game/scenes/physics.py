@@ -15,7 +15,7 @@ from engine.vector import Array
 from game.cockpit import hud
 from game.core import texts
 from game.core.clock import TimeScale
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Pop, Scene, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.figures import write_figures
@@ -48,24 +48,18 @@ _GAUGE: Final = 64.0
 _SMOOTHING: Final = 0.05
 
 
-class PhysicsScene:
+class PhysicsScene(Scene):
     """Physics gallery, one exhibit at a time; `now` is the clock in seconds that times its steps."""
 
-    def __init__(self, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(self, context: Context, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
+        super().__init__(context)
         self._names = list(EXHIBITS)
         self._chosen = self._names.index(exhibit)
         self._now = now
-        self._context: Context | None = None
         self._gravity, self._tempo = 0, TimeScale()
         self._mouse = (-1.0, -1.0)
         self.stopped = self.contacts_drawn = False
         self.grip: Grip | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the choices and the first exhibit, or continue after a pause."""
-        if self._context is not None:
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(7), ember=0.35, stars=90)
         self._form = Form(context, on_back=Pop)
         words = [texts.EXHIBITS[name][0] for name in self._names]
@@ -172,8 +166,7 @@ class PhysicsScene:
 
     def _hovered(self) -> int | None:
         """Index of the body under the mouse, if that is in use, or under the virtual pointer."""
-        assert self._context is not None
-        if not self._context.controls.mouse_in_use and not self._hand.typing:
+        if not self.context.controls.mouse_in_use and not self._hand.typing:
             return None
         body = self._outlines.body_at(self._poses, self._place(self._mouse), 0.0)
         return body.index if body else None
@@ -253,8 +246,7 @@ class PhysicsScene:
                 canvas.text(part, (left, y + _ROW_HEIGHT // 2 + 0.36 * SMALL), size=SMALL, colour=MUTE)
         hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
         self._form.draw(canvas)
-        assert self._context is not None
-        controls = self._context.controls
+        controls = self.context.controls
         word = controls.word
         hints = [
             (word(Command.HANDOVER) if controls.pad_in_use else controls.key(pygame.K_SPACE),
@@ -270,8 +262,7 @@ class PhysicsScene:
 
     def _draw_state(self, canvas: Canvas) -> None:
         """Draw on the right that time is stopped, or else how to grab bodies."""
-        assert self._context is not None
-        right, controls = VIEW_SIZE[0] - MARGIN, self._context.controls
+        right, controls = VIEW_SIZE[0] - MARGIN, self.context.controls
         keys = self._hand.focused and not controls.mouse_in_use
         drag = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
         text = texts.PHYSICS_STOPPED if self.stopped else "" if self._hand.typing else drag

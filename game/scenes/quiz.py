@@ -11,7 +11,7 @@ import pygame
 from ai.digits.mnist import TEST, MnistError, load_part
 from ai.digits.preprocessing import preprocess_strokes
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Scene, Transition
 from game.digits.answer import LEFT, percent
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
@@ -60,7 +60,7 @@ _PITCH: Final = 71.0
 _TRACK: Final = (900.0, 250.0)  # corner of the track of finished rounds
 
 
-class QuizScene:
+class QuizScene(Scene):
     """Quiz scene: a contest of ten rounds.
 
     Attributes:
@@ -69,18 +69,9 @@ class QuizScene:
 
     """
 
-    contest: QuizGame
-
-    def __init__(self, classifier: DigitClassifier) -> None:
+    def __init__(self, context: Context, classifier: DigitClassifier) -> None:
+        super().__init__(context)
         self._classifier = classifier
-        self.pad = DrawingPad(_PAD)
-        self._context: Context | None = None
-
-    def enter(self, context: Context) -> None:
-        """Load strangers' digits, and start the quiz."""
-        if self._context is not None:
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(14), ember=0.2, stars=24)
         self._form = Form(context, on_back=Pop)
         self._strangers: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 28, 28), np.float32), np.zeros(0, np.uint8))
@@ -99,13 +90,11 @@ class QuizScene:
     @property
     def canvas_rect(self) -> pygame.Rect:
         """The drawing area, in the window's pixels."""
-        assert self._context is not None
-        return self._context.in_window(self.pad.rect)
+        return self.context.in_window(self.pad.rect)
 
     def restart(self) -> None:
         """Start a new quiz."""
-        assert self._context is not None
-        self.contest = QuizGame(self._classifier, *self._strangers, self._context.rng)
+        self.contest = QuizGame(self._classifier, *self._strangers, self.context.rng)
         self._ask()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -183,14 +172,13 @@ class QuizScene:
             self._submit()
 
     def _submit(self) -> None:
-        assert self._context is not None
         image = preprocess_strokes(self.pad.strokes)
         if image.any():
             self.pad.lift()
             self.contest.submit(image)
             self._lay()
         else:
-            self._context.note(texts.QUIZ_NOTHING)
+            self.context.note(texts.QUIZ_NOTHING)
 
     def _read(self, digit: int) -> None:
         self.contest.read(digit)
@@ -289,8 +277,7 @@ class QuizScene:
             _draw_tile(canvas, each, place, current=number == self.contest.place)
 
     def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls, current = self._context.controls, self.contest.round
+        controls, current = self.context.controls, self.contest.round
         pad, word = controls.pad_in_use, controls.word
         hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.BACK), texts.HINT_BACK)]
         if current and current.answer is None and current.kind == "draw":

@@ -17,7 +17,7 @@ from game.core import texts
 from game.core.clock import STEP
 from game.core.collection import LONGEST_NAME, exports_dir, fitting, free_path
 from game.core.pace import SlowMotion
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Pop, Push, Scene, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, VIEW_SIZE
@@ -50,25 +50,16 @@ _CLEAR: Final = ClearArea(head=194.0)  # below the verbs
 _VERB: Final = 20.0
 
 
-class ReplayScene:
+class ReplayScene(Scene):
     """Replay of a recorded flight. `stopped` is whether it is paused."""
 
-    def __init__(self, record: Record) -> None:
+    def __init__(self, context: Context, record: Record) -> None:
+        super().__init__(context)
         self.record = record
-        self._context: Context | None = None
-        self._scenery: Scenery
         self.stopped = False
         self._pace = SlowMotion()
         self._warned = False
         self._export: Export | None = None
-
-    def enter(self, context: Context) -> None:
-        """Start at the first moment, or resume where it was left."""
-        if self._context is not None:
-            self.stopped = True
-            self._scenery.calm = context.settings.reduced_motion
-            return
-        self._context = context
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
@@ -76,8 +67,10 @@ class ReplayScene:
         self._build(context)
         self._look()
 
-    def exit(self) -> None:
-        """Do nothing: the state is kept for the return."""
+    def resume(self) -> None:
+        """Show the moment where it was left, stopped."""
+        self.stopped = True
+        self._scenery.calm = self.context.settings.reduced_motion
 
     def close(self) -> None:
         """Cancel an unfinished film export, and tell the player."""
@@ -112,14 +105,13 @@ class ReplayScene:
 
     def update(self) -> Transition | None:
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
-        assert self._context is not None
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._reward_bar.reached = self.flight_replay.reached
         if self._export:
             self._follow_export(self._export)
         if self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
             self._warned = True
-            self._context.note(texts.REPLAY_OTHER_RULES)
+            self.context.note(texts.REPLAY_OTHER_RULES)
         if not self.stopped:
             for _ in range(self._pace.steps()):
                 self._fly()
@@ -198,9 +190,8 @@ class ReplayScene:
 
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
-        assert self._context is not None
         if self.flight_replay.flight.over:
-            self._context.note(texts.REPLAY_OVER)
+            self.context.note(texts.REPLAY_OVER)
             return None
         return push("play", self.record.recording.seed, challenge=fly_on(self.record, self.flight_replay))
 
@@ -227,10 +218,9 @@ class ReplayScene:
         self._end_export(texts.EXPORT_STOPPED)
 
     def _begin_export(self, suffix: str) -> None:
-        assert self._context is not None
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
         path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
-        self._export = Export(ReplayScene, self.record, path, colour_safe=self._context.settings.colour_safe)
+        self._export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
         """Show the progress of the export, or its result."""
@@ -242,10 +232,9 @@ class ReplayScene:
             self._end_export(failed if export.problem else texts.EXPORT_DONE.format(path=export.path))
 
     def _end_export(self, note: str) -> None:
-        assert self._context is not None
         self._export = None
         self._export_word.label = texts.REPLAY_EXPORT
-        self._context.note(note)
+        self.context.note(note)
 
     # The picture
 
@@ -263,7 +252,6 @@ class ReplayScene:
         hud.draw_readouts(canvas, self._readouts)
 
     def _draw_words(self, canvas: Canvas) -> None:
-        assert self._context is not None
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
@@ -286,9 +274,9 @@ class ReplayScene:
             for x in (figure.left - 20, figure.left - 15):
                 canvas.line((x, 45), (x, 57), INK, 2)
         self._form.draw(canvas)
-        word, pad = self._context.controls.word, self._context.controls.pad_in_use
+        word, pad = self.context.controls.word, self.context.controls.pad_in_use
         go = texts.HINT_GO if self.stopped or self.ended else texts.HINT_STOP
-        hints = [(word(Command.CONFIRM) if pad else self._context.controls.key(pygame.K_SPACE), go),
+        hints = [(word(Command.CONFIRM) if pad else self.context.controls.key(pygame.K_SPACE), go),
                  (word(Command.STEP), texts.HINT_STEP), (word(Command.RETRY), texts.REPLAY_FROM_START),
                  (word(Command.HANDOVER), texts.REPLAY_HINT_TAKE), (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
         draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=middle - MARGIN - _FIGURE)

@@ -10,7 +10,7 @@ import pygame
 
 from game.core import texts
 from game.core.collection import LONGEST_NAME, LibraryError, fitting
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
@@ -36,7 +36,7 @@ _LINE: Final = 36
 _FOOT: Final = 608
 
 
-class NetworksScene:
+class NetworksScene(Scene):
     """A list on the left; the chosen run, its figures and its verbs on the right.
 
     Args:
@@ -48,26 +48,22 @@ class NetworksScene:
 
     def __init__(
         self,
+        context: Context,
         choose: Callable[[str], None] | None = None,
         train: Callable[[Path], Transition] | None = None,
     ) -> None:
+        super().__init__(context)
         self._choose, self._train = choose, train or _train_on
-        self._context: Context | None = None
         self._entry: Entry | None = None
         self.runs: list[SavedRun] = []
-
-    def enter(self, context: Context) -> None:
-        """Build the screen, or reload the runs."""
-        if self._context is not None:
-            self._reload(self.shown.folder if self.shown else None)
-            return
         self._build(context)
         known = networks.folders(context.models_dir, context.user_dir)
         flies = known.get(context.settings.model, known.get(networks.DEFAULT))
         self._reload(flies if self._choose else None)
 
-    def exit(self) -> None:
-        """Do nothing: every change is on disk already."""
+    def resume(self) -> None:
+        """Reload the runs, to which one may have been added."""
+        self._reload(self.shown.folder if self.shown else None)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Leave it to the widgets; Delete and F2 do what they do elsewhere, and a folder can be dropped here."""
@@ -99,7 +95,6 @@ class NetworksScene:
         return self.shown is not None and self.shown.folder.parent == self._library.folder
 
     def _build(self, context: Context) -> None:
-        self._context = context
         self._library = Library(context.user_dir)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
         self._form = Form(context, on_back=self._back)
@@ -113,8 +108,7 @@ class NetworksScene:
 
     def _reload(self, shown: Path | None) -> None:
         """Reload from disk, and select that run, or the one now in its place in the list."""
-        assert self._context is not None
-        context = self._context
+        context = self.context
         own = self._library.runs()
         known = networks.folders(context.models_dir, context.user_dir)
         shipped = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
@@ -185,10 +179,9 @@ class NetworksScene:
         return Pop()
 
     def _make_pilot(self) -> None:
-        assert self._context is not None
         assert self.shown is not None
-        self._context.settings.model = self._names[self.shown.folder]
-        self._context.apply_settings()
+        self.context.settings.model = self._names[self.shown.folder]
+        self.context.apply_settings()
 
     def _watch(self) -> Transition:
         self._make_pilot()
@@ -199,9 +192,8 @@ class NetworksScene:
         return push("play")
 
     def _begin_naming(self) -> None:
-        run, context = self.shown, self._context
+        run, context = self.shown, self.context
         assert run is not None
-        assert context is not None
         text = suggestion(self._library, run) if context.controls.pad_in_use else run.name
         self._entry = Entry(
             self._form.manager, (_LEFT, 140, _WIDTH, 34), texts.RUN_NAME, text, self._rename,
@@ -217,9 +209,8 @@ class NetworksScene:
 
     def _rename(self, name: str) -> None:
         """Rename the run; explain an invalid name and let the player edit it."""
-        run, context = self.shown, self._context
+        run, context = self.shown, self.context
         assert run is not None
-        assert context is not None
         try:
             renamed = self._library.rename(run.name, name)
         except LibraryError as error:
@@ -273,17 +264,15 @@ class NetworksScene:
 
     def _attempt(self, deed: Callable[[str], str], name: str) -> None:
         """Perform an operation on the library, and report its result."""
-        assert self._context is not None
         try:
-            self._context.note(deed(name))
+            self.context.note(deed(name))
         except LibraryError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
 
     # The picture
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the list, and the chosen run beside it."""
-        assert self._context is not None
         self._sky.draw(canvas)
         title = texts.RUNS_CHOOSE_TITLE if self._choose else texts.RUNS_TITLE
         canvas.text(title, (MARGIN, 84), size=34, weight="light")
@@ -291,7 +280,7 @@ class NetworksScene:
         self._draw_headings(canvas)
         self._form.draw(canvas)
         if run := self.shown:
-            flies = self._names.get(run.folder) == (self._context.settings.model or networks.DEFAULT)
+            flies = self._names.get(run.folder) == (self.context.settings.model or networks.DEFAULT)
             draw_run(canvas, run, _LEFT, _WIDTH, own=self._is_own, named=not self._entry, flies=flies)
         self._draw_hints(canvas)
 
@@ -305,8 +294,7 @@ class NetworksScene:
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
 
     def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls = self._context.controls
+        controls = self.context.controls
         word, arrows = controls.word, controls.arrows
         if self._entry:
             hints = [(word(Command.CONFIRM), texts.HINT_KEEP_NAME), (word(Command.BACK), texts.HINT_LEAVE_NAME)]

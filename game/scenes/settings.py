@@ -9,7 +9,7 @@ import pygame
 
 from game.audio.instruments import GROUPS, altitude_key
 from game.core import texts
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
@@ -37,13 +37,21 @@ _KEYS: Final = (
 )  # fmt: skip
 
 
-class SettingsScene:
+class SettingsScene(Scene):
     """Toggles and volumes on the left, the keys on the right."""
 
-    def enter(self, context: Context) -> None:
-        """Build a toggle for every row, and a slider for every volume."""
-        self._context = context
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
+        self._build()
+
+    def resume(self) -> None:
+        """Name the keys anew, for the player may have changed them."""
+        self._build()
+
+    def _build(self) -> None:
+        """Build a toggle for every row, and a slider for every volume."""
+        context = self.context
         self._form = Form(context, on_back=Pop)
         for number, name in enumerate(ROWS):
             box = (MARGIN, _FIRST_ROW + number * _ROW, _WIDTH, 56)
@@ -66,9 +74,6 @@ class SettingsScene:
         first = (_KEYS_LEFT, _KEYS_WORD + 44, 240, 32)
         self._form.add(TextButton(self._form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
 
-    def exit(self) -> None:
-        """Do nothing: every change is saved already."""
-
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the widgets."""
         return self._form.handle_event(event)
@@ -77,7 +82,7 @@ class SettingsScene:
         """Animate the widgets, and reflect a change of full screen by F11."""
         for name, toggle in zip(ROWS, self._form.widgets, strict=False):
             assert isinstance(toggle, Toggle)
-            toggle.value = getattr(self._context.settings, name)
+            toggle.value = getattr(self.context.settings, name)
         return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -88,7 +93,7 @@ class SettingsScene:
         self._draw_swatches(canvas, _FIRST_ROW + ROWS.index("colour_safe") * _ROW + 28)
         self._draw_sound(canvas)
         self._draw_keys(canvas)
-        word = self._context.controls.word
+        word = self.context.controls.word
         hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
@@ -96,11 +101,11 @@ class SettingsScene:
         return lambda value: self._set(name, value)
 
     def _set(self, name: str, value: object) -> None:
-        setattr(self._context.settings, name, value)
-        self._context.apply_settings()
+        setattr(self.context.settings, name, value)
+        self.context.apply_settings()
 
     def _volume(self, group: str, box: pygame.typing.RectLike) -> Slider:
-        context, name = self._context, f"{group}_volume"
+        context, name = self.context, f"{group}_volume"
 
         def change(value: float) -> None:
             self._set(name, value)
@@ -112,7 +117,7 @@ class SettingsScene:
 
     def _draw_sound(self, canvas: Canvas) -> None:
         title = canvas.text(texts.SOUND_TITLE, (MARGIN, _SOUND - 12), size=LABEL, weight="medium", colour=MUTE)
-        if self._context.sound.problem:
+        if self.context.sound.problem:
             canvas.marker("triangle", (title.right + 18, _SOUND - 16), 9, canvas.palette.warn)
             canvas.text(texts.SOUND_PROBLEM, (title.right + 30, _SOUND - 12), size=SMALL, colour=canvas.palette.warn)
         below = _SOUND + len(GROUPS) * _SOUND_ROW + 12
@@ -133,7 +138,7 @@ class SettingsScene:
         canvas.text(texts.KEYS_KEYBOARD, (_KEYS_LEFT + 192, y), size=LABEL, weight="medium", colour=MUTE)
         canvas.text(texts.KEYS_PAD, (pad_left, y), size=LABEL, weight="medium", colour=MUTE, align="right")
         canvas.cover(canvas.rect(_KEYS_LEFT, y, pad_left - _KEYS_LEFT, 36 * len(_KEYS)))  # no star in the table
-        controls = self._context.controls
+        controls = self.context.controls
         for meaning in _KEYS:
             canvas.line((_KEYS_LEFT, y + 12), (pad_left, y + 12), LINE, 1)
             y += 36

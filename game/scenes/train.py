@@ -14,7 +14,7 @@ from ai.training.session import agent_of
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.collection import LibraryError
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Pop, Push, Scene, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
@@ -47,26 +47,15 @@ _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene:
+class TrainScene(Scene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
-    lander_run: LanderRun
-
-    def __init__(self, resume: Path | None = None) -> None:
-        self._resume = resume
-        self._context: Context | None = None
+    def __init__(self, context: Context, resume: Path | None = None) -> None:
+        super().__init__(context)
         self._was_running = self._alive = self._compared = False
-        self._left: SavedRun | None = None  # run left unnamed by the last visit
-
-    def enter(self, context: Context) -> None:
-        """Build the screen; after a duel with a checkpoint, resume the run."""
-        if self._context is not None:
-            if self._was_running:
-                self.lander_run.resume()
-            return
-        self._context, self._settings = context, context.settings
+        self._settings = context.settings
         self.lander_run = LanderRun(Library(context.user_dir))
-        self._left = self.lander_run.library.claim()
+        self._left: SavedRun | None = self.lander_run.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
         self._form = Form(context, on_back=self._back)
@@ -76,9 +65,14 @@ class TrainScene:
         self.knobs = KnobsPanel(self._form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
         self._advice = Advice(self._form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
-        if self._resume is not None:
-            self._go_on(self._resume)
+        if resume is not None:
+            self._go_on(resume)
             self._left = None
+
+    def resume(self) -> None:
+        """Resume the run, after a duel with a checkpoint for instance."""
+        if self._was_running:
+            self.lander_run.resume()
 
     def exit(self) -> None:
         """Pause the run while another scene has the window."""
@@ -87,9 +81,8 @@ class TrainScene:
 
     def close(self) -> None:
         """End the run's process."""
-        if self._context is not None:
-            self.lander_run.close()
-            self.lander_run.library.release()
+        self.lander_run.close()
+        self.lander_run.library.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, step, knobs and the large network."""
@@ -142,11 +135,10 @@ class TrainScene:
 
     def _listen(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
-        assert self._context is not None
         lander_run = self.lander_run
         swarm_state, network_state, points = lander_run.swarm_state, lander_run.network_state, len(lander_run.history)
         for note in lander_run.poll():
-            self._context.note(note)
+            self.context.note(note)
         if lander_run.swarm_state is not None and lander_run.swarm_state is not swarm_state:
             self.swarm.take(lander_run.swarm_state)
         if len(lander_run.history) != points:
@@ -187,9 +179,8 @@ class TrainScene:
             self._begin(self.knobs.config, self.knobs.seed)
 
     def _begin(self, config: Config, seed: int, resume: Path | None = None) -> None:
-        assert self._context is not None
         if note := self.lander_run.begin(config, seed, resume, self.knobs.name):
-            self._context.note(note)
+            self.context.note(note)
         self.swarm.clear()
         self._advice.clear()
         self.training_charts.clear()
@@ -203,10 +194,9 @@ class TrainScene:
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
-        assert self._context is not None
-        folder = self._context.user_dir
+        folder = self.context.user_dir
         if not lessons(folder):
-            self._context.note(texts.TRAIN_NO_LESSONS)
+            self.context.note(texts.TRAIN_NO_LESSONS)
             return
         if not self.lander_run.alive:
             self._begin(self.knobs.config, self.knobs.seed)
@@ -218,9 +208,8 @@ class TrainScene:
     def _save(self) -> Transition | None:
         from game.scenes.dialog import NameDialog
 
-        assert self._context is not None
         if not self.lander_run.kept:
-            self._context.note(texts.TRAIN_NOTHING)
+            self.context.note(texts.TRAIN_NOTHING)
             return None
         name = texts.TRAIN_TAUGHT_NAME if self.lander_run.lessons else texts.TRAIN_NAME
         suggestion = self.lander_run.library.free_name(name.format(preset=self.knobs.name))
@@ -228,10 +217,9 @@ class TrainScene:
 
     def _save_as(self, name: str) -> str:
         """Save the run under a name; return why the name is invalid, empty if it is not."""
-        assert self._context is not None
         try:
             if note := self.lander_run.save(name):
-                self._context.note(note)
+                self.context.note(note)
         except LibraryError as error:
             return str(error)
         return ""
@@ -256,13 +244,12 @@ class TrainScene:
         return Push(QuestionDialog(self, texts.TRAIN_LEFT, more, answers))
 
     def _discard(self, name: str) -> None:
-        assert self._context is not None
         try:
             self.lander_run.library.discard_rescued()
         except LibraryError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
         else:
-            self._context.note(texts.RUN_DELETED.format(name=name))
+            self.context.note(texts.RUN_DELETED.format(name=name))
 
     def _compare(self) -> Transition:
         """Ask for a saved run whose curves shall be seen beside these."""
@@ -271,9 +258,8 @@ class TrainScene:
         runs = self.lander_run.library.runs()
 
         def put(number: int) -> None:
-            assert self._context is not None
             if note := self.lander_run.compare(runs[number].name, runs[number].folder):
-                self._context.note(note)
+                self.context.note(note)
             self.training_charts.clear()
 
         return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
@@ -291,16 +277,15 @@ class TrainScene:
 
     def _duel(self) -> Transition | None:
         """Fly against the chosen checkpoint, or the latest."""
-        assert self._context is not None
         found = self.lander_run.history.checkpoints
         checkpoint = self.training_charts.chosen or (found[-1] if found else None)
         if checkpoint is None:
-            self._context.note(texts.TRAIN_NO_CHECKPOINT)
+            self.context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
         try:
             rival = agent_of(self.lander_run.config, checkpoint)
         except ValueError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
             return None
         name = texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds)
         return push("play", rival=rival, rival_name=name)
@@ -343,10 +328,9 @@ class TrainScene:
         self.training_charts.charts.hover(None)
 
     def _back(self) -> Transition | None:
-        assert self._context is not None
         if not self.inside.large:
             if self.lander_run.alive and len(self.lander_run.history):
-                self._context.note(texts.TRAIN_KEPT)
+                self.context.note(texts.TRAIN_KEPT)
             return Pop()
         self._look_closer()
         return None
@@ -364,8 +348,7 @@ class TrainScene:
             canvas.panel(box, _COVER)
         draw_run_status(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
-        assert self._context is not None
-        hints = self._form.hints[-1:] or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
+        hints = self._form.hints[-1:] or [(self.context.controls.word(Command.BACK), texts.HINT_BACK)]
         draw_hints(canvas, hints, (_TITLE.right - 16, 46), from_right=True)
 
     def _draw_said(self, canvas: Canvas) -> None:

@@ -18,8 +18,7 @@ from game.cockpit import hud
 from game.cockpit.decision_panel import PANEL, draw_decision
 from game.core import texts
 from game.core.clock import STEP, TimeScale
-from game.core.scene import Pop, Transition, push
-from game.core.settings import Settings
+from game.core.scene import Pop, Scene, Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
@@ -58,28 +57,17 @@ _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
 
-class WatchScene:
+class WatchScene(Scene):
     """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line."""
 
-    def __init__(self, count: int = 1, seed: int | None = None) -> None:
+    def __init__(self, context: Context, count: int = 1, seed: int | None = None) -> None:
+        super().__init__(context)
         self._count = COUNTS.index(count)
-        self._seed = seed
-        self._context: Context | None = None
         self._tempo, self._time = TimeScale(), 0.0
         self.stopped = False
         self.shown = 0
         self.problem = self._wanted = ""
-        self._settings: Settings
-        self._stage: Stage
-
-    def enter(self, context: Context) -> None:
-        """Load the networks and begin, or resume after a pause."""
-        if self._context is not None:
-            self._look_again()
-            if self._stage.calm != self._settings.reduced_motion:
-                self._set_up_camera()
-            return
-        self._context, self._settings = context, context.settings
+        self._settings = context.settings
         self._policies = networks.Policies(context.models_dir, context.user_dir)
         names = self._policies.names
         wanted = names.index(context.settings.model) if context.settings.model in names else 0
@@ -89,15 +77,17 @@ class WatchScene:
             1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
         )
         self._speed_choice = self._add_choice(2, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
-        if self._seed is None:
-            self._seed = int(context.rng.integers(2**31))
+        self._seed = int(context.rng.integers(2**31)) if seed is None else seed
         self._choose_network(wanted)
         if self.problem:
             self._network = self._policies.first_fit()
             self._begin()
 
-    def exit(self) -> None:
-        """Do nothing: the state is kept for the return."""
+    def resume(self) -> None:
+        """Follow a change of the networks and of the settings."""
+        self._look_again()
+        if self._stage.calm != self._settings.reduced_motion:
+            self._set_up_camera()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle stopping, stepping, choices and pause."""
@@ -162,13 +152,11 @@ class WatchScene:
 
     def _begin(self) -> None:
         assert self._network.policy is not None
-        assert self._seed is not None
-        assert self._context is not None
         count = COUNTS[self._count]
         self.swarm = Swarm(count, self._seed, self._network.policy)
         self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed))
         self._stage.blue[:] = 1.0
-        self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
+        self._heard = FlightSound(self.context.sound, self.swarm.env, warns=False)
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._set_up_camera()
         self._tempo.begin()
@@ -181,8 +169,7 @@ class WatchScene:
             self._camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
 
     def _begin_anew(self) -> None:
-        assert self._context is not None
-        self._seed = int(self._context.rng.integers(2**31))
+        self._seed = int(self.context.rng.integers(2**31))
         self._begin()
 
     def _fly(self) -> None:
@@ -258,8 +245,7 @@ class WatchScene:
 
     def _look_again(self) -> None:
         """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
-        assert self._context is not None
-        policies = networks.Policies(self._context.models_dir, self._context.user_dir)
+        policies = networks.Policies(self.context.models_dir, self.context.user_dir)
         wanted, self._wanted = self._wanted or self._settings.model, ""
         if policies.names == self._policies.names and wanted == self._network.name:
             return
@@ -329,17 +315,15 @@ class WatchScene:
             box = canvas.text(problem, (middle, 84), size=SMALL, colour=canvas.palette.warn, align="centre")
             canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
         self._form.draw(canvas)
-        assert self._context is not None
-        if self._settings.show_hints or self._context.controls.mouse_in_use:  # for the mouse, they are what it presses
+        if self._settings.show_hints or self.context.controls.mouse_in_use:  # for the mouse, they are what it presses
             self._draw_hints(canvas, VIEW_SIZE[0] / 2 - 36 - canvas.text_width(said, size=TEXT) / 2 - 40)
 
     def _draw_hints(self, canvas: Canvas, room: float) -> None:
-        assert self._context is not None
-        word = self._context.controls.word
-        pad = self._context.controls.pad_in_use
+        word = self.context.controls.word
+        pad = self.context.controls.pad_in_use
         hints = [
             (
-                word(Command.HANDOVER) if pad else self._context.controls.key(pygame.K_SPACE),
+                word(Command.HANDOVER) if pad else self.context.controls.key(pygame.K_SPACE),
                 texts.HINT_GO if self.stopped else texts.HINT_STOP,
             ),
             (word(Command.STEP), texts.HINT_DECISION),

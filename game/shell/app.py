@@ -41,8 +41,8 @@ class App:
 
     Args:
         context: the shared services; its `note` and `apply_settings` are bound to this window.
-        first: the first scene; by default the menu.
-        scene_of: makes the scene of a route; `game.scenes.scene_of`.
+        first: route of the first scene, by default the menu's, or a function that builds the scene.
+        scene_of: builds the scene of a route; `game.scenes.scene_of`.
         now: clock that returns seconds.
         capped: whether the frame rate is limited to the screen's.
 
@@ -54,9 +54,9 @@ class App:
     def __init__(
         self,
         context: Context,
-        first: Scene | None = None,
+        first: Route | Callable[[Context], Scene] | None = None,
         *,
-        scene_of: Callable[[Route], Scene],
+        scene_of: Callable[[Route, Context], Scene],
         now: Callable[[], float] = time.perf_counter,
         capped: bool = True,
     ) -> None:
@@ -82,9 +82,9 @@ class App:
         self.show(first or Route("menu"))
         self._last = now()
 
-    def show(self, scene: Scene | Route) -> None:
-        """Push a scene; if it fails at once, the error screen is shown as for any other failure."""
-        self._guarded(lambda: self.scenes.apply(Push(scene)))
+    def show(self, scene: Route | Callable[[Context], Scene]) -> None:
+        """Build a scene and push it; if it cannot be built, the error screen is shown as for any other failure."""
+        self._guarded(lambda: self.scenes.apply(Push(scene if isinstance(scene, Route) else scene(self.context))))
 
     def run(self, max_frames: int | None = None) -> int:
         """Play until the game is closed, or for `max_frames`. Return the process's exit code."""
@@ -255,7 +255,7 @@ class App:
         except Exception as error:
             _log.exception("in %s", self.scenes.told)
             self.canvas.surface.set_clip(None)
-            self.scenes.reset(Route("menu"), Route("error_screen", (error, self.context.user_dir / LOG_NAME)))
+            self.scenes.reset(Route("error_screen", (error, self.context.user_dir / LOG_NAME)))
 
 
 def log_to(folder: Path) -> None:

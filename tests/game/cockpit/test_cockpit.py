@@ -47,7 +47,7 @@ def fly(open_game: Open, context: Context, **settings: object) -> Driver:
     for name, value in settings.items():
         setattr(context.settings, name, value)
     context.settings_file.save(context.settings)
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     driver.frames(2)
     return driver
 

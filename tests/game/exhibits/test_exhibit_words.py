@@ -229,7 +229,7 @@ def test_every_sentence_of_an_exhibit_can_be_said(name: str):
 
 
 def test_gravity_is_offered_only_where_there_is_any_and_has_its_unit(open_game: Callable[..., Driver]):
-    driver = open_game(PhysicsScene("impacts"))
+    driver = open_game(PhysicsScene, "impacts")
     assert all("m/s²" in words for words in texts.PHYSICS_GRAVITIES)
     for name, offered in (("impacts", True), ("drag", True), ("spin", False), ("stack", True)):
         scene = driver.top

@@ -101,7 +101,7 @@ def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: 
     flight_replay = FlightReplay(replace(record, end=(x + 0.01, y, angle)))
     flight_replay.scout(10_000)
     assert not flight_replay.faithful
-    driver = open_game(ReplayScene(replace(record, end=(x, y + 1, angle))))
+    driver = open_game(ReplayScene, replace(record, end=(x, y + 1, angle)))
     driver.frames(120)
     assert "other rules" in said(driver)
 
@@ -123,7 +123,7 @@ def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):
 
 @pytest.fixture
 def replay(open_game: Open, record: Record) -> Driver:
-    driver = open_game(ReplayScene(record))
+    driver = open_game(ReplayScene, record)
     driver.frames(2)
     return driver
 
@@ -172,7 +172,7 @@ def test_at_the_end_it_stays_and_space_begins_anew(replay: Driver):
 @pytest.mark.parametrize(("reduced", "faster", "slow"), [(False, 0, True), (False, 1, False), (True, 0, False)])
 def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, reduced: bool, faster: int, slow: bool):
     context.settings_file.save(replace(context.settings, reduced_motion=reduced))
-    driver = open_game(ReplayScene(kept(context, fly_out(Flight(5)))))
+    driver = open_game(ReplayScene, kept(context, fly_out(Flight(5))))
     driver.frames(2)
     driver.keys(*[pygame.K_PLUS] * faster)
     driver.wait(lambda: scene(driver).ended)
@@ -195,7 +195,7 @@ def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
 
 def test_a_gamepad_stops_winds_and_leaves(open_game: Open, record: Record, context: Context):
     Records(context.user_dir)
-    driver = open_game(LogbookScene())
+    driver = open_game(LogbookScene)
     driver.frames(2)
     driver.button(pygame.CONTROLLER_BUTTON_A)
     assert driver.top_name == "ReplayScene"
@@ -229,7 +229,7 @@ def book(open_game: Open, context: Context) -> Driver:
         fall.step(0)
     records.keep(landing, NOON, alone=True)
     records.keep(fall, NOON + 60, alone=True)
-    driver = open_game(LogbookScene())
+    driver = open_game(LogbookScene)
     driver.frames(3)
     return driver
 
@@ -240,7 +240,7 @@ def page(driver: Driver) -> LogbookScene:
 
 
 def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
-    driver = open_game(LogbookScene())
+    driver = open_game(LogbookScene)
     driver.keys(pygame.K_RETURN, pygame.K_DELETE, pygame.K_DOWN, pygame.K_UP)
     assert page(driver).chosen is None
     assert not driver.key(pygame.K_ESCAPE)

@@ -151,7 +151,7 @@ DEVICES = ("keys", "pad", "mouse")
 
 
 def reader(open_game: Open, device: str, late: int = 0) -> Reader:
-    return Reader(open_game(PlayScene(0, challenge=Tutorial())), device, late)
+    return Reader(open_game(PlayScene, 0, challenge=Tutorial()), device, late)
 
 
 def to_the_landing(pupil: Reader, most: int = 6000) -> None:

@@ -47,7 +47,7 @@ class Roster:
 @pytest.mark.parametrize("name", Roster.names)
 def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context: Context, monkeypatch, name, count):
     monkeypatch.setattr(networks, "Roster", Roster)
-    reading = Reading(open_game(WatchScene(count, seed=2)), monkeypatch)
+    reading = Reading(open_game(WatchScene, count, seed=2), monkeypatch)
     driver, watch = reading.driver, reading.driver.top
     watch._model_choice.choose(Roster.names.index(name))
     swarm = watch.swarm
@@ -102,7 +102,7 @@ BUTTON = dict.fromkeys([WorkerState.RUNNING, WorkerState.STARTING], texts.TRAIN_
 
 @pytest.mark.parametrize("make", [TrainScene, DigitTrainingScene])
 def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game: Open, monkeypatch, make):
-    reading = Reading(open_game(make()), monkeypatch)
+    reading = Reading(open_game(make), monkeypatch)
     driver, scene = reading.driver, reading.driver.top
     learner = scene.lander_run if make is TrainScene else scene.pupil
     told: list[WorkerState | None] = [None]
@@ -128,7 +128,7 @@ VERDICTS = [pattern(text) for text in (texts.DIGITS_SURE, texts.DIGITS_LIKELY, t
 
 
 def test_one_verdict_is_said_of_a_drawing_and_it_is_that_of_the_figures(open_game: Open, monkeypatch):
-    reading = Reading(open_game(DigitsScene()), monkeypatch)
+    reading = Reading(open_game(DigitsScene), monkeypatch)
     driver = reading.driver
     assert texts.DIGITS_EMPTY in reading.page(3).words
     said: set[str] = set()

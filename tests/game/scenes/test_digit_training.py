@@ -17,7 +17,7 @@ from ai.digits.training import DigitTraining
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.dialog import NameDialog, QuestionDialog
-from game.scenes.digit_training import FAMILY, DigitTrainingScene
+from game.scenes.digit_training import DIGITS, DigitTrainingScene
 from game.scenes.dream import DreamScene
 from game.scenes.quiz import QuizScene
 from game.training.digit_run import DigitRun
@@ -34,7 +34,7 @@ def wait(driver: Driver, until: Callable[[], object]) -> None:
 
 @pytest.fixture
 def train(open_game: Callable[..., Driver]) -> Driver:
-    driver = open_game(DigitTrainingScene())
+    driver = open_game(DigitTrainingScene)
     driver.frames(2)
     driver.top.knobs.set_config(SMALL, 3)
     return driver
@@ -67,9 +67,9 @@ def test_every_setting_has_a_knob_and_a_word():
 
 
 def test_presets_are_named_and_no_sabotage_is_offered():
-    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, FAMILY)
+    run_settings = RunSettings(DIGIT_PRESETS["classic"], 0, lambda *_: None, lambda *_: None, DIGITS)
     assert run_settings.named == ("classic", "")
-    assert FAMILY.word(FAMILY.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
+    assert DIGITS.word(DIGITS.nearest(DIGIT_PRESETS["modern"].changed(dropout=0.5))) == "Modern"
 
 
 # A run
@@ -104,7 +104,7 @@ def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
 
 def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, monkeypatch):
     notes: list[str] = []
-    monkeypatch.setattr(train.top._context, "note", notes.append)
+    monkeypatch.setattr(train.top.context, "note", notes.append)
     scene = train.top
     for word in (scene.save_word, scene.dream_word, scene.quiz_word):
         train.click(word.box.center)

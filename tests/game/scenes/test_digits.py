@@ -22,7 +22,7 @@ Open = Callable[..., Driver]
 
 @pytest.fixture
 def drawing(open_game: Open) -> Driver:
-    return open_game(DigitsScene())
+    return open_game(DigitsScene)
 
 
 def scene(driver: Driver) -> DigitsScene:
@@ -212,7 +212,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
     shutil.copytree(context.models_dir / "digits", tmp_path / "models" / "digits")
     (tmp_path / "models" / "digits" / "modern" / "config.json").write_text("{", encoding="utf-8")
     context.models_dir = tmp_path / "models"
-    driver = open_game(DigitsScene())
+    driver = open_game(DigitsScene)
     assert scene(driver).chosen == "classic"
     assert "config.json" in scene(driver)._reader.problems["modern"]
     driver.key(pygame.K_n)
@@ -224,7 +224,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
 
 def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, context: Context, tmp_path):
     context.models_dir = tmp_path
-    driver = open_game(DigitsScene())
+    driver = open_game(DigitsScene)
     draw(driver, strokes(3))
     driver.keys(pygame.K_n, pygame.K_3)
     assert scene(driver).probabilities is None

@@ -23,7 +23,10 @@ from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
        Command.NEXT: pygame.K_k, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
        Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
-FLOWN = {"Play": lambda _: PlayScene(3), "mission": lambda _: PlayScene(0, challenge=FlownMission(MISSIONS["fall"]))}
+FLOWN = {
+    "Play": lambda context: PlayScene(context, 3),
+    "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["fall"])),
+}
 
 
 def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name: str) -> Counter[str]:
@@ -32,10 +35,10 @@ def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name
     context.settings_file.save(context.settings)
     context.controls = Controls()
     if name in OVER_OTHERS:
-        driver = open_game(MenuScene())
+        driver = open_game(MenuScene)
         driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
     else:
-        driver = open_game({**SCREENS, **FLOWN}[name](context))
+        driver = open_game({**SCREENS, **FLOWN}[name])
     driver.frames(5)
     told: Counter[str] = Counter()
     text = Canvas.text
@@ -72,9 +75,9 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
         bindings.bind(meaning, code)
     context.settings.keys = bindings.to_dict()
     context.settings_file.save(context.settings)
-    settings = open_game(SCREENS["SettingsScene"](context)).top
+    settings = open_game(SCREENS["SettingsScene"]).top
     assert settings._form.widgets[0]._hint.startswith("F9 ")
-    driver = open_game(MenuScene())
+    driver = open_game(MenuScene)
     driver.app.scenes.apply(Push(OVER_OTHERS["ChoicesScene"](driver.top)))
     help_ = driver.top._rows[driver.top._form.widgets[0]]()
     assert " X" in help_

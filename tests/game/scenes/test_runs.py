@@ -57,8 +57,8 @@ def three(library: Library) -> Library:
 @pytest.fixture
 def open_runs(open_game: Open, library: Library) -> Callable[..., Driver]:
     def begin(**arguments: object) -> Driver:
-        driver = open_game(MenuScene())
-        driver.app.scenes.apply(Push(NetworksScene(**arguments)))  # type: ignore[arg-type]
+        driver = open_game(MenuScene)
+        driver.app.scenes.apply(Push(NetworksScene(driver.app.context, **arguments)))  # type: ignore[arg-type]
         driver.frames(2)
         return driver
 
@@ -276,7 +276,7 @@ def test_a_new_name_is_still_the_one_that_flies(open_runs, three: Library, conte
 
 def test_go_on_training_opens_a_training_of_that_folder(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
     asked: list[Path] = []
-    stand_in = SimpleNamespace(Train=lambda resume: (asked.append(resume), MenuScene())[1])
+    stand_in = SimpleNamespace(TrainScene=lambda context, resume: (asked.append(resume), MenuScene(context))[1])
     monkeypatch.setitem(sys.modules, "game.scenes.train", stand_in)
     driver = open_runs()
     click(driver, texts.RUN_TRAIN)

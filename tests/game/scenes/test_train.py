@@ -42,7 +42,7 @@ SMALL = PRESETS["modern"].changed(num_envs=4, hidden=(8,), warm_up=64, replay_si
 
 @pytest.fixture
 def train(open_game: Callable[..., Driver]) -> Driver:
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     driver.top.knobs.set_config(SMALL, 3)
     return driver
@@ -104,7 +104,7 @@ def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game:
     start(train)
     decisions = train.top.lander_run.history["decisions"][-1]
     train.app.close()
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     assert isinstance(driver.top, QuestionDialog)
     driver.key(pygame.K_RETURN)
@@ -119,7 +119,7 @@ def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_ga
     start(train)
     assert train.top.lander_run.name == "Classic 1"
     train.app.close()
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: driver.top.lander_run.swarm_state)
@@ -130,7 +130,7 @@ def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_ga
 def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game: Callable[..., Driver]) -> None:
     start(train)
     train.app.close()
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
     assert isinstance(driver.top, TrainScene)
@@ -348,7 +348,7 @@ def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> Non
     threads, others = threading.active_count(), set(map(id, _kept()))
     for visit in range(10):
         assert isinstance(game.top, MenuScene)
-        scene = TrainScene()
+        scene = TrainScene(game.app.context)
         game.app.scenes.apply(Push(scene))
         game.frames(2)
         if isinstance(game.top, QuestionDialog):  # about the run of the visit before

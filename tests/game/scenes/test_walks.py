@@ -43,24 +43,24 @@ from tests.support.flights import kept, scripted
 from tests.support.player import DEVICES, Player
 
 SCREENS: dict[str, Callable[[Context], Scene]] = {
-    "MenuScene": lambda _: MenuScene(),
-    "MissionsScene": lambda _: MissionsScene(),
-    "WatchScene": lambda _: WatchScene(seed=1),
-    "TrainScene": lambda _: TrainScene(),
-    "DigitsScene": lambda _: DigitsScene(),
-    "DigitTrainingScene": lambda _: DigitTrainingScene(),
-    "DreamScene": lambda _: DreamScene(reader()),
-    "QuizScene": lambda _: QuizScene(reader()),
-    "PhysicsScene": lambda _: PhysicsScene(),
-    "LogbookScene": lambda _: LogbookScene(),
-    "SettingsScene": lambda _: SettingsScene(),
-    "BindingsScene": lambda _: BindingsScene(),
-    "NetworksScene": lambda _: NetworksScene(),
-    "ReplayScene": lambda context: ReplayScene(flown(context)),
+    "MenuScene": MenuScene,
+    "MissionsScene": MissionsScene,
+    "WatchScene": lambda context: WatchScene(context, seed=1),
+    "TrainScene": TrainScene,
+    "DigitsScene": DigitsScene,
+    "DigitTrainingScene": DigitTrainingScene,
+    "DreamScene": lambda context: DreamScene(context, reader()),
+    "QuizScene": lambda context: QuizScene(context, reader()),
+    "PhysicsScene": PhysicsScene,
+    "LogbookScene": LogbookScene,
+    "SettingsScene": SettingsScene,
+    "BindingsScene": BindingsScene,
+    "NetworksScene": NetworksScene,
+    "ReplayScene": lambda context: ReplayScene(context, flown(context)),
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
-    "PauseScene": lambda below: PauseScene(below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below, Skill([]), begun=False),
+    "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
+    "ChoicesScene": lambda below: ChoicesScene(below.context, below, Skill([]), begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
     "ListDialog": lambda below: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),
@@ -84,7 +84,7 @@ def open_screen(
     def open_it(make: Callable[[Context], Scene]) -> Player:
         context.settings.reduced_motion = True
         context.settings_file.save(context.settings)
-        player = Player(open_game(make(context)), request.param)
+        player = Player(open_game(make), request.param)
         player.frames(3)
         return player
 
@@ -185,7 +185,7 @@ def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
 
 
 def test_a_replay_is_watched_wound_and_flown_on(open_screen):
-    player = open_screen(lambda context: [flown(context), MenuScene()][1])
+    player = open_screen(lambda context: [flown(context), MenuScene(context)][1])
     player.choose(texts.MENU["logbook"][0])
     player.press("confirm")
     replay = player.top
@@ -250,7 +250,7 @@ KEY_OF = {"back": Command.BACK, "pause": Command.PAUSE, "hand over": Command.HAN
 
 @pytest.mark.parametrize("name", SCREENS)
 def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str):
-    game: Driver = open_game(SCREENS[name](context))
+    game: Driver = open_game(SCREENS[name])
     game.move((640, 700))
     game.frames(3)
     for _ in range(3):
@@ -270,7 +270,7 @@ def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str)
 def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
     context.settings.tutored, context.settings.show_hints = True, False
     context.settings_file.save(context.settings)
-    game: Driver = open_game(PlayScene(3))
+    game: Driver = open_game(PlayScene, 3)
     play = game.top
     game.move((640, 400))
     game.frames(3)

@@ -24,7 +24,7 @@ Open = Callable[..., Driver]
 @pytest.fixture
 def watching(open_game: Open, context: Context, tmp_path: Path) -> Driver:
     context.models_dir = tmp_path / "models"  # only the scripted pilot is here
-    return open_game(WatchScene(seed=2))
+    return open_game(WatchScene, seed=2)
 
 
 def scene(driver: Driver) -> WatchScene:
@@ -148,7 +148,7 @@ def many(open_game: Open, context: Context, tmp_path: Path) -> Driver:
         agent.save(context.user_dir / "models" / f"run {number:02}")
     context.settings.model = "run 03"
     SettingsFile(context.user_dir).save(context.settings)
-    return open_game(WatchScene(seed=2))
+    return open_game(WatchScene, seed=2)
 
 
 def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):
