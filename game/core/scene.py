@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from game.drawing.canvas import Canvas
     from game.ui.context import Context
+    from game.ui.hints import HintRow
 
 
 class Scene:
@@ -42,6 +43,10 @@ class Scene:
     def update(self) -> Transition | None:
         """Advance by exactly one physics step of 1/60 s."""
         return None
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002
+        """Return the rows of key hints, laid out as on that canvas; a click on a hint does what its key does."""
+        return ()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw between the last two steps (alpha 0 to 1). Changes nothing but pixels."""

@@ -10,19 +10,19 @@ import pygame
 
 from game.cockpit.cockpit import MODES
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition
+from game.core.scene import Pop, Scene
 from game.core.settings import GRAVITY_SHARES, PACES
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE
 from game.flight.demonstrations import lessons
 from game.flight.handicap import HANDS
 from game.flight.logbook import RECENT_OWN
 from game.flight.skill import Skill
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.scenes.pause import BlurredPicture
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.widget import Widget
 from game.ui.widgets import Choice, Slider, TextButton, Toggle
 
@@ -36,7 +36,7 @@ _TOGGLE_ROW: Final = 58
 _CHART: Final = pygame.Rect(800, 152, 372, 176)
 
 
-class ChoicesScene(Scene):
+class ChoicesScene(FormScene):
     """Choices scene over a flight. Each choice is saved the moment it is made; Escape or Fly goes back.
 
     A course fixes most options, so it offers fewer choices.
@@ -47,7 +47,7 @@ class ChoicesScene(Scene):
         self._skill, self._begun, self._challenge = skill, begun, challenge
         self._behind = BlurredPicture(below, dimmed=0.7)
         self._taught = lessons(context.user_dir)
-        self._form = form = Form(context, on_back=Pop)
+        form = self.form
         self._rows: dict[Widget, Callable[[], str]] = {}
         if not self._challenge:
             self._add_help()
@@ -86,28 +86,22 @@ class ChoicesScene(Scene):
                      lambda index: self._changes("hands")(hands[index]),
                      lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))  # fmt: skip
 
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the rows; the key that opened this scene closes it too."""
-        return Pop() if translate(event) is Command.CHOICES else self._form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        """Animate the rows."""
-        return self._form.update()
+    def actions(self) -> Table:
+        """Change a choice, or go back; the key that opened this scene closes it too."""
+        return [self.form.changes, self.form.goes_back(texts.HINT_BACK), Action(Command.CHOICES, Pop)]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the blurred flight below, the rows and the skill chart."""
         self._behind.draw(canvas)
         canvas.text(texts.CHOICES_TITLE, (MARGIN, 96), size=34, weight="light")
-        self._form.draw(canvas)
-        if self._form.focused in self._rows:
+        self.form.draw(canvas)
+        if self.form.focused in self._rows:
             y = _FIRST + len(self._rows) * _ROW + _HELP
-            canvas.text(self._rows[self._form.focused](), (MARGIN, y), size=SMALL, colour=MUTE)
+            canvas.text(self._rows[self.form.focused](), (MARGIN, y), size=SMALL, colour=MUTE)
         if self._begun and not self._challenge:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
         self._draw_skill(canvas)
-        word = self.context.controls.word
-        hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+        self.draw_hints(canvas)
 
     @property
     def _box(self) -> tuple[int, int, int, int]:
@@ -115,13 +109,13 @@ class ChoicesScene(Scene):
         return MARGIN, _FIRST + len(self._rows) * _ROW, _WIDTH, _ROW - 6
 
     def _add_slider(self, name: str, limits: tuple[float, float], label: str, help_: Callable[[], str]) -> None:
-        form, value = self._form, getattr(self.context.settings, name)
+        form, value = self.form, getattr(self.context.settings, name)
         slider = Slider(form.manager, self._box, label, value, limits, self._changes(name), step=0.1, figure=_percent)
         self._rows[form.add(slider)] = help_
 
     def _choice(self, label: str, words: tuple[str, ...] | list[str], index: int,
                 change: Callable[[int], None], help_: Callable[[], str]) -> None:  # fmt: skip
-        form = self._form
+        form = self.form
         choice = Choice(form.manager, self._box, label, words, index, change, label_width=_LABELS, size=14)
         self._rows[form.add(choice)] = help_
 

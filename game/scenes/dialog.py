@@ -14,10 +14,10 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.tokens import FAINT, MUTE, NIGHT0, SMALL, TEXT
-from game.input.controls import Command
+from game.ui.actions import Table, hints_of
 from game.ui.entry import Entry
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.listing import Listing, Row
 from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
@@ -28,7 +28,7 @@ _ROOM: Final = _WIDTH - 2 * _MARGIN
 _GAP: Final = 28.0  # between words
 
 
-class Dialog(Scene):
+class Dialog(FormScene):
     """Base of all dialogs; a subclass adds its widgets to the form. Escape closes without effect."""
 
     height = 164
@@ -37,20 +37,10 @@ class Dialog(Scene):
         super().__init__(below.context)
         self._below, self._question, self._more = below, question, more
         self.box = pygame.Rect(_LEFT, (720 - self.height) // 2 - 16, _WIDTH, self.height)
-        self._form = Form(self.context, on_back=Pop)
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the form."""
-        return self._form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        """Animate the form."""
-        return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
         self._below.draw(canvas, 1.0)
-        canvas.links.clear()  # the hints of the paused scene below
         canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.8)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)
@@ -59,17 +49,25 @@ class Dialog(Scene):
         if self._more:
             for number, line in enumerate(wrapped(canvas, self._more, SMALL, _ROOM)):
                 canvas.text(line, (left, top + 66 + 18 * number), size=SMALL, colour=MUTE)
-        self._form.draw(canvas)
-        word = self.context.controls.word
-        hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.BACK), texts.HINT_LEAVE)]
-        draw_hints(canvas, hints, (left, self.box.bottom + 24))
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
+
+    def actions(self) -> Table:
+        """Choose, or close without effect."""
+        return [self.form.confirms(texts.HINT_CHOOSE), self.form.goes_back(texts.HINT_LEAVE)]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints below the box."""
+        return [
+            HintRow(hints_of(self.actions(), self.context.controls), (self.box.left + _MARGIN, self.box.bottom + 24))
+        ]
 
     def add_words(self, words: Sequence[tuple[str, OnPress]]) -> None:
         """Add buttons side by side along the lower edge."""
         x = float(self.box.left + _MARGIN)
         for label, press in words:
             width = typeface.width(label, TEXT, "regular")
-            self._form.add(TextButton(self._form.manager, (x, self.box.bottom - 52, width, 28), label, press))
+            self.form.add(TextButton(self.form.manager, (x, self.box.bottom - 52, width, 28), label, press))
             x += width + _GAP
 
 
@@ -93,8 +91,8 @@ class NameDialog(Dialog):
         super().__init__(below, question)
         self._on_name = on_name
         line = (self.box.left + _MARGIN, self.box.top + 60, _ROOM, 32)
-        self._entry = self._form.add(Entry(
-            self._form.manager, line, "", suggestion, self._done, on_cancel=Pop, limit=LONGEST_NAME, fits=fitting,
+        self._entry = self.form.add(Entry(
+            self.form.manager, line, "", suggestion, self._done, on_cancel=Pop, limit=LONGEST_NAME, fits=fitting,
         ))  # fmt: skip
         self.add_words([(texts.NAMING_KEEP, self._keep), (texts.NAMING_LEAVE, Pop)])
         self._entry.begin()
@@ -107,7 +105,7 @@ class NameDialog(Dialog):
         if not problem:
             return Pop()
         self.context.note(problem)
-        self._form.focus(self._entry)
+        self.form.focus(self._entry)
         self._entry.begin()
         return None
 
@@ -121,7 +119,7 @@ class ListDialog(Dialog):
         super().__init__(below, question)
         self._on_pick = on_pick
         box = (self.box.left + _MARGIN, self.box.top + 56, _ROOM, self.box.height - 84)
-        self._form.add(Listing(self._form.manager, box, rows, on_press=self._pick, empty=texts.PICKING_EMPTY))
+        self.form.add(Listing(self.form.manager, box, rows, on_press=self._pick, empty=texts.PICKING_EMPTY))
 
     def _pick(self, number: int) -> Transition:
         self._on_pick(number)

@@ -14,7 +14,7 @@ from ai.training.history import REVERTED
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
 from game.core import texts
-from game.core.scene import Pop, Push, Scene, Transition, push
+from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.digits.matrix import ConfusionMatrix
 from game.drawing import typeface
@@ -22,7 +22,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_problem, draw_run_status, start_word
 from game.scenes.dialog import NameDialog, QuestionDialog
@@ -31,9 +31,10 @@ from game.training.digit_run import DigitCurves, DigitRun
 from game.training.knob_descriptions import figure, knob_descriptions, label
 from game.training.run_settings import RunKind
 from game.training.training_run import EarlierRun
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
@@ -56,11 +57,11 @@ _EVERY: Final = 12  # frames between two drawings of the charts
 _BATCHES: Final = (MUTE, (2.0, 4.0))
 
 
-class DigitTrainingScene(Scene):
+class DigitTrainingScene(FormScene):
     """Digit training scene: charts, confusion matrix and knobs."""
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context)
+        super().__init__(context, self._leave)
         self._was_running = self._alive = False
         self._frame = 0
         self._told: tuple[object, ...] = ()
@@ -77,14 +78,13 @@ class DigitTrainingScene(Scene):
             Chart(_CHARTS[name], texts.PUPIL_CHARTS[name], read=form.format, empty=texts.PUPIL_CHARTS_SHOW[name])
             for name, form in (("loss", "{:.3g}"), ("accuracy", "{:.2f}"))
         ])  # fmt: skip
-        self._form = Form(context, on_back=self._leave)
         self._add_words()
-        self._form.add(VirtualPointer(self._form.manager, self.charts.box, self.charts.follow))
+        self.form.add(VirtualPointer(self.form.manager, self.charts.box, self.charts.follow))
         self.knobs = KnobsPanel(
-            self._form, _KNOBS, DIGIT_PRESETS["classic"], 0, self._turned, self._begin, DIGITS
+            self.form, _KNOBS, DIGIT_PRESETS["classic"], 0, self._turned, self._begin, DIGITS
         )  # fmt: skip
-        self.matrix = self._form.add(ConfusionMatrix(self._form.manager, _MATRIX))
-        self._form.focus(self.start_word)
+        self.matrix = self.form.add(ConfusionMatrix(self.form.manager, _MATRIX))
+        self.form.focus(self.start_word)
 
     def resume(self) -> None:
         """Resume the run."""
@@ -107,14 +107,19 @@ class DigitTrainingScene(Scene):
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, stop, knobs and the matrix."""
         self.charts.follow(event)
-        outcome = self._form.handle_event(event)
-        if outcome is None and not self._form.used:
-            match translate(event):
-                case Command.STEP:
-                    self.digit_run.step()
-                case Command.HANDOVER:
-                    self._toggle()
-        return outcome
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Go back; step, start or pause, as the buttons say."""
+        return [
+            self.form.goes_back(texts.HINT_BACK),
+            Action(Command.STEP, self.digit_run.step),
+            Action(Command.HANDOVER, self._toggle),
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints above the charts."""
+        return [HintRow(self.hints, (_WIDTH - 24, 46), from_right=True)]
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
@@ -138,7 +143,7 @@ class DigitTrainingScene(Scene):
             self._name_words()
         self.charts.update(at_once=self._settings.reduced_motion)
         question, self._question = self._question, None
-        return self._form.update() or question
+        return self.form.update() or question
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the figures, the charts, the matrix and the panel."""
@@ -156,7 +161,7 @@ class DigitTrainingScene(Scene):
         self.matrix.draw_cell(canvas, _CELL)
         self.knobs.draw(canvas)
         self._draw_said(canvas)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         self.charts.draw(canvas)
 
     # The run
@@ -178,10 +183,10 @@ class DigitTrainingScene(Scene):
         old = self._back_word
         width = typeface.width(texts.PUPIL_GO_BACK, SMALL, "regular")
         self._back_word = TextButton(
-            self._form.manager, (_HINT.right - 14 - width, _HINT.top + 2, width, 22), texts.PUPIL_GO_BACK,
+            self.form.manager, (_HINT.right - 14 - width, _HINT.top + 2, width, 22), texts.PUPIL_GO_BACK,
             self.digit_run.go_back, size=SMALL,
         ) if wanted else None  # fmt: skip
-        self._form.replace([old] if old else [], [self._back_word] if self._back_word else [])
+        self.form.replace([old] if old else [], [self._back_word] if self._back_word else [])
 
     def _toggle(self) -> None:
         if self.digit_run.stopping:
@@ -283,7 +288,7 @@ class DigitTrainingScene(Scene):
     def _add_words(self) -> None:
         def add(x: float, y: float, label: str, press: OnPress) -> TextButton:
             width = typeface.width(label, TEXT, "regular")
-            return self._form.add(TextButton(self._form.manager, (x, y, width, 28), label, press))
+            return self.form.add(TextButton(self.form.manager, (x, y, width, 28), label, press))
 
         self.start_word = add(_PANEL, 664, texts.TRAIN_START, self._toggle)
         self.save_word = add(_PANEL + 316, 664, texts.TRAIN_SAVE, self._save)
@@ -300,9 +305,9 @@ class DigitTrainingScene(Scene):
         old = self.stop_word
         if stop != (old.label if old else ""):
             box = (_PANEL + 80, 664, typeface.width(stop, TEXT, "regular"), 28)
-            self.stop_word = TextButton(self._form.manager, box, stop, self._stop_or_go_on) if stop else None
+            self.stop_word = TextButton(self.form.manager, box, stop, self._stop_or_go_on) if stop else None
             before = [self.start_word, *([old] if old else [])]
-            self._form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
+            self.form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
 
     def _set_charts(self) -> None:
         curves = self.digit_run.curves
@@ -341,8 +346,7 @@ class DigitTrainingScene(Scene):
             read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
             line = texts.PUPIL_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
         draw_run_status(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
-        hints = self._form.hints or [(self.context.controls.word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)
+        self.draw_hints(canvas)
 
     def _draw_said(self, canvas: Canvas) -> None:
         if problem := self.digit_run.problem:

@@ -12,18 +12,17 @@ from ai.lander.rules import tenths
 from game.charts.chart import Chart, Series
 from game.charts.charts import Charts
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition, push
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, Totals, best, skill, totals
-from game.input.controls import Command
 from game.play.race import race
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.listing import Listing, shortened
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
@@ -42,7 +41,7 @@ _FOOT: Final = 612
 _TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
 
 
-class LogbookScene(Scene):
+class LogbookScene(FormScene):
     """Logbook scene: flights on the left, newest first; skill and actions on the chosen flight on the right."""
 
     def __init__(self, context: Context) -> None:
@@ -56,17 +55,19 @@ class LogbookScene(Scene):
         self._reload()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the widgets; the Delete key deletes a flight."""
-        if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE and not self._form.typing:
-            self._throw_away()
-            return None
+        """Pass the event to the charts and the widgets."""
         self._charts.follow(event)
-        return self._form.handle_event(event)
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Move, choose, go back; the Delete key deletes a flight."""
+        delete = [] if self.form.typing else [Action(pygame.K_DELETE, self._throw_away)]
+        return [self.form.moves, *super().actions(), *delete]
 
     def update(self) -> Transition | None:
         """Animate widgets and charts."""
         self._charts.update(self.context.settings.reduced_motion)
-        return self._form.update()
+        return self.form.update()
 
     # What there is
 
@@ -82,15 +83,14 @@ class LogbookScene(Scene):
     def _build(self, context: Context) -> None:
         self._records = Records(context.user_dir)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
-        self._form = Form(context, on_back=Pop)
-        manager = self._form.manager
+        manager = self.form.manager
         box = (MARGIN, _LIST.top - 54, 330, 20)
         self._filter = Choice(manager, box, "", texts.LOGBOOK_FILTERS, 0, lambda _: self._fill(), size=SMALL)
-        self._list = self._form.add(Listing(
+        self._list = self.form.add(Listing(
             manager, _LIST, [], on_choose=lambda _: self._set_verbs(), on_press=lambda _: self._watch(),
             empty=texts.LOGBOOK_EMPTY, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
         ))  # fmt: skip
-        self._form.add(self._filter)
+        self.form.add(self._filter)
         self._verbs: list[Widget] = []
         self._charts = Charts([
             Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_SKILL, limits=(0.0, 100.0),
@@ -98,7 +98,7 @@ class LogbookScene(Scene):
             Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
                   read_x=texts.LOGBOOK_FLIGHT.format),
         ])  # fmt: skip
-        self._form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
+        self.form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
 
     def _reload(self) -> None:
         """Reload the flights from disk."""
@@ -139,13 +139,13 @@ class LogbookScene(Scene):
                     (texts.LOGBOOK_THROW_AWAY, self._throw_away)]  # fmt: skip
         elif self.chosen and self.chosen.file in self._thrown:
             rows = [(texts.LOGBOOK_BRING_BACK, self._bring_back)]
-        manager = self._form.manager
+        manager = self.form.manager
         new: list[Widget] = [
             TextButton(manager, (_LEFT, _FIRST_VERB + number * _LINE, 220, _LINE), label, press, size=18)
             for number, (label, press) in enumerate(rows)
         ]
         new.append(TextButton(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, Pop, size=18))
-        self._form.replace(self._verbs, new)
+        self.form.replace(self._verbs, new)
         self._verbs = new
 
     # What can be done
@@ -180,7 +180,7 @@ class LogbookScene(Scene):
         """Report what was done, or why it failed, and reload the list."""
         self.context.note(words if done else self._records.problem)
         self._reload()
-        self._form.focus(self._list)
+        self.form.focus(self._list)
 
     # The picture
 
@@ -197,20 +197,13 @@ class LogbookScene(Scene):
             canvas.text(label, (x, y), size=LABEL, weight="medium", colour=MUTE, align=align)  # type: ignore[arg-type]
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
         self._charts.draw(canvas)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         y = _FIRST_VERB + 22 + _LINE * (len(self._verbs) - 1)  # below the verbs, of which Back is one
         bar = texts.NOT_COUNTED[self.chosen.bar] if self.chosen and self.chosen.bar else ""
         for line in [line for text in (bar, self._why_gone) if text for line in wrapped(canvas, text, SMALL, _WIDTH)]:
             canvas.text(line, (_LEFT, y), size=SMALL, colour=MUTE)
             y += 19
-        self._draw_hints(canvas)
-
-    def _draw_hints(self, canvas: Canvas) -> None:
-        controls = self.context.controls
-        arrows = controls.arrows
-        hints = [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
-                 (controls.word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
-        draw_hints(canvas, self._form.hints or hints, (MARGIN, VIEW_SIZE[1] - 40))
+        self.draw_hints(canvas)
 
 
 def _draw_totals(canvas: Canvas, sums: Totals) -> None:

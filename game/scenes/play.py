@@ -25,7 +25,9 @@ from game.input.mouse import MouseStick
 from game.play import captions as flight_words
 from game.play.challenge import Challenge, DrawnFlight, Duel
 from game.play.ending import FlightEnding, write_down
+from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.context import Context
+from game.ui.hints import HintRow
 from game.ui.widget import OnPress
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
@@ -97,26 +99,49 @@ class PlayScene(Scene):
             self._name_what_lacks()
             return None
         self._mouse.take(event)
-        match translate(event):
-            case Command.PAUSE:
-                return Pop() if self._leaves else self._pause()
-            case Command.UNPLUGGED if not (self.waiting or self.flight.over):
-                return self._pause()
-            case Command.HANDOVER:
-                self._hand_over()
-            case Command.CHOICES:
-                return self._choose()
-            case Command.RETRY:
-                self.retry()
-            case Command.NEXT:
-                self._begin_elsewhere()
-            case Command.CONFIRM if self.ending.shown > 0:
-                return self._go_on()
-            case Command.CONFIRM:
-                self.ending.hurry()
-            case _ if self.ending.shown >= 1 and _is_space(event):
-                return self._go_on()
-        return None
+        if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
+            return self._pause()
+        action = answering(self.actions(), event)
+        return action.run() if action else None
+
+    def actions(self) -> Table:
+        """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
+        if self.ending.shown == 0:
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry)]
+        space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
+        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints of the flight, and those of the card."""
+        rows = [flight_words.flight_row(hints_of(self._flight_actions(), self._controls))]
+        if self.ending.card and self.ending.shown > 0:
+            rows.append(
+                self.ending.hint_row(
+                    hints_of(self._card_actions(), self._controls), self._ghost, self._settings.show_hints
+                )
+            )
+        return rows
+
+    def _flight_actions(self) -> list[Action]:
+        """What the keys do in flight, with the hints that fit the moment."""
+        words = flight_words.flight_hints(self.flight, self._challenge, leaves=self._leaves)
+        runs: dict[Command, Run] = {
+            Command.HANDOVER: self._hand_over,
+            Command.CHOICES: self._choose,
+            Command.NEXT: self._begin_elsewhere,
+            Command.PAUSE: Pop if self._leaves else self._pause,
+            Command.RETRY: self.retry,
+        }
+        return [Action(command, run, words.get(command, "")) for command, run in runs.items()]
+
+    def _card_actions(self) -> list[Action]:
+        """What the keys do that the outcome card names."""
+        card = self.ending.card
+        if card is None:
+            return []
+        first, (other, word) = flight_words.card_hints(card.good, self._challenge)
+        runs = {action.key: action.run for action in self._flight_actions()}
+        return [Action(Command.CONFIRM, self._go_on, first), Action(other, runs[other], word)]
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -153,7 +178,9 @@ class PlayScene(Scene):
         if self._challenge:
             self._challenge.draw(canvas, view, flight, self._moment(alpha))
         self._draw_words(canvas)
-        self.ending.draw(canvas, self._controls, self._challenge, self._ghost, self._settings.show_hints)
+        self.ending.draw(canvas, self._ghost, self._settings.show_hints)
+        for row in self.hint_rows(canvas)[1:]:
+            row.draw(canvas)
 
     # The flight
 
@@ -349,8 +376,4 @@ class PlayScene(Scene):
         if self.waiting and not (challenge and not challenge.opening):
             flight_words.draw_opening(canvas, self._controls, challenge, self._path_preview.asks)
         if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
-            flight_words.draw_keys(canvas, self._controls, self.flight, challenge, self._leaves)
-
-
-def _is_space(event: pygame.event.Event) -> bool:
-    return bool(event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE)
+            self.hint_rows(canvas)[0].draw(canvas)

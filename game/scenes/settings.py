@@ -9,14 +9,15 @@ import pygame
 
 from game.audio.instruments import GROUPS, altitude_key
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition, push
+from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
 from game.input.controls import Command, Held, names
+from game.ui.actions import Table
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.widgets import Choice, Slider, TextButton, Toggle
 
 ROWS: Final = ("full_screen", "reduced_motion", "colour_safe", "show_hints")
@@ -37,7 +38,7 @@ _KEYS: Final = (
 )  # fmt: skip
 
 
-class SettingsScene(Scene):
+class SettingsScene(FormScene):
     """Toggles and volumes on the left, the keys on the right."""
 
     def __init__(self, context: Context) -> None:
@@ -52,50 +53,48 @@ class SettingsScene(Scene):
     def _build(self) -> None:
         """Build a toggle for every row, and a slider for every volume."""
         context = self.context
-        self._form = Form(context, on_back=Pop)
+        self.form = Form(context, on_back=Pop)
         for number, name in enumerate(ROWS):
             box = (MARGIN, _FIRST_ROW + number * _ROW, _WIDTH, 56)
             label, hint = texts.SETTINGS[name]
             hint = hint.format(key=(*context.controls.key_names(Command.FULLSCREEN), texts.BINDINGS_NONE)[0])
             value = getattr(context.settings, name)
-            self._form.add(Toggle(self._form.manager, box, label, value, self._changes(name), hint=hint))
+            self.form.add(Toggle(self.form.manager, box, label, value, self._changes(name), hint=hint))
         sizes, size = list(TEXT_SIZES), context.settings.text_size
         words = [texts.TEXT_SIZES[name] for name in sizes]
-        self._form.add(Choice(
-            self._form.manager, (MARGIN, _TEXT, _WIDTH, 36), texts.TEXT_SIZE, words,
+        self.form.add(Choice(
+            self.form.manager, (MARGIN, _TEXT, _WIDTH, 36), texts.TEXT_SIZE, words,
             sizes.index(size) if size in sizes else 0, lambda index: self._set("text_size", sizes[index]),
             label_width=142,
         ))  # fmt: skip
         for number, group in enumerate(GROUPS):
-            self._form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
-        self._form.add(TextButton(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
+            self.form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
+        self.form.add(TextButton(self.form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
         keys = (_KEYS_LEFT, _KEYS_WORD, 240, 32)
-        self._form.add(TextButton(self._form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
+        self.form.add(TextButton(self.form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
         first = (_KEYS_LEFT, _KEYS_WORD + 44, 240, 32)
-        self._form.add(TextButton(self._form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the widgets."""
-        return self._form.handle_event(event)
+        self.form.add(TextButton(self.form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
 
     def update(self) -> Transition | None:
         """Animate the widgets, and reflect a change of full screen by F11."""
-        for name, toggle in zip(ROWS, self._form.widgets, strict=False):
+        for name, toggle in zip(ROWS, self.form.widgets, strict=False):
             assert isinstance(toggle, Toggle)
             toggle.value = getattr(self.context.settings, name)
-        return self._form.update()
+        return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the toggles, what the colours look like, and the keys."""
         self._sky.draw(canvas)
         canvas.text(texts.SETTINGS_TITLE, (MARGIN, 88), size=34, weight="light")
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         self._draw_swatches(canvas, _FIRST_ROW + ROWS.index("colour_safe") * _ROW + 28)
         self._draw_sound(canvas)
         self._draw_keys(canvas)
-        word = self.context.controls.word
-        hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+        self.draw_hints(canvas)
+
+    def actions(self) -> Table:
+        """Change a setting, or go back."""
+        return [self.form.changes, self.form.goes_back(texts.HINT_BACK)]
 
     def _changes(self, name: str) -> Callable[[bool], None]:
         return lambda value: self._set(name, value)
@@ -113,7 +112,7 @@ class SettingsScene(Scene):
                 context.sound.play(_SAMPLES[group])
 
         label, value = texts.SOUND_GROUPS[group], getattr(context.settings, name)
-        return Slider(self._form.manager, box, label, value, (0.0, 1.0), change, step=0.1, figure=_loudness)
+        return Slider(self.form.manager, box, label, value, (0.0, 1.0), change, step=0.1, figure=_loudness)
 
     def _draw_sound(self, canvas: Canvas) -> None:
         title = canvas.text(texts.SOUND_TITLE, (MARGIN, _SOUND - 12), size=LABEL, weight="medium", colour=MUTE)

@@ -14,12 +14,12 @@ from ai.training.session import agent_of
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.collection import LibraryError
-from game.core.scene import Pop, Push, Scene, Transition, push
+from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
 from game.flight.demonstrations import FILE_NAME, lessons
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.panels.advice import Advice
 from game.panels.knobs import KnobsPanel
 from game.panels.network_panel import NetworkPanel
@@ -27,9 +27,10 @@ from game.panels.run_status import draw_problem, draw_run_status, start_word
 from game.panels.training_charts import TrainingCharts
 from game.training.lander_run import PACES, LanderRun
 from game.training.library import Library, SavedRun
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, TextButton
@@ -47,23 +48,22 @@ _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene(Scene):
+class TrainScene(FormScene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
     def __init__(self, context: Context, resume: Path | None = None) -> None:
-        super().__init__(context)
+        super().__init__(context, self._back)
         self._was_running = self._alive = self._compared = False
         self._settings = context.settings
         self.lander_run = LanderRun(Library(context.user_dir))
         self._left: SavedRun | None = self.lander_run.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
-        self._form = Form(context, on_back=self._back)
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
-        self.inside = NetworkPanel(self._form, self._look_closer)
-        self.knobs = KnobsPanel(self._form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
-        self._advice = Advice(self._form, _SAID, self.knobs.turn, self._go_back)
+        self.inside = NetworkPanel(self.form, self._look_closer)
+        self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
+        self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
         if resume is not None:
             self._go_on(resume)
@@ -92,17 +92,24 @@ class TrainScene(Scene):
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.inside.covers(event.pos):
             self._look_closer()
             return None
-        outcome = self._form.handle_event(event)
-        if outcome is not None or self._form.used:
-            return outcome
-        match translate(event):
-            case Command.STEP:
-                self.lander_run.step()
-            case Command.SLOWER | Command.FASTER as command:
-                self._pace_choice.shift(1 if command is Command.FASTER else -1)
-            case Command.HANDOVER:
-                self._toggle()
-        return None
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Go back; step, change the pace, start or pause, as the buttons say."""
+        return [
+            self.form.goes_back(texts.HINT_BACK),
+            Action(Command.STEP, self.lander_run.step),
+            Action(Command.SLOWER, lambda: self._turn_pace(-1)),
+            Action(Command.FASTER, lambda: self._turn_pace(1)),
+            Action(Command.HANDOVER, self._toggle),
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hint beside the title, which the network covers when it is large."""
+        return [] if self.inside.large else [HintRow(self.hints[-1:], (_TITLE.right - 16, 46), from_right=True)]
+
+    def _turn_pace(self, direction: int) -> None:
+        self._pace_choice.shift(direction)
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
@@ -131,7 +138,7 @@ class TrainScene(Scene):
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         self._start_word.label = start_word(lander_run.state)
-        return self._form.update()
+        return self.form.update()
 
     def _listen(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
@@ -165,7 +172,7 @@ class TrainScene(Scene):
         self.inside.draw(canvas)
         self.knobs.draw(canvas)
         self._draw_said(canvas)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
 
     # The run
 
@@ -294,16 +301,16 @@ class TrainScene(Scene):
 
     def _add_controls(self) -> None:
         left, top = _CONTROLS.topleft
-        self._start_word = self._form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
-        self._step_word = self._form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
-        self._pace_choice = self._form.add(Choice(
-            self._form.manager, (left + 144, top, 148, 28), "", texts.TRAIN_PACES, len(PACES) - 1,
+        self._start_word = self.form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
+        self._step_word = self.form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
+        self._pace_choice = self.form.add(Choice(
+            self.form.manager, (left + 144, top, 148, 28), "", texts.TRAIN_PACES, len(PACES) - 1,
             self.lander_run.set_pace, gap=14,
         ))  # fmt: skip
-        self._save_word = self._form.add(self._word(left + 316, top, 68, texts.TRAIN_SAVE, self._save))
+        self._save_word = self.form.add(self._word(left + 316, top, 68, texts.TRAIN_SAVE, self._save))
 
     def _word(self, x: float, y: float, width: float, label: str, press: OnPress) -> TextButton:
-        return TextButton(self._form.manager, (x, y, width, 28), label, press)
+        return TextButton(self.form.manager, (x, y, width, 28), label, press)
 
     def _lay_beside(self, large: bool = False) -> None:
         """Add the widgets of the large network, or of the swarm and the charts."""
@@ -315,12 +322,12 @@ class TrainScene(Scene):
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
             charts = self.training_charts.charts
-            beside += [VirtualPointer(self._form.manager, charts.box, charts.follow),
-                       Scrubber(self._form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
+            beside += [VirtualPointer(self.form.manager, charts.box, charts.follow),
+                       Scrubber(self.form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
             if self._compared:
-                beside.append(Choice(self._form.manager, _AXES, "", texts.TRAIN_AXES, self.training_charts.axis,
+                beside.append(Choice(self.form.manager, _AXES, "", texts.TRAIN_AXES, self.training_charts.axis,
                                      self.training_charts.measure_by, size=SMALL, gap=14))  # fmt: skip
-        self._form.replace(self._beside, beside)
+        self.form.replace(self._beside, beside)
         self._beside = beside
 
     def _look_closer(self) -> None:
@@ -348,8 +355,7 @@ class TrainScene(Scene):
             canvas.panel(box, _COVER)
         draw_run_status(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
-        hints = self._form.hints[-1:] or [(self.context.controls.word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (_TITLE.right - 16, 46), from_right=True)
+        self.draw_hints(canvas)
 
     def _draw_said(self, canvas: Canvas) -> None:
         """Draw the current problem, or what to do first."""

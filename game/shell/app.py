@@ -177,15 +177,18 @@ class App:
                     self._settled = self._last + _SETTLE
         if not self.scenes.running:
             return
-        event = self._clicked(self._in_points(event))
+        event = self._in_points(event)
+        if event.type in _MOUSE:
+            self.canvas.pointer = event.pos
+        elif not self.context.controls.mouse_in_use:
+            self.canvas.pointer = None
         match translate(event):
             case Command.FULLSCREEN:
-                self.context.settings.full_screen = not self.context.settings.full_screen
-                self.apply_settings()
+                self.context.toggle_full_screen()
             case Command.SCREENSHOT:
                 self._save_screenshot()
             case _:
-                self._guarded(lambda: self.scenes.handle_event(event))
+                self._guarded(lambda: self._pass_on(event))
 
     def _moved(self, event: pygame.event.Event) -> bool:
         """Whether the mouse moved, and not the window below it."""
@@ -204,15 +207,14 @@ class App:
         if controls.mouse_in_use != used_mouse:
             pygame.mouse.set_visible(controls.mouse_in_use)
 
-    def _clicked(self, event: pygame.event.Event) -> pygame.event.Event:
-        """Turn a click on a hint into its press; return any other event unchanged."""
-        if event.type in _MOUSE:
-            self.canvas.pointer = event.pos
-        elif not self.context.controls.mouse_in_use:
-            self.canvas.pointer = None
-        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
-            return event
-        return self.canvas.linked(event.pos) or event
+    def _pass_on(self, event: pygame.event.Event) -> None:
+        """Run the hint that is clicked, or pass the event to the top scene."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            for row in self.scenes.top.hint_rows(self.canvas):
+                if (hint := row.at(self.canvas, event.pos)) and hint.run:
+                    self.scenes.apply(hint.run())
+                    return
+        self.scenes.handle_event(event)
 
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
         if event.type not in _MOUSE:

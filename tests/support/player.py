@@ -48,7 +48,7 @@ class Player(Driver):
 
     @property
     def form(self) -> Form:
-        form = getattr(self.top, "_form", None)
+        form = getattr(self.top, "form", None)
         assert isinstance(form, Form)
         return form
 

@@ -25,8 +25,8 @@ def sound(context: Context) -> Listener:
 
 
 def focus(game: Driver, label: str) -> None:
-    (widget,) = [widget for widget in game.top._form.widgets if widget.label == label]
-    game.top._form.focus(widget)
+    (widget,) = [widget for widget in game.top.form.widgets if widget.label == label]
+    game.top.form.focus(widget)
 
 
 def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):

@@ -41,7 +41,7 @@ def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context:
     game: Driver = open_game(SettingsScene)
     game.resize(size)
     assert game.app.canvas.offset == tuple((w - s) // 2 for w, s in zip(size, game.app.canvas.size, strict=True))
-    toggle = game.top._form.widgets[1]
+    toggle = game.top.form.widgets[1]
     box = pygame.FRect(toggle.box)
     for place in ((box.left + 2, box.top + 2), (box.right - 3, box.bottom - 3), box.center):
         before = context.settings.reduced_motion
@@ -60,10 +60,10 @@ def test_full_screen_and_back_keeps_size_and_mouse(open_game, context: Context):
         game.key(pygame.K_F11)
         game.frames(10)
         assert context.settings.full_screen
-        game.click(game.top._form.widgets[1].box.center)
+        game.click(game.top.form.widgets[1].box.center)
         game.key(pygame.K_RETURN, pygame.KMOD_ALT)
         game.frames(10)
         assert not context.settings.full_screen
         assert game.app.window.size == (1000, 700)
-        game.click(game.top._form.widgets[1].box.center)
+        game.click(game.top.form.widgets[1].box.center)
     assert not context.settings.reduced_motion

@@ -165,7 +165,7 @@ def test_names_that_no_font_can_write_are_written_all_the_same():
 
 def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
     driver = open_game(SettingsScene)
-    while driver.top._form.focused.label != texts.TEXT_SIZE:
+    while driver.top.form.focused.label != texts.TEXT_SIZE:
         driver.key(pygame.K_DOWN)
     before = driver.app.canvas.text_width("Text", size=SMALL)
     driver.keys(pygame.K_RIGHT, pygame.K_RIGHT)

@@ -235,5 +235,5 @@ def test_gravity_is_offered_only_where_there_is_any_and_has_its_unit(open_game: 
         scene = driver.top
         assert isinstance(scene, PhysicsScene)
         assert type(scene.exhibit) is EXHIBITS[name]
-        assert any(widget.label == texts.PHYSICS_GRAVITY for widget in scene._form.widgets) is offered
+        assert any(widget.label == texts.PHYSICS_GRAVITY for widget in scene.form.widgets) is offered
         driver.key(pygame.K_n)

@@ -162,7 +162,7 @@ def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_pa
 
 
 def _answers(driver: Driver) -> list[str]:
-    return [widget.label for widget in driver.top._form.widgets]
+    return [widget.label for widget in driver.top.form.widgets]
 
 
 def test_a_gif_works_as_installed_and_an_mp4_is_offered_only_where_it_can_be_made(
@@ -189,7 +189,7 @@ def test_who_does_not_want_a_film_after_all_gets_none(replay: tuple[Driver, Repl
     if way == "key":
         driver.key(pygame.K_ESCAPE)
     else:
-        driver.click(driver.top._form.widgets[-1].box.center)
+        driver.click(driver.top.form.widgets[-1].box.center)
     assert driver.top is scene
     assert scene._export is None
 
@@ -221,7 +221,7 @@ def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay
     pytest.importorskip("PIL")
     driver, scene = replay
     _choose_gif(driver)
-    scene.stopped = False
+    scene.playback.stopped = False
     at = scene.flight_replay.at
     driver.frames(5)
     assert scene.flight_replay.at > at

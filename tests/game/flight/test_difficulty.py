@@ -146,7 +146,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
     game.keys(pygame.K_c)
     scene = game.top
     assert isinstance(scene, ChoicesScene)
-    while scene._form.focused.label != texts.CHOICES_GRAVITY:
+    while scene.form.focused.label != texts.CHOICES_GRAVITY:
         game.key(pygame.K_DOWN)
     game.keys(pygame.K_LEFT, pygame.K_LEFT, pygame.K_c)
     game.frames(2)
@@ -179,7 +179,7 @@ def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
 def test_nothing_but_the_pace_can_be_chosen_in_a_course(open_game: Open):
     game = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"]))
     game.keys(pygame.K_UP, pygame.K_c)
-    labels = [widget.label for widget in game.top._form.widgets]
+    labels = [widget.label for widget in game.top.form.widgets]
     assert texts.PACE in labels
     assert texts.CHOICES_GRAVITY not in labels
 

@@ -190,7 +190,7 @@ def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
     box = scene(replay)._reward_bar.box
     replay.click((box.left + 84 + 0.5 * (box.width - 84), box.centery))
     assert scene(replay).flight_replay.at == pytest.approx(scene(replay).flight_replay.length / 2, abs=5)
-    assert not scene(replay).stopped
+    assert not scene(replay).playback.stopped
 
 
 def test_a_gamepad_stops_winds_and_leaves(open_game: Open, record: Record, context: Context):
@@ -201,7 +201,7 @@ def test_a_gamepad_stops_winds_and_leaves(open_game: Open, record: Record, conte
     assert driver.top_name == "ReplayScene"
     driver.frames(100)
     driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert scene(driver).stopped
+    assert scene(driver).playback.stopped
     at = scene(driver).flight_replay.at
     driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
     assert scene(driver).flight_replay.at < at
@@ -248,7 +248,7 @@ def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
 
 def test_flights_are_listed_newest_first_and_filtered(book: Driver):
     assert [entry.outcome for entry in page(book)._shown] == ["CRASHED", "LANDED"]
-    page(book)._form.focus(page(book)._filter)
+    page(book).form.focus(page(book)._filter)
     book.key(pygame.K_RIGHT)
     assert [entry.outcome for entry in page(book)._shown] == ["LANDED"]
     book.key(pygame.K_RIGHT)
@@ -269,7 +269,7 @@ def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(boo
     book.frames(1)
     assert texts.FLIGHT_THROWN in written
     assert texts.FLIGHT_TOO_OLD not in written
-    page(book)._form.focus(page(book)._verbs[0])
+    page(book).form.focus(page(book)._verbs[0])
     book.key(pygame.K_RETURN)
     assert said(book) == texts.LOGBOOK_BROUGHT_BACK
     assert page(book).chosen == entry

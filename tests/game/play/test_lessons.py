@@ -9,7 +9,7 @@ import pytest
 from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
-from game.input.bindings import Command, Held
+from game.input.bindings import Held
 from game.play.tutorial import Tutorial
 from game.scenes.play import PlayScene
 from tests.support.driver import Driver
@@ -143,7 +143,7 @@ class Reader:
             driver.button(pygame.CONTROLLER_BUTTON_Y)
         else:
             driver.frames(1)
-            driver.click(next(box for box, key in driver.app.canvas.links if key.command is Command.HANDOVER).center)
+            driver.click(driver.hints()[texts.HINT_HAND_OVER])
 
 
 Open = Callable[..., Driver]

@@ -301,7 +301,7 @@ def test_a_flight_that_ends_is_written_down(open_game: Open, context: Context):
 
 def test_the_ghost_of_a_race_flies_as_the_flight_did(book: Driver):
     book.keys(pygame.K_DOWN)
-    word = next(widget for widget in book.top._form.widgets if widget.label == texts.LOGBOOK_RACE)
+    word = next(widget for widget in book.top.form.widgets if widget.label == texts.LOGBOOK_RACE)
     book.click(word.box.center)
     ghost = play(book)._ghost
     play(book).waiting = False

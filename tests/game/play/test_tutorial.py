@@ -225,8 +225,8 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     driver.key(pygame.K_UP)
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "PauseScene"
-    word = next(word for word in driver.top._form.widgets if word.label == texts.TUTORIAL_LEAVE)
-    driver.top._form.focus(word)
+    word = next(word for word in driver.top.form.widgets if word.label == texts.TUTORIAL_LEAVE)
+    driver.top.form.focus(word)
     driver.key(pygame.K_RETURN)
     assert play(driver)._challenge is None
     assert saved(context) == (True, False)

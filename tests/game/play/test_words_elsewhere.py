@@ -52,11 +52,11 @@ def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context:
     watch._model_choice.choose(Roster.names.index(name))
     swarm = watch.swarm
     for stopped in (False, True):
-        watch.stopped = stopped
+        watch.playback.stopped = stopped
         for frames in (1, 7):
             check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
             driver.skip(frames)
-    watch.stopped = False
+    watch.playback.stopped = False
     lost = np.zeros((count, 6))
     lost[:, :4] = -swarm.env.limits.half_width + 0.1, 12, -8, 0
     swarm.env.place(np.ones(count, bool), lost)
@@ -64,7 +64,7 @@ def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context:
     assert (swarm.env.outcome == Outcome.OUT_OF_BOUNDS).all()
     check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
     assert swarm.lost == count
-    watch.stopped = True
+    watch.playback.stopped = True
     watch._count_choice.choose(2)
     check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
 
@@ -74,8 +74,8 @@ def check_watch(reading: Reading, flies: str, broken: bool) -> None:
     scripted, count, swarm = flies == networks.SCRIPTED, COUNTS[watch._count], watch.swarm
     who = {texts.WATCH_SCRIPTED, texts.WATCH_STOPPED, *(texts.WATCH_FLIES.format(name=each) for each in Roster.names)}
     flying = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=flies)
-    assert who & words == {texts.WATCH_STOPPED if watch.stopped else flying}
-    assert {texts.HINT_GO, texts.HINT_STOP} & words == {texts.HINT_GO if watch.stopped else texts.HINT_STOP}
+    assert who & words == {texts.WATCH_STOPPED if watch.playback.stopped else flying}
+    assert {texts.HINT_GO, texts.HINT_STOP} & words == {texts.HINT_GO if watch.playback.stopped else texts.HINT_STOP}
     assert {texts.WATCH_ONE, *map(many, COUNTS)} & words == {texts.WATCH_ONE if count == 1 else many(count)}
     weighs = flies == "weighs"
     assert (texts.MIND_TITLE in words) == weighs == (texts.MIND_SCRIPTED_TITLE not in words)

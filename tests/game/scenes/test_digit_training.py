@@ -110,7 +110,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
         train.click(word.box.center)
     assert notes == [texts.PUPIL_NOTHING] * 3
     train.key(pygame.K_TAB)
-    scene._form.focus(scene.start_word)
+    scene.form.focus(scene.start_word)
     train.key(pygame.K_RETURN)
     wait(train, lambda: scene.digit_run.curves.points)
     train.click(scene.save_word.box.center)
@@ -136,7 +136,7 @@ def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path:
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, QuestionDialog)
     if answer:
-        train.click(next(word for word in train.top._form.widgets if word.label == answer).box.center)
+        train.click(next(word for word in train.top.form.widgets if word.label == answer).box.center)
     else:
         train.key(pygame.K_ESCAPE)
     assert train.top is scene
@@ -249,6 +249,6 @@ def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     assert scene.matrix.cell == (6, 0)
     train.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     assert scene.matrix.cell == (7, 0)
-    assert scene._form.focused is scene.matrix
+    assert scene.form.focused is scene.matrix
     train.keys(*[pygame.K_RIGHT] * 10)
-    assert scene._form.focused is not scene.matrix, "beyond the edge the focus goes on"
+    assert scene.form.focused is not scene.matrix, "beyond the edge the focus goes on"

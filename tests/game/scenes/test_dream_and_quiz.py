@@ -79,7 +79,7 @@ def test_other_settings_begin_another_dream(open_game: Callable[..., Driver], cl
     drawing[5:23, 12:16] = 1
     game = open_game(DreamScene, classifier, 1, drawing)
     game.frames(30)
-    game.top._form.focus(game.top._slider)
+    game.top.form.focus(game.top._slider)
     before = game.top.dreams[1]
     game.key(pygame.K_LEFT)
     assert game.top.dreams[1] is not before
@@ -116,7 +116,7 @@ def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..
     assert len(scene.pad.strokes) == 1, "what was read stays as it is"
     game.key(pygame.K_RETURN)
     assert scene.contest.round.kind == "read"
-    game.click(scene._form.widgets[scene.contest.round.digit].box.center)
+    game.click(scene.form.widgets[scene.contest.round.digit].box.center)
     assert scene.contest.score("read") == (1, 1)
     game.button(pygame.CONTROLLER_BUTTON_A)
     assert scene.contest.place == 2
@@ -127,13 +127,13 @@ def test_words_that_have_done_their_work_are_gone(open_game: Callable[..., Drive
     game = open_game(QuizScene, classifier)
     game.frames(2)
     scene = game.top
-    elements = scene._form.manager.get_sprite_group()
+    elements = scene.form.manager.get_sprite_group()
     for _ in range(3):
         for _ in range(10):
             digit = scene.contest.round.digit
             scene.contest.submit(classifier_image()) if scene.contest.round.kind == "draw" else scene._read(digit)
             scene._lay()
-            assert {*scene._form.widgets} == {each for each in elements.sprites() if isinstance(each, Widget)}
+            assert {*scene.form.widgets} == {each for each in elements.sprites() if isinstance(each, Widget)}
             scene._go()
         assert scene.contest.round is None
         scene._go()

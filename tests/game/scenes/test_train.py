@@ -88,7 +88,7 @@ def test_it_learns_as_it_would_without_a_window(train: Driver) -> None:
 def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
     start(train)
     scene = train.top
-    scene._form.focus(scene._save_word)
+    scene.form.focus(scene._save_word)
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, NameDialog)
     train.key(pygame.K_RETURN)
@@ -149,7 +149,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     train.app.scenes.apply(scene._open_runs())
     train.frames(2)
     verbs = train.top._verbs
-    train.top._form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
+    train.top.form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
     train.key(pygame.K_RETURN)
     assert train.top is scene
     train.wait(lambda: scene.lander_run.swarm_state is not None)
@@ -173,8 +173,8 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
 def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
     scene, notes = train.top, list[str]()
     train.app.context.note = notes.append
-    (word,) = [widget for widget in scene._form.widgets if widget.label == texts.TRAIN_TEACH]
-    scene._form.focus(word)
+    (word,) = [widget for widget in scene.form.widgets if widget.label == texts.TRAIN_TEACH]
+    scene.form.focus(word)
     train.key(pygame.K_RETURN)
     assert scene.lander_run.state is None, "nothing to learn from, nothing begun"
     assert texts.TRAIN_NO_LESSONS in notes
@@ -185,7 +185,7 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     assert scene.knobs.config.success_pass
     train.frames(1)
     assert texts.TRAIN_TAUGHT.format(count=2) in notes
-    scene._form.focus(scene._save_word)
+    scene.form.focus(scene._save_word)
     train.key(pygame.K_RETURN)
     train.key(pygame.K_RETURN)
     train.wait(scene.lander_run.library.runs)
@@ -208,7 +208,7 @@ def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     start(train)
     scene = train.top
-    scene._form.focus(next(each for each in scene._form.widgets if isinstance(each, Scrubber)))
+    scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
     train.key(pygame.K_LEFT)
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, PlayScene)
@@ -233,12 +233,12 @@ def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
     assert train.top is scene
     assert not scene.inside.large
     assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
-    scene._form.focus(scene.inside._closer)
+    scene.form.focus(scene.inside._closer)
     train.key(pygame.K_RETURN)
     assert scene.inside.large
     train.key(pygame.K_RETURN)
     assert not scene.inside.large
-    assert scene._form.focused is scene.inside._closer
+    assert scene.form.focused is scene.inside._closer
     train.key(pygame.K_RETURN)
     train.click((900, 441))  # the heading of the small network
     assert not scene.inside.large
@@ -262,7 +262,7 @@ KEYS = {
 
 def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
     scene = train.top
-    form = scene._form
+    form = scene.form
     for page in range(len(scene.knobs._pages)):
         scene.knobs._turn_page(page)
         boxes = [widget.box for widget in form.widgets]
@@ -290,8 +290,8 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     press("confirm")
     train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
     press("right")
-    assert scene._form.focused is scene._step_word
-    scene._form.focus(scene._save_word)
+    assert scene.form.focused is scene._step_word
+    scene.form.focus(scene._save_word)
     press("confirm")
     assert isinstance(train.top, NameDialog)
     press("confirm")

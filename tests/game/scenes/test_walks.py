@@ -17,7 +17,6 @@ from game.core.scene import Push, Scene
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
-from game.input.controls import Command
 from game.scenes.bindings import BindingsScene
 from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
@@ -192,7 +191,7 @@ def test_a_replay_is_watched_wound_and_flown_on(open_screen):
     assert player.top_name == "ReplayScene"
     player.frames(60)
     player.press("step")
-    assert replay.stopped
+    assert replay.playback.stopped
     at = replay.flight_replay.at
     player.press("left")  # the strip of what was done is where it begins
     assert replay.flight_replay.at < at
@@ -236,18 +235,6 @@ def test_settings_are_changed_and_kept(open_screen):
     assert player.top_name == "MenuScene"
 
 
-def hint(player: Driver, words: str) -> tuple[float, float]:
-    """Where a hint of these words can be clicked."""
-    presses = {KEY_OF.get(words, words)}
-    boxes = [box for box, press in player.app.canvas.links if press.command in presses or press.key in presses]
-    assert boxes, f"no hint can be clicked for {words}"
-    return boxes[-1].center
-
-
-KEY_OF = {"back": Command.BACK, "pause": Command.PAUSE, "hand over": Command.HANDOVER, "choices": Command.CHOICES,
-          "retry": Command.RETRY, "confirm": Command.CONFIRM, "stop": pygame.K_SPACE}  # fmt: skip
-
-
 @pytest.mark.parametrize("name", SCREENS)
 def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str):
     game: Driver = open_game(SCREENS[name])
@@ -256,13 +243,13 @@ def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str)
     for _ in range(3):
         if not game.app.scenes.running:
             break
-        words = {word.label: word for word in game.top._form.widgets}
+        words = {word.label: word for word in game.top.form.widgets}
         exits = [label for label in (texts.BACK, texts.PAUSE_LEAVE, texts.MENU["quit"][0]) if label in words]
         if exits:
             game.click(words[exits[0]].box.center)
         else:
-            commands = {press.command for _, press in game.app.canvas.links}
-            game.click(hint(game, "back" if Command.BACK in commands else "pause"))
+            hints = game.hints()
+            game.click(hints.get(texts.HINT_BACK) or hints[texts.HINT_PAUSE])
         game.frames(3)
     assert not game.app.scenes.running
 
@@ -286,10 +273,10 @@ def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
     for button in (left, right):
         game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1260, 400)), button=button)
     assert play.flight.recording.actions[-1] == 0
-    game.click(hint(game, "hand over"))
+    game.click(game.hints()[texts.HINT_HAND_OVER])
     assert play.flight.hand is StickHolder.NETWORK
-    game.click(hint(game, "pause"))
+    game.click(game.hints()[texts.HINT_PAUSE])
     assert game.top_name == "PauseScene"
     game.frames(2)
-    game.click(next(word for word in game.top._form.widgets if word.label == texts.PAUSE_LEAVE).box.center)
+    game.click(next(word for word in game.top.form.widgets if word.label == texts.PAUSE_LEAVE).box.center)
     assert not game.app.scenes.running or game.top_name != "PlayScene"

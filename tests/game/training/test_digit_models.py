@@ -78,7 +78,7 @@ def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable
 
 def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable[..., Driver], context: Context):
     driver = open_game(DigitsScene)
-    driver.click(next(word for word in driver.top._form.widgets if word.label == "Train").box.center)
+    driver.click(next(word for word in driver.top.form.widgets if word.label == "Train").box.center)
     assert driver.top_name == "DigitTrainingScene"
     save(context, "mine")
     driver.key(pygame.K_ESCAPE)

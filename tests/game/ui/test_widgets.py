@@ -283,7 +283,7 @@ def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callabl
     if scene is ChoicesScene:
         driver.key(pygame.K_c)
     assert isinstance(driver.top, scene)
-    form = driver.top._form
+    form = driver.top.form
     seen = set()
     for widget in form.widgets:
         form.focus(widget)
