@@ -169,14 +169,15 @@ def main() -> None:
     right: dict[str, list[bool]] = {"modern": [], "classic": []}
     tiles = []
     with TemporaryDirectory() as folder:
-        scene = DigitsScene()
         app = App(
             Context(Path(folder), Settings(), rng=rng),
-            scene,
+            DigitsScene,
             now=lambda: next(frames) / 60,
             scene_of=scene_of,
             capped=False,
         )
+        scene = app.scenes.top
+        assert isinstance(scene, DigitsScene)
         app.tick()
         for (digit, style), strokes in HANDS.items():
             for _ in range(chosen.each):

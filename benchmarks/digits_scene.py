@@ -44,8 +44,9 @@ class Hand:
     def __init__(self, folder: Path) -> None:
         frames = count()
         context = Context(folder, Settings(), rng=np.random.default_rng(1))
-        self.scene = DigitsScene()
-        self.app = App(context, self.scene, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
+        self.app = App(context, DigitsScene, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
+        assert isinstance(self.app.scenes.top, DigitsScene)
+        self.scene = self.app.scenes.top
         self.app.tick()
         self.guesses: list[float] = []
         self.frames: list[float] = []

@@ -77,16 +77,14 @@ def rows() -> dict[str, Row]:
 
     def over_play(make: Callable[[PlayScene], Scene]) -> Callable[[Context], Scene]:
         def made(context: Context) -> Scene:
-            below = PlayScene(seed=4)
-            below.enter(context)
-            return make(below)
+            return make(PlayScene(context, seed=4))
 
         return made
 
     def of_tour(name: str) -> Callable[[Context], Scene | None]:
         return lambda context: makers(context)[name]()
 
-    play, heap = Row(lambda _: PlayScene(seed=4), FLOWN), lambda _: PhysicsScene("heap")
+    play, heap = Row(lambda context: PlayScene(context, seed=4), FLOWN), lambda context: PhysicsScene(context, "heap")
     with TemporaryDirectory() as folder:
         others = makers(Context(Path(folder), Settings())).keys() - {
             "PlayScene",
@@ -100,21 +98,21 @@ def rows() -> dict[str, Row]:
         "play, shared": Row(play.make, FLOWN, SHARED),
         "play, three pads": Row(play.make, FLOWN, PADS),
         **{
-            f"mission, {name}": Row(lambda _, m=m: PlayScene(0, challenge=FlownMission(m)), FLOWN)
+            f"mission, {name}": Row(lambda context, m=m: PlayScene(context, 0, challenge=FlownMission(m)), FLOWN)
             for name, m in MISSIONS.items()
         },
-        "pause": Row(over_play(PauseScene)),
+        "pause": Row(over_play(lambda below: PauseScene(below.context, below))),
         "dialog": Row(over_play(lambda below: QuestionDialog(below, "?", "", [("a", print), ("b", print)]))),
         "dialog, naming": Row(over_play(lambda below: NameDialog(below, "?", "name", lambda _: ""))),
         "dialog, picking": Row(over_play(lambda below: ListDialog(below, "?", [("a",), ("b",)], print))),
         "choices": Row(play.make, (pygame.K_c, pygame.K_DOWN)),
-        "fault": Row(lambda _: ErrorScene(ValueError(), Path("log"))),
-        **{f"watch, {number}": Row(lambda _, n=number: WatchScene(n, seed=4)) for number in COUNTS},
-        **{f"physics, {name}": Row(lambda _, n=name: PhysicsScene(n)) for name in EXHIBITS},
+        "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
+        **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
+        **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         "physics, contacts": Row(heap, (pygame.K_c,)),
         **{name.lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN)) for name in sorted(others)},
-        "menu": Row(lambda _: MenuScene()),
-        "train": Row(of_tour("Train"), (pygame.K_RETURN,)),
+        "menu": Row(MenuScene),
+        "trainscene": Row(of_tour("TrainScene"), (pygame.K_RETURN,)),
         "digittrainingscene": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
     }
 
@@ -126,9 +124,7 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
         frames = count()
         context = Context(Path(folder), Settings(**row.settings), rng=np.random.default_rng(1))
         stock(context)
-        scene = row.make(context)
-        assert scene is not None
-        app = App(context, scene, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
+        app = App(context, _made(row.make), now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)
         app.window.size = size
         landscape(size, False)  # painted once, and timed above
         for frame in range(FRAMES):
@@ -139,6 +135,17 @@ def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:
             seen.add(type(app.scenes.top))
         app.close()
     return np.array(spent)
+
+
+def _made(make: Callable[[Context], Scene | None]) -> Callable[[Context], Scene]:
+    """Return what makes a scene for certain."""
+
+    def made(context: Context) -> Scene:
+        scene = make(context)
+        assert scene is not None
+        return scene
+
+    return made
 
 
 def act(scene: Scene, keys: tuple[int, ...], frame: int, app: App) -> None:

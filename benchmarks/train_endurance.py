@@ -49,11 +49,11 @@ class Game:
 
     def __init__(self, folder: Path) -> None:
         self.app = App(Context(folder, Settings(), rng=np.random.default_rng(1)), scene_of=scene_of, capped=False)
-        self.scene = TrainScene()
+        self.scene: TrainScene
 
     def enter(self) -> None:
         """Come in from the menu."""
-        self.scene = TrainScene()
+        self.scene = TrainScene(self.app.context)
         self.app.scenes.apply(Push(self.scene))
         self.scene.knobs.set_config(PRESETS["modern"], 0)
 

@@ -47,10 +47,10 @@ def run(seed: int, limit: float) -> tuple[float, list[float], list[float]]:
 
     frames, spent = [], []
     with TemporaryDirectory() as folder:
-        scene = TrainScene()
-        app = App(
-            Context(Path(folder), Settings(), rng=np.random.default_rng(1)), scene, scene_of=scene_of, capped=False
-        )
+        context = Context(Path(folder), Settings(), rng=np.random.default_rng(1))
+        app = App(context, TrainScene, scene_of=scene_of, capped=False)
+        scene = app.scenes.top
+        assert isinstance(scene, TrainScene)
         for _ in range(60):
             app.tick()
         scene.knobs.set_config(PRESETS["modern"], seed)

@@ -15,6 +15,7 @@ os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
 import sys
 import time
 from collections.abc import Callable, Iterable
+from functools import partial
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -39,16 +40,16 @@ from game.ui.context import Context
 
 IMAGES = Path(__file__).resolve().parent / "images"
 # Name, scene, and what is pressed at which frame until the picture is taken.
-PICTURES: tuple[tuple[str, Scene, dict[int, int], int], ...] = (
-    ("menu", MenuScene(), {}, 200),
-    ("cockpit", PlayScene(seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
-    ("watch", WatchScene(64, seed=3), {}, 260),
-    ("train", TrainScene(), {5: pygame.K_RETURN}, 30),
-    ("digits", DigitsScene(), {}, 150),
-    ("physics", PhysicsScene("heap", time.process_time), {60: pygame.K_c}, 400),
+PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...] = (
+    ("menu", MenuScene, {}, 200),
+    ("cockpit", partial(PlayScene, seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
+    ("watch", partial(WatchScene, count=64, seed=3), {}, 260),
+    ("train", TrainScene, {5: pygame.K_RETURN}, 30),
+    ("digits", DigitsScene, {}, 150),
+    ("physics", partial(PhysicsScene, exhibit="heap", now=time.process_time), {60: pygame.K_c}, 400),
     (
         "mars",
-        PlayScene(0, course=FlownMission(MISSIONS["mars"])),
+        partial(PlayScene, seed=0, challenge=FlownMission(MISSIONS["mars"])),
         {5: pygame.K_LEFT, 40: pygame.K_UP, 70: pygame.K_UP},
         110,
     ),
@@ -70,10 +71,10 @@ FLOWN = (
 MOVING_FRAMES, MOVING_SIZE, EVERY, QUALITY = 720, (800, 450), 3, 60
 
 
-def take(name: str, scene: Scene, keys: dict[int, int], frames: int) -> None:
-    """Play `scene` for so many frames and save what is then on the screen."""
+def take(name: str, make: Callable[[Context], Scene], keys: dict[int, int], frames: int) -> None:
+    """Play the scene that `make` builds for so many frames and save what is then on the screen."""
     held = [(key, frame, frame + HELD) for frame, key in keys.items()]
-    last = play(scene, held, frames, CHOSEN.get(name, Settings()))
+    last = play(make, held, frames, CHOSEN.get(name, Settings()))
     _picture(last).save(IMAGES / f"{name}.webp", quality=SHARP, method=6)
 
 
@@ -84,7 +85,7 @@ def film() -> None:
     def keep(seen: pygame.Surface) -> None:
         pictures.append(_picture(seen).resize(MOVING_SIZE, Image.Resampling.LANCZOS))
 
-    play(PlayScene(seed=12), FLOWN, MOVING_FRAMES, CHOSEN["cockpit"], keep)
+    play(partial(PlayScene, seed=12), FLOWN, MOVING_FRAMES, CHOSEN["cockpit"], keep)
     first, *others = pictures[::EVERY]
     # A whole picture at least every fourth time: what is only changed, over and over, smears where the camera moves.
     first.save(IMAGES / f"{MOVING}.webp", save_all=True, append_images=others, duration=round(1000 * EVERY / 60),
@@ -92,7 +93,7 @@ def film() -> None:
 
 
 def play(
-    scene: Scene,
+    make: Callable[[Context], Scene],
     held: Iterable[tuple[int, int, int]],
     frames: int,
     settings: Settings,
@@ -102,7 +103,8 @@ def play(
     with TemporaryDirectory() as folder:
         ticks = count()
         context = Context(Path(folder), settings, rng=np.random.default_rng(1))
-        app = App(context, scene, now=lambda: next(ticks) / 60, scene_of=scene_of, capped=False)
+        app = App(context, make, now=lambda: next(ticks) / 60, scene_of=scene_of, capped=False)
+        scene = app.scenes.top
         for frame in range(frames):
             for key, start, stop in held:
                 for kind, at in ((pygame.KEYDOWN, start), (pygame.KEYUP, stop)):

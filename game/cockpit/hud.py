@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Final
 
@@ -36,7 +36,7 @@ from game.drawing.tokens import (
     Colour,
 )
 from game.flight.outcomes import OutcomeCard, RivalOutcome
-from game.ui.hints import draw_hints, hints_width
+from game.ui.hints import Hint, HintRow
 
 Lamp = tuple[Shape, Colour, float]  # shape, colour and strength of the glow
 
@@ -215,7 +215,6 @@ _RIVAL_ROWS: Final = 60
 def draw_card(
     canvas: Canvas,
     card: OutcomeCard,
-    keys: list[tuple[str, str]],
     shown: float,
     advise: bool,
     rival: RivalOutcome | None = None,
@@ -251,7 +250,13 @@ def draw_card(
                             size=SMALL, colour=MUTE, align="centre")  # fmt: skip
         canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
-    draw_hints(canvas, keys, (left, top + 244), room=width)
+
+
+def card_row(card: OutcomeCard, hints: list[Hint], shown: float, advise: bool, *, rival: bool) -> HintRow:
+    """Return the row of hints at the foot of that card."""
+    lower = _ADVICE_ROW * bool(advise and card.advice) + _RIVAL_ROWS * rival
+    place = (card.left + 32, CARD.top - 10 * (1 - shown) + lower + 244)
+    return HintRow(hints, place, room=CARD.width - 64)
 
 
 def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corner: Point, width: float) -> None:
@@ -267,13 +272,12 @@ def _draw_rival(canvas: Canvas, rival: RivalOutcome, labels: Sequence[str], corn
         canvas.text(unit, (figure.right + 4, top + 25), size=LABEL, colour=MUTE)
 
 
-def draw_opening(
-    canvas: Canvas, keys: Sequence[tuple[str, str]], line: str, paths: Sequence[tuple[str, Colour]]
-) -> None:
+def draw_opening(canvas: Canvas, hints: Sequence[Hint], line: str, paths: Sequence[tuple[str, Colour]]) -> None:
     """Draw the controls and the legend of the dotted paths in the middle, while the craft hangs and waits."""
     middle = VIEW_SIZE[0] / 2
     canvas.text(line, (middle, 122), size=TEXT, colour=MUTE, align="centre")
-    draw_hints(canvas, keys, (middle - hints_width(canvas, keys, TEXT) / 2, 150), size=TEXT)
+    row = HintRow(hints, (0, 150), size=TEXT)
+    replace(row, position=(middle - row.width(canvas) / 2, 150)).draw(canvas)
     gap, dots = 32, 30
     x = middle - (sum(canvas.text_width(text, size=SMALL) + dots for text, _ in paths) + gap * (len(paths) - 1)) / 2
     for text, colour in paths:

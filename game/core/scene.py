@@ -1,48 +1,60 @@
-"""Interface of a scene, and the transitions it may return."""
+"""Base class of all scenes, and the transitions they may return."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pygame
 
     from game.drawing.canvas import Canvas
     from game.ui.context import Context
+    from game.ui.hints import HintRow
 
 
-class Scene(Protocol):
-    """One screen of the game. It returns transitions and never changes the scene stack itself."""
+class Scene:
+    """One screen of the game, built whole by its constructor. A subclass overrides what it needs.
 
-    def enter(self, context: Context) -> None:
-        """Become the top scene, for the first time or again after a pop."""
+    A scene returns transitions and never changes the scene stack itself.
+
+    Attributes:
+        context: the shared services.
+
+    """
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+
+    def resume(self) -> None:
+        """Become the top scene again, after those above it have been left."""
 
     def exit(self) -> None:
-        """Stop being the top scene; release held keys."""
+        """Stop being the top scene, until `resume` or for good; release held keys."""
 
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+    def close(self) -> None:
+        """Release resources such as a process; called once, after `exit`, when the scene is left for good."""
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:  # noqa: ARG002
         """Take one window event, its position already in points."""
+        return None
 
     def update(self) -> Transition | None:
         """Advance by exactly one physics step of 1/60 s."""
+        return None
+
+    def hint_rows(self, canvas: Canvas) -> Sequence[HintRow]:  # noqa: ARG002
+        """Return the rows of key hints, laid out as on that canvas; a click on a hint does what its key does."""
+        return ()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw between the last two steps (alpha 0 to 1). Changes nothing but pixels."""
 
 
-@runtime_checkable
-class Lasting(Protocol):
-    """Scene that holds a resource, such as a process, and releases it when it is left for good."""
-
-    def close(self) -> None:
-        """Release the resources; called after `exit`."""
-
-
 @dataclass(frozen=True)
 class Route:
-    """Name of a scene in `game.scenes.ROUTES`, with the arguments to make it.
+    """Name of a scene in `game.scenes.ROUTES`, with the arguments it takes besides the context.
 
     Scenes use routes instead of importing each other, so a scene's module is loaded only when it is shown.
     """

@@ -37,7 +37,6 @@ class Canvas:
         scale: pixels per point.
         size: the view's width and height in pixels.
         palette: the player's colours for within and beyond limits.
-        links: boxes, in points, where a click counts as a press of a key, each with the event; of the last frame.
         pointer: position of the mouse in points; None while it is not in use.
         words: boxes of words, widgets and panels of the last frame with a margin, in pixels.
 
@@ -46,7 +45,6 @@ class Canvas:
     def __init__(self, window: pygame.Surface, palette: Palette = PALETTE) -> None:
         self.palette = palette
         self.scale = 0.0
-        self.links: list[tuple[pygame.FRect, pygame.event.Event]] = []
         self.pointer: Point | None = None
         self.words: list[pygame.Rect] = []
         self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # boxes noted in this frame
@@ -83,7 +81,6 @@ class Canvas:
         sheet = copy(self)
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet.offset = (0, 0)
-        sheet.links = []  # a sheet takes no clicks
         sheet._covered = deque(maxlen=0)
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
@@ -107,9 +104,8 @@ class Canvas:
             self._covered = covered
 
     def turn_page(self) -> None:
-        """Begin a new frame: clear the links, and move the noted areas to `words`."""
+        """Begin a new frame: move the noted areas to `words`."""
         around = 2 * self.px(_AROUND)
-        self.links.clear()
         self.words = [box.inflate(around, around) for box in self._covered]
         self._covered.clear()
 
@@ -122,18 +118,6 @@ class Canvas:
         """Convert a rectangle from points to the window's pixels."""
         box = pygame.FRect(rect)
         return self.rect(box.x, box.y, box.width, box.height).move(self.offset)
-
-    # The mouse
-
-    def link(self, rect: pygame.typing.RectLike, press: pygame.event.Event) -> bool:
-        """Make a click in a box count as a press of a key; return whether the mouse is over the box."""
-        box = pygame.FRect(rect)
-        self.links.append((box, press))
-        return self.pointer is not None and box.collidepoint(self.pointer)
-
-    def linked(self, point: Point) -> pygame.event.Event | None:
-        """Return the press that a click at a point stands for, if any, according to the last frame."""
-        return next((press for box, press in reversed(self.links) if box.collidepoint(point)), None)
 
     # Text
 

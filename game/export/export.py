@@ -13,6 +13,7 @@ from game.core.worker import Worker, WorkerState
 from game.export.film import Filmed, film
 from game.export.kinds import unfinished
 from game.flight.flight_file import Record
+from game.ui.context import Context
 
 
 class Export:
@@ -31,7 +32,7 @@ class Export:
     """
 
     def __init__(
-        self, scene: Callable[[Record], Filmed], record: Record, path: Path, *, colour_safe: bool = False
+        self, scene: Callable[[Context, Record], Filmed], record: Record, path: Path, *, colour_safe: bool = False
     ) -> None:
         self.path, self.share = path, 0.0
         self._worker = Worker(film, scene, record, path, colour_safe)

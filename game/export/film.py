@@ -43,9 +43,6 @@ class FrameDrawn:
 class Filmed(Protocol):
     """Scene that shows a flight, and can draw its world without text."""
 
-    def enter(self, context: Context) -> None:
-        """Start the scene."""
-
     def update(self) -> object:
         """Advance the replay by one step."""
 
@@ -59,7 +56,7 @@ class _Writer(Protocol):
 
 
 def film(
-    make: Callable[[Record], Filmed], record: Record, path: Path, colour_safe: bool = False
+    make: Callable[[Context, Record], Filmed], record: Record, path: Path, colour_safe: bool = False
 ) -> Generator[list[FrameDrawn], None, None]:
     """Write a flight, drawn by the scene from `make`, to a video file, whole or not at all; yield after each frame.
 
@@ -75,9 +72,9 @@ def film(
     temporary = unfinished(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with _writer(temporary, kind, frames(make(record), kind, range(0, last, _SAMPLE), colour_safe)) as writer:
+        with _writer(temporary, kind, frames(make, record, kind, range(0, last, _SAMPLE), colour_safe)) as writer:
             yield [FrameDrawn(0.0)]
-            shown = frames(make(record), kind, steps, colour_safe)
+            shown = frames(make, record, kind, steps, colour_safe)
             for number, frame in enumerate(shown, 1):
                 writer.add(frame)
                 yield [FrameDrawn(number / (len(steps) + 1))]
@@ -88,11 +85,14 @@ def film(
         temporary.unlink(missing_ok=True)
 
 
-def frames(scene: Filmed, kind: VideoKind, steps: Iterable[int], colour_safe: bool = False) -> Iterator[Frame]:
+def frames(
+    make: Callable[[Context, Record], Filmed], record: Record, kind: VideoKind, steps: Iterable[int],
+    colour_safe: bool = False,
+) -> Iterator[Frame]:  # fmt: skip
     """Yield the frames at these rising update numbers of a replay; one update is one step, up to the flight's end."""
     _need_no_screen()
     settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)
-    scene.enter(Context(Path(), settings))
+    scene = make(Context(Path(), settings), record)
     canvas = Canvas(pygame.Surface(kind.size), COLOUR_SAFE if colour_safe else PALETTE)
     flown = 0
     for step in steps:

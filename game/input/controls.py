@@ -13,7 +13,7 @@ from game.core.settings import Settings
 from game.input import signs
 from game.input.bindings import KEYBOARD, PAD, TRIGGERS, Bindings, Command, Held, Meaning
 
-__all__ = ["Command", "Controls", "Held", "KeyName", "presses_main", "translate"]
+__all__ = ["Command", "Controls", "Held", "presses_main", "translate"]
 
 # Axis, direction, how far out of 32767 it must be pushed.
 AXES: Final[dict[Held, tuple[int, int, int]]] = {
@@ -43,23 +43,6 @@ _STICK_SIGNS: Final[dict[Meaning, int]] = {
 _KEYPAD: Final = frozenset({code for name, code in KEYBOARD.names.items() if name[:2] == "kp"} - {pygame.K_KP_ENTER})
 _KEY_NAMES: Final = {code: name for name, code in KEYBOARD.names.items()}
 _STANDARD: Final = {pygame.KEYDOWN: Bindings(KEYBOARD), pygame.CONTROLLERBUTTONDOWN: Bindings(PAD)}
-
-
-class KeyName(str):
-    """Name of a key, or sign of a button, that acts as a press of it when clicked.
-
-    Attributes:
-        press: the event that a click is turned into.
-
-    """
-
-    press: pygame.event.Event
-
-    def __new__(cls, text: str, key: int, command: Command | None = None) -> KeyName:
-        """Make the name from a text."""
-        name = super().__new__(cls, text)
-        name.press = pygame.Event(pygame.KEYDOWN, key=key, mod=0, unicode="", command=command)
-        return name
 
 
 def translate(event: pygame.event.Event) -> Command | None:
@@ -156,20 +139,12 @@ class Controls:
     def word(self, meaning: Meaning) -> str:
         """Return the name of a meaning's key, or the sign of its button if it has one and a gamepad is in use.
 
-        A command's name is a KeyName. While the mouse is in use, flight controls are shown as mouse buttons.
+        While the mouse is in use, flight controls are shown as mouse buttons.
         """
         if isinstance(meaning, Held) and self.mouse_in_use:
             return self.pad_sign(signs.MOUSE_LEFT if meaning is Held.MAIN else signs.MOUSE_RIGHT)
         buttons = self.pad_signs(meaning) if self.pad_in_use else []
-        text = next(iter(buttons or self.key_names(meaning)), texts.BINDINGS_NONE)
-        if isinstance(meaning, Held):
-            return text
-        return KeyName(text, next(iter(self.keys.codes(meaning)), 0), meaning)
-
-    @staticmethod
-    def key(code: int) -> str:
-        """Return the name of a fixed key, as a KeyName."""
-        return KeyName(key_name(code), code)
+        return next(iter(buttons or self.key_names(meaning)), texts.BINDINGS_NONE)
 
     @property
     def arrows(self) -> str:

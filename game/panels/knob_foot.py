@@ -15,7 +15,7 @@ from game.panels.knob import Knob
 from game.panels.seed_knob import SeedKnob
 from game.training.knob_descriptions import figure, label
 from game.training.run_settings import RunSettings
-from game.ui.hints import draw_hints
+from game.ui.hints import Hint, HintRow
 from game.ui.widget import Widget
 
 HEIGHT: Final = 60  # points, at the bottom of the panel
@@ -82,7 +82,7 @@ def _draw_marks(canvas: Canvas, box: pygame.Rect, widget: Knob | SeedKnob, contr
     if isinstance(widget, Knob) and widget.changed:
         key = texts.KNOBS_CLICK if controls.mouse_in_use else controls.word(Command.RETRY)
         back = texts.KNOBS_BACK_TO.format(value=figure(widget.home))
-        draw_hints(canvas, [(key, back)], (box.right, baseline), from_right=True, size=LABEL)
+        HintRow([Hint(key, back)], (box.right, baseline), from_right=True, size=LABEL).draw(canvas)
 
 
 def _listed(names: list[str]) -> str:

@@ -14,7 +14,8 @@ from game.flight.handicap import OWN
 from game.flight.networks import Network
 from game.input.controls import Command, Controls
 from game.play.challenge import Challenge
-from game.ui.hints import draw_hints, flight_hints
+from game.ui.hints import Hint, HintRow
+from game.ui.hints import flight_hints as control_hints
 from game.world.camera import ClearArea
 
 BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of the opening text
@@ -43,30 +44,31 @@ def draw_opening(canvas: Canvas, controls: Controls, challenge: Challenge | None
     paths = [(texts.PATH_YOURS, HUMAN)]
     if forecast:
         paths.append((texts.PATH_NETWORK, NET))
-    hud.draw_opening(canvas, flight_hints(controls), challenge.opening if challenge else texts.BEGIN, paths)
+    hud.draw_opening(canvas, control_hints(controls), challenge.opening if challenge else texts.BEGIN, paths)
 
 
-def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, challenge: Challenge | None, leaves: bool) -> None:
-    """Draw hints of the keys that act now; `leaves` is whether Escape goes straight back."""
-    word = controls.word
-    hints = [(word(Command.PAUSE), texts.HINT_LEAVE if leaves else texts.HINT_PAUSE)]
+def flight_hints(flight: Flight, challenge: Challenge | None, *, leaves: bool) -> dict[Command, str]:
+    """Return what the hints of a flight say at this moment; `leaves` is whether Escape goes straight back."""
+    hints = {Command.PAUSE: texts.HINT_LEAVE if leaves else texts.HINT_PAUSE}
     if not challenge:
-        hints.insert(0, (word(Command.CHOICES), texts.CHOICES_HINT))
+        hints[Command.CHOICES] = texts.CHOICES_HINT
     elif challenge.next_hint:
-        hints.insert(0, (word(Command.NEXT), challenge.next_hint))
+        hints[Command.NEXT] = challenge.next_hint
     if flight.network and not flight.over:
         taken = flight.hand is StickHolder.NETWORK
-        hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
-    draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+        hints[Command.HANDOVER] = texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER
+    return hints
 
 
-def card_keys(controls: Controls, good: bool, challenge: Challenge | None) -> list[tuple[str, str]]:
-    """Return the key hints of an outcome card; `good` is whether it was a landing."""
-    word = controls.word
+def flight_row(hints: list[Hint]) -> HintRow:
+    """Return the row of hints in the upper right corner of a flight."""
+    return HintRow(hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+
+
+def card_hints(good: bool, challenge: Challenge | None) -> tuple[str, tuple[Command, str]]:
+    """Return what Enter does at an outcome card, and another command with what it does; `good` is for a landing."""
     if challenge and challenge.fixed:
-        first = texts.CARD_FIRST_FIXED[good]
         other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.PAUSE, texts.HINT_LEAVE)
-    else:
-        first = texts.CARD_FIRST[good]
-        other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
-    return [(word(Command.CONFIRM), first), (word(other[0]), other[1])]
+        return texts.CARD_FIRST_FIXED[good], other
+    other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
+    return texts.CARD_FIRST[good], other

@@ -15,11 +15,10 @@ from game.flight.flight import Flight
 from game.flight.logbook import Records
 from game.flight.networks import Network
 from game.flight.skill import Skill
-from game.input.controls import Controls
-from game.play import captions as flight_words
 from game.play.challenge import Challenge
 from game.play.ghost import Ghost
 from game.ui.context import Context
+from game.ui.hints import Hint, HintRow
 from game.world.camera import CameraTarget
 from game.world.scenery import Scenery
 
@@ -79,15 +78,16 @@ class FlightEnding:
         card = cockpit.card(0 if challenge and challenge.name else skill.best, self._whole.view(1.0))
         self.card = challenge.card(card, self._flight, cockpit.credit) if challenge else card
 
-    def draw(
-        self, canvas: Canvas, controls: Controls, challenge: Challenge | None, ghost: Ghost | None, advise: bool
-    ) -> None:
+    def draw(self, canvas: Canvas, ghost: Ghost | None, advise: bool) -> None:
         """Draw the card, if there is one."""
         if self.card is None or self.shown == 0:
             return
-        rival = ghost.row(self._flight.env) if ghost else None
-        keys = flight_words.card_keys(controls, self.card.good, challenge)
-        hud.draw_card(canvas, self.card, keys, self.shown, advise, rival)
+        hud.draw_card(canvas, self.card, self.shown, advise, ghost.row(self._flight.env) if ghost else None)
+
+    def hint_row(self, hints: list[Hint], ghost: Ghost | None, advise: bool) -> HintRow:
+        """Return the row of hints at the foot of the card."""
+        assert self.card is not None
+        return hud.card_row(self.card, hints, self.shown, advise, rival=ghost is not None)
 
 
 def write_down(

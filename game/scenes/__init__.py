@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Final
 
 from game.core.scene import Route, Scene
+from game.ui.context import Context
 
 # The name of each scene that another may lead to: the module in this package, and the class in that.
 ROUTES: Final = {
@@ -20,8 +21,8 @@ ROUTES: Final = {
 }  # fmt: skip
 
 
-def scene_of(route: Route) -> Scene:
-    """Make the scene that a route names; its module is loaded when it is first needed."""
+def scene_of(route: Route, context: Context) -> Scene:
+    """Build the scene that a route names; its module is loaded when it is first needed."""
     module, _, name = ROUTES[route.name].partition(".")
-    scene: Scene = getattr(import_module(f"{__name__}.{module}"), name)(*route.arguments, **route.options)
+    scene: Scene = getattr(import_module(f"{__name__}.{module}"), name)(context, *route.arguments, **route.options)
     return scene

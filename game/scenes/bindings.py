@@ -13,10 +13,10 @@ from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
 from game.input.bindings import Bindings, Meaning
-from game.input.controls import Command, Controls, key_name, names, translate
+from game.input.controls import Command, Controls, key_name, names
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.widget import PointsManager, Widget, mix
 from game.ui.widgets import TextButton
 
@@ -56,6 +56,11 @@ class BindingCell(Widget):
         if self.typing:
             self.typing = self._controls.listening = False
 
+    def cancel(self) -> None:
+        """Stop waiting for a key, and leave the binding as it is."""
+        self.stop()
+        self._on_change("")
+
     def reset(self) -> None:
         """Restore the default binding."""
         self._bindings.reset(self._meaning)
@@ -64,14 +69,13 @@ class BindingCell(Widget):
     def take(self, event: pygame.event.Event) -> bool:
         """Bind the next key or button; events of the other device are ignored."""
         if not self.typing:
-            if translate(event) is Command.RETRY or (event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE):
+            if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
                 self.reset()
                 return True
             return False
         key, button = _pressed(event)
         if key == pygame.K_ESCAPE or button == pygame.CONTROLLER_BUTTON_START:
-            self.stop()
-            self._on_change("")
+            self.cancel()
         elif (code := button if self._for_pads else key) is not None:
             self._bind(code)
         return True
@@ -119,14 +123,14 @@ class BindingCell(Widget):
         )
 
 
-class BindingsScene:
+class BindingsScene(FormScene):
     """Table of all commands with their keys and gamepad buttons. Each change is saved at once."""
 
-    def enter(self, context: Context) -> None:
-        """Build the table."""
-        self._context, self._controls = context, context.controls
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self._controls = context.controls
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
-        self._form = form = Form(context, on_back=Pop)
+        form = self.form
         self._said = ""
         for row, meaning in enumerate(self._controls.keys.table):
             for left, bindings in ((_KEYS, self._controls.keys), (_BUTTONS, self._controls.buttons)):
@@ -142,14 +146,10 @@ class BindingsScene:
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Pass the event to the cells."""
         if event.type == pygame.CONTROLLERDEVICEREMOVED:
-            for widget in self._form.widgets:
+            for widget in self.form.widgets:
                 if isinstance(widget, BindingCell):
                     widget.stop()
-        return self._form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        """Animate the cells."""
-        return self._form.update()
+        return super().handle_event(event)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the table, and the result of the last change."""
@@ -161,24 +161,29 @@ class BindingsScene:
             y = _FIRST + row * _ROW
             canvas.line((MARGIN, y), (VIEW_SIZE[0] - MARGIN, y), LINE, 1)
             canvas.text(texts.BINDINGS[meaning.name], (MARGIN, y + _ROW / 2 + 5), size=TEXT, colour=INK)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         if self._said:
             canvas.text(self._said, (_BUTTONS - 120, _WORDS + 21), size=SMALL, colour=HUMAN)
-        self._draw_hints(canvas)
+        self.draw_hints(canvas)
 
-    def _draw_hints(self, canvas: Canvas) -> None:
-        word = self._controls.word
-        hints = [(word(Command.PAUSE), texts.HINT_LEAVE_KEY)]
-        if not self._controls.listening:
-            hints = [(word(Command.CONFIRM), texts.HINT_CHANGE), (word(Command.RETRY), texts.HINT_AS_IT_WAS),
-                     (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+    def actions(self) -> Table:
+        """Change a binding, or restore it; while a key is awaited, cancel."""
+        cell = self.form.focused
+        if not isinstance(cell, BindingCell):
+            return super().actions()
+        if self._controls.listening:
+            return [Action(Command.PAUSE, cell.cancel, texts.HINT_LEAVE_KEY)]
+        return [
+            self.form.confirms(texts.HINT_CHANGE),
+            Action(Command.RETRY, cell.reset, texts.HINT_AS_IT_WAS),
+            self.form.goes_back(texts.HINT_BACK),
+        ]
 
     def _changed(self, said: str) -> None:
         self._said = said
-        settings = self._context.settings
+        settings = self.context.settings
         settings.keys, settings.buttons = self._controls.keys.to_dict(), self._controls.buttons.to_dict()
-        self._context.apply_settings()
+        self.context.apply_settings()
 
     def _reset_all(self) -> None:
         self._controls.keys.reset()

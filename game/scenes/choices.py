@@ -10,19 +10,19 @@ import pygame
 
 from game.cockpit.cockpit import MODES
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition
+from game.core.scene import Pop, Scene
 from game.core.settings import GRAVITY_SHARES, PACES
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
+from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE
 from game.flight.demonstrations import lessons
 from game.flight.handicap import HANDS
 from game.flight.logbook import RECENT_OWN
 from game.flight.skill import Skill
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.scenes.pause import BlurredPicture
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.widget import Widget
 from game.ui.widgets import Choice, Slider, TextButton, Toggle
 
@@ -36,21 +36,18 @@ _TOGGLE_ROW: Final = 58
 _CHART: Final = pygame.Rect(800, 152, 372, 176)
 
 
-class ChoicesScene:
+class ChoicesScene(FormScene):
     """Choices scene over a flight. Each choice is saved the moment it is made; Escape or Fly goes back.
 
     A course fixes most options, so it offers fewer choices.
     """
 
-    def __init__(self, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False) -> None:
-        self._below, self._skill, self._begun, self._challenge = below, skill, begun, challenge
-
-    def enter(self, context: Context) -> None:
-        """Build the rows."""
-        self._context = context
-        self._behind = BlurredPicture(self._below, dimmed=0.7)
+    def __init__(self, context: Context, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False) -> None:
+        super().__init__(context)
+        self._skill, self._begun, self._challenge = skill, begun, challenge
+        self._behind = BlurredPicture(below, dimmed=0.7)
         self._taught = lessons(context.user_dir)
-        self._form = form = Form(context, on_back=Pop)
+        form = self.form
         self._rows: dict[Widget, Callable[[], str]] = {}
         if not self._challenge:
             self._add_help()
@@ -69,8 +66,8 @@ class ChoicesScene:
 
     def _add_help(self) -> None:
         """Add the rows for how much the network helps, and when."""
-        settings = self._context.settings
-        word = self._context.controls.word
+        settings = self.context.settings
+        word = self.context.controls.word
         keys = {"less": word(Command.SLOWER), "more": word(Command.FASTER)}
         self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST,
                          lambda: texts.CHOICES_ASSIST_HELP[settings.assist > 0].format(**keys))  # fmt: skip
@@ -80,7 +77,7 @@ class ChoicesScene:
 
     def _add_starts(self) -> None:
         """Add the rows for the next flight's pads and for the handicap on its keys."""
-        settings, hands = self._context.settings, list(HANDS)
+        settings, hands = self.context.settings, list(HANDS)
         self._choice(texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
                      lambda index: self._changes("three_pads")(bool(index)),
                      lambda: texts.CHOICES_PADS_HELP[settings.three_pads])  # fmt: skip
@@ -89,31 +86,22 @@ class ChoicesScene:
                      lambda index: self._changes("hands")(hands[index]),
                      lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))  # fmt: skip
 
-    def exit(self) -> None:
-        """Do nothing: every change is saved already."""
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the rows; the key that opened this scene closes it too."""
-        return Pop() if translate(event) is Command.CHOICES else self._form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        """Animate the rows."""
-        return self._form.update()
+    def actions(self) -> Table:
+        """Change a choice, or go back; the key that opened this scene closes it too."""
+        return [self.form.changes, self.form.goes_back(texts.HINT_BACK), Action(Command.CHOICES, Pop)]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the blurred flight below, the rows and the skill chart."""
         self._behind.draw(canvas)
         canvas.text(texts.CHOICES_TITLE, (MARGIN, 96), size=34, weight="light")
-        self._form.draw(canvas)
-        if self._form.focused in self._rows:
+        self.form.draw(canvas)
+        if self.form.focused in self._rows:
             y = _FIRST + len(self._rows) * _ROW + _HELP
-            canvas.text(self._rows[self._form.focused](), (MARGIN, y), size=SMALL, colour=MUTE)
+            canvas.text(self._rows[self.form.focused](), (MARGIN, y), size=SMALL, colour=MUTE)
         if self._begun and not self._challenge:
             canvas.text(texts.CHOICES_LATER, (MARGIN + 112, 645), size=SMALL, colour=MUTE)
         self._draw_skill(canvas)
-        word = self._context.controls.word
-        hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+        self.draw_hints(canvas)
 
     @property
     def _box(self) -> tuple[int, int, int, int]:
@@ -121,20 +109,20 @@ class ChoicesScene:
         return MARGIN, _FIRST + len(self._rows) * _ROW, _WIDTH, _ROW - 6
 
     def _add_slider(self, name: str, limits: tuple[float, float], label: str, help_: Callable[[], str]) -> None:
-        form, value = self._form, getattr(self._context.settings, name)
+        form, value = self.form, getattr(self.context.settings, name)
         slider = Slider(form.manager, self._box, label, value, limits, self._changes(name), step=0.1, figure=_percent)
         self._rows[form.add(slider)] = help_
 
     def _choice(self, label: str, words: tuple[str, ...] | list[str], index: int,
                 change: Callable[[int], None], help_: Callable[[], str]) -> None:  # fmt: skip
-        form = self._form
+        form = self.form
         choice = Choice(form.manager, self._box, label, words, index, change, label_width=_LABELS, size=14)
         self._rows[form.add(choice)] = help_
 
     def _changes(self, name: str) -> Callable[[object], None]:
         def change(value: object) -> None:
-            setattr(self._context.settings, name, round(value, 2) if isinstance(value, float) else value)
-            self._context.apply_settings()
+            setattr(self.context.settings, name, round(value, 2) if isinstance(value, float) else value)
+            self.context.apply_settings()
 
         return change
 

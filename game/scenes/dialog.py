@@ -14,11 +14,10 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.tokens import FAINT, MUTE, NIGHT0, SMALL, TEXT
-from game.input.controls import Command
-from game.ui.context import Context
+from game.ui.actions import Table, hints_of
 from game.ui.entry import Entry
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.listing import Listing, Row
 from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
@@ -29,40 +28,19 @@ _ROOM: Final = _WIDTH - 2 * _MARGIN
 _GAP: Final = 28.0  # between words
 
 
-class Dialog:
-    """Base of all dialogs; a subclass adds its widgets to the form in `build`. Escape closes without effect."""
+class Dialog(FormScene):
+    """Base of all dialogs; a subclass adds its widgets to the form. Escape closes without effect."""
 
     height = 164
 
     def __init__(self, below: Scene, question: str, more: str = "") -> None:
+        super().__init__(below.context)
         self._below, self._question, self._more = below, question, more
         self.box = pygame.Rect(_LEFT, (720 - self.height) // 2 - 16, _WIDTH, self.height)
-
-    def build(self, form: Form) -> None:
-        """Put the widgets into the form."""
-        raise NotImplementedError
-
-    def enter(self, context: Context) -> None:
-        """Build the form."""
-        self._context = context
-        self._form = Form(context, on_back=Pop)
-        self.build(self._form)
-
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the form."""
-        return self._form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        """Animate the form."""
-        return self._form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the scene below, dimmed, and the question."""
         self._below.draw(canvas, 1.0)
-        canvas.links.clear()  # the hints of the paused scene below
         canvas.fill(canvas.surface.get_rect(), NIGHT0, 0.8)
         canvas.panel(self.box, 1.0)
         canvas.outline(self.box, 8, FAINT)
@@ -71,17 +49,25 @@ class Dialog:
         if self._more:
             for number, line in enumerate(wrapped(canvas, self._more, SMALL, _ROOM)):
                 canvas.text(line, (left, top + 66 + 18 * number), size=SMALL, colour=MUTE)
-        self._form.draw(canvas)
-        word = self._context.controls.word
-        hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.BACK), texts.HINT_LEAVE)]
-        draw_hints(canvas, hints, (left, self.box.bottom + 24))
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
 
-    def add_words(self, form: Form, words: Sequence[tuple[str, OnPress]]) -> None:
+    def actions(self) -> Table:
+        """Choose, or close without effect."""
+        return [self.form.confirms(texts.HINT_CHOOSE), self.form.goes_back(texts.HINT_LEAVE)]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints below the box."""
+        return [
+            HintRow(hints_of(self.actions(), self.context.controls), (self.box.left + _MARGIN, self.box.bottom + 24))
+        ]
+
+    def add_words(self, words: Sequence[tuple[str, OnPress]]) -> None:
         """Add buttons side by side along the lower edge."""
         x = float(self.box.left + _MARGIN)
         for label, press in words:
             width = typeface.width(label, TEXT, "regular")
-            form.add(TextButton(form.manager, (x, self.box.bottom - 52, width, 28), label, press))
+            self.form.add(TextButton(self.form.manager, (x, self.box.bottom - 52, width, 28), label, press))
             x += width + _GAP
 
 
@@ -92,11 +78,7 @@ class QuestionDialog(Dialog):
         self, below: Scene, question: str, more: str, answers: Sequence[tuple[str, Callable[[], None]]]
     ) -> None:
         super().__init__(below, question, more)
-        self._answers = answers
-
-    def build(self, form: Form) -> None:
-        """Add the answers side by side."""
-        self.add_words(form, [(label, _closing(deed)) for label, deed in self._answers])
+        self.add_words([(label, _closing(deed)) for label, deed in answers])
 
 
 class NameDialog(Dialog):
@@ -107,15 +89,12 @@ class NameDialog(Dialog):
 
     def __init__(self, below: Scene, question: str, suggestion: str, on_name: Callable[[str], str]) -> None:
         super().__init__(below, question)
-        self._suggestion, self._on_name = suggestion, on_name
-
-    def build(self, form: Form) -> None:
-        """Add the text field and two buttons below it."""
+        self._on_name = on_name
         line = (self.box.left + _MARGIN, self.box.top + 60, _ROOM, 32)
-        self._entry = form.add(Entry(
-            form.manager, line, "", self._suggestion, self._done, on_cancel=Pop, limit=LONGEST_NAME, fits=fitting,
+        self._entry = self.form.add(Entry(
+            self.form.manager, line, "", suggestion, self._done, on_cancel=Pop, limit=LONGEST_NAME, fits=fitting,
         ))  # fmt: skip
-        self.add_words(form, [(texts.NAMING_KEEP, self._keep), (texts.NAMING_LEAVE, Pop)])
+        self.add_words([(texts.NAMING_KEEP, self._keep), (texts.NAMING_LEAVE, Pop)])
         self._entry.begin()
 
     def _keep(self) -> Transition | None:
@@ -125,8 +104,8 @@ class NameDialog(Dialog):
         problem = self._on_name(name)
         if not problem:
             return Pop()
-        self._context.note(problem)
-        self._form.focus(self._entry)
+        self.context.note(problem)
+        self.form.focus(self._entry)
         self._entry.begin()
         return None
 
@@ -138,12 +117,9 @@ class ListDialog(Dialog):
 
     def __init__(self, below: Scene, question: str, rows: Sequence[Row], on_pick: Callable[[int], None]) -> None:
         super().__init__(below, question)
-        self._rows, self._on_pick = rows, on_pick
-
-    def build(self, form: Form) -> None:
-        """Add the list."""
+        self._on_pick = on_pick
         box = (self.box.left + _MARGIN, self.box.top + 56, _ROOM, self.box.height - 84)
-        form.add(Listing(form.manager, box, self._rows, on_press=self._pick, empty=texts.PICKING_EMPTY))
+        self.form.add(Listing(self.form.manager, box, rows, on_press=self._pick, empty=texts.PICKING_EMPTY))
 
     def _pick(self, number: int) -> Transition:
         self._on_pick(number)

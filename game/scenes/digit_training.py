@@ -22,7 +22,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_problem, draw_run_status, start_word
 from game.scenes.dialog import NameDialog, QuestionDialog
@@ -31,9 +31,10 @@ from game.training.digit_run import DigitCurves, DigitRun
 from game.training.knob_descriptions import figure, knob_descriptions, label
 from game.training.run_settings import RunKind
 from game.training.training_run import EarlierRun
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
@@ -56,15 +57,11 @@ _EVERY: Final = 12  # frames between two drawings of the charts
 _BATCHES: Final = (MUTE, (2.0, 4.0))
 
 
-class DigitTrainingScene:
+class DigitTrainingScene(FormScene):
     """Digit training scene: charts, confusion matrix and knobs."""
 
-    digit_run: DigitRun
-
-    knobs: KnobsPanel
-
-    def __init__(self) -> None:
-        self._context: Context | None = None
+    def __init__(self, context: Context) -> None:
+        super().__init__(context, self._leave)
         self._was_running = self._alive = False
         self._frame = 0
         self._told: tuple[object, ...] = ()
@@ -73,17 +70,7 @@ class DigitTrainingScene:
         self.stop_word: TextButton | None = None
         self._back_word: TextButton | None = None
         self._in_force_told: tuple[float, DigitConfig, InForce] | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the screen; after a scene above has closed, resume the run."""
-        if self._context is not None:
-            if self._was_running:
-                self.digit_run.resume()
-            if self._asked and self.digit_run.alive:  # and the player chose not to replace it
-                self.knobs.set_config(self.digit_run.config, self.digit_run.seed)
-            self._asked = False
-            return
-        self._context, self._settings = context, context.settings
+        self._settings = context.settings
         self.digit_run = DigitRun(runs_dir(context.user_dir))
         self.digit_run.collection.hold()
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
@@ -91,14 +78,21 @@ class DigitTrainingScene:
             Chart(_CHARTS[name], texts.PUPIL_CHARTS[name], read=form.format, empty=texts.PUPIL_CHARTS_SHOW[name])
             for name, form in (("loss", "{:.3g}"), ("accuracy", "{:.2f}"))
         ])  # fmt: skip
-        self._form = Form(context, on_back=self._leave)
         self._add_words()
-        self._form.add(VirtualPointer(self._form.manager, self.charts.box, self.charts.follow))
+        self.form.add(VirtualPointer(self.form.manager, self.charts.box, self.charts.follow))
         self.knobs = KnobsPanel(
-            self._form, _KNOBS, DIGIT_PRESETS["classic"], 0, self._turned, self._begin, DIGITS
+            self.form, _KNOBS, DIGIT_PRESETS["classic"], 0, self._turned, self._begin, DIGITS
         )  # fmt: skip
-        self.matrix = self._form.add(ConfusionMatrix(self._form.manager, _MATRIX))
-        self._form.focus(self.start_word)
+        self.matrix = self.form.add(ConfusionMatrix(self.form.manager, _MATRIX))
+        self.form.focus(self.start_word)
+
+    def resume(self) -> None:
+        """Resume the run."""
+        if self._was_running:
+            self.digit_run.resume()
+        if self._asked and self.digit_run.alive:  # and the player chose not to replace it
+            self.knobs.set_config(self.digit_run.config, self.digit_run.seed)
+        self._asked = False
 
     def exit(self) -> None:
         """Pause the run while another scene has the window."""
@@ -107,27 +101,30 @@ class DigitTrainingScene:
 
     def close(self) -> None:
         """End the run's process; its latest network is kept."""
-        if self._context is not None:
-            self.digit_run.close()
-            self.digit_run.collection.release()
+        self.digit_run.close()
+        self.digit_run.collection.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, stop, knobs and the matrix."""
         self.charts.follow(event)
-        outcome = self._form.handle_event(event)
-        if outcome is None and not self._form.used:
-            match translate(event):
-                case Command.STEP:
-                    self.digit_run.step()
-                case Command.HANDOVER:
-                    self._toggle()
-        return outcome
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Go back; step, start or pause, as the buttons say."""
+        return [
+            self.form.goes_back(texts.HINT_BACK),
+            Action(Command.STEP, self.digit_run.step),
+            Action(Command.HANDOVER, self._toggle),
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints above the charts."""
+        return [HintRow(self.hints, (_WIDTH - 24, 46), from_right=True)]
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
-        assert self._context is not None
         for note in self.digit_run.poll():
-            self._context.note(note)
+            self.context.note(note)
         if self.digit_run.begun:
             self.digit_run.begun = False
             self.knobs.set_config(self.digit_run.config, self.digit_run.seed)
@@ -146,7 +143,7 @@ class DigitTrainingScene:
             self._name_words()
         self.charts.update(at_once=self._settings.reduced_motion)
         question, self._question = self._question, None
-        return self._form.update() or question
+        return self.form.update() or question
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the figures, the charts, the matrix and the panel."""
@@ -164,7 +161,7 @@ class DigitTrainingScene:
         self.matrix.draw_cell(canvas, _CELL)
         self.knobs.draw(canvas)
         self._draw_said(canvas)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         self.charts.draw(canvas)
 
     # The run
@@ -186,10 +183,10 @@ class DigitTrainingScene:
         old = self._back_word
         width = typeface.width(texts.PUPIL_GO_BACK, SMALL, "regular")
         self._back_word = TextButton(
-            self._form.manager, (_HINT.right - 14 - width, _HINT.top + 2, width, 22), texts.PUPIL_GO_BACK,
+            self.form.manager, (_HINT.right - 14 - width, _HINT.top + 2, width, 22), texts.PUPIL_GO_BACK,
             self.digit_run.go_back, size=SMALL,
         ) if wanted else None  # fmt: skip
-        self._form.replace([old] if old else [], [self._back_word] if self._back_word else [])
+        self.form.replace([old] if old else [], [self._back_word] if self._back_word else [])
 
     def _toggle(self) -> None:
         if self.digit_run.stopping:
@@ -225,10 +222,9 @@ class DigitTrainingScene:
         ]))  # fmt: skip
 
     def _run(self, config: DigitConfig, seed: int, resume: bool = False) -> None:
-        assert self._context is not None
         self._was_running = False
         if note := self.digit_run.begin(config, seed, resume=resume, name=self.knobs.name):
-            self._context.note(note)
+            self.context.note(note)
         self.matrix.set(None)
         if not resume:
             self.knobs.set_config(config, seed)
@@ -245,9 +241,8 @@ class DigitTrainingScene:
         self.digit_run.change(name, value)
 
     def _leave(self) -> Transition:
-        assert self._context is not None
         if self.digit_run.alive and self.digit_run.steps:
-            self._context.note(texts.TRAIN_KEPT)
+            self.context.note(texts.TRAIN_KEPT)
         self.digit_run.close()
         return Pop()
 
@@ -286,15 +281,14 @@ class DigitTrainingScene:
             return None
 
     def _say(self, words: str) -> None:
-        assert self._context is not None
-        self._context.note(words)
+        self.context.note(words)
 
     # The picture
 
     def _add_words(self) -> None:
         def add(x: float, y: float, label: str, press: OnPress) -> TextButton:
             width = typeface.width(label, TEXT, "regular")
-            return self._form.add(TextButton(self._form.manager, (x, y, width, 28), label, press))
+            return self.form.add(TextButton(self.form.manager, (x, y, width, 28), label, press))
 
         self.start_word = add(_PANEL, 664, texts.TRAIN_START, self._toggle)
         self.save_word = add(_PANEL + 316, 664, texts.TRAIN_SAVE, self._save)
@@ -311,9 +305,9 @@ class DigitTrainingScene:
         old = self.stop_word
         if stop != (old.label if old else ""):
             box = (_PANEL + 80, 664, typeface.width(stop, TEXT, "regular"), 28)
-            self.stop_word = TextButton(self._form.manager, box, stop, self._stop_or_go_on) if stop else None
+            self.stop_word = TextButton(self.form.manager, box, stop, self._stop_or_go_on) if stop else None
             before = [self.start_word, *([old] if old else [])]
-            self._form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
+            self.form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
 
     def _set_charts(self) -> None:
         curves = self.digit_run.curves
@@ -338,7 +332,6 @@ class DigitTrainingScene:
             chart.set(series, (0.0, end), ticks)
 
     def _draw_title(self, canvas: Canvas) -> None:
-        assert self._context is not None
         digit_run, curves = self.digit_run, self.digit_run.curves
         line = texts.PUPIL_LOADING if digit_run.alive else texts.PUPIL_LINE
         if curves.points:
@@ -353,8 +346,7 @@ class DigitTrainingScene:
             read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
             line = texts.PUPIL_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
         draw_run_status(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
-        hints = self._form.hints or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (_WIDTH - 24, 46), from_right=True)
+        self.draw_hints(canvas)
 
     def _draw_said(self, canvas: Canvas) -> None:
         if problem := self.digit_run.problem:

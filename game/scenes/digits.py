@@ -13,7 +13,7 @@ import pygame
 
 from ai.digits.preprocessing import redrawn
 from game.core import texts
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Push, Transition, push
 from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.explanation import LEFT as EXPLANATION_LEFT
 from game.digits.explanation import STEPS, ExplanationView, StageSwitch
@@ -26,12 +26,13 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
-from game.drawing.tokens import LABEL, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
-from game.input.controls import Command, translate
+from game.drawing.tokens import LABEL, MUTE, SMALL, TEXT, TITLE
+from game.input.controls import Command
 from game.training.digit_models import NAMES, called
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FOOT, FormScene
+from game.ui.hints import HintRow
 from game.ui.pick import ChoiceOrList
 from game.ui.widgets import Choice, TextButton
 
@@ -53,7 +54,7 @@ _DIGITS: Final = {
 }
 
 
-class DigitsScene:
+class DigitsScene(FormScene):
     """Digits scene. `chosen` is the name of the network that is explained.
 
     Attributes:
@@ -62,10 +63,10 @@ class DigitsScene:
 
     """
 
-    def __init__(self, chosen: str = NAMES[0]) -> None:
+    def __init__(self, context: Context, chosen: str = NAMES[0]) -> None:
+        super().__init__(context)
         self.chosen = chosen
         self.pad = DrawingPad(PAD)
-        self._context: Context | None = None
         self._switches = Switches()
         self._sight = ExplanationView()
         self._seen = -1  # revision of the drawing that was read last
@@ -73,13 +74,6 @@ class DigitsScene:
         self._why: Explanation | None = None
         self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
-
-    def enter(self, context: Context) -> None:
-        """Load the networks and build the widgets the first time; later, refresh the list of networks."""
-        if self._context is not None:
-            self._see_networks()
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
         self._fixing = FixRunner(context.user_dir, context.models_dir)
         self._reader = Reader()
@@ -88,12 +82,24 @@ class DigitsScene:
             self._load(name)
         if self.chosen not in self._reader.classifiers:
             self.chosen = next(iter(self._reader.classifiers), self.chosen)
-        self._form = Form(context, on_back=Pop)
-        self._tabs = self._form.add(self._make_tabs())
-        self._pen = self._form.add(make_pen(self._form.manager, lambda: self.pad))
+        self._tabs = self.form.add(self._make_tabs())
+        self._pen = self.form.add(make_pen(self.form.manager, lambda: self.pad))
         self._add_words()
         self._look_anew()
         self._offer_undo()
+
+    def resume(self) -> None:
+        """Refresh the list of networks."""
+        before = set(self._fixing.networks)
+        self._fixing.refresh()
+        if set(self._fixing.networks) == before:
+            return
+        if self.chosen not in self._fixing.networks:
+            self.chosen = NAMES[0]
+            self._look_anew()
+        tabs = self._make_tabs()
+        self.form.replace([self._tabs], [tabs])
+        self._tabs = tabs
 
     def exit(self) -> None:
         """End the current stroke."""
@@ -107,8 +113,7 @@ class DigitsScene:
     @property
     def canvas_rect(self) -> pygame.Rect:
         """The drawing area, in the window's pixels."""
-        assert self._context is not None
-        return self._context.in_window(self.pad.rect)
+        return self.context.in_window(self.pad.rect)
 
     @property
     def probabilities(self) -> Numbers | None:
@@ -117,30 +122,28 @@ class DigitsScene:
         return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle drawing, keys, gamepad buttons and widgets."""
-        if self.pad.handle_event(event) or (self._pen.focused and self._pen.take(event)):
-            return None
-        if event.type == pygame.KEYDOWN and event.key == pygame.K_z:
-            self.pad.undo()
-        elif event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
-            self.pad.clear()
-        elif event.type == pygame.KEYDOWN and event.key in _DIGITS:
-            self._correct(_DIGITS[event.key])
-        else:
-            return self._obey(event)
-        return None
+        """Handle drawing, and pass any other event to the actions and the widgets."""
+        return None if self.pad.handle_event(event) else super().handle_event(event)
 
-    def _obey(self, event: pygame.event.Event) -> Transition | None:
-        match translate(event):
-            case Command.HANDOVER if event.type != pygame.KEYDOWN:  # Tab moves the focus
-                self.pad.undo()
-            case Command.RETRY | Command.CHOICES:
-                self.pad.clear()
-            case Command.NEXT | Command.PREVIOUS as command:
-                self._turn(1 if command is Command.NEXT else -1)
-            case _:
-                return self._form.handle_event(event)
-        return None
+    def actions(self) -> Table:
+        """Choose another network, go back; undo and clear, told beside their buttons; correct by a digit's key."""
+        return [
+            Action(Command.NEXT, lambda: self._turn(1), texts.DIGITS_HINT_NETWORK),
+            Action(Command.PREVIOUS, lambda: self._turn(-1)),
+            self.form.goes_back(texts.HINT_BACK),
+            *self._pad_actions,
+            *(Action(key, self._clear) for key in (Command.RETRY, pygame.K_DELETE)),
+            *(Action(key, partial(self._correct, digit)) for key, digit in _DIGITS.items()),
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints below the pad."""
+        return [HintRow(self.hints, (PAD.left, FOOT[1]))]
+
+    @property
+    def _pad_actions(self) -> tuple[Action, Action]:
+        """Undo and clear, which buttons below the pad do as well."""
+        return Action(pygame.K_z, self._undo, pad=Command.HANDOVER), Action(Command.CHOICES, self._clear)
 
     def update(self) -> Transition | None:
         """Read the drawing if it changed, and receive finished measurements."""
@@ -149,7 +152,7 @@ class DigitsScene:
             next(self._looking)
         self._measuring.listen()
         self._follow_fix()
-        return self._form.update()
+        return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the pad, the answer and its explanation."""
@@ -160,7 +163,7 @@ class DigitsScene:
             draw_answer(canvas, self.reading, self.chosen)
         steps = list(asdict(self._switches).values())
         self._sight.draw(canvas, self.reading, self.chosen, self._why, steps)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         self._draw_words(canvas)
 
     # Reading
@@ -250,16 +253,16 @@ class DigitsScene:
         wanted = self._fixing.count(self.chosen) > 0
         if wanted and self._unfix is None:
             box = (LEFT, FIX_TOP + 48, 96, 24)
-            self._unfix = TextButton(self._form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
-            self._form.replace([], [self._unfix])
+            self._unfix = TextButton(self.form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
+            self.form.replace([], [self._unfix])
         elif self._unfix and not wanted:
-            self._form.replace([self._unfix], [])
+            self.form.replace([self._unfix], [])
             self._unfix = None
 
     # Words
 
     def _add_words(self) -> None:
-        manager, add = self._form.manager, self._form.add
+        manager, add = self.form.manager, self.form.add
         self._under = [
             add(TextButton(manager, (PAD.left + 80 * number, _BELOW, 56, 24), word, press, size=SMALL + 1))
             for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)))
@@ -282,24 +285,9 @@ class DigitsScene:
         words = [word if len(word) <= _LONGEST_TAB else word[:_LONGEST_TAB] + "…" for word in map(called, names)]
         index = names.index(self.chosen) if self.chosen in names else 0
         if len(names) == len(NAMES):
-            return Choice(self._form.manager, _TABS, "", words, index, self._choose)
+            return Choice(self.form.manager, _TABS, "", words, index, self._choose)
         everything = texts.DIGITS_ALL.format(count=len(names))
-        return ChoiceOrList(
-            self._form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT
-        )
-
-    def _see_networks(self) -> None:
-        """Refresh the list of networks."""
-        before = set(self._fixing.networks)
-        self._fixing.refresh()
-        if set(self._fixing.networks) == before:
-            return
-        if self.chosen not in self._fixing.networks:
-            self.chosen = NAMES[0]
-            self._look_anew()
-        tabs = self._make_tabs()
-        self._form.replace([self._tabs], [tabs])
-        self._tabs = tabs
+        return ChoiceOrList(self.form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT)
 
     def _choose(self, index: int) -> None:
         """Choose another network; if it can't be loaded, say so and keep the last one."""
@@ -356,7 +344,6 @@ class DigitsScene:
         self.pad.clear()
 
     def _draw_words(self, canvas: Canvas) -> None:
-        assert self._context is not None
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
             draw_fix(canvas, self._fixing, same=self._fix_of == self.pad.revision)
         for number, line in enumerate(
@@ -368,11 +355,7 @@ class DigitsScene:
         lines = [line for words in reversed(problems) for line in wrapped(canvas, words, SMALL, _TABS[2])]
         for number, line in enumerate(lines[:_PROBLEM_LINES]):
             canvas.text(line, (LEFT, _PROBLEMS + 17 * number), size=SMALL, colour=canvas.palette.warn)
-        controls = self._context.controls
-        word = controls.word
-        keys = (word(Command.HANDOVER) if controls.pad_in_use else controls.key(pygame.K_z), word(Command.CHOICES))
-        for key, widget in zip(keys, self._under, strict=True):
+        for action, widget in zip(self._pad_actions, self._under, strict=True):
             left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
-            canvas.text(key, (left, widget.baseline), size=SMALL, weight="medium")
-        hints = [(word(Command.NEXT), texts.DIGITS_HINT_NETWORK), (word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, self._form.hints or hints, (PAD.left, VIEW_SIZE[1] - 40))
+            canvas.text(action.key_word(self.context.controls), (left, widget.baseline), size=SMALL, weight="medium")
+        self.draw_hints(canvas)

@@ -11,18 +11,19 @@ import pygame
 from ai.digits.dream import STEPS, ActivationMaximisation
 from ai.digits.preprocessing import SIDE
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Transition
 from game.digits.answer import LEFT, DigitRow, percent
 from game.digits.pictures import Numbers, picture
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
-from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, VIEW_SIZE
-from game.input.controls import Command, translate
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE
+from game.input.controls import Command
+from game.ui.actions import Action, Table, digit_actions
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FOOT, FormScene
+from game.ui.hints import Hint, HintRow
 from game.ui.widget import PointsManager, Widget
 from game.ui.widgets import Choice, Slider, TextButton
 
@@ -66,7 +67,7 @@ class DreamTile(Widget):
                     colour=INK if self.chosen else self.tint())  # fmt: skip
 
 
-class DreamScene:
+class DreamScene(FormScene):
     """Dreams of all ten digits, one of them large. `drawing` (28, 28) is an optional starting image.
 
     Attributes:
@@ -75,31 +76,22 @@ class DreamScene:
 
     """
 
-    def __init__(self, classifier: DigitClassifier, digit: int = 0, drawing: Numbers | None = None) -> None:
+    def __init__(
+        self, context: Context, classifier: DigitClassifier, digit: int = 0, drawing: Numbers | None = None
+    ) -> None:
+        super().__init__(context)
         self.digit = digit if digit in range(_DIGITS) else 0
         self._classifier = classifier
         self._drawing = drawing if drawing is not None and drawing.any() else None
         self._calm, self._from_drawing = _CALM, False
-        self._context: Context | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the widgets, and start the dreams."""
-        if self._context is not None:
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(13), ember=0.2, stars=24)
-        self._form = Form(context, on_back=Pop)
         self._add_widgets()
         self.restart()
 
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
-
     def restart(self) -> None:
         """Restart all dreams."""
-        assert self._context is not None
         start = self._drawing if self._from_drawing else None
-        seed = int(self._context.rng.integers(1 << 31))
+        seed = int(self.context.rng.integers(1 << 31))
         self.dreams = [
             ActivationMaximisation(self._classifier, digit, np.random.default_rng((seed, digit)), start, self._calm)
             for digit in range(_DIGITS)
@@ -111,21 +103,22 @@ class DreamScene:
         self.digit = digit
         self._show()
 
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle digit keys, restart and widgets."""
-        if event.type == pygame.KEYDOWN and pygame.K_0 <= event.key <= pygame.K_9:
-            self.choose(event.key - pygame.K_0)
-            return None
-        match translate(event):
-            case Command.NEXT:
-                self.choose((self.digit + 1) % _DIGITS)
-            case Command.PREVIOUS:
-                self.choose((self.digit - 1) % _DIGITS)
-            case Command.RETRY:
-                self.restart()
-            case _:
-                return self._form.handle_event(event)
-        return None
+    def actions(self) -> Table:
+        """Choose a digit by its key, or the next one; restart; go back."""
+        word = self.context.controls.word
+        by_pad = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}"
+        return [
+            Hint(by_pad if self.context.controls.pad_in_use else "0 – 9", texts.HINT_DIGIT),
+            *digit_actions(self.choose),
+            Action(Command.NEXT, lambda: self.choose((self.digit + 1) % _DIGITS)),
+            Action(Command.PREVIOUS, lambda: self.choose((self.digit - 1) % _DIGITS)),
+            Action(Command.RETRY, self.restart, texts.DREAM_AGAIN.lower()),
+            self.form.goes_back(texts.HINT_BACK),
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints below the large dream."""
+        return [HintRow(self.hints, (_FRAME.left, FOOT[1]))]
 
     def update(self) -> Transition | None:
         """Take one step of the dream shown large or, once that is done, of the next unfinished one."""
@@ -133,7 +126,7 @@ class DreamScene:
         if dream is not None:
             dream.advance()
             self._show()
-        return self._form.update()
+        return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the large dream, the network's reading of it, and the others."""
@@ -160,13 +153,13 @@ class DreamScene:
         canvas.text(texts.DREAM_ALL, (_RIGHT, 42), size=LABEL, colour=MUTE, weight="medium")
         for number, line in enumerate(wrapped(canvas, texts.DREAM_CALM_HELP, LABEL, 344)):
             canvas.text(line, (_RIGHT, 312 + 16 * number), size=LABEL, colour=MUTE)
-        self._form.draw(canvas)
-        self._draw_hints(canvas)
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
 
     # Widgets
 
     def _add_widgets(self) -> None:
-        manager, add = self._form.manager, self._form.add
+        manager, add = self.form.manager, self.form.add
         self._rows = [add(DigitRow(manager, digit, self.choose)) for digit in range(_DIGITS)]
         self._tiles = [add(DreamTile(manager, digit, self.choose)) for digit in range(_DIGITS)]
         self._slider = add(Slider(manager, (_RIGHT, 258, 344, 28), texts.DREAM_CALM, self._calm, (0.0, 1.0),
@@ -178,7 +171,7 @@ class DreamScene:
         width = typeface.width(texts.DREAM_AGAIN, TEXT, "regular")
         top = 372 if self._drawing is None else 416
         add(TextButton(manager, (_RIGHT, top, width, 28), texts.DREAM_AGAIN, self.restart))
-        self._form.focus(self._tiles[self.digit])
+        self.form.focus(self._tiles[self.digit])
 
     def _set_calm(self, calm: float) -> None:
         self._calm = calm
@@ -196,17 +189,6 @@ class DreamScene:
         for row in self._rows:
             row.values = (float(probabilities[row.digit]), 0.0)
             row.best = row.digit == self.digit
-
-    def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls = self._context.controls
-        pad, word = controls.pad_in_use, controls.word
-        key = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}" if pad else "0 – 9"
-        draw_hints(canvas, [
-            (key, texts.HINT_DIGIT),
-            (word(Command.RETRY), texts.DREAM_AGAIN.lower()),
-            (word(Command.BACK), texts.HINT_BACK),
-        ], (_FRAME.left, VIEW_SIZE[1] - 40))  # fmt: skip
 
 
 def _bright(image: Numbers) -> Numbers:

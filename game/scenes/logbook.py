@@ -19,11 +19,10 @@ from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, LINE, MARGIN, MUTE, SMALL, TITLE, VIEW_SIZE
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, Totals, best, skill, totals
-from game.input.controls import Command
 from game.play.race import race
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.listing import Listing, shortened
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
@@ -42,35 +41,33 @@ _FOOT: Final = 612
 _TOTALS: Final = (146.0, 132.0)  # baseline of their labels, and how far apart they stand
 
 
-class LogbookScene:
+class LogbookScene(FormScene):
     """Logbook scene: flights on the left, newest first; skill and actions on the chosen flight on the right."""
 
-    def __init__(self) -> None:
-        self._context: Context | None = None
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self._shown: list[Entry] = []
-
-    def enter(self, context: Context) -> None:
-        """Build the screen, or reload the flights."""
-        if self._context is None:
-            self._build(context)
+        self._build(context)
         self._reload()
 
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
+    def resume(self) -> None:
+        """Reload the flights, to which one may have been added."""
+        self._reload()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the widgets; the Delete key deletes a flight."""
-        if event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE and not self._form.typing:
-            self._throw_away()
-            return None
+        """Pass the event to the charts and the widgets."""
         self._charts.follow(event)
-        return self._form.handle_event(event)
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Move, choose, go back; the Delete key deletes a flight."""
+        delete = [] if self.form.typing else [Action(pygame.K_DELETE, self._throw_away)]
+        return [self.form.moves, *super().actions(), *delete]
 
     def update(self) -> Transition | None:
         """Animate widgets and charts."""
-        assert self._context is not None
-        self._charts.update(self._context.settings.reduced_motion)
-        return self._form.update()
+        self._charts.update(self.context.settings.reduced_motion)
+        return self.form.update()
 
     # What there is
 
@@ -84,18 +81,16 @@ class LogbookScene:
         return self.chosen is not None and self.chosen.file in self._kept
 
     def _build(self, context: Context) -> None:
-        self._context = context
         self._records = Records(context.user_dir)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
-        self._form = Form(context, on_back=Pop)
-        manager = self._form.manager
+        manager = self.form.manager
         box = (MARGIN, _LIST.top - 54, 330, 20)
         self._filter = Choice(manager, box, "", texts.LOGBOOK_FILTERS, 0, lambda _: self._fill(), size=SMALL)
-        self._list = self._form.add(Listing(
+        self._list = self.form.add(Listing(
             manager, _LIST, [], on_choose=lambda _: self._set_verbs(), on_press=lambda _: self._watch(),
             empty=texts.LOGBOOK_EMPTY, columns=_COLUMNS, pitch=_PITCH, size=SMALL + 1,
         ))  # fmt: skip
-        self._form.add(self._filter)
+        self.form.add(self._filter)
         self._verbs: list[Widget] = []
         self._charts = Charts([
             Chart((_LEFT, _CHARTS[0], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_SKILL, limits=(0.0, 100.0),
@@ -103,7 +98,7 @@ class LogbookScene:
             Chart((_LEFT, _CHARTS[1], _WIDTH, _CHART_HEIGHT), texts.LOGBOOK_FUEL, read="{:.1f} s".format,
                   read_x=texts.LOGBOOK_FLIGHT.format),
         ])  # fmt: skip
-        self._form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
+        self.form.add(VirtualPointer(manager, self._charts.box, self._charts.follow))
 
     def _reload(self) -> None:
         """Reload the flights from disk."""
@@ -144,26 +139,25 @@ class LogbookScene:
                     (texts.LOGBOOK_THROW_AWAY, self._throw_away)]  # fmt: skip
         elif self.chosen and self.chosen.file in self._thrown:
             rows = [(texts.LOGBOOK_BRING_BACK, self._bring_back)]
-        manager = self._form.manager
+        manager = self.form.manager
         new: list[Widget] = [
             TextButton(manager, (_LEFT, _FIRST_VERB + number * _LINE, 220, _LINE), label, press, size=18)
             for number, (label, press) in enumerate(rows)
         ]
         new.append(TextButton(manager, (MARGIN, _FOOT, 72, _LINE), texts.BACK, Pop, size=18))
-        self._form.replace(self._verbs, new)
+        self.form.replace(self._verbs, new)
         self._verbs = new
 
     # What can be done
 
     def _read(self) -> Record | None:
         """Read the chosen flight; if it is damaged, tell the player and return None."""
-        assert self._context is not None
         if not self._replayable or self.chosen is None:
             return None
         try:
             return self._records.read(self.chosen.file)
         except ValueError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
             return None
 
     def _watch(self) -> Transition | None:
@@ -184,10 +178,9 @@ class LogbookScene:
 
     def _tell(self, done: bool, words: str) -> None:
         """Report what was done, or why it failed, and reload the list."""
-        assert self._context is not None
-        self._context.note(words if done else self._records.problem)
+        self.context.note(words if done else self._records.problem)
         self._reload()
-        self._form.focus(self._list)
+        self.form.focus(self._list)
 
     # The picture
 
@@ -204,21 +197,13 @@ class LogbookScene:
             canvas.text(label, (x, y), size=LABEL, weight="medium", colour=MUTE, align=align)  # type: ignore[arg-type]
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
         self._charts.draw(canvas)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         y = _FIRST_VERB + 22 + _LINE * (len(self._verbs) - 1)  # below the verbs, of which Back is one
         bar = texts.NOT_COUNTED[self.chosen.bar] if self.chosen and self.chosen.bar else ""
         for line in [line for text in (bar, self._why_gone) if text for line in wrapped(canvas, text, SMALL, _WIDTH)]:
             canvas.text(line, (_LEFT, y), size=SMALL, colour=MUTE)
             y += 19
-        self._draw_hints(canvas)
-
-    def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls = self._context.controls
-        arrows = controls.arrows
-        hints = [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
-                 (controls.word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
-        draw_hints(canvas, self._form.hints or hints, (MARGIN, VIEW_SIZE[1] - 40))
+        self.draw_hints(canvas)
 
 
 def _draw_totals(canvas: Canvas, sums: Totals) -> None:

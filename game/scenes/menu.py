@@ -5,17 +5,15 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-import pygame
-
 from game.core import texts
 from game.core.scene import Quit, Transition, push
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import MARGIN, MUTE, TEXT, VIEW_SIZE
+from game.drawing.tokens import MARGIN, MUTE, TEXT
 from game.input.controls import Command
 from game.scenes.menu_background import MenuBackground
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.widgets import TextButton
 
 _TITLE_SIZE: Final = 88.0
@@ -28,71 +26,54 @@ _LINE: Final = 38
 ROWS: Final = ("play", "missions", "watch", "train", "digits", "physics", "logbook", "settings", "quit")
 
 
-class MenuScene:
+class MenuScene(FormScene):
     """Main menu, the first screen."""
 
-    def __init__(self) -> None:
-        self._background = MenuBackground()
-        self._form: Form | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the column once; the focus stays where it was when coming back."""
-        self._background.enter(context)
-        if self._form is not None:
-            return
-        self._controls = context.controls
-        self._form = Form(context, on_back=self._back)
+    def __init__(self, context: Context) -> None:
+        super().__init__(context, self._back)
+        self._background = MenuBackground(context)
         self._lines: list[tuple[TextButton, str]] = []
         for number, name in enumerate(ROWS):
             label, line = texts.MENU[name]
             box = (MARGIN, _FIRST_WORD + number * _LINE, 160, _LINE)
-            word = TextButton(self._form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
-            self._lines.append((self._form.add(word), line))
+            word = TextButton(self.form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
+            self._lines.append((self.form.add(word), line))
 
-    def exit(self) -> None:
-        """Do nothing: the state is kept for the return."""
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the column."""
-        return self._column.handle_event(event)
+    def resume(self) -> None:
+        """Follow a change of the settings; the focus stays where it was."""
+        self._background.resume()
 
     def update(self) -> Transition | None:
         """Animate the column and the background."""
         self._background.update()
-        return self._column.update()
+        return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moon, the title, the column and the hints."""
         self._background.draw(canvas, alpha)
         canvas.text(texts.GAME, (MARGIN - 2, 208), size=_TITLE_SIZE, weight="extralight")
         canvas.text(texts.MENU_LINE, (MARGIN, 248), size=TEXT, colour=MUTE)
-        self._column.draw(canvas)
+        self.form.draw(canvas)
         for word, line in self._lines:
             if word.warmth > 0.02:
                 place = (MARGIN + 176, word.baseline)
                 canvas.text(line, place, size=TEXT, alpha=word.warmth)  # in ink: the dawn is bright
-        self._draw_hints(canvas)
+        self.draw_hints(canvas)
 
-    @property
-    def _column(self) -> Form:
-        assert self._form is not None, "the menu was never entered"
-        return self._form
-
-    def _draw_hints(self, canvas: Canvas) -> None:
-        arrows = self._controls.arrows
-        hints = [
-            (arrows, texts.HINT_MOVE),
-            (self._controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
-            (self._controls.word(Command.FULLSCREEN), texts.HINT_FULL_SCREEN),
+    def actions(self) -> Table:
+        """Move, choose, switch to the full screen; Escape leads to Quit."""
+        return [
+            self.form.moves,
+            self.form.confirms(texts.HINT_CHOOSE),
+            Action(Command.FULLSCREEN, self.context.toggle_full_screen, texts.HINT_FULL_SCREEN),
         ]
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
     def _back(self) -> Transition | None:
         """Move the focus to Quit; if it is there already, leave the game."""
-        last = self._column.widgets[-1]
-        if self._column.focused is last:
+        last = self.form.widgets[-1]
+        if self.form.focused is last:
             return Quit()
-        self._column.focus(last)
+        self.form.focus(last)
         return None
 
 

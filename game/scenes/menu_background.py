@@ -32,8 +32,9 @@ _LEFT, _RIGHT, _MAIN = 1, 2, 3
 class MenuBackground:
     """Background of the menu; while `still`, the lander stands on its pad and nothing moves."""
 
-    def __init__(self) -> None:
-        self.still = False
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self.still = context.settings.reduced_motion
         self._camera = Camera()
         self._camera.cut(_ASIDE)
         self._env = LanderEnv(1, 0, frame_skip=1)
@@ -45,22 +46,21 @@ class MenuBackground:
         self._poses: Poses
         self._stage: Stage
         self._begin()
+        Thread(target=self._load_network, daemon=True).start()  # the first ascent needs none
 
-    def enter(self, context: Context) -> None:
-        """Load the network in the background of the first ascent, which needs none."""
-        self.still = context.settings.reduced_motion
+    def resume(self) -> None:
+        """Follow a change of the settings."""
+        self.still = self._context.settings.reduced_motion
         if self.still:
             self._begin()
 
-        def read() -> None:
-            from ai.lander.pilots import ScriptedPilot
-            from game.flight import networks
+    def _load_network(self) -> None:
+        from ai.lander.pilots import ScriptedPilot
+        from game.flight import networks
 
-            network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
-            self._pilot = network.policy or ScriptedPilot()
-
-        if self._pilot is None:
-            Thread(target=read, daemon=True).start()
+        context = self._context
+        network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        self._pilot = network.policy or ScriptedPilot()
 
     def update(self) -> None:
         """Advance by 1/60 s."""

@@ -20,12 +20,11 @@ from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MEDALS, MUTE, S
 from game.flight import flight_file
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
-from game.input.controls import Command
 from game.play.challenge import Challenge, DailyStart, FlownMission
 from game.play.tutorial import Tutorial
+from game.ui.actions import Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.listing import Listing
 from game.ui.widgets import Choice, TextButton
 
@@ -44,45 +43,39 @@ _DAILY: Final = "daily"
 _FLIGHTS: Final = "flights"  # in the game's own data
 
 
-class MissionsScene:
+class MissionsScene(FormScene):
     """Missions scene: missions on the left, in teaching order; the chosen one on the right."""
 
-    def __init__(self) -> None:
-        self._context: Context | None = None
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self._rival = ""  # the player's choice of ghost; empty for the default of each mission
+        self._sky = NightSky(context.rng, ember=0.5, stars=70)
+        manager = self.form.manager
+        self._names = [FIRST.name, *MISSIONS, _DAILY]
+        self._list = self.form.add(Listing(manager, _LIST, [], on_press=lambda _: self._fly(), columns=_COLUMNS,
+                                            on_choose=lambda _: self._offer_rivals(), pitch=_PITCH))  # fmt: skip
+        self._rivals: list[Choice] = []
+        self._verb = self.form.add(TextButton(manager, _VERB, texts.MISSION_FLY, self._fly, size=18))
+        self.form.add(TextButton(manager, (MARGIN, _FOOT, 72, 36), texts.BACK, Pop, size=18))
+        self._reload(1)
 
-    def enter(self, context: Context) -> None:
-        """Build the screen, or reload the results."""
-        first = self._context is None
-        if first:
-            self._context = context
-            self._sky = NightSky(context.rng, ember=0.5, stars=70)
-            self._form = Form(context, on_back=Pop)
-            manager = self._form.manager
-            self._names = [FIRST.name, *MISSIONS, _DAILY]
-            self._list = self._form.add(Listing(manager, _LIST, [], on_press=lambda _: self._fly(), columns=_COLUMNS,
-                                                on_choose=lambda _: self._offer_rivals(), pitch=_PITCH))  # fmt: skip
-            self._rivals: list[Choice] = []
-            self._verb = self._form.add(TextButton(manager, _VERB, texts.MISSION_FLY, self._fly, size=18))
-            self._form.add(TextButton(manager, (MARGIN, _FOOT, 72, 36), texts.BACK, Pop, size=18))
-        self._records = Records(context.user_dir)
+    def resume(self) -> None:
+        """Reload the results, which a flight may have changed."""
+        self._reload(self._list.index)
+
+    def _reload(self, index: int) -> None:
+        """Reload the results from disk, and choose a mission."""
+        self._records = Records(self.context.user_dir)
         self._best = _best_by_course(self._records.entries())
         if self._records.problem:
-            context.note(self._records.problem)
+            self.context.note(self._records.problem)
         self._kept = self._records.kept()
-        self._list.set_rows([self._row(name) for name in self._names], 1 if first else self._list.index)
+        self._list.set_rows([self._row(name) for name in self._names], index)
         self._offer_rivals()
 
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the widgets."""
-        return self._form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        """Animate the widgets."""
-        return self._form.update()
+    def actions(self) -> Table:
+        """Move, choose, go back."""
+        return [self.form.moves, *super().actions()]
 
     @property
     def chosen(self) -> str:
@@ -127,9 +120,9 @@ class MissionsScene:
         if offered:
             words = [texts.MISSION_RIVALS[name] for name in offered]
             index = offered.index(self._chosen_rival)
-            self._rivals = [Choice(self._form.manager, _RIVAL, texts.MISSION_RIVAL_LABEL, words, index,
+            self._rivals = [Choice(self.form.manager, _RIVAL, texts.MISSION_RIVAL_LABEL, words, index,
                                    self._choose_rival(offered), label_width=_RIVAL_LABEL)]  # fmt: skip
-        self._form.replace(old or [self._verb], [*self._rivals, *([] if old else [self._verb])])
+        self.form.replace(old or [self._verb], [*self._rivals, *([] if old else [self._verb])])
 
     def _choose_rival(self, offered: list[str]) -> Callable[[int], None]:
         def choose(index: int) -> None:
@@ -139,22 +132,20 @@ class MissionsScene:
 
     def _rival_record(self) -> Record | None:
         """Return the recorded flight to race, None for the network; tell the player of one that can't be read."""
-        assert self._context is not None
         try:
             if self._chosen_rival == "own":
                 return self._records.read(self._best[self.chosen].file)
             if self._chosen_rival == "recorded":
-                return flight_file.read(self._context.assets_dir / _FLIGHTS / f"{self.chosen}.json")
+                return flight_file.read(self.context.assets_dir / _FLIGHTS / f"{self.chosen}.json")
         except ValueError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
         return None
 
     def _row(self, name: str) -> tuple[str, str, str]:
         best = self._best.get(name)
         title = f"{icon(name)}   {(_TOLD.get(name) or texts.MISSIONS[name])[0]}"
         if name == FIRST.name:
-            assert self._context is not None
-            return title, texts.TUTORIAL_FLOWN if self._context.settings.first_flown else "–", ""
+            return title, texts.TUTORIAL_FLOWN if self.context.settings.first_flown else "–", ""
         if best is None:
             return title, "–", ""
         if name == _DAILY:
@@ -165,7 +156,6 @@ class MissionsScene:
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the list, and the chosen mission beside it."""
-        assert self._context is not None
         self._sky.draw(canvas)
         canvas.text(texts.MISSIONS_TITLE, (MARGIN, 84), size=34, weight="light")
         gold = sum(entry.medal == 3 for name, entry in self._best.items() if name in MISSIONS)
@@ -176,16 +166,13 @@ class MissionsScene:
             place = (self._list.right - column, _LIST.top - 14)
             canvas.text(label, place, size=LABEL, weight="medium", colour=MUTE, align=align)  # type: ignore[arg-type]
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         for row, name in enumerate(self._names):
             if name in MISSIONS and name in self._best:
                 end, medal = self._list.right - _COLUMNS[0] - _LAMPS, self._best[name].medal
                 _draw_lamps(canvas, (end - _LAMP * medal, self._list.baseline(row) - 4), medal)
         self._draw_mission(canvas, self.chosen)
-        controls = self._context.controls
-        arrows = controls.arrows
-        draw_hints(canvas, [(arrows, texts.HINT_MOVE), (controls.word(Command.CONFIRM), texts.HINT_CHOOSE),
-                            (controls.word(Command.BACK), texts.HINT_BACK)], (MARGIN, VIEW_SIZE[1] - 40))  # fmt: skip
+        self.draw_hints(canvas)
 
     def _draw_mission(self, canvas: Canvas, name: str) -> None:
         title, asked = _TOLD.get(name) or texts.MISSIONS[name]

@@ -10,11 +10,12 @@ import pygame
 from game.core import texts
 from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import MARGIN, NIGHT0, VIEW_SIZE
+from game.drawing.tokens import MARGIN, NIGHT0
 from game.input.controls import Command
+from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.widget import OnPress
 from game.ui.widgets import TextButton
 
@@ -22,7 +23,7 @@ _FIRST_WORD: Final = 304
 _LINE: Final = 44
 
 
-class PauseScene:
+class PauseScene(FormScene):
     """Pause menu over a scene, until the player resumes or leaves it.
 
     Args:
@@ -35,45 +36,42 @@ class PauseScene:
 
     def __init__(
         self,
+        context: Context,
         below: Scene,
         retry: Callable[[], None] | None = None,
         retry_word: str = texts.PAUSE_RETRY,
         more: Callable[[], list[tuple[str, OnPress]]] = list,
     ) -> None:
-        self._below, self._retry, self._retry_word, self._more = below, retry, retry_word, more
+        super().__init__(context)
+        self._behind = BlurredPicture(below)
+        self._retry, self._retry_word, self._more = retry, retry_word, more
+        self._build()
 
-    def enter(self, context: Context) -> None:
+    def resume(self) -> None:
+        """Name the entries anew, for a scene above may have changed them."""
+        self._build()
+
+    def _build(self) -> None:
         """Build the column of entries."""
-        self._controls = context.controls
-        self._form = Form(context, on_back=Pop)
-        self._behind = BlurredPicture(self._below)
+        self.form = Form(self.context, on_back=Pop)
         rows: list[tuple[str, OnPress]] = [(texts.PAUSE_RESUME, Pop)]
         if self._retry:
             rows.append((self._retry_word, self._begin_anew))
         rows += [*self._more(), (texts.PAUSE_SETTINGS, _open_settings), (texts.PAUSE_LEAVE, lambda: Pop(2))]
         for number, (label, press) in enumerate(rows):
             box = (MARGIN, _FIRST_WORD + number * _LINE, 420, _LINE)
-            self._form.add(TextButton(self._form.manager, box, label, press, size=22, weight="light"))
+            self.form.add(TextButton(self.form.manager, box, label, press, size=22, weight="light"))
 
-    def exit(self) -> None:
-        """Do nothing: no resources to release."""
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the column."""
-        return self._form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        """Animate the column."""
-        return self._form.update()
+    def actions(self) -> Table:
+        """Choose, or resume."""
+        return [self.form.confirms(texts.HINT_CHOOSE), Action(Command.PAUSE, Pop, texts.HINT_RESUME)]
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the blurred scene below, and the column."""
         self._behind.draw(canvas)
         canvas.text(texts.PAUSE_TITLE, (MARGIN, 256), size=44, weight="extralight")
-        self._form.draw(canvas)
-        word = self._controls.word
-        hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.PAUSE), texts.HINT_RESUME)]
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
 
     def _begin_anew(self) -> Transition:
         assert self._retry is not None

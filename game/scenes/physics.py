@@ -15,17 +15,19 @@ from engine.vector import Array
 from game.cockpit import hud
 from game.core import texts
 from game.core.clock import TimeScale
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.figures import write_figures
 from game.drawing.sky import NightSky
 from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
 from game.exhibits import EXHIBITS, Label
-from game.input.controls import Command, translate
+from game.input.controls import Command
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
+from game.ui.playback import LABEL_WIDTH, Playback
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widgets import Choice
 from game.world.bodies import Outlines, draw_contacts, draw_grip
@@ -34,12 +36,10 @@ from game.world.grip import Grip
 
 GRAVITIES: Final = (1.62, 9.81)
 SPEEDS: Final = (0.25, 0.5, 1.0)
-_SPEED_WORDS: Final = ("×¼", "×½", "×1")
 _GROUND: Final = 604.0  # row of y = 0, in points from the top
 _TABS: Final = (MARGIN, 50.0)
 _ROWS: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices, and how far to the next
 _ROW_HEIGHT: Final = 17.0
-_LABEL_WIDTH: Final = 84.0
 _GAP: Final = 24.0
 _ROOM: Final = (16.0, 152.0, VIEW_SIZE[0] - 32.0, 444.0)
 _COLUMNS: Final = (758.0, 880.0, 1002.0, 1124.0)
@@ -48,35 +48,29 @@ _GAUGE: Final = 64.0
 _SMOOTHING: Final = 0.05
 
 
-class PhysicsScene:
+class PhysicsScene(FormScene):
     """Physics gallery, one exhibit at a time; `now` is the clock in seconds that times its steps."""
 
-    def __init__(self, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(self, context: Context, exhibit: str = "stack", now: Callable[[], float] = time.perf_counter) -> None:
+        super().__init__(context)
         self._names = list(EXHIBITS)
         self._chosen = self._names.index(exhibit)
         self._now = now
-        self._context: Context | None = None
-        self._gravity, self._tempo = 0, TimeScale()
+        self._gravity, self._clock = 0, TimeScale()
+        self.playback = Playback(self._clock, SPEEDS, self._step)
         self._mouse = (-1.0, -1.0)
-        self.stopped = self.contacts_drawn = False
+        self.contacts_drawn = False
         self.grip: Grip | None = None
-
-    def enter(self, context: Context) -> None:
-        """Build the choices and the first exhibit, or continue after a pause."""
-        if self._context is not None:
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(7), ember=0.35, stars=90)
-        self._form = Form(context, on_back=Pop)
         words = [texts.EXHIBITS[name][0] for name in self._names]
-        manager = self._form.manager
+        manager = self.form.manager
         tabs = pygame.Rect(*_TABS, math.ceil(_width(words, TEXT)), 24)
-        self._tabs = self._form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
-        self._hand = self._form.add(VirtualPointer(manager, _ROOM, self._point, hold=texts.POINTER_GRIP))
+        self._tabs = self.form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
+        self._hand = self.form.add(VirtualPointer(manager, _ROOM, self._point, hold=texts.POINTER_GRIP))
         self._gravities: list[Choice] = []  # one, or none where there is no gravity
-        speeds = self._row(1, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
+        speeds = self.playback.row(manager, _row_box(1, self.playback.words))
         contacts = self._row(2, texts.PHYSICS_CONTACTS, texts.PHYSICS_CONTACTS_WORDS, 0, self._show_contacts)
-        self._speeds, self._contacts = self._form.add(speeds), self._form.add(contacts)
+        self._speeds, self._contacts = self.form.add(speeds), self.form.add(contacts)
         self.restart()
 
     def exit(self) -> None:
@@ -88,56 +82,49 @@ class PhysicsScene:
         self.exhibit = EXHIBITS[self._names[self._chosen]](GRAVITIES[self._gravity])
         self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
-        self._tempo.begin()
+        self._clock.begin()
         self.step_time = 0.0
         self.grip = None
         self._offer_gravity()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle gripping, stopping, stepping, choices and pause."""
-        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
-            if self._point(event):
-                return None
-        elif self._hand.focused and self._hand.take(event):
+        """Grip a body, or pass the event to the actions and the widgets."""
+        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) and self._point(event):
             return None
         if event.type == pygame.WINDOWFOCUSLOST:
             self.grip = None
-        if _stops(event):
-            self.stopped = not self.stopped
-            return None
-        return self._obey(event)
+        return super().handle_event(event)
 
-    def _obey(self, event: pygame.event.Event) -> Transition | None:
-        match translate(event):
-            case Command.PAUSE:
-                return self._pause()
-            case Command.CHOICES:
-                self._contacts.choose(1 - self._contacts.index)
-            case Command.STEP:
-                self.stopped = True
-                self._step()
-            case Command.RETRY:
-                self.restart()
-            case Command.NEXT | Command.PREVIOUS as command:
-                self._tabs.choose((self._chosen + (1 if command is Command.NEXT else -1)) % len(self._names))
-            case Command.SLOWER:
-                self._speeds.shift(-1)
-            case Command.FASTER:
-                self._speeds.shift(1)
-            case _:
-                return self._form.handle_event(event)
-        return None
+    def actions(self) -> Table:
+        """Stop and step; show another exhibit, or its contacts; begin anew; pause."""
+        stop, step, *speeds = self.playback.actions(texts.HINT_STEP)
+        return [
+            stop,
+            step,
+            Action(Command.NEXT, lambda: self._turn(1), texts.HINT_NEXT_EXHIBIT),
+            Action(Command.CHOICES, lambda: self._contacts.choose(1 - self._contacts.index), texts.HINT_CONTACTS),
+            Action(Command.RETRY, self.restart, texts.HINT_RESTART_EXHIBIT),
+            Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
+            Action(Command.PREVIOUS, lambda: self._turn(-1)),
+            *speeds,
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints in the upper right corner."""
+        return [HintRow(self.hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True)]
+
+    def _turn(self, direction: int) -> None:
+        self._tabs.choose((self._chosen + direction) % len(self._names))
 
     def update(self) -> Transition | None:
         """Take as many steps as the chosen speed makes due."""
-        if not self.stopped:
-            for _ in range(self._tempo.steps()):
-                self._step()
-        return self._form.update()
+        for _ in range(self.playback.steps()):
+            self._step()
+        return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the exhibit and the text around it."""
-        between = 1.0 if self.stopped else self._tempo.between(alpha)
+        between = self.playback.between(alpha)
         poses = self._poses_before + between * (self._poses - self._poses_before)
         view = self._view(canvas.scale)
         self._sky.draw(canvas)
@@ -172,8 +159,7 @@ class PhysicsScene:
 
     def _hovered(self) -> int | None:
         """Index of the body under the mouse, if that is in use, or under the virtual pointer."""
-        assert self._context is not None
-        if not self._context.controls.mouse_in_use and not self._hand.typing:
+        if not self.context.controls.mouse_in_use and not self._hand.typing:
             return None
         body = self._outlines.body_at(self._poses, self._place(self._mouse), 0.0)
         return body.index if body else None
@@ -188,7 +174,7 @@ class PhysicsScene:
             return True
         if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
             return False
-        if any(widget.hover_point(*event.pos) for widget in self._form.widgets if widget is not self._hand):
+        if any(widget.hover_point(*event.pos) for widget in self.form.widgets if widget is not self._hand):
             return False
         place = self._place(self._mouse)
         reach = _REACH * self.exhibit.width / VIEW_SIZE[0]
@@ -208,14 +194,12 @@ class PhysicsScene:
             return
         row = partial(self._row, 0, texts.PHYSICS_GRAVITY, texts.PHYSICS_GRAVITIES, self._gravity, self._choose_gravity)
         offered = [] if self.exhibit.weightless else [row()]
-        self._form.replace([*self._gravities, self._speeds], [*offered, self._speeds])
+        self.form.replace([*self._gravities, self._speeds], [*offered, self._speeds])
         self._gravities = offered
 
     def _row(self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]) -> Choice:
-        x, y, pitch = _ROWS
-        box = pygame.Rect(x, y + row * pitch, math.ceil(_LABEL_WIDTH + _width(words, SMALL)), _ROW_HEIGHT)
-        manager = self._form.manager
-        return Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL)
+        box, manager = _row_box(row, words), self.form.manager
+        return Choice(manager, box, label, words, index, chosen, label_width=LABEL_WIDTH, size=SMALL)
 
     def _choose_exhibit(self, index: int) -> None:
         self._chosen = index
@@ -224,9 +208,6 @@ class PhysicsScene:
     def _choose_gravity(self, index: int) -> None:
         self._gravity = index
         self.restart()
-
-    def _choose_speed(self, index: int) -> None:
-        self._tempo.rate = SPEEDS[index]
 
     def _show_contacts(self, index: int) -> None:
         self.contacts_drawn = bool(index)
@@ -249,33 +230,20 @@ class PhysicsScene:
         write_figures(canvas, sentence, (MARGIN, 136), size=SMALL + 1)
         if self.exhibit.weightless:
             x, y, _ = _ROWS
-            for part, left in ((texts.PHYSICS_GRAVITY, x), (texts.PHYSICS_WEIGHTLESS, x + _LABEL_WIDTH)):
+            for part, left in ((texts.PHYSICS_GRAVITY, x), (texts.PHYSICS_WEIGHTLESS, x + LABEL_WIDTH)):
                 canvas.text(part, (left, y + _ROW_HEIGHT // 2 + 0.36 * SMALL), size=SMALL, colour=MUTE)
         hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
-        self._form.draw(canvas)
-        assert self._context is not None
-        controls = self._context.controls
-        word = controls.word
-        hints = [
-            (word(Command.HANDOVER) if controls.pad_in_use else controls.key(pygame.K_SPACE),
-             texts.HINT_GO if self.stopped else texts.HINT_STOP),
-            (word(Command.STEP), texts.HINT_STEP),
-            (word(Command.NEXT), texts.HINT_NEXT_EXHIBIT),
-            (word(Command.CHOICES), texts.HINT_CONTACTS),
-            (word(Command.RETRY), texts.HINT_RESTART_EXHIBIT),
-            (word(Command.PAUSE), texts.HINT_PAUSE),
-        ]  # fmt: skip
-        draw_hints(canvas, self._form.hints or hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True)
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
         self._draw_state(canvas)
 
     def _draw_state(self, canvas: Canvas) -> None:
         """Draw on the right that time is stopped, or else how to grab bodies."""
-        assert self._context is not None
-        right, controls = VIEW_SIZE[0] - MARGIN, self._context.controls
+        right, controls = VIEW_SIZE[0] - MARGIN, self.context.controls
         keys = self._hand.focused and not controls.mouse_in_use
         drag = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
-        text = texts.PHYSICS_STOPPED if self.stopped else "" if self._hand.typing else drag
-        colour = INK if self.stopped else HUMAN
+        text = texts.PHYSICS_STOPPED if self.playback.stopped else "" if self._hand.typing else drag
+        colour = INK if self.playback.stopped else HUMAN
         canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right")
 
     def _readouts(self) -> list[hud.Readout]:
@@ -288,16 +256,14 @@ class PhysicsScene:
         ]
 
 
-def _stops(event: pygame.event.Event) -> bool:
-    """Return whether the event stops or resumes time."""
-    if event.type == pygame.KEYDOWN:
-        return bool(event.key == pygame.K_SPACE)
-    return event.type == pygame.CONTROLLERBUTTONDOWN and translate(event) is Command.HANDOVER
-
-
 def _width(words: Sequence[str], size: float) -> float:
     """Return the width of a row of words, in points."""
     return sum(typeface.width(word, size, "regular") + _GAP for word in words) - _GAP
+
+
+def _row_box(row: int, words: Sequence[str]) -> pygame.Rect:
+    x, y, pitch = _ROWS
+    return pygame.Rect(x, y + row * pitch, math.ceil(LABEL_WIDTH + _width(words, SMALL)), _ROW_HEIGHT)
 
 
 def _draw_label(canvas: Canvas, view: View, label: Label, poses: Array) -> None:

@@ -11,7 +11,7 @@ from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
 from game.core import texts
 from game.core.pace import SlowMotion
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.credit import Credit
@@ -25,7 +25,9 @@ from game.input.mouse import MouseStick
 from game.play import captions as flight_words
 from game.play.challenge import Challenge, DrawnFlight, Duel
 from game.play.ending import FlightEnding, write_down
+from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.context import Context
+from game.ui.hints import HintRow
 from game.ui.widget import OnPress
 from game.world.path_preview import PathPreview
 from game.world.scenery import Scenery
@@ -34,7 +36,7 @@ from game.world.scenery import Scenery
 _AWAY_STEPS: Final = 10
 
 
-class PlayScene:
+class PlayScene(Scene):
     """One flight after another. `seed` fixes the first; further seeds come from the context's random generator.
 
     A `rival` flies the same starts beside the player, as a ghost named `rival_name`. A `course` other than a duel sets
@@ -50,37 +52,19 @@ class PlayScene:
 
     def __init__(
         self,
+        context: Context,
         seed: int | None = None,
         rival: networks.Policy | None = None,
         rival_name: str = "",
         challenge: Challenge | None = None,
     ) -> None:
-        self._seed = seed
+        super().__init__(context)
         self._challenge = Duel(rival, rival_name) if rival else challenge
-        self._context: Context | None = None
-        self.flight: Flight
-        self.credit: Credit
-        self.ending: FlightEnding
-        self._scenery: Scenery
-        self._pace: SlowMotion
-        self.waiting, self._let_go = True, False
-        self._hands = OWN
         self._mouse = MouseStick()
         self._away = 0  # steps since the window was left; 0 while it is in use
-
-    def enter(self, context: Context) -> None:
-        """Begin the first flight, or resume the paused one unless choices made meanwhile require a new one."""
-        if self._context is not None:
-            self._scenery.calm = self.ending.calm = context.settings.reduced_motion
-            if self.ending.calm:
-                self._pace.hurry()
-            if self.waiting and not self._challenge and self._chosen() != (self.flight.recording.pads, self._hands):
-                self.retry()
-            return
-        self._context = context
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
-        if self._challenge is None and self._seed is None and not context.settings.tutored:
+        if self._challenge is None and seed is None and not context.settings.tutored:
             from game.play.tutorial import Tutorial
 
             self._challenge = Tutorial()
@@ -88,13 +72,20 @@ class PlayScene:
         self._skill = Skill(self._records.entries())
         if self._records.problem:
             context.note(self._records.problem)
-        self._begin(self._new_seed() if self._seed is None else self._seed)
+        self._begin(self._new_seed() if seed is None else seed)
+
+    def resume(self) -> None:
+        """Resume the paused flight, unless choices made meanwhile require a new one."""
+        self._scenery.calm = self.ending.calm = self._settings.reduced_motion
+        if self.ending.calm:
+            self._pace.hurry()
+        if self.waiting and not self._challenge and self._chosen() != (self.flight.recording.pads, self._hands):
+            self.retry()
 
     def exit(self) -> None:
         """Keep the flight for the return, and save the dial's setting."""
-        assert self._context is not None
         self._mouse.release()
-        self._context.apply_settings()
+        self.context.apply_settings()
 
     def retry(self) -> None:
         """Fly again from the same start."""
@@ -108,26 +99,49 @@ class PlayScene:
             self._name_what_lacks()
             return None
         self._mouse.take(event)
-        match translate(event):
-            case Command.PAUSE:
-                return Pop() if self._leaves else self._pause()
-            case Command.UNPLUGGED if not (self.waiting or self.flight.over):
-                return self._pause()
-            case Command.HANDOVER:
-                self._hand_over()
-            case Command.CHOICES:
-                return self._choose()
-            case Command.RETRY:
-                self.retry()
-            case Command.NEXT:
-                self._begin_elsewhere()
-            case Command.CONFIRM if self.ending.shown > 0:
-                return self._go_on()
-            case Command.CONFIRM:
-                self.ending.hurry()
-            case _ if self.ending.shown >= 1 and _is_space(event):
-                return self._go_on()
-        return None
+        if translate(event) is Command.UNPLUGGED and not (self.waiting or self.flight.over):
+            return self._pause()
+        action = answering(self.actions(), event)
+        return action.run() if action else None
+
+    def actions(self) -> Table:
+        """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
+        if self.ending.shown == 0:
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry)]
+        space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
+        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints of the flight, and those of the card."""
+        rows = [flight_words.flight_row(hints_of(self._flight_actions(), self._controls))]
+        if self.ending.card and self.ending.shown > 0:
+            rows.append(
+                self.ending.hint_row(
+                    hints_of(self._card_actions(), self._controls), self._ghost, self._settings.show_hints
+                )
+            )
+        return rows
+
+    def _flight_actions(self) -> list[Action]:
+        """What the keys do in flight, with the hints that fit the moment."""
+        words = flight_words.flight_hints(self.flight, self._challenge, leaves=self._leaves)
+        runs: dict[Command, Run] = {
+            Command.HANDOVER: self._hand_over,
+            Command.CHOICES: self._choose,
+            Command.NEXT: self._begin_elsewhere,
+            Command.PAUSE: Pop if self._leaves else self._pause,
+            Command.RETRY: self.retry,
+        }
+        return [Action(command, run, words.get(command, "")) for command, run in runs.items()]
+
+    def _card_actions(self) -> list[Action]:
+        """What the keys do that the outcome card names."""
+        card = self.ending.card
+        if card is None:
+            return []
+        first, (other, word) = flight_words.card_hints(card.good, self._challenge)
+        runs = {action.key: action.run for action in self._flight_actions()}
+        return [Action(Command.CONFIRM, self._go_on, first), Action(other, runs[other], word)]
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -164,9 +178,37 @@ class PlayScene:
         if self._challenge:
             self._challenge.draw(canvas, view, flight, self._moment(alpha))
         self._draw_words(canvas)
-        self.ending.draw(canvas, self._controls, self._challenge, self._ghost, self._settings.show_hints)
+        self.ending.draw(canvas, self._ghost, self._settings.show_hints)
+        for row in self.hint_rows(canvas)[1:]:
+            row.draw(canvas)
 
     # The flight
+
+    def _begin(self, seed: int) -> None:
+        self.waiting, self._let_go = True, False
+        challenge = self._challenge
+        pads, self._hands = (1, OWN) if challenge else self._chosen()
+        check = challenge is None and self._settings.check_flights and self._skill.check_due and not self._eased
+        if check:
+            self._hands = OWN
+        alone = check or (challenge is not None and challenge.alone)
+        network = None if alone else self._network.policy
+        self.flight: Flight = (
+            challenge.flight(seed, network) if challenge else Flight(seed, network, pads=pads, hands=self._hands)
+        )
+        self._difficulty = Difficulty(self._settings, self.flight, free=not challenge)
+        self.credit = Credit(self.flight, self._difficulty, challenge, self._hands, check=check)
+        self._cockpit = Cockpit(self.flight, self._settings, self.credit)
+        self._ghost = challenge.ghost(seed, network) if challenge else None
+        told = not challenge or bool(challenge.opening)
+        self._scenery = Scenery(
+            self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
+        )
+        self._pace = SlowMotion()
+        self._heard = FlightSound(self._sound, self.flight.env, self._pace)
+        self.ending = FlightEnding(self.flight, self._pace, self._settings.reduced_motion)
+        self._readouts = hud.flight_readouts(self.flight.env)
+        self._path_preview = PathPreview(self.flight, None if alone else self._guide)
 
     def _fly(self) -> None:
         """Fly a step; after the end, advance only what still moves."""
@@ -201,8 +243,7 @@ class PlayScene:
         elif ending.card is None:
             ending.make_card(self._cockpit, challenge, self._skill, self._scenery)
             if challenge is None or challenge.kept:
-                assert self._context is not None
-                write_down(self._context, self.flight, self._cockpit, challenge, self._records, self._skill,
+                write_down(self.context, self.flight, self._cockpit, challenge, self._records, self._skill,
                            self._network, self._hands)  # fmt: skip
 
     @property
@@ -220,32 +261,6 @@ class PlayScene:
             self.waiting = False
         return self.waiting
 
-    def _begin(self, seed: int) -> None:
-        self.waiting, self._let_go = True, False
-        challenge = self._challenge
-        pads, self._hands = (1, OWN) if challenge else self._chosen()
-        check = challenge is None and self._settings.check_flights and self._skill.check_due and not self._eased
-        if check:
-            self._hands = OWN
-        alone = check or (challenge is not None and challenge.alone)
-        network = None if alone else self._network.policy
-        self.flight = (
-            challenge.flight(seed, network) if challenge else Flight(seed, network, pads=pads, hands=self._hands)
-        )
-        self._difficulty = Difficulty(self._settings, self.flight, free=not challenge)
-        self.credit = Credit(self.flight, self._difficulty, challenge, self._hands, check=check)
-        self._cockpit = Cockpit(self.flight, self._settings, self.credit)
-        self._ghost = challenge.ghost(seed, network) if challenge else None
-        told = not challenge or bool(challenge.opening)
-        self._scenery = Scenery(
-            self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
-        )
-        self._pace = SlowMotion()
-        self._heard = FlightSound(self._sound, self.flight.env, self._pace)
-        self.ending = FlightEnding(self.flight, self._pace, self._settings.reduced_motion)
-        self._readouts = hud.flight_readouts(self.flight.env)
-        self._path_preview = PathPreview(self.flight, None if alone else self._guide)
-
     @property
     def _guide(self) -> networks.Policy | None:
         """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
@@ -262,30 +277,27 @@ class PlayScene:
         return self._settings.gravity != 1 or self._settings.pace != 1
 
     def _load_network(self) -> None:
-        assert self._context is not None
-        context = self._context
+        context = self.context
         self._network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
         if self._network.problem:
             context.note(texts.NO_NETWORK.format(problem=self._network.problem))
 
     def _new_seed(self) -> int:
-        assert self._context is not None
-        return int(self._context.rng.integers(2**31))
+        return int(self.context.rng.integers(2**31))
 
     def _hand_over(self) -> None:
         if self.flight.hand_over():
             self._sound.play("to_network" if self.flight.hand is StickHolder.NETWORK else "to_human")
-        elif self.flight.network is None and not self.flight.over and self._context is not None:
+        elif self.flight.network is None and not self.flight.over:
             problem = texts.NO_NETWORK.format(problem=self._network.problem)
-            self._context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
+            self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     def _name_what_lacks(self) -> None:
         """Tell the player why the dial has no effect, where it has none."""
-        assert self._context is not None
         if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
             network = self._network
             text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
-            self._context.note(text.format(name=network.name, problem=network.problem))
+            self.context.note(text.format(name=network.name, problem=network.problem))
 
     def _go_on(self) -> Transition | None:
         """Go to a new start after a landing (or leave a course with only one); after a crash, retry the same start."""
@@ -308,8 +320,7 @@ class PlayScene:
     def _remember(self, challenge: Challenge) -> None:
         """Save the pilot's progress in a course as soon as it is made."""
         if challenge.remember(self._settings):
-            assert self._context is not None
-            self._context.apply_settings()
+            self.context.apply_settings()
 
     def _leave_course(self) -> Transition:
         """Leave the course for free flights, from the pause menu."""
@@ -344,9 +355,8 @@ class PlayScene:
 
     def _choose_network(self, name: str) -> None:
         """Change the network to hand over to, also during a flight."""
-        assert self._context is not None
         self._settings.model = name
-        self._context.apply_settings()
+        self.context.apply_settings()
         self._load_network()
         if not self.credit.alone:
             self.flight.change_network(self._network.policy)
@@ -366,8 +376,4 @@ class PlayScene:
         if self.waiting and not (challenge and not challenge.opening):
             flight_words.draw_opening(canvas, self._controls, challenge, self._path_preview.asks)
         if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
-            flight_words.draw_keys(canvas, self._controls, self.flight, challenge, self._leaves)
-
-
-def _is_space(event: pygame.event.Event) -> bool:
-    return bool(event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE)
+            self.hint_rows(canvas)[0].draw(canvas)

@@ -11,7 +11,7 @@ import pygame
 from ai.digits.mnist import TEST, MnistError, load_part
 from ai.digits.preprocessing import preprocess_strokes
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Transition
 from game.digits.answer import LEFT, percent
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
@@ -33,14 +33,13 @@ from game.drawing.tokens import (
     SMALL,
     TEXT,
     TITLE,
-    VIEW_SIZE,
     Colour,
 )
-from game.input.controls import Command, translate
+from game.input.controls import Command
+from game.ui.actions import Action, Table, digit_actions
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
-from game.ui.virtual_pointer import VirtualPointer
+from game.ui.form_scene import FOOT, FormScene
+from game.ui.hints import Hint, HintRow
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import TextButton
 
@@ -60,7 +59,7 @@ _PITCH: Final = 71.0
 _TRACK: Final = (900.0, 250.0)  # corner of the track of finished rounds
 
 
-class QuizScene:
+class QuizScene(FormScene):
     """Quiz scene: a contest of ten rounds.
 
     Attributes:
@@ -69,20 +68,10 @@ class QuizScene:
 
     """
 
-    contest: QuizGame
-
-    def __init__(self, classifier: DigitClassifier) -> None:
+    def __init__(self, context: Context, classifier: DigitClassifier) -> None:
+        super().__init__(context)
         self._classifier = classifier
-        self.pad = DrawingPad(_PAD)
-        self._context: Context | None = None
-
-    def enter(self, context: Context) -> None:
-        """Load strangers' digits, and start the quiz."""
-        if self._context is not None:
-            return
-        self._context = context
         self._sky = NightSky(np.random.default_rng(14), ember=0.2, stars=24)
-        self._form = Form(context, on_back=Pop)
         self._strangers: tuple[np.ndarray, np.ndarray] = (np.zeros((0, 28, 28), np.float32), np.zeros(0, np.uint8))
         try:
             self._strangers = load_part(TEST)
@@ -99,49 +88,43 @@ class QuizScene:
     @property
     def canvas_rect(self) -> pygame.Rect:
         """The drawing area, in the window's pixels."""
-        assert self._context is not None
-        return self._context.in_window(self.pad.rect)
+        return self.context.in_window(self.pad.rect)
 
     def restart(self) -> None:
         """Start a new quiz."""
-        assert self._context is not None
-        self.contest = QuizGame(self._classifier, *self._strangers, self._context.rng)
+        self.contest = QuizGame(self._classifier, *self._strangers, self.context.rng)
         self._ask()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle drawing, digit keys and widgets."""
+        """Handle drawing, and pass any other event to the actions and the widgets."""
+        return None if self._draws and self.pad.handle_event(event) else super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Undo and clear while a digit is drawn, or choose one by its key; go on; go back."""
+        table = list(super().actions())
+        if self._draws:
+            return [
+                Action(pygame.K_z, self._undo, texts.DIGITS_UNDO.lower(), pad=Command.HANDOVER),
+                Action(Command.CHOICES, self._clear, texts.DIGITS_CLEAR.lower()),
+                *table,
+                *(Action(key, self._clear) for key in (Command.RETRY, pygame.K_DELETE)),
+            ]
         current = self.contest.round
-        drawing = current is not None and current.kind == "draw" and current.answer is None
-        if drawing and (self.pad.handle_event(event) or self._takes_pen(event)):
-            return None
-        if event.type == pygame.KEYDOWN and pygame.K_0 <= event.key <= pygame.K_9:
-            self._read(event.key - pygame.K_0)
-        elif event.type == pygame.KEYDOWN and event.key == pygame.K_z:
-            self._undo()
-        elif event.type == pygame.KEYDOWN and event.key == pygame.K_DELETE:
-            self._clear()
-        else:
-            return self._obey(event)
-        return None
+        if current is None or current.answer is not None:
+            return table
+        if not self.context.controls.pad_in_use:
+            table = [Hint("0 – 9", texts.HINT_CHOOSE), self.form.confirms(""), *table[1:]]
+        return [*table, *digit_actions(self._read)]
 
-    def _takes_pen(self, event: pygame.event.Event) -> bool:
-        """Pass an event to the pen, if the pen is in focus."""
-        pen = self._form.focused
-        return isinstance(pen, VirtualPointer) and pen.take(event)
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints below the pad."""
+        return [HintRow(self.hints, (_PAD.left, FOOT[1]))]
 
-    def _obey(self, event: pygame.event.Event) -> Transition | None:
-        match translate(event):
-            case Command.HANDOVER if event.type != pygame.KEYDOWN:  # Tab moves the focus
-                self._undo()
-            case Command.RETRY | Command.CHOICES:
-                self._clear()
-            case _:
-                return self._form.handle_event(event)
-        return None
-
-    def update(self) -> Transition | None:
-        """Animate the widgets."""
-        return self._form.update()
+    @property
+    def _draws(self) -> bool:
+        """Whether the player is to draw a digit now."""
+        current = self.contest.round
+        return current is not None and current.kind == "draw" and current.answer is None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the question, the pad or a stranger's digit, and the score."""
@@ -161,8 +144,8 @@ class QuizScene:
                 pygame.draw.rect(canvas.surface, LINE, area, 1)
             self._draw_question(canvas, current)
         self._draw_score(canvas)
-        self._form.draw(canvas)
-        self._draw_hints(canvas)
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
 
     # The game
 
@@ -183,32 +166,29 @@ class QuizScene:
             self._submit()
 
     def _submit(self) -> None:
-        assert self._context is not None
         image = preprocess_strokes(self.pad.strokes)
         if image.any():
             self.pad.lift()
             self.contest.submit(image)
             self._lay()
         else:
-            self._context.note(texts.QUIZ_NOTHING)
+            self.context.note(texts.QUIZ_NOTHING)
 
     def _read(self, digit: int) -> None:
         self.contest.read(digit)
         self._lay()
 
     def _undo(self) -> None:
-        if self.contest.round and self.contest.round.answer is None:
-            self.pad.undo()
+        self.pad.undo()
 
     def _clear(self) -> None:
-        if self.contest.round and self.contest.round.answer is None:
-            self.pad.clear()
+        self.pad.clear()
 
     # Words
 
     def _word(self, label: str, place: tuple[float, float], press: OnPress, size: float = TEXT) -> TextButton:
         width = max(typeface.width(label, size, "regular"), 28)
-        return TextButton(self._form.manager, (*place, width, size * 1.25 + 9), label, press, size=size, weight="light")
+        return TextButton(self.form.manager, (*place, width, size * 1.25 + 9), label, press, size=size, weight="light")
 
     def _lay(self) -> None:
         """Replace the buttons by those of the current phase."""
@@ -221,9 +201,9 @@ class QuizScene:
             return
         words: list[Widget] = self._keypad() if label == _DIGITS else [self._word(label, (LEFT, _WORDS), self._go)]
         if label == texts.QUIZ_DONE:
-            words.append(make_pen(self._form.manager, lambda: self.pad))
-        self._form.replace(self._shown, words)
-        self._form.focus(words[0])
+            words.append(make_pen(self.form.manager, lambda: self.pad))
+        self.form.replace(self._shown, words)
+        self.form.focus(words[0])
         self._laid, self._shown = label, words
 
     def _keypad(self) -> list[Widget]:
@@ -287,20 +267,6 @@ class QuizScene:
             row, column = number % 2, number // 2  # what the player drew above, what strangers wrote below
             place = (left + column * _PITCH, top + row * (_TILE + 34))
             _draw_tile(canvas, each, place, current=number == self.contest.place)
-
-    def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls, current = self._context.controls, self.contest.round
-        pad, word = controls.pad_in_use, controls.word
-        hints = [(word(Command.CONFIRM), texts.HINT_CHOOSE), (word(Command.BACK), texts.HINT_BACK)]
-        if current and current.answer is None and current.kind == "draw":
-            hints[:0] = [
-                (word(Command.HANDOVER) if pad else controls.key(pygame.K_z), texts.DIGITS_UNDO.lower()),
-                (word(Command.CHOICES), texts.DIGITS_CLEAR.lower()),
-            ]
-        elif current and current.answer is None and not pad:
-            hints[:1] = [("0 – 9", texts.HINT_CHOOSE)]
-        draw_hints(canvas, self._form.hints or hints, (_PAD.left, VIEW_SIZE[1] - 40))
 
 
 def _draw_tile(canvas: Canvas, each: QuizRound, place: tuple[float, float], *, current: bool) -> None:

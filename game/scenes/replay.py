@@ -26,21 +26,22 @@ from game.export.kinds import KINDS
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.replay import FlightReplay
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.panels.timeline import Timeline, runs
 from game.play.race import fly_on, race
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
+from game.ui.playback import LABEL_WIDTH, Playback
 from game.ui.widget import OnPress
-from game.ui.widgets import Choice, TextButton
+from game.ui.widgets import TextButton
 from game.ui.words import GAP
 from game.world.camera import ClearArea, View
 from game.world.paths import draw_faint
 from game.world.scenery import Scenery
 
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0)
-_SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2")
 _EARTH: Final = (208.0, 268.0)  # points; clear of the words
 _SCOUT: Final = 10  # steps looked ahead in every frame: a few milliseconds
 _STRIP: Final = (MARGIN, 78.0, VIEW_SIZE[0] - 2 * MARGIN, 60.0)
@@ -50,82 +51,77 @@ _CLEAR: Final = ClearArea(head=194.0)  # below the verbs
 _VERB: Final = 20.0
 
 
-class ReplayScene:
-    """Replay of a recorded flight. `stopped` is whether it is paused."""
+class ReplayScene(FormScene):
+    """Replay of a recorded flight."""
 
-    def __init__(self, record: Record) -> None:
+    takes_tab = True
+
+    def __init__(self, context: Context, record: Record) -> None:
+        super().__init__(context)
         self.record = record
-        self._context: Context | None = None
-        self._scenery: Scenery
-        self.stopped = False
         self._pace = SlowMotion()
+        self.playback = Playback(self._pace, SPEEDS, self._fly)
         self._warned = False
         self._export: Export | None = None
-
-    def enter(self, context: Context) -> None:
-        """Start at the first moment, or resume where it was left."""
-        if self._context is not None:
-            self.stopped = True
-            self._scenery.calm = context.settings.reduced_motion
-            return
-        self._context = context
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
         self._heard = FlightSound(context.sound, self.flight_replay.flight.env, self._pace, warns=False)
-        self._build(context)
+        self._build()
         self._look()
 
-    def exit(self) -> None:
-        """Do nothing: the state is kept for the return."""
+    def resume(self) -> None:
+        """Show the moment where it was left, stopped."""
+        self.playback.stopped = True
+        self._scenery.calm = self.context.settings.reduced_motion
 
     def close(self) -> None:
         """Cancel an unfinished film export, and tell the player."""
         if self._export:
             self._stop_export()
 
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle pausing, seeking, choices and taking over."""
-        pad = event.type == pygame.CONTROLLERBUTTONDOWN
-        match translate(event):
-            case Command.STEP:
-                self.stopped = True
-                self._fly()
-            case Command.RETRY:
-                self.seek(0)
-                self.stopped = False
-            case Command.SLOWER:
-                self._speeds.shift(-1)
-            case Command.FASTER:
-                self._speeds.shift(1)
-            case Command.HANDOVER:
-                return self._take_over()
-            case Command.NEXT | Command.PREVIOUS as command if pad or self._form.focused is self._reward_bar:
-                self.seek(self.flight_replay.at + (60 if command is Command.NEXT else -60))
-            case _ if event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE:
-                self._stop_or_go()
-            case _ if event.type == pygame.KEYDOWN and event.key in (pygame.K_HOME, pygame.K_END):
-                self.seek(0 if event.key == pygame.K_HOME else self.flight_replay.length)
-            case _:
-                return self._form.handle_event(event)
-        return None
+    def actions(self) -> Table:
+        """Stop, step and seek; take over; go back."""
+        stop, step, *speeds = self.playback.actions(
+            texts.HINT_STEP, stop=self._stop_or_go, pad=Command.CONFIRM, resting=self.ended
+        )
+        on_strip = self.form.focused is self._reward_bar
+        if self.context.controls.pad_in_use and not on_strip:  # its A presses what is in focus
+            stop = self.form.confirms(texts.HINT_CHOOSE)
+        table = [
+            stop,
+            step,
+            Action(Command.RETRY, self._replay, texts.REPLAY_FROM_START),
+            Action(Command.HANDOVER, self._take_over, texts.REPLAY_HINT_TAKE),
+            self.form.goes_back(texts.HINT_BACK),
+            *speeds,
+            Action(pygame.K_HOME, lambda: self.seek(0)),
+            Action(pygame.K_END, lambda: self.seek(self.flight_replay.length)),
+        ]
+        if on_strip or self.context.controls.pad_in_use:
+            table += [Action(Command.NEXT, lambda: self._wind(60)), Action(Command.PREVIOUS, lambda: self._wind(-60))]
+        return table
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints on the right of the seconds."""
+        room = VIEW_SIZE[0] / 2 - MARGIN - _FIGURE
+        return [HintRow(self.hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=room)]
 
     def update(self) -> Transition | None:
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
-        assert self._context is not None
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._reward_bar.reached = self.flight_replay.reached
         if self._export:
             self._follow_export(self._export)
         if self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
             self._warned = True
-            self._context.note(texts.REPLAY_OTHER_RULES)
-        if not self.stopped:
-            for _ in range(self._pace.steps()):
-                self._fly()
+            self.context.note(texts.REPLAY_OTHER_RULES)
+        for _ in range(self.playback.steps()):
+            self._fly()
+        if not self.playback.stopped:
             self._heard.follow(self._scenery.stage.thrust[0])
         self._scenery.breathe()
-        return self._form.update()
+        return self.form.update()
 
     # Time
 
@@ -135,6 +131,9 @@ class ReplayScene:
         self._scenery.wind_to()
         self._pace.begin()
         self._look()
+
+    def _wind(self, steps: int) -> None:
+        self.seek(self.flight_replay.at + steps)
 
     @property
     def ended(self) -> bool:
@@ -162,23 +161,24 @@ class ReplayScene:
 
     def _stop_or_go(self) -> None:
         if self.ended:
-            self.seek(0)
-            self.stopped = False
+            self._replay()
         else:
-            self.stopped = not self.stopped
+            self.playback.toggle()
+
+    def _replay(self) -> None:
+        self.seek(0)
+        self.playback.stopped = False
 
     # Words
 
-    def _build(self, context: Context) -> None:
-        self._form = Form(context, on_back=Pop)
-        manager, recording = self._form.manager, self.record.recording
-        self._reward_bar = self._form.add(Timeline(
+    def _build(self) -> None:
+        manager, recording = self.form.manager, self.record.recording
+        self._reward_bar = self.form.add(Timeline(
             manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
         ))  # fmt: skip
-        width = 84 + sum(typeface.width(word, SMALL, "regular") + GAP for word in _SPEED_WORDS)
+        width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in self.playback.words)
         box = (MARGIN, _VERBS, round(width), _VERB)
-        self._speeds = self._form.add(Choice(manager, box, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0),
-                                             self._choose_speed, label_width=84, size=SMALL))  # fmt: skip
+        self.form.add(self.playback.row(manager, box))
         rows: list[tuple[str, OnPress]] = [
             (texts.REPLAY_TAKE_OVER, self._take_over), (texts.LOGBOOK_RACE, self._race),
             (texts.REPLAY_EXPORT, self._begin_or_stop_export), (texts.BACK, Pop),
@@ -188,19 +188,14 @@ class ReplayScene:
         for word, press in rows:
             wide = typeface.width(word, SMALL, "regular")
             words.append(TextButton(manager, (round(x), _VERBS, round(wide) + 2, _VERB), word, press, size=SMALL))
-            self._form.add(words[-1])
+            self.form.add(words[-1])
             x += wide + 28
         self._export_word = words[2]
 
-    def _choose_speed(self, index: int) -> None:
-        self._pace.begin()
-        self._pace.rate = SPEEDS[index]
-
     def _take_over(self) -> Transition | None:
         """Fly on from the moment that is shown."""
-        assert self._context is not None
         if self.flight_replay.flight.over:
-            self._context.note(texts.REPLAY_OVER)
+            self.context.note(texts.REPLAY_OVER)
             return None
         return push("play", self.record.recording.seed, challenge=fly_on(self.record, self.flight_replay))
 
@@ -227,10 +222,9 @@ class ReplayScene:
         self._end_export(texts.EXPORT_STOPPED)
 
     def _begin_export(self, suffix: str) -> None:
-        assert self._context is not None
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
         path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
-        self._export = Export(ReplayScene, self.record, path, colour_safe=self._context.settings.colour_safe)
+        self._export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
         """Show the progress of the export, or its result."""
@@ -242,10 +236,9 @@ class ReplayScene:
             self._end_export(failed if export.problem else texts.EXPORT_DONE.format(path=export.path))
 
     def _end_export(self, note: str) -> None:
-        assert self._context is not None
         self._export = None
         self._export_word.label = texts.REPLAY_EXPORT
-        self._context.note(note)
+        self.context.note(note)
 
     # The picture
 
@@ -256,14 +249,13 @@ class ReplayScene:
 
     def draw_world(self, canvas: Canvas, alpha: float) -> None:
         """Draw the moment that is shown, the way there and on, and its figures."""
-        between = 1.0 if self.stopped else self._pace.between(alpha)
+        between = self.playback.between(alpha)
         self._scenery.draw_land(canvas, between, _EARTH)
         _draw_way(canvas, self._scenery.view(canvas.scale, between), self.flight_replay)
         self._scenery.draw_craft(canvas, between)
         hud.draw_readouts(canvas, self._readouts)
 
     def _draw_words(self, canvas: Canvas) -> None:
-        assert self._context is not None
         entry = self.record.entry
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
@@ -282,16 +274,11 @@ class ReplayScene:
             good = flight.outcome is Outcome.LANDED
             colour = canvas.palette.good if good else canvas.palette.warn
             canvas.marker("check" if good else "cross", (figure.left - 16, 51), 11, colour)
-        elif self.stopped:
+        elif self.playback.stopped:
             for x in (figure.left - 20, figure.left - 15):
                 canvas.line((x, 45), (x, 57), INK, 2)
-        self._form.draw(canvas)
-        word, pad = self._context.controls.word, self._context.controls.pad_in_use
-        go = texts.HINT_GO if self.stopped or self.ended else texts.HINT_STOP
-        hints = [(word(Command.CONFIRM) if pad else self._context.controls.key(pygame.K_SPACE), go),
-                 (word(Command.STEP), texts.HINT_STEP), (word(Command.RETRY), texts.REPLAY_FROM_START),
-                 (word(Command.HANDOVER), texts.REPLAY_HINT_TAKE), (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
-        draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=middle - MARGIN - _FIGURE)
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
 
 
 def _draw_way(canvas: Canvas, view: View, flight_replay: FlightReplay) -> None:

@@ -18,10 +18,10 @@ from game.flight import networks
 from game.input.controls import Command
 from game.panels.run_page import draw_run, row, suggestion
 from game.training.library import Library, SavedRun, read_run
+from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.entry import Entry
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.listing import Listing, shortened
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import TextButton
@@ -36,7 +36,7 @@ _LINE: Final = 36
 _FOOT: Final = 608
 
 
-class NetworksScene:
+class NetworksScene(FormScene):
     """A list on the left; the chosen run, its figures and its verbs on the right.
 
     Args:
@@ -48,43 +48,36 @@ class NetworksScene:
 
     def __init__(
         self,
+        context: Context,
         choose: Callable[[str], None] | None = None,
         train: Callable[[Path], Transition] | None = None,
     ) -> None:
+        super().__init__(context, self._back)
         self._choose, self._train = choose, train or _train_on
-        self._context: Context | None = None
         self._entry: Entry | None = None
         self.runs: list[SavedRun] = []
-
-    def enter(self, context: Context) -> None:
-        """Build the screen, or reload the runs."""
-        if self._context is not None:
-            self._reload(self.shown.folder if self.shown else None)
-            return
         self._build(context)
         known = networks.folders(context.models_dir, context.user_dir)
         flies = known.get(context.settings.model, known.get(networks.DEFAULT))
         self._reload(flies if self._choose else None)
 
-    def exit(self) -> None:
-        """Do nothing: every change is on disk already."""
+    def resume(self) -> None:
+        """Reload the runs, to which one may have been added."""
+        self._reload(self.shown.folder if self.shown else None)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Leave it to the widgets; Delete and F2 do what they do elsewhere, and a folder can be dropped here."""
+        """Leave it to the actions and the widgets; a folder can be dropped here."""
         if event.type == pygame.DROPFILE:
             self._import(Path(event.file))
-        elif event.type == pygame.KEYDOWN and self._is_own and not self._entry:
-            if event.key == pygame.K_DELETE:
-                self._delete()
-                return None
-            if event.key == pygame.K_F2:
-                self._begin_naming()
-                return None
-        return self._form.handle_event(event)
+        return super().handle_event(event)
 
-    def update(self) -> Transition | None:
-        """Animate the widgets."""
-        return self._form.update()
+    def actions(self) -> Table:
+        """Move, choose, go back; Delete and F2 do what they do elsewhere. While a name is typed, keep or leave it."""
+        if self._entry:
+            confirm = texts.HINT_KEEP_NAME if self.form.typing else texts.HINT_CHOOSE
+            return [self.form.confirms(confirm), Action(Command.BACK, self._end_naming, texts.HINT_LEAVE_NAME)]
+        own = [Action(pygame.K_DELETE, self._delete), Action(pygame.K_F2, self._begin_naming)] if self._is_own else []
+        return [self.form.moves, *super().actions(), *own]
 
     # What there is
 
@@ -99,12 +92,10 @@ class NetworksScene:
         return self.shown is not None and self.shown.folder.parent == self._library.folder
 
     def _build(self, context: Context) -> None:
-        self._context = context
         self._library = Library(context.user_dir)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
-        self._form = Form(context, on_back=self._back)
-        manager = self._form.manager
-        self._list = self._form.add(Listing(
+        manager = self.form.manager
+        self._list = self.form.add(Listing(
             manager, _LIST, [], on_choose=lambda _: self._choose_row(), on_press=lambda _: self._press_row(),
             empty=texts.RUNS_NOTHING, columns=_COLUMNS, pitch=_PITCH,
         ))  # fmt: skip
@@ -113,8 +104,7 @@ class NetworksScene:
 
     def _reload(self, shown: Path | None) -> None:
         """Reload from disk, and select that run, or the one now in its place in the list."""
-        assert self._context is not None
-        context = self._context
+        context = self.context
         own = self._library.runs()
         known = networks.folders(context.models_dir, context.user_dir)
         shipped = [read_run(folder, name) for name, folder in known.items() if folder.parent != self._library.folder]
@@ -145,7 +135,7 @@ class NetworksScene:
             if self._is_own:
                 rows += [(texts.RUN_RENAME, self._begin_naming), (texts.RUN_EXPORT, self._export),
                          (texts.RUN_DELETE, self._delete)]  # fmt: skip
-        manager = self._form.manager
+        manager = self.form.manager
         verbs: list[Widget] = [
             TextButton(manager, (_LEFT, _FIRST_WORD + number * _LINE, 200, _LINE), label, press, size=18)
             for number, (label, press) in enumerate(rows)
@@ -155,7 +145,7 @@ class NetworksScene:
             label = texts.RUN_RESTORE.format(name=deleted)
             foot.append(TextButton(manager, (MARGIN + 120, _FOOT, 520, _LINE), label, self._restore, size=18))
         new = ([self._entry] if self._entry else []) + verbs + foot
-        self._form.replace(self._verbs + self._foot, new)
+        self.form.replace(self._verbs + self._foot, new)
         self._verbs, self._foot = new[: len(new) - len(foot)], foot
 
     # What can be done
@@ -169,7 +159,7 @@ class NetworksScene:
         if self._choose:
             return self._take()
         if self._verbs:
-            self._form.focus(self._verbs[0])
+            self.form.focus(self._verbs[0])
         return None
 
     def _back(self) -> Transition | None:
@@ -185,10 +175,9 @@ class NetworksScene:
         return Pop()
 
     def _make_pilot(self) -> None:
-        assert self._context is not None
         assert self.shown is not None
-        self._context.settings.model = self._names[self.shown.folder]
-        self._context.apply_settings()
+        self.context.settings.model = self._names[self.shown.folder]
+        self.context.apply_settings()
 
     def _watch(self) -> Transition:
         self._make_pilot()
@@ -199,16 +188,15 @@ class NetworksScene:
         return push("play")
 
     def _begin_naming(self) -> None:
-        run, context = self.shown, self._context
+        run, context = self.shown, self.context
         assert run is not None
-        assert context is not None
         text = suggestion(self._library, run) if context.controls.pad_in_use else run.name
         self._entry = Entry(
-            self._form.manager, (_LEFT, 140, _WIDTH, 34), texts.RUN_NAME, text, self._rename,
+            self.form.manager, (_LEFT, 140, _WIDTH, 34), texts.RUN_NAME, text, self._rename,
             on_cancel=self._end_naming, limit=LONGEST_NAME, fits=fitting, size=TITLE,
         )  # fmt: skip
         self._set_verbs()
-        self._form.focus(self._entry)
+        self.form.focus(self._entry)
         self._entry.begin()
 
     def _entry_done(self) -> None:
@@ -217,27 +205,26 @@ class NetworksScene:
 
     def _rename(self, name: str) -> None:
         """Rename the run; explain an invalid name and let the player edit it."""
-        run, context = self.shown, self._context
+        run, context = self.shown, self.context
         assert run is not None
-        assert context is not None
         try:
             renamed = self._library.rename(run.name, name)
         except LibraryError as error:
             context.note(str(error))
             if self._entry:
-                self._form.focus(self._entry)
+                self.form.focus(self._entry)
                 self._entry.begin()
             return
         flies = context.settings.model == self._names[run.folder]
         self._reload(renamed)
-        self._form.focus(self._list)
+        self.form.focus(self._list)
         if flies:
             self._make_pilot()
 
     def _end_naming(self) -> None:
         self._entry = None
         self._set_verbs()
-        self._form.focus(self._list)
+        self.form.focus(self._list)
 
     def _export(self) -> None:
         assert self.shown is not None
@@ -252,7 +239,7 @@ class NetworksScene:
 
         self._attempt(delete, self.shown.name)
         self._reload(None)
-        self._form.focus(self._list)
+        self.form.focus(self._list)
 
     def _restore(self) -> None:
         def restore(_: str) -> str:
@@ -261,7 +248,7 @@ class NetworksScene:
             return texts.RUN_RESTORED.format(name=run.name) if run else ""
 
         self._attempt(restore, "")
-        self._form.focus(self._list)
+        self.form.focus(self._list)
 
     def _import(self, path: Path) -> None:
         def copy(_: str) -> str:
@@ -273,27 +260,25 @@ class NetworksScene:
 
     def _attempt(self, deed: Callable[[str], str], name: str) -> None:
         """Perform an operation on the library, and report its result."""
-        assert self._context is not None
         try:
-            self._context.note(deed(name))
+            self.context.note(deed(name))
         except LibraryError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
 
     # The picture
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the list, and the chosen run beside it."""
-        assert self._context is not None
         self._sky.draw(canvas)
         title = texts.RUNS_CHOOSE_TITLE if self._choose else texts.RUNS_TITLE
         canvas.text(title, (MARGIN, 84), size=34, weight="light")
         canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE)
         self._draw_headings(canvas)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         if run := self.shown:
-            flies = self._names.get(run.folder) == (self._context.settings.model or networks.DEFAULT)
+            flies = self._names.get(run.folder) == (self.context.settings.model or networks.DEFAULT)
             draw_run(canvas, run, _LEFT, _WIDTH, own=self._is_own, named=not self._entry, flies=flies)
-        self._draw_hints(canvas)
+        self.draw_hints(canvas)
 
     def _draw_headings(self, canvas: Canvas) -> None:
         y = _LIST.top - 14
@@ -303,17 +288,6 @@ class NetworksScene:
             place = (self._list.right - column, y)
             canvas.text(label, place, size=LABEL, weight="medium", colour=MUTE, align="right")
         canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
-
-    def _draw_hints(self, canvas: Canvas) -> None:
-        assert self._context is not None
-        controls = self._context.controls
-        word, arrows = controls.word, controls.arrows
-        if self._entry:
-            hints = [(word(Command.CONFIRM), texts.HINT_KEEP_NAME), (word(Command.BACK), texts.HINT_LEAVE_NAME)]
-        else:
-            hints = [(arrows, texts.HINT_MOVE), (word(Command.CONFIRM), texts.HINT_CHOOSE),
-                     (word(Command.BACK), texts.HINT_BACK)]  # fmt: skip
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
 
 
 def _train_on(folder: Path) -> Transition:

@@ -14,9 +14,10 @@ from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import INK, LABEL, LINE, MARGIN, MUTE, SMALL, TEXT, TEXT_SIZES, VIEW_SIZE
 from game.input.controls import Command, Held, names
+from game.ui.actions import Table
 from game.ui.context import Context
 from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
 from game.ui.widgets import Choice, Slider, TextButton, Toggle
 
 ROWS: Final = ("full_screen", "reduced_motion", "colour_safe", "show_hints")
@@ -37,70 +38,73 @@ _KEYS: Final = (
 )  # fmt: skip
 
 
-class SettingsScene:
+class SettingsScene(FormScene):
     """Toggles and volumes on the left, the keys on the right."""
 
-    def enter(self, context: Context) -> None:
-        """Build a toggle for every row, and a slider for every volume."""
-        self._context = context
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
-        self._form = Form(context, on_back=Pop)
+        self._build()
+
+    def resume(self) -> None:
+        """Name the keys anew, for the player may have changed them."""
+        self._build()
+
+    def _build(self) -> None:
+        """Build a toggle for every row, and a slider for every volume."""
+        context = self.context
+        self.form = Form(context, on_back=Pop)
         for number, name in enumerate(ROWS):
             box = (MARGIN, _FIRST_ROW + number * _ROW, _WIDTH, 56)
             label, hint = texts.SETTINGS[name]
             hint = hint.format(key=(*context.controls.key_names(Command.FULLSCREEN), texts.BINDINGS_NONE)[0])
             value = getattr(context.settings, name)
-            self._form.add(Toggle(self._form.manager, box, label, value, self._changes(name), hint=hint))
+            self.form.add(Toggle(self.form.manager, box, label, value, self._changes(name), hint=hint))
         sizes, size = list(TEXT_SIZES), context.settings.text_size
         words = [texts.TEXT_SIZES[name] for name in sizes]
-        self._form.add(Choice(
-            self._form.manager, (MARGIN, _TEXT, _WIDTH, 36), texts.TEXT_SIZE, words,
+        self.form.add(Choice(
+            self.form.manager, (MARGIN, _TEXT, _WIDTH, 36), texts.TEXT_SIZE, words,
             sizes.index(size) if size in sizes else 0, lambda index: self._set("text_size", sizes[index]),
             label_width=142,
         ))  # fmt: skip
         for number, group in enumerate(GROUPS):
-            self._form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
-        self._form.add(TextButton(self._form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
+            self.form.add(self._volume(group, (MARGIN, _SOUND + number * _SOUND_ROW, _WIDTH, 32)))
+        self.form.add(TextButton(self.form.manager, (MARGIN, _BACK, 96, 32), texts.BACK, Pop, size=18))
         keys = (_KEYS_LEFT, _KEYS_WORD, 240, 32)
-        self._form.add(TextButton(self._form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
+        self.form.add(TextButton(self.form.manager, keys, texts.BINDINGS_OPEN, _open_bindings, size=TEXT + 1))
         first = (_KEYS_LEFT, _KEYS_WORD + 44, 240, 32)
-        self._form.add(TextButton(self._form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
-
-    def exit(self) -> None:
-        """Do nothing: every change is saved already."""
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Pass the event to the widgets."""
-        return self._form.handle_event(event)
+        self.form.add(TextButton(self.form.manager, first, texts.TUTORIAL_OPEN, _fly_first_flight, size=TEXT + 1))
 
     def update(self) -> Transition | None:
         """Animate the widgets, and reflect a change of full screen by F11."""
-        for name, toggle in zip(ROWS, self._form.widgets, strict=False):
+        for name, toggle in zip(ROWS, self.form.widgets, strict=False):
             assert isinstance(toggle, Toggle)
-            toggle.value = getattr(self._context.settings, name)
-        return self._form.update()
+            toggle.value = getattr(self.context.settings, name)
+        return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the toggles, what the colours look like, and the keys."""
         self._sky.draw(canvas)
         canvas.text(texts.SETTINGS_TITLE, (MARGIN, 88), size=34, weight="light")
-        self._form.draw(canvas)
+        self.form.draw(canvas)
         self._draw_swatches(canvas, _FIRST_ROW + ROWS.index("colour_safe") * _ROW + 28)
         self._draw_sound(canvas)
         self._draw_keys(canvas)
-        word = self._context.controls.word
-        hints = [self._form.change_hint, (word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (MARGIN, VIEW_SIZE[1] - 40))
+        self.draw_hints(canvas)
+
+    def actions(self) -> Table:
+        """Change a setting, or go back."""
+        return [self.form.changes, self.form.goes_back(texts.HINT_BACK)]
 
     def _changes(self, name: str) -> Callable[[bool], None]:
         return lambda value: self._set(name, value)
 
     def _set(self, name: str, value: object) -> None:
-        setattr(self._context.settings, name, value)
-        self._context.apply_settings()
+        setattr(self.context.settings, name, value)
+        self.context.apply_settings()
 
     def _volume(self, group: str, box: pygame.typing.RectLike) -> Slider:
-        context, name = self._context, f"{group}_volume"
+        context, name = self.context, f"{group}_volume"
 
         def change(value: float) -> None:
             self._set(name, value)
@@ -108,11 +112,11 @@ class SettingsScene:
                 context.sound.play(_SAMPLES[group])
 
         label, value = texts.SOUND_GROUPS[group], getattr(context.settings, name)
-        return Slider(self._form.manager, box, label, value, (0.0, 1.0), change, step=0.1, figure=_loudness)
+        return Slider(self.form.manager, box, label, value, (0.0, 1.0), change, step=0.1, figure=_loudness)
 
     def _draw_sound(self, canvas: Canvas) -> None:
         title = canvas.text(texts.SOUND_TITLE, (MARGIN, _SOUND - 12), size=LABEL, weight="medium", colour=MUTE)
-        if self._context.sound.problem:
+        if self.context.sound.problem:
             canvas.marker("triangle", (title.right + 18, _SOUND - 16), 9, canvas.palette.warn)
             canvas.text(texts.SOUND_PROBLEM, (title.right + 30, _SOUND - 12), size=SMALL, colour=canvas.palette.warn)
         below = _SOUND + len(GROUPS) * _SOUND_ROW + 12
@@ -133,7 +137,7 @@ class SettingsScene:
         canvas.text(texts.KEYS_KEYBOARD, (_KEYS_LEFT + 192, y), size=LABEL, weight="medium", colour=MUTE)
         canvas.text(texts.KEYS_PAD, (pad_left, y), size=LABEL, weight="medium", colour=MUTE, align="right")
         canvas.cover(canvas.rect(_KEYS_LEFT, y, pad_left - _KEYS_LEFT, 36 * len(_KEYS)))  # no star in the table
-        controls = self._context.controls
+        controls = self.context.controls
         for meaning in _KEYS:
             canvas.line((_KEYS_LEFT, y + 12), (pad_left, y + 12), LINE, 1)
             y += 36

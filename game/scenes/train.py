@@ -19,7 +19,7 @@ from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
 from game.flight.demonstrations import FILE_NAME, lessons
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.panels.advice import Advice
 from game.panels.knobs import KnobsPanel
 from game.panels.network_panel import NetworkPanel
@@ -27,9 +27,10 @@ from game.panels.run_status import draw_problem, draw_run_status, start_word
 from game.panels.training_charts import TrainingCharts
 from game.training.lander_run import PACES, LanderRun
 from game.training.library import Library, SavedRun
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, TextButton
@@ -47,38 +48,31 @@ _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene:
+class TrainScene(FormScene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
-    lander_run: LanderRun
-
-    def __init__(self, resume: Path | None = None) -> None:
-        self._resume = resume
-        self._context: Context | None = None
+    def __init__(self, context: Context, resume: Path | None = None) -> None:
+        super().__init__(context, self._back)
         self._was_running = self._alive = self._compared = False
-        self._left: SavedRun | None = None  # run left unnamed by the last visit
-
-    def enter(self, context: Context) -> None:
-        """Build the screen; after a duel with a checkpoint, resume the run."""
-        if self._context is not None:
-            if self._was_running:
-                self.lander_run.resume()
-            return
-        self._context, self._settings = context, context.settings
+        self._settings = context.settings
         self.lander_run = LanderRun(Library(context.user_dir))
-        self._left = self.lander_run.library.claim()
+        self._left: SavedRun | None = self.lander_run.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
-        self._form = Form(context, on_back=self._back)
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
-        self.inside = NetworkPanel(self._form, self._look_closer)
-        self.knobs = KnobsPanel(self._form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
-        self._advice = Advice(self._form, _SAID, self.knobs.turn, self._go_back)
+        self.inside = NetworkPanel(self.form, self._look_closer)
+        self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
+        self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
-        if self._resume is not None:
-            self._go_on(self._resume)
+        if resume is not None:
+            self._go_on(resume)
             self._left = None
+
+    def resume(self) -> None:
+        """Resume the run, after a duel with a checkpoint for instance."""
+        if self._was_running:
+            self.lander_run.resume()
 
     def exit(self) -> None:
         """Pause the run while another scene has the window."""
@@ -87,9 +81,8 @@ class TrainScene:
 
     def close(self) -> None:
         """End the run's process."""
-        if self._context is not None:
-            self.lander_run.close()
-            self.lander_run.library.release()
+        self.lander_run.close()
+        self.lander_run.library.release()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, step, knobs and the large network."""
@@ -99,17 +92,24 @@ class TrainScene:
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.inside.covers(event.pos):
             self._look_closer()
             return None
-        outcome = self._form.handle_event(event)
-        if outcome is not None or self._form.used:
-            return outcome
-        match translate(event):
-            case Command.STEP:
-                self.lander_run.step()
-            case Command.SLOWER | Command.FASTER as command:
-                self._pace_choice.shift(1 if command is Command.FASTER else -1)
-            case Command.HANDOVER:
-                self._toggle()
-        return None
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Go back; step, change the pace, start or pause, as the buttons say."""
+        return [
+            self.form.goes_back(texts.HINT_BACK),
+            Action(Command.STEP, self.lander_run.step),
+            Action(Command.SLOWER, lambda: self._turn_pace(-1)),
+            Action(Command.FASTER, lambda: self._turn_pace(1)),
+            Action(Command.HANDOVER, self._toggle),
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hint beside the title, which the network covers when it is large."""
+        return [] if self.inside.large else [HintRow(self.hints[-1:], (_TITLE.right - 16, 46), from_right=True)]
+
+    def _turn_pace(self, direction: int) -> None:
+        self._pace_choice.shift(direction)
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
@@ -138,15 +138,14 @@ class TrainScene:
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
         self._start_word.label = start_word(lander_run.state)
-        return self._form.update()
+        return self.form.update()
 
     def _listen(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
-        assert self._context is not None
         lander_run = self.lander_run
         swarm_state, network_state, points = lander_run.swarm_state, lander_run.network_state, len(lander_run.history)
         for note in lander_run.poll():
-            self._context.note(note)
+            self.context.note(note)
         if lander_run.swarm_state is not None and lander_run.swarm_state is not swarm_state:
             self.swarm.take(lander_run.swarm_state)
         if len(lander_run.history) != points:
@@ -173,7 +172,7 @@ class TrainScene:
         self.inside.draw(canvas)
         self.knobs.draw(canvas)
         self._draw_said(canvas)
-        self._form.draw(canvas)
+        self.form.draw(canvas)
 
     # The run
 
@@ -187,9 +186,8 @@ class TrainScene:
             self._begin(self.knobs.config, self.knobs.seed)
 
     def _begin(self, config: Config, seed: int, resume: Path | None = None) -> None:
-        assert self._context is not None
         if note := self.lander_run.begin(config, seed, resume, self.knobs.name):
-            self._context.note(note)
+            self.context.note(note)
         self.swarm.clear()
         self._advice.clear()
         self.training_charts.clear()
@@ -203,10 +201,9 @@ class TrainScene:
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
-        assert self._context is not None
-        folder = self._context.user_dir
+        folder = self.context.user_dir
         if not lessons(folder):
-            self._context.note(texts.TRAIN_NO_LESSONS)
+            self.context.note(texts.TRAIN_NO_LESSONS)
             return
         if not self.lander_run.alive:
             self._begin(self.knobs.config, self.knobs.seed)
@@ -218,9 +215,8 @@ class TrainScene:
     def _save(self) -> Transition | None:
         from game.scenes.dialog import NameDialog
 
-        assert self._context is not None
         if not self.lander_run.kept:
-            self._context.note(texts.TRAIN_NOTHING)
+            self.context.note(texts.TRAIN_NOTHING)
             return None
         name = texts.TRAIN_TAUGHT_NAME if self.lander_run.lessons else texts.TRAIN_NAME
         suggestion = self.lander_run.library.free_name(name.format(preset=self.knobs.name))
@@ -228,10 +224,9 @@ class TrainScene:
 
     def _save_as(self, name: str) -> str:
         """Save the run under a name; return why the name is invalid, empty if it is not."""
-        assert self._context is not None
         try:
             if note := self.lander_run.save(name):
-                self._context.note(note)
+                self.context.note(note)
         except LibraryError as error:
             return str(error)
         return ""
@@ -256,13 +251,12 @@ class TrainScene:
         return Push(QuestionDialog(self, texts.TRAIN_LEFT, more, answers))
 
     def _discard(self, name: str) -> None:
-        assert self._context is not None
         try:
             self.lander_run.library.discard_rescued()
         except LibraryError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
         else:
-            self._context.note(texts.RUN_DELETED.format(name=name))
+            self.context.note(texts.RUN_DELETED.format(name=name))
 
     def _compare(self) -> Transition:
         """Ask for a saved run whose curves shall be seen beside these."""
@@ -271,9 +265,8 @@ class TrainScene:
         runs = self.lander_run.library.runs()
 
         def put(number: int) -> None:
-            assert self._context is not None
             if note := self.lander_run.compare(runs[number].name, runs[number].folder):
-                self._context.note(note)
+                self.context.note(note)
             self.training_charts.clear()
 
         return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
@@ -291,16 +284,15 @@ class TrainScene:
 
     def _duel(self) -> Transition | None:
         """Fly against the chosen checkpoint, or the latest."""
-        assert self._context is not None
         found = self.lander_run.history.checkpoints
         checkpoint = self.training_charts.chosen or (found[-1] if found else None)
         if checkpoint is None:
-            self._context.note(texts.TRAIN_NO_CHECKPOINT)
+            self.context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
         try:
             rival = agent_of(self.lander_run.config, checkpoint)
         except ValueError as error:
-            self._context.note(str(error))
+            self.context.note(str(error))
             return None
         name = texts.TRAIN_CHECKPOINT.format(seconds=checkpoint.seconds)
         return push("play", rival=rival, rival_name=name)
@@ -309,16 +301,16 @@ class TrainScene:
 
     def _add_controls(self) -> None:
         left, top = _CONTROLS.topleft
-        self._start_word = self._form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
-        self._step_word = self._form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
-        self._pace_choice = self._form.add(Choice(
-            self._form.manager, (left + 144, top, 148, 28), "", texts.TRAIN_PACES, len(PACES) - 1,
+        self._start_word = self.form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
+        self._step_word = self.form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
+        self._pace_choice = self.form.add(Choice(
+            self.form.manager, (left + 144, top, 148, 28), "", texts.TRAIN_PACES, len(PACES) - 1,
             self.lander_run.set_pace, gap=14,
         ))  # fmt: skip
-        self._save_word = self._form.add(self._word(left + 316, top, 68, texts.TRAIN_SAVE, self._save))
+        self._save_word = self.form.add(self._word(left + 316, top, 68, texts.TRAIN_SAVE, self._save))
 
     def _word(self, x: float, y: float, width: float, label: str, press: OnPress) -> TextButton:
-        return TextButton(self._form.manager, (x, y, width, 28), label, press)
+        return TextButton(self.form.manager, (x, y, width, 28), label, press)
 
     def _lay_beside(self, large: bool = False) -> None:
         """Add the widgets of the large network, or of the swarm and the charts."""
@@ -330,12 +322,12 @@ class TrainScene:
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
             charts = self.training_charts.charts
-            beside += [VirtualPointer(self._form.manager, charts.box, charts.follow),
-                       Scrubber(self._form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
+            beside += [VirtualPointer(self.form.manager, charts.box, charts.follow),
+                       Scrubber(self.form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
             if self._compared:
-                beside.append(Choice(self._form.manager, _AXES, "", texts.TRAIN_AXES, self.training_charts.axis,
+                beside.append(Choice(self.form.manager, _AXES, "", texts.TRAIN_AXES, self.training_charts.axis,
                                      self.training_charts.measure_by, size=SMALL, gap=14))  # fmt: skip
-        self._form.replace(self._beside, beside)
+        self.form.replace(self._beside, beside)
         self._beside = beside
 
     def _look_closer(self) -> None:
@@ -343,10 +335,9 @@ class TrainScene:
         self.training_charts.charts.hover(None)
 
     def _back(self) -> Transition | None:
-        assert self._context is not None
         if not self.inside.large:
             if self.lander_run.alive and len(self.lander_run.history):
-                self._context.note(texts.TRAIN_KEPT)
+                self.context.note(texts.TRAIN_KEPT)
             return Pop()
         self._look_closer()
         return None
@@ -364,9 +355,7 @@ class TrainScene:
             canvas.panel(box, _COVER)
         draw_run_status(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
                       room=_TITLE.width - 32)  # fmt: skip
-        assert self._context is not None
-        hints = self._form.hints[-1:] or [(self._context.controls.word(Command.BACK), texts.HINT_BACK)]
-        draw_hints(canvas, hints, (_TITLE.right - 16, 46), from_right=True)
+        self.draw_hints(canvas)
 
     def _draw_said(self, canvas: Canvas) -> None:
         """Draw the current problem, or what to do first."""

@@ -18,19 +18,20 @@ from game.cockpit import hud
 from game.cockpit.decision_panel import PANEL, draw_decision
 from game.core import texts
 from game.core.clock import STEP, TimeScale
-from game.core.scene import Pop, Transition, push
-from game.core.settings import Settings
+from game.core.scene import Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS, REST_STEPS, Swarm
-from game.input.controls import Command, translate
+from game.input.controls import Command
 from game.panels.run_status import rate_colour
+from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form import Form
-from game.ui.hints import draw_hints
+from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.pick import ChoiceOrList
+from game.ui.playback import LABEL_WIDTH, Playback
 from game.ui.widget import OnPress
 from game.ui.widgets import Choice
 from game.ui.words import GAP
@@ -44,11 +45,9 @@ from game.world.stage import Stage
 
 COUNTS: Final = (1, 16, 64, 256)
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
-_SPEED_WORDS: Final = ("×¼", "×½", "×1", "×2", "×4")
 _SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smaller, to be seen through
 _ROW: Final = (MARGIN, 640.0, 25.0)  # left and top of the first row of choices, and how far to the next
 _ROW_HEIGHT: Final = 17.0
-_LABEL_WIDTH: Final = 84.0
 _WIDEST: Final = 452.0  # of a row: the pad begins there
 _CLEAR: Final = ClearArea(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
 _LONGEST_NAME: Final = 24
@@ -58,87 +57,75 @@ _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
 
-class WatchScene:
+class WatchScene(FormScene):
     """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line."""
 
-    def __init__(self, count: int = 1, seed: int | None = None) -> None:
+    def __init__(self, context: Context, count: int = 1, seed: int | None = None) -> None:
+        super().__init__(context)
         self._count = COUNTS.index(count)
-        self._seed = seed
-        self._context: Context | None = None
-        self._tempo, self._time = TimeScale(), 0.0
-        self.stopped = False
+        self._clock, self._time = TimeScale(), 0.0
+        self.playback = Playback(self._clock, SPEEDS, self._fly_to_the_next_decision)
         self.shown = 0
         self.problem = self._wanted = ""
-        self._settings: Settings
-        self._stage: Stage
-
-    def enter(self, context: Context) -> None:
-        """Load the networks and begin, or resume after a pause."""
-        if self._context is not None:
-            self._look_again()
-            if self._stage.calm != self._settings.reduced_motion:
-                self._set_up_camera()
-            return
-        self._context, self._settings = context, context.settings
+        self._settings = context.settings
         self._policies = networks.Policies(context.models_dir, context.user_dir)
         names = self._policies.names
         wanted = names.index(context.settings.model) if context.settings.model in names else 0
-        self._form = Form(context, on_back=Pop)
-        self._model_choice = self._form.add(self._network_row(wanted))
+        self._model_choice = self.form.add(self._network_row(wanted))
         self._count_choice = self._add_choice(
             1, texts.WATCH_COUNT, [str(count) for count in COUNTS], self._count, self._choose_count
         )
-        self._speed_choice = self._add_choice(2, texts.WATCH_SPEED, _SPEED_WORDS, SPEEDS.index(1.0), self._choose_speed)
-        if self._seed is None:
-            self._seed = int(context.rng.integers(2**31))
+        self.form.add(self.playback.row(self.form.manager, self._row_box(2, self.playback.words)))
+        self._seed = int(context.rng.integers(2**31)) if seed is None else seed
         self._choose_network(wanted)
         if self.problem:
             self._network = self._policies.first_fit()
             self._begin()
 
-    def exit(self) -> None:
-        """Do nothing: the state is kept for the return."""
+    def resume(self) -> None:
+        """Follow a change of the networks and of the settings."""
+        self._look_again()
+        if self._stage.calm != self._settings.reduced_motion:
+            self._set_up_camera()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle stopping, stepping, choices and pause."""
+        """Pick a lander, or pass the event to the actions and the choices."""
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._pick(event.pos):
             return None
-        pad = event.type == pygame.CONTROLLERBUTTONDOWN
-        match translate(event):
-            case Command.PAUSE:
-                return self._pause()
-            case Command.STEP:
-                self.stopped = True
-                self._fly_to_the_next_decision()
-            case Command.RETRY:
-                self._begin_anew()
-            case Command.NEXT | Command.PREVIOUS as command:
-                self._show((self.shown + (1 if command is Command.NEXT else -1)) % COUNTS[self._count])
-            case Command.SLOWER:
-                self._speed_choice.shift(-1)
-            case Command.FASTER:
-                self._speed_choice.shift(1)
-            case Command.HANDOVER if pad:
-                self.stopped = not self.stopped
-            case _ if event.type == pygame.KEYDOWN and event.key == pygame.K_SPACE:
-                self.stopped = not self.stopped
-            case _:
-                return self._form.handle_event(event)
-        return None
+        return super().handle_event(event)
+
+    def actions(self) -> Table:
+        """Stop and step; show another lander; begin anew; pause."""
+        many = COUNTS[self._count] > 1
+        stop, step, *speeds = self.playback.actions(texts.HINT_DECISION)
+        return [
+            stop,
+            step,
+            Action(Command.NEXT, lambda: self._turn(1), texts.HINT_NEXT_LANDER if many else ""),
+            Action(Command.RETRY, self._begin_anew, texts.HINT_RESTART),
+            Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
+            Action(Command.PREVIOUS, lambda: self._turn(-1)),
+            *speeds,
+        ]
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints on the right of who flies."""
+        room = VIEW_SIZE[0] / 2 - 36 - canvas.text_width(self._said, size=TEXT) / 2 - 40
+        return [HintRow(self.hints, (VIEW_SIZE[0] - 36, 42), from_right=True, room=room)]
 
     def update(self) -> Transition | None:
         """Fly as many steps as the chosen speed makes due."""
-        if not self.stopped:
-            for _ in range(self._tempo.steps()):
-                self._fly()
+        for _ in range(self.playback.steps()):
+            self._fly()
+        if not self.playback.stopped:
             self._heard.follow(self._stage.thrust[self.shown], self.shown)
         if not self._settings.reduced_motion:
             self._time += STEP
-        return self._form.update()
+        return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the swarm, the panel and the choices."""
-        between = self._tempo.between(alpha) if not self.stopped else 1.0
+        between = self.playback.between(alpha)
         view = self._camera.view(canvas.scale, between)
         size = canvas.surface.get_size()
         landscape(size, self._settings.reduced_motion).draw(canvas, self._camera, self._time, between)
@@ -162,16 +149,14 @@ class WatchScene:
 
     def _begin(self) -> None:
         assert self._network.policy is not None
-        assert self._seed is not None
-        assert self._context is not None
         count = COUNTS[self._count]
         self.swarm = Swarm(count, self._seed, self._network.policy)
         self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed))
         self._stage.blue[:] = 1.0
-        self._heard = FlightSound(self._context.sound, self.swarm.env, warns=False)
+        self._heard = FlightSound(self.context.sound, self.swarm.env, warns=False)
         self._trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._set_up_camera()
-        self._tempo.begin()
+        self._clock.begin()
         self.shown = min(self.shown, count - 1)
 
     def _set_up_camera(self) -> None:
@@ -181,8 +166,7 @@ class WatchScene:
             self._camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
 
     def _begin_anew(self) -> None:
-        assert self._context is not None
-        self._seed = int(self._context.rng.integers(2**31))
+        self._seed = int(self.context.rng.integers(2**31))
         self._begin()
 
     def _fly(self) -> None:
@@ -202,6 +186,9 @@ class WatchScene:
             self._fly()
             if swarm.decided[slot] != before:
                 return
+
+    def _turn(self, direction: int) -> None:
+        self._show((self.shown + direction) % COUNTS[self._count])
 
     def _show(self, slot: int) -> None:
         self.shown = slot
@@ -234,20 +221,20 @@ class WatchScene:
     def _add_choice(
         self, row: int, label: str, words: Sequence[str], index: int, chosen: Callable[[int], None]
     ) -> Choice:
-        manager, box = self._form.manager, self._row_box(row, words)
-        return self._form.add(Choice(manager, box, label, words, index, chosen, label_width=_LABEL_WIDTH, size=SMALL))
+        manager, box = self.form.manager, self._row_box(row, words)
+        return self.form.add(Choice(manager, box, label, words, index, chosen, label_width=LABEL_WIDTH, size=SMALL))
 
     def _row_box(self, row: int, words: Sequence[str]) -> pygame.Rect:
         x, y, pitch = _ROW
-        width = _LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
+        width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in words) - GAP
         return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
 
     def _network_row(self, index: int) -> ChoiceOrList:
         words = [brief(name, _LONGEST_NAME) for name in self._policies.names]
         box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
         return ChoiceOrList(
-            self._form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
-            everything, label_width=_LABEL_WIDTH,
+            self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
+            everything, label_width=LABEL_WIDTH,
         )  # fmt: skip
 
     def _open_networks(self) -> Transition:
@@ -258,15 +245,14 @@ class WatchScene:
 
     def _look_again(self) -> None:
         """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
-        assert self._context is not None
-        policies = networks.Policies(self._context.models_dir, self._context.user_dir)
+        policies = networks.Policies(self.context.models_dir, self.context.user_dir)
         wanted, self._wanted = self._wanted or self._settings.model, ""
         if policies.names == self._policies.names and wanted == self._network.name:
             return
         self._policies = policies
         index = next((policies.names.index(name) for name in (wanted, self._network.name) if name in policies.names), 0)
         row = self._network_row(index)
-        self._form.replace([self._model_choice], [row])
+        self.form.replace([self._model_choice], [row])
         self._model_choice = row
         if policies.names[index] != self._network.name:
             self._choose_network(index)
@@ -284,9 +270,6 @@ class WatchScene:
     def _choose_count(self, index: int) -> None:
         self._count = index
         self._begin()
-
-    def _choose_speed(self, index: int) -> None:
-        self._tempo.rate = SPEEDS[index]
 
     # The picture
 
@@ -314,41 +297,25 @@ class WatchScene:
         count = COUNTS[self._count]
         crowd = texts.WATCH_LANDERS.format(count=count)
         hud.draw_corner(canvas, texts.WATCH_TITLE, crowd)
-        scripted = self._network.name == networks.SCRIPTED
-        flies = (
-            texts.WATCH_SCRIPTED
-            if scripted
-            else texts.WATCH_FLIES.format(name=brief(self._network.name, _LONGEST_NAME))
-        )
-        said = texts.WATCH_STOPPED if self.stopped else flies
-        hud.draw_hand(canvas, said, NET)
+        hud.draw_hand(canvas, self._said, NET)
         self._draw_counts(canvas)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], (758, 880, 1002, 1124))
         if self.problem:
             middle, problem = VIEW_SIZE[0] / 2, brief(self.problem, _LONGEST_PROBLEM)
             box = canvas.text(problem, (middle, 84), size=SMALL, colour=canvas.palette.warn, align="centre")
             canvas.marker("cross", (box.left - 12, 80), 9, canvas.palette.warn)
-        self._form.draw(canvas)
-        assert self._context is not None
-        if self._settings.show_hints or self._context.controls.mouse_in_use:  # for the mouse, they are what it presses
-            self._draw_hints(canvas, VIEW_SIZE[0] / 2 - 36 - canvas.text_width(said, size=TEXT) / 2 - 40)
+        self.form.draw(canvas)
+        if self._settings.show_hints or self.context.controls.mouse_in_use:  # for the mouse, they are what it presses
+            self.draw_hints(canvas)
 
-    def _draw_hints(self, canvas: Canvas, room: float) -> None:
-        assert self._context is not None
-        word = self._context.controls.word
-        pad = self._context.controls.pad_in_use
-        hints = [
-            (
-                word(Command.HANDOVER) if pad else self._context.controls.key(pygame.K_SPACE),
-                texts.HINT_GO if self.stopped else texts.HINT_STOP,
-            ),
-            (word(Command.STEP), texts.HINT_DECISION),
-            (word(Command.RETRY), texts.HINT_RESTART),
-            (word(Command.PAUSE), texts.HINT_PAUSE),
-        ]
-        if COUNTS[self._count] > 1:
-            hints.insert(2, (word(Command.NEXT), texts.HINT_NEXT_LANDER))
-        draw_hints(canvas, hints, (VIEW_SIZE[0] - 36, 42), from_right=True, room=room)
+    @property
+    def _said(self) -> str:
+        """What is said of who flies."""
+        if self.playback.stopped:
+            return texts.WATCH_STOPPED
+        if self._network.name == networks.SCRIPTED:
+            return texts.WATCH_SCRIPTED
+        return texts.WATCH_FLIES.format(name=brief(self._network.name, _LONGEST_NAME))
 
     def _draw_counts(self, canvas: Canvas) -> None:
         landed, lost = self.swarm.landed, self.swarm.lost

@@ -41,8 +41,8 @@ class App:
 
     Args:
         context: the shared services; its `note` and `apply_settings` are bound to this window.
-        first: the first scene; by default the menu.
-        scene_of: makes the scene of a route; `game.scenes.scene_of`.
+        first: route of the first scene, by default the menu's, or a function that builds the scene.
+        scene_of: builds the scene of a route; `game.scenes.scene_of`.
         now: clock that returns seconds.
         capped: whether the frame rate is limited to the screen's.
 
@@ -54,9 +54,9 @@ class App:
     def __init__(
         self,
         context: Context,
-        first: Scene | None = None,
+        first: Route | Callable[[Context], Scene] | None = None,
         *,
-        scene_of: Callable[[Route], Scene],
+        scene_of: Callable[[Route, Context], Scene],
         now: Callable[[], float] = time.perf_counter,
         capped: bool = True,
     ) -> None:
@@ -82,9 +82,9 @@ class App:
         self.show(first or Route("menu"))
         self._last = now()
 
-    def show(self, scene: Scene | Route) -> None:
-        """Push a scene; if it fails at once, the error screen is shown as for any other failure."""
-        self._guarded(lambda: self.scenes.apply(Push(scene)))
+    def show(self, scene: Route | Callable[[Context], Scene]) -> None:
+        """Build a scene and push it; if it cannot be built, the error screen is shown as for any other failure."""
+        self._guarded(lambda: self.scenes.apply(Push(scene if isinstance(scene, Route) else scene(self.context))))
 
     def run(self, max_frames: int | None = None) -> int:
         """Play until the game is closed, or for `max_frames`. Return the process's exit code."""
@@ -177,15 +177,18 @@ class App:
                     self._settled = self._last + _SETTLE
         if not self.scenes.running:
             return
-        event = self._clicked(self._in_points(event))
+        event = self._in_points(event)
+        if event.type in _MOUSE:
+            self.canvas.pointer = event.pos
+        elif not self.context.controls.mouse_in_use:
+            self.canvas.pointer = None
         match translate(event):
             case Command.FULLSCREEN:
-                self.context.settings.full_screen = not self.context.settings.full_screen
-                self.apply_settings()
+                self.context.toggle_full_screen()
             case Command.SCREENSHOT:
                 self._save_screenshot()
             case _:
-                self._guarded(lambda: self.scenes.handle_event(event))
+                self._guarded(lambda: self._pass_on(event))
 
     def _moved(self, event: pygame.event.Event) -> bool:
         """Whether the mouse moved, and not the window below it."""
@@ -204,15 +207,14 @@ class App:
         if controls.mouse_in_use != used_mouse:
             pygame.mouse.set_visible(controls.mouse_in_use)
 
-    def _clicked(self, event: pygame.event.Event) -> pygame.event.Event:
-        """Turn a click on a hint into its press; return any other event unchanged."""
-        if event.type in _MOUSE:
-            self.canvas.pointer = event.pos
-        elif not self.context.controls.mouse_in_use:
-            self.canvas.pointer = None
-        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
-            return event
-        return self.canvas.linked(event.pos) or event
+    def _pass_on(self, event: pygame.event.Event) -> None:
+        """Run the hint that is clicked, or pass the event to the top scene."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            for row in self.scenes.top.hint_rows(self.canvas):
+                if (hint := row.at(self.canvas, event.pos)) and hint.run:
+                    self.scenes.apply(hint.run())
+                    return
+        self.scenes.handle_event(event)
 
     def _in_points(self, event: pygame.event.Event) -> pygame.event.Event:
         if event.type not in _MOUSE:
@@ -255,7 +257,7 @@ class App:
         except Exception as error:
             _log.exception("in %s", self.scenes.told)
             self.canvas.surface.set_clip(None)
-            self.scenes.reset(Route("menu"), Route("error_screen", (error, self.context.user_dir / LOG_NAME)))
+            self.scenes.reset(Route("error_screen", (error, self.context.user_dir / LOG_NAME)))
 
 
 def log_to(folder: Path) -> None:

@@ -6,7 +6,7 @@ import gc
 import logging
 from typing import TYPE_CHECKING, Final
 
-from game.core.scene import Lasting, Pop, Push, Quit, Replace, Route, Scene, Transition
+from game.core.scene import Pop, Push, Quit, Replace, Route, Scene, Transition
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,12 +30,12 @@ class SceneManager:
     Args:
         context: the shared services for every scene.
         picture: returns the window's pixels as last drawn.
-        scene_of: makes the scene of a route.
+        scene_of: builds the scene of a route with the context.
 
     """
 
     def __init__(
-        self, context: Context, picture: Callable[[], pygame.Surface], scene_of: Callable[[Route], Scene]
+        self, context: Context, picture: Callable[[], pygame.Surface], scene_of: Callable[[Route, Context], Scene]
     ) -> None:
         self._context, self._picture, self._scene_of = context, picture, scene_of
         self._stack: list[Scene] = []
@@ -86,27 +86,24 @@ class SceneManager:
                 scene = self._made(scene)
                 if self._stack:
                     self.top.exit()
-                self._enter(scene)
+                self._stack.append(scene)
             case Replace(scene):
                 scene = self._made(scene)
                 self._leave(1)
-                self._enter(scene)
+                self._stack.append(scene)
             case Pop(levels):
                 self._pop(levels)
             case Quit():
                 self.running = False
 
-    def reset(self, *routes: Route) -> None:
+    def reset(self, route: Route) -> None:
         """Replace the whole stack without calling `exit` of its scenes, whose state may be broken."""
-        scenes = [self._scene_of(route) for route in routes]
         self._linger()
-        left = [scene for scene in self._stack if scene not in scenes]
-        self._stack = list(scenes[:-1])
+        left, self._stack = self._stack, [self._made(route)]
         _close(left)
-        self._enter(scenes[-1])
 
     def _made(self, scene: Scene | Route) -> Scene:
-        return self._scene_of(scene) if isinstance(scene, Route) else scene
+        return self._scene_of(scene, self._context) if isinstance(scene, Route) else scene
 
     def close(self) -> None:
         """Leave and close every scene."""
@@ -119,16 +116,12 @@ class SceneManager:
             self._lingering, self._fade = self._picture().copy(), _FADE_STEPS
             self._lingering.set_alpha(round(255 * (self._fade / (_FADE_STEPS + 1)) ** 2))
 
-    def _enter(self, scene: Scene) -> None:
-        self._stack.append(scene)
-        scene.enter(self._context)
-
     def _pop(self, levels: int) -> None:
         if levels >= len(self._stack):
             self.running = False  # `close` calls the top scene's `exit`
             return
         self._leave(levels)
-        self.top.enter(self._context)
+        self.top.resume()
 
     def _leave(self, levels: int) -> None:
         """Remove the top scenes for good, and free their memory.
@@ -147,10 +140,9 @@ class SceneManager:
 
 
 def _close(scenes: list[Scene]) -> None:
-    """Close scenes that hold resources. A failure, such as of a half-built scene, does not affect the others."""
+    """Close scenes. One that fails does not affect the others."""
     for scene in reversed(scenes):
-        if isinstance(scene, Lasting):
-            try:
-                scene.close()
-            except Exception:
-                _log.exception("closing %s", type(scene).__name__)
+        try:
+            scene.close()
+        except Exception:
+            _log.exception("closing %s", type(scene).__name__)

@@ -45,6 +45,11 @@ class Context:
     apply_settings: Callable[[], None] = lambda: None
     in_window: Callable[[pygame.typing.RectLike], pygame.Rect] = pygame.Rect
 
+    def toggle_full_screen(self) -> None:
+        """Switch between the full screen and a window."""
+        self.settings.full_screen = not self.settings.full_screen
+        self.apply_settings()
+
     @property
     def settings_file(self) -> SettingsFile:
         """The player's settings file."""

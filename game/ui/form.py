@@ -12,7 +12,9 @@ from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.input.controls import Command, Controls, presses_main, translate
 from game.ui import focus
+from game.ui.actions import Action, Table, answering
 from game.ui.context import Context
+from game.ui.hints import Hint
 from game.ui.widget import OnPress, PointsManager, Widget
 
 W = TypeVar("W", bound=Widget)
@@ -39,7 +41,7 @@ class Form:
 
     """
 
-    def __init__(self, context: Context, on_back: OnPress | None = None) -> None:
+    def __init__(self, context: Context, on_back: OnPress = lambda: None) -> None:
         self.manager = PointsManager()
         self.widgets: list[Widget] = []
         self._context, self._on_back = context, on_back
@@ -53,14 +55,27 @@ class Form:
         return self.focused is not None and self.focused.typing
 
     @property
-    def change_hint(self) -> tuple[str, str]:
-        """Hint for changing the focused widget: the arrows if it cannot be pressed."""
-        by_arrows = self.focused is not None and self.focused.by_arrows
-        key = self.controls.arrows_aside if by_arrows else self.controls.word(Command.CONFIRM)
-        return key, texts.HINT_CHANGE
+    def moves(self) -> Hint:
+        """Hint of the arrows, which move the focus."""
+        return Hint(self.controls.arrows, texts.HINT_MOVE)
 
     @property
-    def hints(self) -> list[tuple[str, str]]:
+    def changes(self) -> Action | Hint:
+        """How the focused widget is changed: by a press, or by the arrows if it cannot be pressed."""
+        if self.focused is not None and self.focused.by_arrows:
+            return Hint(self.controls.arrows_aside, texts.HINT_CHANGE)
+        return self.confirms(texts.HINT_CHANGE)
+
+    def confirms(self, hint: str) -> Action:
+        """Return the action that presses the focused widget."""
+        return Action(Command.CONFIRM, self.confirm, hint)
+
+    def goes_back(self, hint: str) -> Action:
+        """Return the action of Escape, or the pad's B."""
+        return Action(Command.BACK, self._on_back, hint)
+
+    @property
+    def hints(self) -> list[Hint]:
         """Hints of a focused widget that takes every key; empty for any other."""
         return self.focused.hints(self.controls) if self.focused and self.typing else []
 
@@ -97,17 +112,30 @@ class Form:
         """Move the focus."""
         self._index = self.widgets.index(widget)
 
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Take one event; the mouse's are in points."""
+    def handle_event(self, event: pygame.event.Event, actions: Table = ()) -> Transition | None:
+        """Take one event, the mouse's in points; `actions` come after the focused widget, and before the form's own."""
+        self.used = True
+        return self._sounding(lambda: self._take(event, actions))
+
+    def confirm(self) -> Transition | None:
+        """Press the focused widget."""
+        return self._sounding(self._press)
+
+    def _sounding(self, act: OnPress) -> Transition | None:
+        """Do something, with the sound of its effect on the focused widget."""
         before, self._pressed = (self.focused, _reading(self.focused)), False
-        outcome = self._take(event)
+        outcome = act()
         if outcome is None:  # the change to another scene has its own sound
             self._sound(*before)
         self._tell_spelling()
         return outcome
 
-    def _take(self, event: pygame.event.Event) -> Transition | None:
-        self.used = True
+    def _press(self) -> Transition | None:
+        self._show_focus()
+        self._pressed = True
+        return self.focused.press() if self.focused else None
+
+    def _take(self, event: pygame.event.Event, actions: Table) -> Transition | None:
         if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             return self._handle_mouse(event)
         if event.type == pygame.MOUSEWHEEL:
@@ -117,19 +145,18 @@ class Form:
         widget = self.focused
         if widget and widget.take(event):
             return _outcome(widget)
+        if action := answering(actions, event):
+            return action.run()
         command = translate(event)
         if command is None and presses_main(event):
             command = Command.CONFIRM
-        tab = _tab(event)
-        if tab:
-            self._index = (self._index + tab) % max(1, len(self.widgets))
+        if step := tab(event):
+            self._index = (self._index + step) % max(1, len(self.widgets))
         elif command in _ARROWS:
             self._move(command)
         elif command is Command.CONFIRM and widget:
-            self._show_focus()
-            self._pressed = True
-            return widget.press()
-        elif command in (Command.BACK, Command.PAUSE) and self._on_back:
+            return self._press()
+        elif command in (Command.BACK, Command.PAUSE):
             return self._on_back()
         else:
             self.used = False
@@ -209,7 +236,8 @@ def _outcome(widget: Widget) -> Transition | None:
     return outcome
 
 
-def _tab(event: pygame.event.Event) -> int:
+def tab(event: pygame.event.Event) -> int:
+    """Return how far Tab moves the focus: 1, with Shift -1; 0 for any other event."""
     if event.type != pygame.KEYDOWN or event.key != pygame.K_TAB:
         return 0
     return -1 if getattr(event, "mod", 0) & pygame.KMOD_SHIFT else 1

@@ -1,63 +1,102 @@
-"""Key hints: a line that tells which key does what."""
+"""Key hints: a row that tells which key does what, each of which can be clicked."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from typing import Final
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import pygame
 
 from game.core import texts
-from game.drawing.canvas import Canvas
+from game.core.scene import Transition
+from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK, MUTE, SMALL
-from game.input.controls import Controls, Held, KeyName
+from game.input.controls import Controls, Held
 
 _GAPS: Final = 8.0, 24.0  # points from a key to its meaning, and from there to the next key
 _LINE: Final = 18.0  # points above its baseline in which a hint can be clicked
 
 
-def draw_hints(
-    canvas: Canvas,
-    hints: Iterable[tuple[str, str]],
-    position: tuple[float, float],
-    *,
-    from_right: bool = False,
-    size: float = SMALL,
-    room: float = math.inf,
-) -> None:
-    """Draw pairs of a key and its meaning on one baseline, starting or ending at a position, within `room` points.
+class Hint(NamedTuple):
+    """Name of a key, what it does in a word or two, and the function that does so on a click; None if none can."""
 
-    A click on a hint is a press of its key, so that the mouse can do all that the hints say.
+    key: str
+    meaning: str
+    run: Callable[[], Transition | None] | None = None
+
+
+@dataclass(frozen=True)
+class HintRow:
+    """Hints on one baseline. Where they stand follows from their texts alone, whether or not they are drawn.
+
+    Attributes:
+        hints: the hints, from left to right.
+        position: left end of the baseline, or its right end if `from_right`, in points.
+        room: width in points that the row may take; a longer one is written smaller.
+
     """
-    pairs = list(hints)
-    x, y = position
-    if room < math.inf:
-        gaps = len(pairs) * _GAPS[0] + (len(pairs) - 1) * _GAPS[1]  # gaps do not shrink
-        size *= min(1.0, (room - gaps) / max(hints_width(canvas, pairs, size) - gaps, 1.0))
-    widths = [_width(canvas, pair, size) for pair in pairs]
-    if from_right:
-        x -= sum(widths) + (len(widths) - 1) * _GAPS[1]
-    for (key, meaning), width in zip(pairs, widths, strict=True):
-        box = (x - 6, y - _LINE, width + 12, 1.6 * _LINE)
-        pointed = isinstance(key, KeyName) and canvas.link(box, key.press)
-        canvas.text(key, (x, y), size=size, colour=INK, weight="medium")
-        end = x + width
-        canvas.text(meaning, (end, y), size=size, colour=INK if pointed else MUTE, align="right")
-        x = end + _GAPS[1]
+
+    hints: Sequence[Hint]
+    position: Point
+    from_right: bool = False
+    size: float = SMALL
+    room: float = math.inf
+
+    def width(self, canvas: Canvas) -> float:
+        """Return the width of the row, in points."""
+        _, widths = self._fitted(canvas)
+        return sum(widths) + (len(widths) - 1) * _GAPS[1]
+
+    def boxes(self, canvas: Canvas) -> list[pygame.FRect]:
+        """Return the box, in points, in which each hint can be clicked."""
+        _, widths = self._fitted(canvas)
+        x, y = self.position
+        x -= self.width(canvas) if self.from_right else 0.0
+        boxes = []
+        for width in widths:
+            boxes.append(pygame.FRect(x - 6, y - _LINE, width + 12, 1.6 * _LINE))
+            x += width + _GAPS[1]
+        return boxes
+
+    def at(self, canvas: Canvas, point: Point) -> Hint | None:
+        """Return the hint that a click at a point runs, if any."""
+        boxes = zip(self.hints, self.boxes(canvas), strict=True)
+        return next((hint for hint, box in boxes if hint.run and box.collidepoint(point)), None)
+
+    def draw(self, canvas: Canvas) -> None:
+        """Write the hints; the one below the mouse stands out if it can be clicked."""
+        size, widths = self._fitted(canvas)
+        x, y = self.position
+        x -= self.width(canvas) if self.from_right else 0.0
+        for hint, width, box in zip(self.hints, widths, self.boxes(canvas), strict=True):
+            pointed = hint.run and canvas.pointer is not None and box.collidepoint(canvas.pointer)
+            canvas.text(hint.key, (x, y), size=size, colour=INK, weight="medium")
+            end = x + width
+            canvas.text(hint.meaning, (end, y), size=size, colour=INK if pointed else MUTE, align="right")
+            x = end + _GAPS[1]
+
+    def _fitted(self, canvas: Canvas) -> tuple[float, list[float]]:
+        """Return the size at which the hints fit, and each one's width at that size."""
+        size, widths = self.size, self._widths(canvas, self.size)
+        if self.room < math.inf:
+            gaps = len(widths) * _GAPS[0] + (len(widths) - 1) * _GAPS[1]  # gaps do not shrink
+            wide = sum(widths) + (len(widths) - 1) * _GAPS[1]
+            size *= min(1.0, (self.room - gaps) / max(wide - gaps, 1.0))
+            widths = self._widths(canvas, size)
+        return size, widths
+
+    def _widths(self, canvas: Canvas, size: float) -> list[float]:
+        return [
+            canvas.text_width(key, size=size, weight="medium") + _GAPS[0] + canvas.text_width(meaning, size=size)
+            for key, meaning, _ in self.hints
+        ]
 
 
-def hints_width(canvas: Canvas, hints: Sequence[tuple[str, str]], size: float = SMALL) -> float:
-    """Return the width of `draw_hints`, in points."""
-    return sum(_width(canvas, pair, size) for pair in hints) + (len(hints) - 1) * _GAPS[1]
-
-
-def _width(canvas: Canvas, pair: tuple[str, str], size: float) -> float:
-    key, meaning = pair
-    return canvas.text_width(key, size=size, weight="medium") + _GAPS[0] + canvas.text_width(meaning, size=size)
-
-
-def flight_hints(controls: Controls) -> list[tuple[str, str]]:
+def flight_hints(controls: Controls) -> list[Hint]:
     """Return the hints of the flight controls for the device in use; one for both turns if one control does both."""
     left, right = controls.word(Held.LEFT), controls.word(Held.RIGHT)
     turn = texts.TURN_TO_MOUSE if controls.mouse_in_use else texts.TURN
-    turns = [(left, turn)] if left == right else [(left, texts.TURN_LEFT), (right, texts.TURN_RIGHT)]
-    return [(controls.word(Held.MAIN), texts.MAIN_ENGINE), *turns]
+    turns = [Hint(left, turn)] if left == right else [Hint(left, texts.TURN_LEFT), Hint(right, texts.TURN_RIGHT)]
+    return [Hint(controls.word(Held.MAIN), texts.MAIN_ENGINE), *turns]

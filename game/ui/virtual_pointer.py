@@ -11,6 +11,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NIGHT0
 from game.input.controls import Command, Controls, presses_main, translate
+from game.ui.hints import Hint
 from game.ui.widget import PointsManager, Widget
 
 _DEAD: Final = 0.2  # dead zone of a stick, as a share of its range
@@ -63,10 +64,11 @@ class VirtualPointer(Widget):
         """Ignore real mouse events, which are for the widgets below."""
         return False
 
-    def hints(self, controls: Controls) -> list[tuple[str, str]]:
+    def hints(self, controls: Controls) -> list[Hint]:
         """Return the hints for the active pointer."""
-        hold = [(str(controls.word(Command.CONFIRM)), self._hold)] if self._hold else []
-        return [(controls.arrows, texts.HINT_MOVE), *hold, (controls.word(Command.BACK), self._leave)]
+        hold = [Hint(controls.word(Command.CONFIRM), self._hold)] if self._hold else []
+        leave = Hint(controls.word(Command.BACK), self._leave, self._lay_aside)
+        return [Hint(controls.arrows, texts.HINT_MOVE), *hold, leave]
 
     def take(self, event: pygame.event.Event) -> bool:
         """Move, press or end the active pointer; false if it is inactive."""

@@ -19,6 +19,7 @@ from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, MUTE, VIEW_SIZE, Colour
 from game.input.controls import Controls
+from game.ui.hints import Hint
 
 OnPress = Callable[[], Transition | None]
 EASE: Final = 0.22  # share of the remaining difference, per sixtieth of a second
@@ -103,8 +104,8 @@ class Widget(UIElement):
         """Handle a key or gamepad button before the form does, while in focus; false leaves it to the form."""
         return False
 
-    def hints(self, controls: Controls) -> list[tuple[str, str]]:  # noqa: ARG002
-        """Return the hints while it is `typing`: pairs of a key and its meaning."""
+    def hints(self, controls: Controls) -> list[Hint]:  # noqa: ARG002
+        """Return the hints while it is `typing`."""
         return []
 
     def scroll(self, rows: int) -> bool:  # noqa: ARG002

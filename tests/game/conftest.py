@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from itertools import count
 from multiprocessing import active_children
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
@@ -20,6 +21,7 @@ from game.core.settings import Settings, SettingsFile
 from game.drawing import typeface
 from game.flight import networks
 from game.scenes import scene_of
+from game.scenes.menu import MenuScene
 from game.shell.app import App
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -43,13 +45,20 @@ def context(tmp_path: Path) -> Context:
 def open_game(context: Context) -> Iterator[Callable[..., Driver]]:
     opened: list[Driver] = []
 
-    def open_it(first: Scene | None = None, *, tutored: bool = True) -> Driver:
+    def open_it(
+        first: Scene | Callable[..., Scene] | None = None, *arguments: Any, tutored: bool = True, **options: Any
+    ) -> Driver:
+        """Open the game with a scene that is given, or made by its class or a function, with these arguments."""
+
+        def make(context: Context) -> Scene:
+            return first if isinstance(first, Scene) else (first or MenuScene)(context, *arguments, **options)
+
         for driver in opened:
             driver.app.settings_writer.wait()
         context.settings = SettingsFile(context.user_dir).load()
         context.settings.tutored |= tutored  # or a first flight would teach
         frames = count()
-        opened.append(Driver(App(context, first, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)))
+        opened.append(Driver(App(context, make, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False)))
         return opened[-1]
 
     yield open_it

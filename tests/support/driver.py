@@ -40,7 +40,7 @@ class Driver:
     @property
     def form(self) -> Form:
         """The widgets of the scene on the screen."""
-        form = getattr(self.top, "_form", None)
+        form = getattr(self.top, "form", None)
         assert isinstance(form, Form)
         return form
 
@@ -107,6 +107,16 @@ class Driver:
         self.move(points)
         self.post(pygame.MOUSEBUTTONDOWN, pos=self.to_window(points), button=1)
         self.post(pygame.MOUSEBUTTONUP, pos=self.to_window(points), button=1)
+
+    def hints(self) -> dict[str, tuple[float, float]]:
+        """What the hints on the screen say, and where each can be clicked."""
+        canvas = self.app.canvas
+        return {
+            hint.meaning: box.center
+            for row in self.top.hint_rows(canvas)
+            for hint, box in zip(row.hints, row.boxes(canvas), strict=True)
+            if hint.run
+        }
 
     def resize(self, size: tuple[int, int]) -> None:
         self.app.window.size = size

@@ -7,6 +7,7 @@ import pkgutil
 import time
 from collections.abc import Callable
 from datetime import date
+from functools import partial
 from inspect import Parameter, isclass, signature
 from shutil import copytree
 
@@ -31,16 +32,15 @@ from game.scenes.watch import COUNTS, WatchScene
 from game.ui.context import Context
 
 FLIGHTS = 2
-_PARTS = ("enter", "exit", "handle_event", "update", "draw")
 
 
-def scene_types() -> list[type]:
+def scene_types() -> list[type[Scene]]:
     """Return the classes of all scenes there are, in the modules of `game.scenes`."""
     found = []
     for module in pkgutil.iter_modules(game.scenes.__path__):
         for each in vars(importlib.import_module(f"game.scenes.{module.name}")).values():
             here = isclass(each) and each.__module__ == f"game.scenes.{module.name}"
-            if here and not each.__name__.startswith("_") and all(hasattr(each, name) for name in _PARTS):
+            if here and not each.__name__.startswith("_") and issubclass(each, Scene):
                 found.append(each)
     return found
 
@@ -62,30 +62,32 @@ def stock(context: Context) -> None:
 def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
     """Return what makes each scene that can be entered from outside; None if what it shows can't be read now."""
     rng = context.rng
-    plain = {each.__name__: each for each in scene_types() if _needs_nothing(each)}
+    plain = {each.__name__: partial(each, context) for each in scene_types() if _needs_no_more(each)}
     missions = list(MISSIONS.values())
 
     def replayed(make: Callable[..., Scene]) -> Scene | None:
         records = Records(context.user_dir)
         files = sorted(records.kept())
         try:
-            return make(records.read(files[rng.integers(len(files))])) if files else None
+            return make(context, records.read(files[rng.integers(len(files))])) if files else None
         except ValueError:
             return None
 
     def of_digits(make: Callable[..., Scene]) -> Scene | None:
         try:
-            return make(DigitClassifier.load(context.models_dir / "digits" / str(rng.choice(["modern", "classic"]))))
+            return make(
+                context, DigitClassifier.load(context.models_dir / "digits" / str(rng.choice(["modern", "classic"])))
+            )
         except (OSError, ValueError):
             return None
 
     return {
         **plain,
-        "WatchScene": lambda: WatchScene(int(rng.choice(COUNTS))),
-        "PhysicsScene": lambda: PhysicsScene(str(rng.choice(list(EXHIBITS)))),
-        "mission": lambda: PlayScene(0, challenge=FlownMission(missions[rng.integers(len(missions))])),
-        "daily": lambda: PlayScene(1, challenge=DailyStart(date(2026, 1, 1))),
-        "race": lambda: replayed(lambda record: PlayScene(record.recording.seed, challenge=race(record))),
+        "WatchScene": lambda: WatchScene(context, int(rng.choice(COUNTS))),
+        "PhysicsScene": lambda: PhysicsScene(context, str(rng.choice(list(EXHIBITS)))),
+        "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
+        "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1))),
+        "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
         "ReplayScene": lambda: replayed(ReplayScene),
         "DreamScene": lambda: of_digits(DreamScene),
         "QuizScene": lambda: of_digits(QuizScene),
@@ -101,8 +103,10 @@ def dialogs(below: Scene) -> dict[str, Callable[[], Scene]]:
     }
 
 
-def _needs_nothing(scene: type) -> bool:
+def _needs_no_more(scene: type[Scene]) -> bool:
+    """Whether a scene is built with the context alone."""
+    _, *others = signature(scene).parameters.values()
     return all(
         each.default is not Parameter.empty or each.kind in (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
-        for each in signature(scene).parameters.values()
+        for each in others
     )

@@ -1,5 +1,7 @@
 """What the player's doings sound like, in every part of the game that sounds."""
 
+from functools import partial
+
 import pygame
 import pytest
 
@@ -28,7 +30,7 @@ def focus(game: Driver, label: str) -> None:
 
 
 def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):
-    game: Driver = open_game(MenuScene())
+    game: Driver = open_game(MenuScene)
     sound.heard()
     game.key(DOWN)
     assert sound.heard() == ["move"]
@@ -41,7 +43,7 @@ def test_a_menu_is_heard_as_it_is_walked_through(sound: Listener, open_game):
 
 
 def test_the_mouse_is_heard_when_it_presses_not_when_it_passes(sound: Listener, open_game):
-    game: Driver = open_game(SettingsScene())
+    game: Driver = open_game(SettingsScene)
     game.move((100, 180))
     game.move((100, 244))
     sound.heard()
@@ -55,7 +57,7 @@ def test_the_mouse_is_heard_when_it_presses_not_when_it_passes(sound: Listener, 
 
 
 def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_game):
-    game: Driver = open_game(SettingsScene())
+    game: Driver = open_game(SettingsScene)
     sound.heard()
     game.key(ENTER)
     assert sound.heard() == ["adjust"]
@@ -68,7 +70,7 @@ def test_toggles_are_heard_and_the_end_of_a_slider_is_not(sound: Listener, open_
 
 
 def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(sound: Listener, context, open_game):
-    game: Driver = open_game(SettingsScene())
+    game: Driver = open_game(SettingsScene)
     focus(game, texts.SOUND_GROUPS["altitude"])
     game.key(RIGHT)
     game.app.settings_writer.wait()
@@ -82,8 +84,8 @@ def test_a_volume_is_heard_as_it_changes_is_kept_and_reaches_nothing_at_all(soun
 
 
 def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
-    scene = PlayScene(seed=4)
-    game: Driver = open_game(scene)
+    game: Driver = open_game(PlayScene, seed=4)
+    scene = game.top
     game.frames(2)
     game.post(pygame.KEYDOWN, key=UP, mod=0)
     game.post(pygame.KEYUP, key=UP, mod=0)
@@ -96,12 +98,12 @@ def test_flying_and_handing_over_are_heard(sound: Listener, open_game):
 
 
 @pytest.mark.parametrize(
-    "make", [lambda: PlayScene(seed=4), lambda: WatchScene(1, seed=4), lambda: WatchScene(16, seed=4)]
+    "make", [partial(PlayScene, seed=4), partial(WatchScene, count=1, seed=4), partial(WatchScene, count=16, seed=4)]
 )
 def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, open_game, make, monkeypatch):
     asked: list[dict[str, float]] = []
     monkeypatch.setattr(sound, "update", lambda: (asked.append(dict(sound.loops)), sound.loops.clear()))
-    game: Driver = open_game(make())
+    game: Driver = open_game(make)
     game.post(pygame.WINDOWMINIMIZED)  # nothing need be drawn
     game.key(pygame.K_TAB if isinstance(game.top, PlayScene) else pygame.K_F1)
     for _ in range(1500):
@@ -121,7 +123,7 @@ def test_the_game_follows_volumes_and_focus(sound: Listener, context, open_game,
     events, followed = [], []
     monkeypatch.setattr(sound, "handle_event", lambda event: events.append(event.type))
     monkeypatch.setattr(sound, "follow", followed.append)
-    game: Driver = open_game(SettingsScene())
+    game: Driver = open_game(SettingsScene)
     game.post(pygame.WINDOWFOCUSLOST)
     assert pygame.WINDOWFOCUSLOST in events
     game.app.apply_settings()

@@ -47,7 +47,7 @@ def fly(open_game: Open, context: Context, **settings: object) -> Driver:
     for name, value in settings.items():
         setattr(context.settings, name, value)
     context.settings_file.save(context.settings)
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     driver.frames(2)
     return driver
 
@@ -193,7 +193,7 @@ def test_choices_are_made_with_any_device_and_the_waiting_flight_follows(
         driver.button(pygame.CONTROLLER_BUTTON_B)
     else:
         driver.key(pygame.K_c)
-        rows = {widget.label: widget.box.centery for widget in driver.top._form.widgets}
+        rows = {widget.label: widget.box.centery for widget in driver.top.form.widgets}
         for label, x in ((texts.CHOICES_ASSIST, 242), (texts.CHOICES_PADS, 380), (texts.CHOICES_HANDS, 282)):
             driver.click((x, rows[label]))
         driver.key(pygame.K_ESCAPE)

@@ -12,7 +12,7 @@ from tests.support.player import DEVICES, Player
 
 @pytest.fixture(params=DEVICES)
 def player(request: pytest.FixtureRequest, open_game) -> Player:
-    player = Player(open_game(DigitsScene()), request.param)
+    player = Player(open_game(DigitsScene), request.param)
     player.frames(3)
     return player
 
@@ -65,7 +65,7 @@ def test_the_pen_stays_on_the_pad(player: Player):
 
 
 def test_a_stick_moves_it_as_far_as_it_is_pushed(open_game):
-    player = Player(open_game(DigitsScene()), "pad")
+    player = Player(open_game(DigitsScene), "pad")
     player.frames(3)
     take_the_pen(player)
     before = player.top._pen.place.x
@@ -94,7 +94,7 @@ def test_a_lost_focus_lifts_the_pen(player: Player):
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_a_round_of_the_quiz_is_drawn_without_a_mouse(open_game, device: str):
-    player = Player(open_game(QuizScene(reader())), device)
+    player = Player(open_game(QuizScene, reader()), device)
     player.frames(3)
     take_the_pen(player)
     player.hold("confirm", down=True)

@@ -38,10 +38,10 @@ def test_the_view_fits_in_the_middle_and_is_drawn_in_the_windows_own_pixels(size
 
 @pytest.mark.parametrize("size", SIZES)
 def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context: Context, size: tuple[int, int]):
-    game: Driver = open_game(SettingsScene())
+    game: Driver = open_game(SettingsScene)
     game.resize(size)
     assert game.app.canvas.offset == tuple((w - s) // 2 for w, s in zip(size, game.app.canvas.size, strict=True))
-    toggle = game.top._form.widgets[1]
+    toggle = game.top.form.widgets[1]
     box = pygame.FRect(toggle.box)
     for place in ((box.left + 2, box.top + 2), (box.right - 3, box.bottom - 3), box.center):
         before = context.settings.reduced_motion
@@ -54,16 +54,16 @@ def test_a_click_meets_the_switch_it_sees_and_none_beside_it(open_game, context:
 
 
 def test_full_screen_and_back_keeps_size_and_mouse(open_game, context: Context):
-    game: Driver = open_game(SettingsScene())
+    game: Driver = open_game(SettingsScene)
     game.resize((1000, 700))
     for _ in range(3):
         game.key(pygame.K_F11)
         game.frames(10)
         assert context.settings.full_screen
-        game.click(game.top._form.widgets[1].box.center)
+        game.click(game.top.form.widgets[1].box.center)
         game.key(pygame.K_RETURN, pygame.KMOD_ALT)
         game.frames(10)
         assert not context.settings.full_screen
         assert game.app.window.size == (1000, 700)
-        game.click(game.top._form.widgets[1].box.center)
+        game.click(game.top.form.widgets[1].box.center)
     assert not context.settings.reduced_motion

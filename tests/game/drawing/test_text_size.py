@@ -24,9 +24,9 @@ from tests.support.driver import Driver
 from tests.support.tour import stock
 
 FLOWN: dict[str, Callable[[Context], Scene]] = {
-    "Play": lambda _: PlayScene(3),
-    "swarm": lambda _: WatchScene(16, seed=2),
-    "mission": lambda _: PlayScene(0, challenge=FlownMission(MISSIONS["wind"])),
+    "Play": lambda context: PlayScene(context, 3),
+    "swarm": lambda context: WatchScene(context, 16, seed=2),
+    "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
 }
 # A capital's height and what hangs below the line, in sizes of the type: where ink is.
 ABOVE, BELOW = 0.72, 0.2
@@ -84,10 +84,10 @@ def opened(open_game, context: Context, name: str, size: str) -> Driver:
     context.settings.reduced_motion, context.settings.text_size, context.settings.tutored = True, size, True
     context.settings_file.save(context.settings)
     if name in OVER_OTHERS:
-        driver = open_game(MenuScene())
+        driver = open_game(MenuScene)
         driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
     else:
-        driver = open_game({**SCREENS, **FLOWN}[name](context))
+        driver = open_game({**SCREENS, **FLOWN}[name])
     driver.frames(10)
     return driver
 
@@ -164,8 +164,8 @@ def test_names_that_no_font_can_write_are_written_all_the_same():
 
 
 def test_the_size_is_changed_at_once_and_kept(open_game, context: Context):
-    driver = open_game(SettingsScene())
-    while driver.top._form.focused.label != texts.TEXT_SIZE:
+    driver = open_game(SettingsScene)
+    while driver.top.form.focused.label != texts.TEXT_SIZE:
         driver.key(pygame.K_DOWN)
     before = driver.app.canvas.text_width("Text", size=SMALL)
     driver.keys(pygame.K_RIGHT, pygame.K_RIGHT)

@@ -229,11 +229,11 @@ def test_every_sentence_of_an_exhibit_can_be_said(name: str):
 
 
 def test_gravity_is_offered_only_where_there_is_any_and_has_its_unit(open_game: Callable[..., Driver]):
-    driver = open_game(PhysicsScene("impacts"))
+    driver = open_game(PhysicsScene, "impacts")
     assert all("m/s²" in words for words in texts.PHYSICS_GRAVITIES)
     for name, offered in (("impacts", True), ("drag", True), ("spin", False), ("stack", True)):
         scene = driver.top
         assert isinstance(scene, PhysicsScene)
         assert type(scene.exhibit) is EXHIBITS[name]
-        assert any(widget.label == texts.PHYSICS_GRAVITY for widget in scene._form.widgets) is offered
+        assert any(widget.label == texts.PHYSICS_GRAVITY for widget in scene.form.widgets) is offered
         driver.key(pygame.K_n)

@@ -46,7 +46,7 @@ def test_missing_is_whether_it_can_be_imported():
 
 def test_the_frames_show_the_flight_and_a_still_camera_shows_little_else(record: Record):
     length = len(record.recording.actions)
-    before, after, end = frames(ReplayScene(record), SMALL[".gif"], [0, 20, length])
+    before, after, end = frames(ReplayScene, record, SMALL[".gif"], [0, 20, length])
     assert before.shape == after.shape == (90, 160, 3)
     changed = (before != after).any(axis=2)
     assert 0 < changed.mean() < 0.1
@@ -155,8 +155,8 @@ def _choose_gif(driver: Driver) -> None:
 @pytest.fixture
 def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_path: Path) -> tuple[Driver, ReplayScene]:
     monkeypatch.setattr(module, "exports_dir", lambda: tmp_path / "pictures")
-    scene = ReplayScene(record)
-    driver = open_game(scene)
+    driver = open_game(ReplayScene, record)
+    scene = driver.top
     driver.frames(2)
     driver.app.scenes.apply(scene._begin_or_stop_export())
     return driver, scene
@@ -222,7 +222,7 @@ def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay
     pytest.importorskip("PIL")
     driver, scene = replay
     _choose_gif(driver)
-    scene.stopped = False
+    scene.playback.stopped = False
     at = scene.flight_replay.at
     driver.frames(5)
     assert scene.flight_replay.at > at
@@ -277,8 +277,8 @@ def test_who_leaves_a_replay_is_told_that_its_film_was_not_saved(
     open_game: Callable[..., Driver], context: Context, record: Record, small: None, monkeypatch: pytest.MonkeyPatch
 ):
     pytest.importorskip("PIL")
-    scene = ReplayScene(record)
-    driver = open_game(MenuScene())
+    driver = open_game(MenuScene)
+    scene = ReplayScene(driver.app.context, record)
     driver.app.scenes.apply(Push(scene))
     driver.frames(2)
     monkeypatch.setattr(module, "Export", Endless)

@@ -137,7 +137,7 @@ def test_a_gravity_beyond_its_limits_is_defaulted(value):
 def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context: Context):
     context.settings.tutored = True
     context.settings_file.save(context.settings)
-    game = open_game(PlayScene(3))
+    game = open_game(PlayScene, 3)
     play = game.top
     game.frames(2)
     game.key(pygame.K_UP)
@@ -146,7 +146,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
     game.keys(pygame.K_c)
     scene = game.top
     assert isinstance(scene, ChoicesScene)
-    while scene._form.focused.label != texts.CHOICES_GRAVITY:
+    while scene.form.focused.label != texts.CHOICES_GRAVITY:
         game.key(pygame.K_DOWN)
     game.keys(pygame.K_LEFT, pygame.K_LEFT, pygame.K_c)
     game.frames(2)
@@ -167,7 +167,7 @@ def test_gravity_is_changed_in_flight_at_once_and_told(open_game: Open, context:
 def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
     context.settings.gravity = 0.6
     context.settings_file.save(context.settings)
-    game = open_game(PlayScene(0, challenge=FlownMission(MISSIONS["fall"])))
+    game = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"]))
     game.frames(2)
     game.key(pygame.K_UP)
     game.frames(10)
@@ -177,9 +177,9 @@ def test_a_mission_keeps_its_own_gravity(open_game: Open, context: Context):
 
 
 def test_nothing_but_the_pace_can_be_chosen_in_a_course(open_game: Open):
-    game = open_game(PlayScene(0, challenge=FlownMission(MISSIONS["fall"])))
+    game = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"]))
     game.keys(pygame.K_UP, pygame.K_c)
-    labels = [widget.label for widget in game.top._form.widgets]
+    labels = [widget.label for widget in game.top.form.widgets]
     assert texts.PACE in labels
     assert texts.CHOICES_GRAVITY not in labels
 
@@ -192,7 +192,7 @@ def test_a_recording_says_what_a_step_was_flown_under():
 def test_time_slowed_down_flies_the_same_flight_more_slowly_and_as_practice(open_game: Open, context: Context):
     context.settings.pace = 0.5
     context.settings_file.save(context.settings)
-    player = Player(open_game(PlayScene(0, challenge=FlownMission(MISSIONS["fall"]))), "keys")
+    player = Player(open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["fall"])), "keys")
     play = player.top
     player.frames(2)
     player.hold("main", down=True)

@@ -101,7 +101,7 @@ def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: 
     flight_replay = FlightReplay(replace(record, end=(x + 0.01, y, angle)))
     flight_replay.scout(10_000)
     assert not flight_replay.faithful
-    driver = open_game(ReplayScene(replace(record, end=(x, y + 1, angle))))
+    driver = open_game(ReplayScene, replace(record, end=(x, y + 1, angle)))
     driver.frames(120)
     assert "other rules" in said(driver)
 
@@ -123,7 +123,7 @@ def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):
 
 @pytest.fixture
 def replay(open_game: Open, record: Record) -> Driver:
-    driver = open_game(ReplayScene(record))
+    driver = open_game(ReplayScene, record)
     driver.frames(2)
     return driver
 
@@ -172,7 +172,7 @@ def test_at_the_end_it_stays_and_space_begins_anew(replay: Driver):
 @pytest.mark.parametrize(("reduced", "faster", "slow"), [(False, 0, True), (False, 1, False), (True, 0, False)])
 def test_a_crash_is_slow_at_its_own_pace(open_game: Open, context: Context, reduced: bool, faster: int, slow: bool):
     context.settings_file.save(replace(context.settings, reduced_motion=reduced))
-    driver = open_game(ReplayScene(kept(context, fly_out(Flight(5)))))
+    driver = open_game(ReplayScene, kept(context, fly_out(Flight(5))))
     driver.frames(2)
     driver.keys(*[pygame.K_PLUS] * faster)
     driver.wait(lambda: scene(driver).ended)
@@ -190,18 +190,18 @@ def test_the_mouse_winds_and_goes_on_playing(replay: Driver):
     box = scene(replay)._reward_bar.box
     replay.click((box.left + 84 + 0.5 * (box.width - 84), box.centery))
     assert scene(replay).flight_replay.at == pytest.approx(scene(replay).flight_replay.length / 2, abs=5)
-    assert not scene(replay).stopped
+    assert not scene(replay).playback.stopped
 
 
 def test_a_gamepad_stops_winds_and_leaves(open_game: Open, record: Record, context: Context):
     Records(context.user_dir)
-    driver = open_game(LogbookScene())
+    driver = open_game(LogbookScene)
     driver.frames(2)
     driver.button(pygame.CONTROLLER_BUTTON_A)
     assert driver.top_name == "ReplayScene"
     driver.frames(100)
     driver.button(pygame.CONTROLLER_BUTTON_A)
-    assert scene(driver).stopped
+    assert scene(driver).playback.stopped
     at = scene(driver).flight_replay.at
     driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT)
     assert scene(driver).flight_replay.at < at
@@ -229,7 +229,7 @@ def book(open_game: Open, context: Context) -> Driver:
         fall.step(0)
     records.keep(landing, NOON, alone=True)
     records.keep(fall, NOON + 60, alone=True)
-    driver = open_game(LogbookScene())
+    driver = open_game(LogbookScene)
     driver.frames(3)
     return driver
 
@@ -240,7 +240,7 @@ def page(driver: Driver) -> LogbookScene:
 
 
 def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
-    driver = open_game(LogbookScene())
+    driver = open_game(LogbookScene)
     driver.keys(pygame.K_RETURN, pygame.K_DELETE, pygame.K_DOWN, pygame.K_UP)
     assert page(driver).chosen is None
     assert not driver.key(pygame.K_ESCAPE)
@@ -248,7 +248,7 @@ def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
 
 def test_flights_are_listed_newest_first_and_filtered(book: Driver):
     assert [entry.outcome for entry in page(book)._shown] == ["CRASHED", "LANDED"]
-    page(book)._form.focus(page(book)._filter)
+    page(book).form.focus(page(book)._filter)
     book.key(pygame.K_RIGHT)
     assert [entry.outcome for entry in page(book)._shown] == ["LANDED"]
     book.key(pygame.K_RIGHT)
@@ -269,7 +269,7 @@ def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(boo
     book.frames(1)
     assert texts.FLIGHT_THROWN in written
     assert texts.FLIGHT_TOO_OLD not in written
-    page(book)._form.focus(page(book)._verbs[0])
+    page(book).form.focus(page(book)._verbs[0])
     book.key(pygame.K_RETURN)
     assert said(book) == texts.LOGBOOK_BROUGHT_BACK
     assert page(book).chosen == entry

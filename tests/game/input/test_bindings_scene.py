@@ -16,7 +16,7 @@ DOWN, RIGHT = pygame.CONTROLLER_BUTTON_DPAD_DOWN, pygame.CONTROLLER_BUTTON_DPAD_
 
 @pytest.fixture
 def table(open_game) -> Driver:
-    driver = open_game(BindingsScene())
+    driver = open_game(BindingsScene)
     driver.frames(2)
     return driver
 

@@ -97,8 +97,8 @@ def test_two_games_one_after_the_other_hear_the_same_pad(open_game: Callable[...
 
 
 def test_a_pad_pulled_out_in_flight_pauses_and_another_flies_on(open_game: Callable[..., Driver], pads: VirtualPads):
-    play = PlayScene(3)
-    game = open_game(play)
+    game = open_game(PlayScene, 3)
+    play = game.top
     pads.plug_in()
     game.frames(3)
     pads.press(pygame.CONTROLLER_BUTTON_A)
@@ -133,7 +133,7 @@ def test_a_pad_pulled_out_before_its_turn_is_not_told_of_by_the_name_of_another(
 
 
 def test_a_pad_pulled_out_that_nobody_uses_disturbs_nobody(open_game: Callable[..., Driver], pads: VirtualPads):
-    game = open_game(PlayScene(3))
+    game = open_game(PlayScene, 3)
     pads.plug_in()
     game.frames(3)
     game.key(pygame.K_UP)

@@ -8,7 +8,7 @@ import pytest
 from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import in_force
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Scene, Transition
 from game.drawing.canvas import Canvas
 from game.panels.knob import Knob, SliderKnob
 from game.panels.knobs import KnobsPanel
@@ -23,15 +23,15 @@ BOX = pygame.Rect(868, 20, 384, 404)
 PAGES = pages(knob_descriptions())
 
 
-class Panel:
+class Panel(Scene):
     """The panel, and one more widget."""
 
-    def __init__(self, box: pygame.Rect = BOX) -> None:
+    def __init__(self, context: Context, box: pygame.Rect = BOX) -> None:
+        super().__init__(context)
         self.box = box
         self.heard: list[Any] = []
         self.retries = 0
 
-    def enter(self, context: Context) -> None:
         self.form = Form(context, on_back=Pop)
         heard = self.heard
         self.knobs = KnobsPanel(
@@ -39,9 +39,6 @@ class Panel:
             lambda name, value: heard.append((name, value)), lambda *anew: heard.append(anew),
         )  # fmt: skip
         self.other = self.form.add(TextButton(self.form.manager, (64, 600, 80, 24), "Other", lambda: None))
-
-    def exit(self) -> None:
-        pass
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         outcome = self.form.handle_event(event)
@@ -77,8 +74,8 @@ class Panel:
 
 @pytest.fixture
 def panel(open_game: Callable[..., Driver]) -> tuple[Driver, Panel]:
-    scene = Panel()
-    return open_game(scene), scene
+    driver = open_game(Panel)
+    return driver, driver.top  # type: ignore[return-value]
 
 
 def turn_to(game: Driver, scene: Panel, page: str) -> None:

@@ -72,7 +72,7 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
 ):
     context.models_dir = MODELS.parent
     context.settings.reduced_motion = True
-    driver = open_game(WatchScene(count, seed=4))
+    driver = open_game(WatchScene, count, seed=4)
     watch = driver.top
     assert isinstance(watch, WatchScene)
     watch.swarm.policy = Witness(agent)
@@ -112,7 +112,7 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
 
 def test_the_scene_draws_that_panel(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch):
     context.models_dir = MODELS.parent
-    driver = open_game(WatchScene(1, seed=4))
+    driver = open_game(WatchScene, 1, seed=4)
     driver.frames(40)
     watch = driver.top
     assert isinstance(watch, WatchScene)

@@ -26,7 +26,7 @@ def shared(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
     context.settings.assist, context.settings.reduced_motion = 0.5, True
     context.settings_file.save(context.settings)
-    driver = open_game(PlayScene(4))
+    driver = open_game(PlayScene, 4)
     driver.frames(2)
     return driver
 
@@ -68,7 +68,7 @@ def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(share
 
 
 def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Open, monkeypatch):
-    driver = open_game(PlayScene(4))
+    driver = open_game(PlayScene, 4)
     driver.frames(40)
     scene = play(driver)
     x, y = scene.flight.env.position[0].tolist()
@@ -84,7 +84,7 @@ def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Ope
 def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context, monkeypatch, state, calm: bool):
     context.settings.reduced_motion = calm
     context.settings_file.save(context.settings)
-    driver = open_game(PlayScene(4))
+    driver = open_game(PlayScene, 4)
     place(driver, *state)
     driver.frames(10)
     assert play(driver).flight.outcome is Outcome.OUT_OF_BOUNDS
@@ -118,7 +118,7 @@ def test_the_word_beside_a_craft_keeps_off_the_panel(shared: Driver, monkeypatch
 
 @pytest.mark.parametrize("count", [1, 16])
 def test_what_is_lost_in_a_swarm_lies_on_no_words_either(open_game: Open, monkeypatch, count: int):
-    driver = open_game(WatchScene(count, seed=2))
+    driver = open_game(WatchScene, count, seed=2)
     driver.frames(2)
     watch, swarm = driver.top, driver.top.swarm
     lost = np.zeros((count, 6))

@@ -32,8 +32,8 @@ def duel(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Driv
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", ScriptedPilot()))
 
     def begin(rival: object, seed: int = 12) -> Driver:
-        driver = open_game(MenuScene())
-        play = PlayScene(seed, rival=rival, rival_name="checkpoint 14 s")  # type: ignore[arg-type]
+        driver = open_game(MenuScene)
+        play = PlayScene(driver.app.context, seed, rival=rival, rival_name="checkpoint 14 s")  # type: ignore[arg-type]
         driver.app.scenes.apply(Push(play))
         driver.frames(1)
         return driver

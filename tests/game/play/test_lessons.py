@@ -9,7 +9,7 @@ import pytest
 from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
-from game.input.bindings import Command, Held
+from game.input.bindings import Held
 from game.play.tutorial import Tutorial
 from game.scenes.play import PlayScene
 from tests.support.driver import Driver
@@ -144,7 +144,7 @@ class Reader:
             driver.button(pygame.CONTROLLER_BUTTON_Y)
         else:
             driver.frames(1)
-            driver.click(next(box for box, key in driver.app.canvas.links if key.command is Command.HANDOVER).center)
+            driver.click(driver.hints()[texts.HINT_HAND_OVER])
 
 
 Open = Callable[..., Driver]
@@ -152,7 +152,7 @@ DEVICES = ("keys", "pad", "mouse")
 
 
 def reader(open_game: Open, device: str, late: int = 0) -> Reader:
-    return Reader(open_game(PlayScene(0, challenge=Tutorial())), device, late)
+    return Reader(open_game(PlayScene, 0, challenge=Tutorial()), device, late)
 
 
 def to_the_landing(pupil: Reader, most: int = 6000) -> None:

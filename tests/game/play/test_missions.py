@@ -133,7 +133,7 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
 
 
 def test_a_gamepad_flies_a_mission_and_comes_back(open_game: Open):
-    driver = open_game(MissionsScene())
+    driver = open_game(MissionsScene)
     driver.button(pygame.CONTROLLER_BUTTON_A)
     driver.axis(pygame.CONTROLLER_AXIS_TRIGGERRIGHT, 32000)
     driver.frames(5)
@@ -210,7 +210,7 @@ def test_what_surrounds_a_flight_is_told():
 
 
 def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open):
-    driver = open_game(MissionsScene())
+    driver = open_game(MissionsScene)
     driver.key(pygame.K_RETURN)
     assert play(driver)._ghost.flight.hand is StickHolder.NETWORK
     assert not isinstance(play(driver)._ghost.flight, ReplayedFlight)
@@ -225,7 +225,7 @@ def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open)
 
 
 def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(open_game: Open, context: Context):
-    driver = open_game(MissionsScene())
+    driver = open_game(MissionsScene)
     driver.key(pygame.K_RETURN)
     land(driver)
     driver.key(pygame.K_RETURN)
@@ -242,13 +242,13 @@ def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(o
 
 
 def test_the_first_flight_can_be_flown_at_any_time(open_game: Open):
-    driver = open_game(MissionsScene())
+    driver = open_game(MissionsScene)
     driver.keys(pygame.K_UP, pygame.K_RETURN)
     assert play(driver)._challenge.title == texts.TUTORIAL_TITLE
 
 
 def test_no_medal_for_what_the_network_flew_or_for_a_crash(open_game: Open):
-    driver = open_game(MissionsScene())
+    driver = open_game(MissionsScene)
     driver.key(pygame.K_RETURN)
     driver.key(pygame.K_TAB)
     driver.frames(3)
@@ -261,7 +261,7 @@ def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
     open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, assist: float, warned: bool
 ):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("modern", DeepQAgent(9, 6)))
-    driver = open_game(PlayScene(0, challenge=FlownMission(MISSIONS["brake"])))
+    driver = open_game(PlayScene, 0, challenge=FlownMission(MISSIONS["brake"]))
     driver.app.context.settings.assist = assist
     driver.key(pygame.K_r)
     written: set[str] = set()
@@ -272,7 +272,7 @@ def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
 
 
 def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
-    driver = open_game(MissionsScene())
+    driver = open_game(MissionsScene)
     driver.keys(pygame.K_END, pygame.K_RETURN)
     first = play(driver).flight
     driver.key(pygame.K_n)
@@ -286,13 +286,13 @@ def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):
 @pytest.fixture
 def book(open_game: Open, context: Context) -> Driver:
     kept(context, scripted(by_hand=30))
-    driver = open_game(LogbookScene())
+    driver = open_game(LogbookScene)
     driver.frames(2)
     return driver
 
 
 def test_a_flight_that_ends_is_written_down(open_game: Open, context: Context):
-    driver = open_game(PlayScene(5))
+    driver = open_game(PlayScene, 5)
     driver.frames(1)
     land(driver)
     (entry,) = Records(context.user_dir).entries()

@@ -103,7 +103,7 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     assert play(driver).waiting
     driver.app.close()
     assert saved(context) == (True, True)
-    missions = open_game(MissionsScene()).top
+    missions = open_game(MissionsScene).top
     assert missions._row(FIRST.name)[1] == texts.TUTORIAL_FLOWN
 
 
@@ -114,7 +114,7 @@ def test_only_the_very_first_flight_teaches(open_game: Open):
 
 
 def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, context: Context):
-    driver = pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
+    driver = pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
     lessons = learn(pupil)
     assert [next(lessons) for _ in range(4)] == NAMES[:4]  # which is now to lean
     first = play(driver).flight
@@ -131,7 +131,7 @@ def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, con
 
 
 def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    driver = open_game(PlayScene(0, challenge=Tutorial()))
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
     for _ in range(2):
         driver.key(pygame.K_n)  # to the fall, and the braking
     driver.key(pygame.K_LEFT)
@@ -150,7 +150,7 @@ def test_a_crash_is_told_of_once_and_then_beside_the_next_craft(open_game: Open,
 
 
 def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
-    driver = open_game(PlayScene(0, challenge=Tutorial()))
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
     challenge = tutorial(driver)
     for _ in range(2):
         driver.key(pygame.K_n)
@@ -165,7 +165,7 @@ def test_who_rises_while_braking_is_told_to_let_go(open_game: Open):
 
 def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
     context.sound = sound = Listener()
-    pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
+    pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
     lessons = learn(pupil)
     next(lessons)
     sound.heard()
@@ -174,9 +174,9 @@ def test_a_lesson_that_is_done_is_heard(open_game: Open, context: Context):
 
 
 def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context):
-    driver = open_game(MenuScene())
+    driver = open_game(MenuScene)
     context.settings.assist = 1.0
-    driver.app.scenes.apply(Push(PlayScene(0, challenge=Tutorial())))
+    driver.app.scenes.apply(Push(PlayScene(driver.app.context, 0, challenge=Tutorial())))
     driver.key(pygame.K_n)
     driver.key(pygame.K_LEFT)
     driver.frames(20)
@@ -189,7 +189,7 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
 
 
 def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
-    driver = pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
+    driver = pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
     for name in learn(pupil):
         if name == "take_back":
             break
@@ -201,7 +201,7 @@ def test_who_lands_before_all_is_done_is_lifted_up_again(open_game: Open):
 
 
 def test_each_lesson_can_be_skipped(open_game: Open, context: Context):
-    driver = open_game(MenuScene(), tutored=False)
+    driver = open_game(MenuScene, tutored=False)
     driver.key(pygame.K_RETURN)
     for name in NAMES:
         if name == "take_back":
@@ -218,7 +218,7 @@ def saved(context: Context) -> tuple[bool, bool]:
 
 
 def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: Context):
-    driver = open_game(MenuScene(), tutored=False)
+    driver = open_game(MenuScene, tutored=False)
     driver.keys(pygame.K_RETURN, pygame.K_ESCAPE)
     assert driver.top_name == "MenuScene"
     driver.key(pygame.K_RETURN)
@@ -236,12 +236,12 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
 
 def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None, "it is gone"))
-    pupil = Player(open_game(PlayScene(0, challenge=Tutorial())), "keys")
+    pupil = Player(open_game(PlayScene, 0, challenge=Tutorial()), "keys")
     assert list(learn(pupil)) == [name for name in NAMES if name not in ("hand_over", "take_back")]
 
 
 def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game: Open):
-    driver = open_game(PlayScene(0, challenge=Tutorial()))
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
     controls, challenge = driver.app.context.controls, tutorial(driver)
 
     def words() -> str:
@@ -261,7 +261,7 @@ def test_the_words_are_those_of_the_device_and_warn_of_what_is_urgent(open_game:
 
 
 def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
-    driver = open_game(PlayScene(0, challenge=Tutorial()))
+    driver = open_game(PlayScene, 0, challenge=Tutorial())
     for _ in range(3):
         driver.key(pygame.K_n)
     challenge, controls = tutorial(driver), driver.app.context.controls
@@ -274,7 +274,7 @@ def test_a_device_with_one_sign_for_both_turns_names_it_once(open_game: Open):
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_it_is_flown_again_from_the_settings(open_game: Open, device: str):
-    player = Player(open_game(SettingsScene()), device)
+    player = Player(open_game(SettingsScene), device)
     index = [widget.label for widget in player.form.widgets].index(texts.TUTORIAL_OPEN)
     assert index in player.ways()
     player.form.focus(player.form.widgets[index])

@@ -148,11 +148,11 @@ def flown(mission: str, hand: StickHolder) -> Flight:
 
 
 def recorded(context: Context, *, mission: str = "", hand: StickHolder = StickHolder.HUMAN) -> ReplayScene:
-    return ReplayScene(kept(context, flown(mission, hand), course=mission, alone=hand is StickHolder.HUMAN))
+    return ReplayScene(context, kept(context, flown(mission, hand), course=mission, alone=hand is StickHolder.HUMAN))
 
 
 def raced(replay: ReplayScene) -> PlayScene:
-    return PlayScene(replay.record.recording.seed, challenge=race(replay.record))
+    return PlayScene(replay.context, replay.record.recording.seed, challenge=race(replay.record))
 
 
 def flown_on(context: Context, **more: object) -> PlayScene:
@@ -160,20 +160,20 @@ def flown_on(context: Context, **more: object) -> PlayScene:
     flight_replay = FlightReplay(replay.record)
     flight_replay.scout(40)
     flight_replay.seek(30)
-    return PlayScene(replay.record.recording.seed, challenge=fly_on(replay.record, flight_replay))
+    return PlayScene(replay.context, replay.record.recording.seed, challenge=fly_on(replay.record, flight_replay))
 
 
 SCENES: dict[str, Callable[[Context], PlayScene]] = {
-    "free": lambda _: PlayScene(4),
-    "mission": lambda _: PlayScene(0, challenge=FlownMission(MISSIONS["brake"])),
-    "daily": lambda _: PlayScene(0, challenge=DailyStart(date(2026, 1, 1))),
-    "duel": lambda _: PlayScene(4, rival=Weighs(), rival_name="it"),
+    "free": lambda context: PlayScene(context, 4),
+    "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["brake"])),
+    "daily": lambda context: PlayScene(context, 0, challenge=DailyStart(date(2026, 1, 1))),
+    "duel": lambda context: PlayScene(context, 4, rival=Weighs(), rival_name="it"),
     "race": lambda context: raced(recorded(context)),
     "race a mission": lambda context: raced(recorded(context, mission="brake")),
     "flown on": flown_on,
     "flown on a network's": lambda context: flown_on(context, hand=StickHolder.NETWORK),
     "flown on a mission": lambda context: flown_on(context, mission="brake"),
-    "tutorial": lambda _: PlayScene(0, challenge=Tutorial()),
+    "tutorial": lambda context: PlayScene(context, 0, challenge=Tutorial()),
 }
 FREE: dict[str, dict[str, object]] = {
     "three pads": {"three_pads": True},
@@ -225,7 +225,6 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
 
 def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, scene: str, settings: dict) -> Reading:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", Weighs()))
-    first = SCENES[scene](context)
     if settings.get("check_flights"):
         crash = fly_out(Flight(5))
         for _ in range(4):
@@ -233,7 +232,8 @@ def begin(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch, sc
     for name, value in {**settings, "reduced_motion": True}.items():
         setattr(context.settings, name, value)
     context.settings_file.save(context.settings)
-    reading, flight = Reading(open_game(first), monkeypatch), first.flight
+    reading = Reading(open_game(SCENES[scene]), monkeypatch)
+    flight = reading.driver.top.flight
     assert (flight.copilot is not None) == (flight.network is not None and flight.shares)  # or nothing is shared here
     return reading
 
@@ -286,7 +286,7 @@ def assert_book_agrees(reading: Reading, entry: Entry) -> None:
     """Open the logbook at that flight: it is told as the card told it."""
     from game.core.scene import Push
 
-    reading.driver.app.scenes.apply(Push(LogbookScene()))
+    reading.driver.app.scenes.apply(Push(LogbookScene(reading.driver.app.context)))
     page = reading.page(2)
     assert reading.driver.top.chosen == entry
     assert (texts.NOT_COUNTED[entry.bar] in page.words) if entry.bar else not page.counts
@@ -299,7 +299,7 @@ def test_nobody_is_said_to_help_who_can_not(open_game: Open, context: Context, m
     context.settings.assist = 0.6
     context.settings_file.save(context.settings)
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("stand-in", network, "it is gone"))
-    reading = Reading(open_game(PlayScene(4)), monkeypatch)
+    reading = Reading(open_game(PlayScene, 4), monkeypatch)
     reading.check(3)
     reading.driver.key(pygame.K_UP)
     assert reading.check(20).who == {"person"}
@@ -334,7 +334,7 @@ def test_the_choices_say_what_letting_go_does(open_game: Open, context: Context,
 
 def test_the_page_of_a_mission_says_whose_landing_earns_bronze(open_game: Open, context: Context, monkeypatch):
     kept(context, fly_out(Flight(0, mission="brake")), course="brake", alone=False, barred="helped")
-    reading = Reading(open_game(MissionsScene()), monkeypatch)
+    reading = Reading(open_game(MissionsScene), monkeypatch)
     assert texts.MISSION_ANY in reading.page(2).words
     assert "own hand" in texts.MISSION_ANY
 
@@ -343,7 +343,7 @@ def test_the_page_of_a_mission_says_whose_landing_earns_bronze(open_game: Open, 
 def test_a_replay_says_who_flew_from_its_first_moment_on(
     open_game: Open, context: Context, monkeypatch, hand: StickHolder
 ):
-    reading = Reading(open_game(recorded(context, hand=hand)), monkeypatch)
+    reading = Reading(open_game(recorded, hand=hand), monkeypatch)
     reading.driver.key(pygame.K_SPACE)
     for step in (0, 1, 20):
         reading.driver.top.seek(step)

@@ -47,16 +47,16 @@ class Stored:
 @pytest.mark.parametrize("name", Stored.names)
 def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context: Context, monkeypatch, name, count):
     monkeypatch.setattr(networks, "Policies", Stored)
-    reading = Reading(open_game(WatchScene(count, seed=2)), monkeypatch)
+    reading = Reading(open_game(WatchScene, count, seed=2), monkeypatch)
     driver, watch = reading.driver, reading.driver.top
     watch._model_choice.choose(Stored.names.index(name))
     swarm = watch.swarm
     for stopped in (False, True):
-        watch.stopped = stopped
+        watch.playback.stopped = stopped
         for frames in (1, 7):
             check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
             driver.skip(frames)
-    watch.stopped = False
+    watch.playback.stopped = False
     lost = np.zeros((count, 6))
     lost[:, :4] = -swarm.env.limits.half_width + 0.1, 12, -8, 0
     swarm.env.place(np.ones(count, bool), lost)
@@ -64,7 +64,7 @@ def test_watch_says_who_flies_and_how_many_have_landed(open_game: Open, context:
     assert (swarm.env.outcome == Outcome.OUT_OF_BOUNDS).all()
     check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
     assert swarm.lost == count
-    watch.stopped = True
+    watch.playback.stopped = True
     watch._count_choice.choose(2)
     check_watch(reading, flies="weighs" if name == "broken" else name, broken=name == "broken")
 
@@ -74,8 +74,8 @@ def check_watch(reading: Reading, flies: str, broken: bool) -> None:
     scripted, count, swarm = flies == networks.SCRIPTED, COUNTS[watch._count], watch.swarm
     who = {texts.WATCH_SCRIPTED, texts.WATCH_STOPPED, *(texts.WATCH_FLIES.format(name=each) for each in Stored.names)}
     flying = texts.WATCH_SCRIPTED if scripted else texts.WATCH_FLIES.format(name=flies)
-    assert who & words == {texts.WATCH_STOPPED if watch.stopped else flying}
-    assert {texts.HINT_GO, texts.HINT_STOP} & words == {texts.HINT_GO if watch.stopped else texts.HINT_STOP}
+    assert who & words == {texts.WATCH_STOPPED if watch.playback.stopped else flying}
+    assert {texts.HINT_GO, texts.HINT_STOP} & words == {texts.HINT_GO if watch.playback.stopped else texts.HINT_STOP}
     assert set(map(landers, COUNTS)) & words == {landers(count)}
     weighs = flies == "weighs"
     assert (texts.MIND_TITLE in words) == weighs == (texts.MIND_SCRIPTED_TITLE not in words)
@@ -102,7 +102,7 @@ BUTTON = dict.fromkeys([WorkerState.RUNNING, WorkerState.STARTING], texts.TRAIN_
 
 @pytest.mark.parametrize("make", [TrainScene, DigitTrainingScene])
 def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game: Open, monkeypatch, make):
-    reading = Reading(open_game(make()), monkeypatch)
+    reading = Reading(open_game(make), monkeypatch)
     driver, scene = reading.driver, reading.driver.top
     learner = scene.lander_run if make is TrainScene else scene.digit_run
     told: list[WorkerState | None] = [None]
@@ -128,7 +128,7 @@ VERDICTS = [pattern(text) for text in (texts.DIGITS_SURE, texts.DIGITS_LIKELY, t
 
 
 def test_one_verdict_is_said_of_a_drawing_and_it_is_that_of_the_figures(open_game: Open, monkeypatch):
-    reading = Reading(open_game(DigitsScene()), monkeypatch)
+    reading = Reading(open_game(DigitsScene), monkeypatch)
     driver = reading.driver
     assert texts.DIGITS_EMPTY in reading.page(3).words
     said: set[str] = set()

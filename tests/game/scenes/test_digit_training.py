@@ -34,7 +34,7 @@ def wait(driver: Driver, until: Callable[[], object]) -> None:
 
 @pytest.fixture
 def train(open_game: Callable[..., Driver]) -> Driver:
-    driver = open_game(DigitTrainingScene())
+    driver = open_game(DigitTrainingScene)
     driver.frames(2)
     driver.top.knobs.set_config(SMALL, 3)
     return driver
@@ -104,13 +104,13 @@ def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
 
 def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, monkeypatch):
     notes: list[str] = []
-    monkeypatch.setattr(train.top._context, "note", notes.append)
+    monkeypatch.setattr(train.top.context, "note", notes.append)
     scene = train.top
     for word in (scene.save_word, scene.dream_word, scene.quiz_word):
         train.click(word.box.center)
     assert notes == [texts.PUPIL_NOTHING] * 3
     train.key(pygame.K_TAB)
-    scene._form.focus(scene.start_word)
+    scene.form.focus(scene.start_word)
     train.key(pygame.K_RETURN)
     wait(train, lambda: scene.digit_run.curves.points)
     train.click(scene.save_word.box.center)
@@ -136,7 +136,7 @@ def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path:
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, QuestionDialog)
     if answer:
-        train.click(next(word for word in train.top._form.widgets if word.label == answer).box.center)
+        train.click(next(word for word in train.top.form.widgets if word.label == answer).box.center)
     else:
         train.key(pygame.K_ESCAPE)
     assert train.top is scene
@@ -249,6 +249,6 @@ def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     assert scene.matrix.cell == (6, 0)
     train.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
     assert scene.matrix.cell == (7, 0)
-    assert scene._form.focused is scene.matrix
+    assert scene.form.focused is scene.matrix
     train.keys(*[pygame.K_RIGHT] * 10)
-    assert scene._form.focused is not scene.matrix, "beyond the edge the focus goes on"
+    assert scene.form.focused is not scene.matrix, "beyond the edge the focus goes on"

@@ -22,7 +22,7 @@ Open = Callable[..., Driver]
 
 @pytest.fixture
 def drawing(open_game: Open) -> Driver:
-    return open_game(DigitsScene())
+    return open_game(DigitsScene)
 
 
 def scene(driver: Driver) -> DigitsScene:
@@ -194,7 +194,7 @@ def test_a_step_that_is_switched_off_changes_what_is_seen_and_its_price_is_measu
     draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
     drawing.frames(1)
     before = digits.reading.stages.centred
-    crop = next(widget for widget in digits._form.widgets if widget.label == "cropped")
+    crop = next(widget for widget in digits.form.widgets if widget.label == "cropped")
     drawing.click(crop.box.center)
     assert digits.reading.stages.centred.sum() < 0.8 * before.sum()
     frames = drawing.frames(3)
@@ -212,7 +212,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
     shutil.copytree(context.models_dir / "digits", tmp_path / "models" / "digits")
     (tmp_path / "models" / "digits" / "modern" / "config.json").write_text("{", encoding="utf-8")
     context.models_dir = tmp_path / "models"
-    driver = open_game(DigitsScene())
+    driver = open_game(DigitsScene)
     assert scene(driver).chosen == "classic"
     assert "config.json" in scene(driver)._reader.problems["modern"]
     driver.key(pygame.K_n)
@@ -224,7 +224,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
 
 def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, context: Context, tmp_path):
     context.models_dir = tmp_path
-    driver = open_game(DigitsScene())
+    driver = open_game(DigitsScene)
     draw(driver, strokes(3))
     driver.keys(pygame.K_n, pygame.K_3)
     assert scene(driver).probabilities is None
@@ -254,10 +254,10 @@ def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, con
     assert digits._fixing.fixed.digit == 7
     drawing.frames(2)
     assert (context.user_dir / "digits" / "modern").is_dir()
-    word = next(widget for widget in digits._form.widgets if widget.label == "Undo the fix")
+    word = next(widget for widget in digits.form.widgets if widget.label == "Undo the fix")
     drawing.click(word.box.center)
     assert guess(drawing) == 1
-    assert word not in digits._form.widgets
+    assert word not in digits.form.widgets
 
 
 def test_menu_leads_to_drawing_and_back(open_game: Open):
@@ -274,7 +274,7 @@ def test_menu_leads_to_drawing_and_back(open_game: Open):
 def test_words_lead_to_the_other_screens_and_the_drawing_is_kept(drawing: Driver, word: str, name: str):
     draw(drawing, strokes(6))
     digits = scene(drawing)
-    widget = next(widget for widget in digits._form.widgets if widget.label == word)
+    widget = next(widget for widget in digits.form.widgets if widget.label == word)
     drawing.click(widget.box.center)
     assert drawing.top_name == name
     drawing.key(pygame.K_ESCAPE)

@@ -43,7 +43,7 @@ def classifier_image() -> np.ndarray:
 
 def told(monkeypatch, driver: Driver) -> list[str]:
     notes: list[str] = []
-    monkeypatch.setattr(driver.top._context, "note", notes.append)
+    monkeypatch.setattr(driver.top.context, "note", notes.append)
     return notes
 
 
@@ -51,7 +51,7 @@ def told(monkeypatch, driver: Driver) -> list[str]:
 
 
 def test_the_digit_that_is_looked_at_is_dreamt_first_and_then_the_others(open_game: Callable[..., Driver], classifier):
-    game = open_game(DreamScene(classifier, 3))
+    game = open_game(DreamScene, classifier, 3)
     while not game.top.dreams[3].done:
         game.frames(1)
     assert game.top.dreams[3].probabilities.argmax() == 3
@@ -61,7 +61,7 @@ def test_the_digit_that_is_looked_at_is_dreamt_first_and_then_the_others(open_ga
 
 
 def test_keys_mouse_and_pad_choose_a_digit(open_game: Callable[..., Driver], classifier):
-    game = open_game(DreamScene(classifier, 3))
+    game = open_game(DreamScene, classifier, 3)
     game.key(pygame.K_7)
     assert game.top.digit == 7
     game.click(game.top._tiles[2].box.center)
@@ -77,9 +77,9 @@ def test_keys_mouse_and_pad_choose_a_digit(open_game: Callable[..., Driver], cla
 def test_other_settings_begin_another_dream(open_game: Callable[..., Driver], classifier):
     drawing = np.zeros((28, 28), np.float32)
     drawing[5:23, 12:16] = 1
-    game = open_game(DreamScene(classifier, 1, drawing))
+    game = open_game(DreamScene, classifier, 1, drawing)
     game.frames(30)
-    game.top._form.focus(game.top._slider)
+    game.top.form.focus(game.top._slider)
     before = game.top.dreams[1]
     game.key(pygame.K_LEFT)
     assert game.top.dreams[1] is not before
@@ -94,7 +94,7 @@ def test_other_settings_begin_another_dream(open_game: Callable[..., Driver], cl
 
 
 def test_an_empty_drawing_is_no_beginning(open_game: Callable[..., Driver], classifier):
-    game = open_game(DreamScene(classifier, 12, np.zeros((28, 28), np.float32)))
+    game = open_game(DreamScene, classifier, 12, np.zeros((28, 28), np.float32))
     game.frames(3)
     assert game.top.digit == 0
     assert game.top._drawing is None
@@ -104,7 +104,7 @@ def test_an_empty_drawing_is_no_beginning(open_game: Callable[..., Driver], clas
 
 
 def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..., Driver], classifier):
-    game = open_game(QuizScene(classifier))
+    game = open_game(QuizScene, classifier)
     game.frames(2)
     scene = game.top
     scene.contest.round.digit = 7
@@ -116,7 +116,7 @@ def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..
     assert len(scene.pad.strokes) == 1, "what was read stays as it is"
     game.key(pygame.K_RETURN)
     assert scene.contest.round.kind == "read"
-    game.click(scene._form.widgets[scene.contest.round.digit].box.center)
+    game.click(scene.form.widgets[scene.contest.round.digit].box.center)
     assert scene.contest.score("read") == (1, 1)
     game.button(pygame.CONTROLLER_BUTTON_A)
     assert scene.contest.place == 2
@@ -124,16 +124,16 @@ def test_a_drawing_is_read_and_a_strangers_digit_answered(open_game: Callable[..
 
 
 def test_words_that_have_done_their_work_are_gone(open_game: Callable[..., Driver], classifier):
-    game = open_game(QuizScene(classifier))
+    game = open_game(QuizScene, classifier)
     game.frames(2)
     scene = game.top
-    elements = scene._form.manager.get_sprite_group()
+    elements = scene.form.manager.get_sprite_group()
     for _ in range(3):
         for _ in range(10):
             digit = scene.contest.round.digit
             scene.contest.submit(classifier_image()) if scene.contest.round.kind == "draw" else scene._read(digit)
             scene._lay()
-            assert {*scene._form.widgets} == {each for each in elements.sprites() if isinstance(each, Widget)}
+            assert {*scene.form.widgets} == {each for each in elements.sprites() if isinstance(each, Widget)}
             scene._go()
         assert scene.contest.round is None
         scene._go()
@@ -141,7 +141,7 @@ def test_words_that_have_done_their_work_are_gone(open_game: Callable[..., Drive
 
 
 def test_an_empty_pad_is_not_handed_in(open_game: Callable[..., Driver], classifier, monkeypatch):
-    game = open_game(QuizScene(classifier))
+    game = open_game(QuizScene, classifier)
     game.frames(2)
     notes = told(monkeypatch, game)
     game.key(pygame.K_RETURN)
@@ -150,7 +150,7 @@ def test_an_empty_pad_is_not_handed_in(open_game: Callable[..., Driver], classif
 
 
 def test_strokes_are_undone_and_cleared_until_they_are_read(open_game: Callable[..., Driver], classifier):
-    game = open_game(QuizScene(classifier))
+    game = open_game(QuizScene, classifier)
     game.frames(2)
     stroke(game, SEVEN)
     stroke(game, [(100, 200), (150, 400)])
@@ -166,7 +166,7 @@ def test_strokes_are_undone_and_cleared_until_they_are_read(open_game: Callable[
 
 
 def test_ten_rounds_and_again(open_game: Callable[..., Driver], classifier):
-    game = open_game(QuizScene(classifier))
+    game = open_game(QuizScene, classifier)
     game.frames(2)
     scene = game.top
     while current := scene.contest.round:
@@ -189,6 +189,6 @@ def test_without_the_test_images_everything_is_drawn(open_game: Callable[..., Dr
         raise MnistError("MNIST: test.npz is damaged")
 
     monkeypatch.setattr(quiz, "load_part", damaged)
-    game = open_game(QuizScene(classifier))
+    game = open_game(QuizScene, classifier)
     game.frames(2)
     assert {each.kind for each in game.top.contest.rounds} == {"draw"}

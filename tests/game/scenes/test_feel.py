@@ -24,7 +24,7 @@ REST = (0.0, PARAMS.pad_top + PARAMS.stand + 0.3, 0.0, 0.0, 0.0, 0.0)
 @pytest.fixture
 def game(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None))
-    return open_game(PlayScene(seed=3))
+    return open_game(PlayScene, seed=3)
 
 
 @pytest.fixture

@@ -17,13 +17,16 @@ from game.play.challenge import FlownMission
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.ui.context import Context
-from game.ui.hints import draw_hints
+from game.ui.hints import Hint, HintRow
 from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 
 NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
        Command.NEXT: pygame.K_k, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
        Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
-FLOWN = {"Play": lambda _: PlayScene(3), "mission": lambda _: PlayScene(0, challenge=FlownMission(MISSIONS["fall"]))}
+FLOWN = {
+    "Play": lambda context: PlayScene(context, 3),
+    "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["fall"])),
+}
 
 
 def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name: str) -> Counter[str]:
@@ -32,10 +35,10 @@ def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name
     context.settings_file.save(context.settings)
     context.controls = Controls()
     if name in OVER_OTHERS:
-        driver = open_game(MenuScene())
+        driver = open_game(MenuScene)
         driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
     else:
-        driver = open_game({**SCREENS, **FLOWN}[name](context))
+        driver = open_game({**SCREENS, **FLOWN}[name])
     driver.frames(5)
     told: Counter[str] = Counter()
     text = Canvas.text
@@ -72,25 +75,42 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
         bindings.bind(meaning, code)
     context.settings.keys = bindings.to_dict()
     context.settings_file.save(context.settings)
-    settings = open_game(SCREENS["SettingsScene"](context)).top
-    assert settings._form.widgets[0]._hint.startswith("F9 ")
-    driver = open_game(MenuScene())
+    settings = open_game(SCREENS["SettingsScene"]).top
+    assert settings.form.widgets[0]._hint.startswith("F9 ")
+    driver = open_game(MenuScene)
     driver.app.scenes.apply(Push(OVER_OTHERS["ChoicesScene"](driver.top)))
-    help_ = driver.top._rows[driver.top._form.widgets[0]]()
+    help_ = driver.top._rows[driver.top.form.widgets[0]]()
     assert " X" in help_
     assert "+" not in help_
 
 
-def test_a_click_on_a_hint_is_a_press_of_its_key():
-    canvas, controls = Canvas(pygame.Surface(VIEW_SIZE)), Controls()
-    hints = [(controls.word(Command.RETRY), "again"), (controls.key(pygame.K_SPACE), "stop"), ("wheel", "turn")]
-    draw_hints(canvas, hints, (100, 100))
-    (first, retry), (second, stop) = canvas.links
-    assert (retry.key, retry.command) == (pygame.K_r, Command.RETRY)
-    assert (stop.key, stop.command) == (pygame.K_SPACE, None)
-    assert first.right <= second.left + 12
-    assert canvas.linked(first.center) is retry
-    assert canvas.linked((100, 300)) is None
+def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():
+    canvas, done = Canvas(pygame.Surface(VIEW_SIZE)), []
+    hints = [Hint("R", "again", lambda: done.append("again")), Hint("Space", "stop", lambda: done.append("stop")),
+             Hint("wheel", "turn")]  # fmt: skip
+    row = HintRow(hints, (100, 100))
+    again, stop, turn = row.boxes(canvas)
+    assert again.right <= stop.left + 12
+    assert row.at(canvas, again.center) is hints[0]
+    assert row.at(canvas, stop.center) is hints[1]
+    assert row.at(canvas, turn.center) is None  # no press does that
+    assert row.at(canvas, (100, 300)) is None
+    before = pygame.surfarray.array3d(canvas.surface)
+    row.draw(canvas)
+    written = (pygame.surfarray.array3d(canvas.surface) != before).any(axis=(1, 2)).nonzero()[0]
+    assert again.left <= written.min()
+    assert written.max() <= turn.right
+
+
+@pytest.mark.parametrize("from_right", [False, True])
+def test_a_row_without_room_is_written_smaller(from_right: bool):
+    canvas = Canvas(pygame.Surface(VIEW_SIZE))
+    hints = [Hint("Space", "stop the time"), Hint("Period", "the next decision")]
+    wide, narrow = (HintRow(hints, (600, 100), from_right, room=room) for room in (1000, 160))
+    assert wide.width(canvas) > narrow.width(canvas)
+    assert narrow.width(canvas) == pytest.approx(160, abs=3)
+    ends = {row.boxes(canvas)[-1].right - 6 if from_right else row.boxes(canvas)[0].left + 6 for row in (wide, narrow)}
+    assert ends == {600}
 
 
 def test_every_sign_is_drawn_and_looks_like_no_other():

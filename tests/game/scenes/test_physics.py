@@ -23,7 +23,7 @@ _, EARTH = GRAVITIES
 
 @pytest.fixture
 def gallery(open_game: Open) -> Driver:
-    return open_game(PhysicsScene())
+    return open_game(PhysicsScene)
 
 
 def scene(driver: Driver) -> PhysicsScene:
@@ -77,7 +77,7 @@ def test_gravity_is_chosen_and_the_exhibit_begins_anew(gallery: Driver):
 
 
 def test_the_mouse_takes_hold_pulls_and_lets_go(open_game: Open):
-    driver = open_game(PhysicsScene("spin"))
+    driver = open_game(PhysicsScene, "spin")
     exhibit = scene(driver).exhibit
     assert isinstance(exhibit, Spin)
     disc = exhibit.turning[0]
@@ -179,7 +179,7 @@ def test_every_exhibit_is_drawn_at_every_size_and_drawing_changes_nothing(galler
 
 
 def test_between_two_steps_bodies_are_drawn_in_between(open_game: Open):
-    driver = open_game(PhysicsScene("bounce"))
+    driver = open_game(PhysicsScene, "bounce")
     driver.keys(pygame.K_MINUS, pygame.K_MINUS)
     driver.frames(41)
     pictures = []

@@ -64,7 +64,7 @@ def action(driver: Driver) -> int:
 @pytest.mark.parametrize(("keys", "wanted"), [((MAIN,), 3), ((LEFT,), 1), ((RIGHT, pygame.K_w), 5), ((LEFT, RIGHT), 0)])
 def test_keys_fly(open_game: Open, flown_by, keys: tuple[int, ...], wanted: int):
     flown_by(None)
-    driver = open_game(PlayScene(seed=1))
+    driver = open_game(PlayScene, seed=1)
     driver.frames(1)
     for key in keys:
         press(driver, key)
@@ -79,7 +79,7 @@ def test_keys_fly(open_game: Open, flown_by, keys: tuple[int, ...], wanted: int)
 @pytest.mark.parametrize("begin", [MAIN, LEFT, pygame.K_TAB])
 def test_a_flight_waits_for_the_first_touch_even_through_a_pause(open_game: Open, flown_by, begin: int):
     flown_by(Steady())
-    driver = open_game(PlayScene(seed=1))
+    driver = open_game(PlayScene, seed=1)
     driver.frames(30)
     driver.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
     assert scene(driver).flight.env.steps[0] == 0
@@ -103,7 +103,7 @@ def test_the_key_that_opened_the_flight_does_not_also_begin_it(open_game: Open, 
 
 def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, flown_by):
     flown_by(Steady())
-    driver = open_game(PlayScene(seed=1))
+    driver = open_game(PlayScene, seed=1)
     held = False
     for turn in range(100):
         if turn % 10 == 0:  # stay clear of the ground
@@ -121,7 +121,7 @@ def test_a_hundred_handovers_stick_no_engine_and_lose_no_input(open_game: Open, 
 
 def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
-    driver = open_game(PlayScene(seed=12))
+    driver = open_game(PlayScene, seed=12)
     driver.frames(1)
     driver.key(LEFT)
     driver.frames(20)
@@ -136,7 +136,7 @@ def test_the_network_lands_what_was_handed_over_and_the_card_says_who_flew(open_
 @pytest.mark.parametrize("key", [pygame.K_RETURN, pygame.K_SPACE, pygame.K_r])
 def test_after_a_crash_one_key_flies_the_same_start_again(open_game: Open, flown_by, key: int):
     flown_by(None)
-    driver = open_game(PlayScene(seed=3))
+    driver = open_game(PlayScene, seed=3)
     began = scene(driver).flight.poses.before.copy()
     start_at(scene(driver), 8, 3, 0, -3, 0, 0)
     driver.frames(140)
@@ -149,7 +149,7 @@ def test_after_a_crash_one_key_flies_the_same_start_again(open_game: Open, flown
 
 def test_after_a_landing_enter_flies_a_new_start_and_r_the_same(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(PlayScene(seed=3))
+    driver = open_game(PlayScene, seed=3)
     for key, same in ((pygame.K_r, True), (pygame.K_RETURN, False)):
         start_at(scene(driver), 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
         driver.frames(140)
@@ -160,7 +160,7 @@ def test_after_a_landing_enter_flies_a_new_start_and_r_the_same(open_game: Open,
 
 def test_a_thrust_held_through_the_end_does_not_dismiss_the_card(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(PlayScene(seed=3))
+    driver = open_game(PlayScene, seed=3)
     start_at(scene(driver), 8, 3, 0, -4, 0, 0)
     press(driver, pygame.K_SPACE)
     driver.frames(20)
@@ -172,7 +172,7 @@ def test_a_thrust_held_through_the_end_does_not_dismiss_the_card(open_game: Open
 
 def test_pause_by_key_and_by_looking_away_keeps_the_flight(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(PlayScene(seed=3))
+    driver = open_game(PlayScene, seed=3)
     flight = scene(driver).flight
     for event in (pygame.WINDOWFOCUSLOST, None):
         if event is None:
@@ -193,7 +193,7 @@ def test_pause_by_key_and_by_looking_away_keeps_the_flight(open_game: Open, flow
 
 def test_a_glance_away_does_not_pause(open_game: Open, flown_by):
     flown_by(None)
-    driver = open_game(PlayScene(seed=3))
+    driver = open_game(PlayScene, seed=3)
     driver.post(pygame.WINDOWFOCUSLOST)
     driver.frames(3)
     driver.post(pygame.WINDOWFOCUSGAINED)
@@ -205,7 +205,7 @@ def test_a_resize_in_the_middle_changes_nothing_but_the_picture(open_game: Open,
     flown_by(ScriptedPilot())
     flown = []
     for sizes in ([], [(900, 700), (640, 360), (1280, 720)]):
-        driver = open_game(PlayScene(seed=4))
+        driver = open_game(PlayScene, seed=4)
         driver.key(pygame.K_TAB)
         for size in sizes:
             driver.resize(size)
@@ -219,7 +219,7 @@ def test_a_resize_in_the_middle_changes_nothing_but_the_picture(open_game: Open,
 
 def test_a_missing_network_is_named_and_the_game_goes_on(open_game: Open, context: Context, tmp_path: Path):
     context.models_dir = tmp_path
-    driver = open_game(PlayScene(seed=1))
+    driver = open_game(PlayScene, seed=1)
     driver.key(pygame.K_TAB)
     driver.frames(30)
     play = scene(driver)
@@ -246,7 +246,7 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
     for path in (tmp_path / "lander" / "modern").rglob("*weights.npy"):
         damage(path)
     context.models_dir = tmp_path
-    driver = open_game(PlayScene(seed=1))
+    driver = open_game(PlayScene, seed=1)
     driver.key(pygame.K_TAB)
     driver.frames(30)
     assert scene(driver).flight.hand is StickHolder.HUMAN
@@ -257,7 +257,7 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
 
 def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_other_flight(open_game: Open, context):
     resource = pytest.importorskip("resource")
-    driver = open_game(PlayScene(seed=1))
+    driver = open_game(PlayScene, seed=1)
     crash(driver)
     before = {path.name: path.read_bytes() for path in context.user_dir.rglob("*.json*")}
     assert len(before) == 2  # the logbook, and the flight
@@ -283,7 +283,7 @@ def crash(driver: Driver) -> None:
 
 
 def test_a_window_that_is_minimised_for_a_minute_finds_the_flight_as_it_was_left(open_game: Open, flown_by):
-    driver = open_game(PlayScene(seed=1))
+    driver = open_game(PlayScene, seed=1)
     driver.frames(2)
     driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     driver.frames(30)
@@ -313,7 +313,7 @@ def test_the_pause_changes_the_network_in_mid_flight(
     open_game: Open, context: Context, tmp_path: Path, hand: StickHolder
 ):
     with_networks(context, tmp_path, "a", "b", "modern")
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     play = scene(driver)
     assert play._network.name == "modern"
     driver.key(pygame.K_TAB)
@@ -336,7 +336,7 @@ def test_the_pause_changes_the_network_in_mid_flight(
 def test_a_network_that_breaks_on_the_way_gives_the_stick_back(open_game: Open, context: Context, tmp_path: Path):
     with_networks(context, tmp_path, "modern", "hurt")
     (context.user_dir / "models" / "hurt" / "online" / "config.json").write_text("{")
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     driver.key(pygame.K_TAB)
     driver.frames(5)
     scene(driver)._choose_network("hurt")
@@ -347,7 +347,7 @@ def test_a_network_that_breaks_on_the_way_gives_the_stick_back(open_game: Open, 
 
 def test_draw_changes_nothing(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     driver.key(pygame.K_TAB)
     driver.frames(90)
     pictures = []
@@ -360,7 +360,7 @@ def test_draw_changes_nothing(open_game: Open, flown_by):
 @pytest.mark.parametrize("hints", [True, False])
 def test_hints_come_with_the_setting_and_go_with_it(open_game: Open, flown_by, monkeypatch, hints: bool):
     flown_by(ScriptedPilot())
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     driver.app.context.settings.show_hints = hints
     written: list[str] = []
     monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
@@ -375,10 +375,10 @@ def test_hints_come_with_the_setting_and_go_with_it(open_game: Open, flown_by, m
 
 def test_the_networks_way_is_drawn_in_its_colour_if_there_is_one(open_game: Open, flown_by):
     flown_by(ScriptedPilot())
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     driver.frames(200)
     assert len(scene(driver)._path_preview._forecast.path) > 5
     flown_by(None)
-    driver = open_game(PlayScene(seed=4))
+    driver = open_game(PlayScene, seed=4)
     driver.frames(2)
     assert not scene(driver)._path_preview.asks

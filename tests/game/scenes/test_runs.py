@@ -57,8 +57,8 @@ def three(library: Library) -> Library:
 @pytest.fixture
 def open_runs(open_game: Open, library: Library) -> Callable[..., Driver]:
     def begin(**arguments: object) -> Driver:
-        driver = open_game(MenuScene())
-        driver.app.scenes.apply(Push(NetworksScene(**arguments)))  # type: ignore[arg-type]
+        driver = open_game(MenuScene)
+        driver.app.scenes.apply(Push(NetworksScene(driver.app.context, **arguments)))  # type: ignore[arg-type]
         driver.frames(2)
         return driver
 
@@ -81,7 +81,7 @@ def verbs(driver: Driver) -> list[str]:
 
 
 def click(driver: Driver, label: str) -> None:
-    word = next(widget for widget in scene(driver)._form.widgets if widget.label == label)
+    word = next(widget for widget in scene(driver).form.widgets if widget.label == label)
     driver.click((word.box.left + 8, word.box.centery))
 
 
@@ -127,7 +127,7 @@ def test_without_any_network_the_screen_still_stands(open_runs, context: Context
 def test_the_keyboard_renames(open_runs, three: Library):
     driver = open_runs()
     driver.keys(DOWN, ENTER, DOWN, DOWN, DOWN)
-    assert scene(driver)._form.focused.label == texts.RUN_RENAME
+    assert scene(driver).form.focused.label == texts.RUN_RENAME
     driver.key(ENTER)
     type_text(driver, "moon / walker?")
     driver.key(ENTER)
@@ -141,7 +141,7 @@ def test_a_name_that_is_taken_is_explained_and_can_be_changed(open_runs, three: 
     type_text(driver, "B")
     driver.key(ENTER)
     assert "already" in note(driver)
-    assert scene(driver)._form.typing
+    assert scene(driver).form.typing
     type_text(driver, "B2")
     driver.key(ENTER)
     assert sorted(run.name for run in three.runs()) == ["B2", "b", "c"]
@@ -195,7 +195,7 @@ def test_a_gamepad_deletes_brings_back_and_leaves(open_runs, three: Library):
     assert [run.name for run in three.runs()] == ["b", "c"]
     for _ in range(4):
         driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
-    assert scene(driver)._form.focused.label == texts.RUN_RESTORE.format(name="a")
+    assert scene(driver).form.focused.label == texts.RUN_RESTORE.format(name="a")
     driver.button(pygame.CONTROLLER_BUTTON_A)
     assert [run.name for run in three.runs()] == ["a", "b", "c"]
     driver.button(pygame.CONTROLLER_BUTTON_B)
@@ -210,7 +210,7 @@ def test_the_mouse_deletes_and_brings_back(open_runs, three: Library):
     click(driver, texts.RUN_RESTORE.format(name="b"))
     assert shown(driver) == "b"
     assert texts.RUN_RESTORED.format(name="b") == note(driver)
-    assert not any("Bring back" in widget.label for widget in scene(driver)._form.widgets)
+    assert not any("Bring back" in widget.label for widget in scene(driver).form.widgets)
 
 
 def test_the_games_own_networks_are_not_to_be_changed(open_runs, context: Context, three: Library):
@@ -276,7 +276,7 @@ def test_a_new_name_is_still_the_one_that_flies(open_runs, three: Library, conte
 
 def test_go_on_training_opens_a_training_of_that_folder(open_runs, three: Library, monkeypatch: pytest.MonkeyPatch):
     asked: list[Path] = []
-    stand_in = SimpleNamespace(TrainScene=lambda resume: (asked.append(resume), MenuScene())[1])
+    stand_in = SimpleNamespace(TrainScene=lambda context, resume: (asked.append(resume), MenuScene(context))[1])
     monkeypatch.setitem(sys.modules, "game.scenes.train", stand_in)
     driver = open_runs()
     click(driver, texts.RUN_TRAIN)

@@ -44,7 +44,7 @@ SMALL = PRESETS["modern"].changed(
 
 @pytest.fixture
 def train(open_game: Callable[..., Driver]) -> Driver:
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     driver.top.knobs.set_config(SMALL, 3)
     return driver
@@ -90,7 +90,7 @@ def test_it_learns_as_it_would_without_a_window(train: Driver) -> None:
 def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
     start(train)
     scene = train.top
-    scene._form.focus(scene._save_word)
+    scene.form.focus(scene._save_word)
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, NameDialog)
     train.key(pygame.K_RETURN)
@@ -106,7 +106,7 @@ def test_what_was_left_without_a_name_is_offered_again(train: Driver, open_game:
     start(train)
     decisions = train.top.lander_run.history["decisions"][-1]
     train.app.close()
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     assert isinstance(driver.top, QuestionDialog)
     driver.key(pygame.K_RETURN)
@@ -121,7 +121,7 @@ def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_ga
     start(train)
     assert train.top.lander_run.name == "Classic 1"
     train.app.close()
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     driver.key(pygame.K_RETURN)
     driver.wait(lambda: driver.top.lander_run.swarm_state)
@@ -132,7 +132,7 @@ def test_a_run_that_goes_on_is_called_by_its_own_settings(train: Driver, open_ga
 def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game: Callable[..., Driver]) -> None:
     start(train)
     train.app.close()
-    driver = open_game(TrainScene())
+    driver = open_game(TrainScene)
     driver.frames(2)
     driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
     assert isinstance(driver.top, TrainScene)
@@ -151,7 +151,7 @@ def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     train.app.scenes.apply(scene._open_runs())
     train.frames(2)
     verbs = train.top._verbs
-    train.top._form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
+    train.top.form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
     train.key(pygame.K_RETURN)
     assert train.top is scene
     train.wait(lambda: scene.lander_run.swarm_state is not None)
@@ -175,8 +175,8 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
 def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
     scene, notes = train.top, list[str]()
     train.app.context.note = notes.append
-    (word,) = [widget for widget in scene._form.widgets if widget.label == texts.TRAIN_TEACH]
-    scene._form.focus(word)
+    (word,) = [widget for widget in scene.form.widgets if widget.label == texts.TRAIN_TEACH]
+    scene.form.focus(word)
     train.key(pygame.K_RETURN)
     assert scene.lander_run.state is None, "nothing to learn from, nothing begun"
     assert texts.TRAIN_NO_LESSONS in notes
@@ -187,7 +187,7 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     assert scene.knobs.config.success_pass
     train.frames(1)
     assert texts.TRAIN_TAUGHT.format(count=2) in notes
-    scene._form.focus(scene._save_word)
+    scene.form.focus(scene._save_word)
     train.key(pygame.K_RETURN)
     train.key(pygame.K_RETURN)
     train.wait(scene.lander_run.library.runs)
@@ -210,7 +210,7 @@ def test_a_live_knob_turns_and_another_waits(train: Driver) -> None:
 def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
     start(train)
     scene = train.top
-    scene._form.focus(next(each for each in scene._form.widgets if isinstance(each, Scrubber)))
+    scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
     train.key(pygame.K_LEFT)
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, PlayScene)
@@ -235,12 +235,12 @@ def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
     assert train.top is scene
     assert not scene.inside.large
     assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
-    scene._form.focus(scene.inside._closer)
+    scene.form.focus(scene.inside._closer)
     train.key(pygame.K_RETURN)
     assert scene.inside.large
     train.key(pygame.K_RETURN)
     assert not scene.inside.large
-    assert scene._form.focused is scene.inside._closer
+    assert scene.form.focused is scene.inside._closer
     train.key(pygame.K_RETURN)
     train.click((900, 441))  # the heading of the small network
     assert not scene.inside.large
@@ -264,7 +264,7 @@ KEYS = {
 
 def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
     scene = train.top
-    form = scene._form
+    form = scene.form
     for page in range(len(scene.knobs._pages)):
         scene.knobs._turn_page(page)
         boxes = [widget.box for widget in form.widgets]
@@ -292,8 +292,8 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     press("confirm")
     train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
     press("right")
-    assert scene._form.focused is scene._step_word
-    scene._form.focus(scene._save_word)
+    assert scene.form.focused is scene._step_word
+    scene.form.focus(scene._save_word)
     press("confirm")
     assert isinstance(train.top, NameDialog)
     press("confirm")
@@ -350,7 +350,7 @@ def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> Non
     threads, others = threading.active_count(), set(map(id, _kept()))
     for visit in range(10):
         assert isinstance(game.top, MenuScene)
-        scene = TrainScene()
+        scene = TrainScene(game.app.context)
         game.app.scenes.apply(Push(scene))
         game.frames(2)
         if isinstance(game.top, QuestionDialog):  # about the run of the visit before

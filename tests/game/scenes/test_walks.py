@@ -16,7 +16,6 @@ from game.core.scene import Push, Scene
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
-from game.input.controls import Command
 from game.scenes.bindings import BindingsScene
 from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
@@ -43,24 +42,24 @@ from tests.support.player import DEVICES, Player
 from tests.support.tour import scene_types
 
 SCREENS: dict[str, Callable[[Context], Scene]] = {
-    "MenuScene": lambda _: MenuScene(),
-    "MissionsScene": lambda _: MissionsScene(),
-    "WatchScene": lambda _: WatchScene(seed=1),
-    "TrainScene": lambda _: TrainScene(),
-    "DigitsScene": lambda _: DigitsScene(),
-    "DigitTrainingScene": lambda _: DigitTrainingScene(),
-    "DreamScene": lambda _: DreamScene(reader()),
-    "QuizScene": lambda _: QuizScene(reader()),
-    "PhysicsScene": lambda _: PhysicsScene(),
-    "LogbookScene": lambda _: LogbookScene(),
-    "SettingsScene": lambda _: SettingsScene(),
-    "BindingsScene": lambda _: BindingsScene(),
-    "NetworksScene": lambda _: NetworksScene(),
-    "ReplayScene": lambda context: ReplayScene(flown(context)),
+    "MenuScene": MenuScene,
+    "MissionsScene": MissionsScene,
+    "WatchScene": lambda context: WatchScene(context, seed=1),
+    "TrainScene": TrainScene,
+    "DigitsScene": DigitsScene,
+    "DigitTrainingScene": DigitTrainingScene,
+    "DreamScene": lambda context: DreamScene(context, reader()),
+    "QuizScene": lambda context: QuizScene(context, reader()),
+    "PhysicsScene": PhysicsScene,
+    "LogbookScene": LogbookScene,
+    "SettingsScene": SettingsScene,
+    "BindingsScene": BindingsScene,
+    "NetworksScene": NetworksScene,
+    "ReplayScene": lambda context: ReplayScene(context, flown(context)),
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
-    "PauseScene": lambda below: PauseScene(below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below, Skill([]), begun=False),
+    "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
+    "ChoicesScene": lambda below: ChoicesScene(below.context, below, Skill([]), begun=False),
     "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
     "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
     "ListDialog": lambda below: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),
@@ -84,7 +83,7 @@ def open_screen(
     def open_it(make: Callable[[Context], Scene]) -> Player:
         context.settings.reduced_motion = True
         context.settings_file.save(context.settings)
-        player = Player(open_game(make(context)), request.param)
+        player = Player(open_game(make), request.param)
         player.frames(3)
         return player
 
@@ -185,14 +184,14 @@ def test_a_flight_is_flown_paused_handed_over_and_left(open_screen):
 
 
 def test_a_replay_is_watched_wound_and_flown_on(open_screen):
-    player = open_screen(lambda context: [flown(context), MenuScene()][1])
+    player = open_screen(lambda context: [flown(context), MenuScene(context)][1])
     player.choose(texts.MENU["logbook"][0])
     player.press("confirm")
     replay = player.top
     assert player.top_name == "ReplayScene"
     player.frames(60)
     player.press("step")
-    assert replay.stopped
+    assert replay.playback.stopped
     at = replay.flight_replay.at
     player.press("left")  # the strip of what was done is where it begins
     assert replay.flight_replay.at < at
@@ -236,33 +235,21 @@ def test_settings_are_changed_and_kept(open_screen):
     assert player.top_name == "MenuScene"
 
 
-def hint(player: Driver, words: str) -> tuple[float, float]:
-    """Where a hint of these words can be clicked."""
-    presses = {KEY_OF.get(words, words)}
-    boxes = [box for box, press in player.app.canvas.links if press.command in presses or press.key in presses]
-    assert boxes, f"no hint can be clicked for {words}"
-    return boxes[-1].center
-
-
-KEY_OF = {"back": Command.BACK, "pause": Command.PAUSE, "hand over": Command.HANDOVER, "choices": Command.CHOICES,
-          "retry": Command.RETRY, "confirm": Command.CONFIRM, "stop": pygame.K_SPACE}  # fmt: skip
-
-
 @pytest.mark.parametrize("name", SCREENS)
 def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str):
-    game: Driver = open_game(SCREENS[name](context))
+    game: Driver = open_game(SCREENS[name])
     game.move((640, 700))
     game.frames(3)
     for _ in range(3):
         if not game.app.scenes.running:
             break
-        words = {word.label: word for word in game.top._form.widgets}
+        words = {word.label: word for word in game.top.form.widgets}
         exits = [label for label in (texts.BACK, texts.PAUSE_LEAVE, texts.MENU["quit"][0]) if label in words]
         if exits:
             game.click(words[exits[0]].box.center)
         else:
-            commands = {press.command for _, press in game.app.canvas.links}
-            game.click(hint(game, "back" if Command.BACK in commands else "pause"))
+            hints = game.hints()
+            game.click(hints.get(texts.HINT_BACK) or hints[texts.HINT_PAUSE])
         game.frames(3)
     assert not game.app.scenes.running
 
@@ -270,7 +257,7 @@ def test_the_mouse_alone_finds_a_way_out(open_game, context: Context, name: str)
 def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
     context.settings.tutored, context.settings.show_hints = True, False
     context.settings_file.save(context.settings)
-    game: Driver = open_game(PlayScene(3))
+    game: Driver = open_game(PlayScene, 3)
     play = game.top
     game.move((640, 400))
     game.frames(3)
@@ -286,10 +273,10 @@ def test_a_flight_is_flown_with_the_mouse_alone(open_game, context: Context):
     for button in (left, right):
         game.post(pygame.MOUSEBUTTONUP, pos=game.to_window((1260, 400)), button=button)
     assert play.flight.recording.actions[-1] == 0
-    game.click(hint(game, "hand over"))
+    game.click(game.hints()[texts.HINT_HAND_OVER])
     assert play.flight.hand is StickHolder.NETWORK
-    game.click(hint(game, "pause"))
+    game.click(game.hints()[texts.HINT_PAUSE])
     assert game.top_name == "PauseScene"
     game.frames(2)
-    game.click(next(word for word in game.top._form.widgets if word.label == texts.PAUSE_LEAVE).box.center)
+    game.click(next(word for word in game.top.form.widgets if word.label == texts.PAUSE_LEAVE).box.center)
     assert not game.app.scenes.running or game.top_name != "PlayScene"

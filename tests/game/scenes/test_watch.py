@@ -24,7 +24,7 @@ Open = Callable[..., Driver]
 @pytest.fixture
 def watching(open_game: Open, context: Context, tmp_path: Path) -> Driver:
     context.models_dir = tmp_path / "models"  # only the scripted pilot is here
-    return open_game(WatchScene(seed=2))
+    return open_game(WatchScene, seed=2)
 
 
 def scene(driver: Driver) -> WatchScene:
@@ -59,7 +59,7 @@ def test_space_stops_and_a_period_goes_one_decision(watching: Driver):
 
 def test_one_step_leads_from_the_end_of_a_flight_to_the_first_decision_of_the_next(watching: Driver):
     watch = scene(watching)
-    watch.stopped = True
+    watch.playback.stopped = True
     while watch.swarm.since_end[0] == 0:
         watch.swarm.step()
     last = watch.decision
@@ -73,7 +73,7 @@ def test_another_number_of_landers_while_stopped_shows_what_they_will_fly(watchi
     watching.frames(30)
     watching.keys(pygame.K_SPACE, pygame.K_DOWN, pygame.K_RIGHT)
     watch = scene(watching)
-    assert watch.stopped
+    assert watch.playback.stopped
     assert watch.swarm.env.num_envs == 16
     assert steps(watching) == 0
     shown = watch.decision
@@ -106,7 +106,7 @@ def test_the_mouse_chooses_words_and_landers(watching: Driver):
     choice = scene(watching)._count_choice
     watching.click((choice.row.lefts[1] + 4, choice.box.centery))
     assert scene(watching).swarm.env.num_envs == 16
-    scene(watching).stopped = True
+    scene(watching).playback.stopped = True
     positions = scene(watching).swarm.env.position
     apart = [np.sort(np.hypot(*(positions - place).T))[1] for place in positions]
     free = [slot for slot in np.argsort(apart)[::-1] if abs(positions[slot][0]) < 9 and slot]
@@ -118,7 +118,7 @@ def test_the_mouse_chooses_words_and_landers(watching: Driver):
 
 def test_a_gamepad_stops_steps_and_chooses(watching: Driver):
     watching.button(pygame.CONTROLLER_BUTTON_Y)
-    assert scene(watching).stopped
+    assert scene(watching).playback.stopped
     before = scene(watching).swarm.decided[0]
     watching.button(pygame.CONTROLLER_BUTTON_RIGHTSTICK)
     assert scene(watching).swarm.decided[0] == before + 1
@@ -148,7 +148,7 @@ def many(open_game: Open, context: Context, tmp_path: Path) -> Driver:
         agent.save(context.user_dir / "models" / f"run {number:02}")
     context.settings.model = "run 03"
     SettingsFile(context.user_dir).save(context.settings)
-    return open_game(WatchScene(seed=2))
+    return open_game(WatchScene, seed=2)
 
 
 def test_of_many_networks_only_the_one_that_flies_is_read(many: Driver):

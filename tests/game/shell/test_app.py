@@ -6,7 +6,7 @@ from pathlib import Path
 import pygame
 import pytest
 
-from game.core.scene import Pop, Push, Quit, Replace
+from game.core.scene import Pop, Push, Quit, Replace, Scene
 from game.core.settings import Settings, SettingsFile
 from game.scenes import scene_of
 from game.scenes.menu import MenuScene
@@ -20,12 +20,12 @@ from tests.support.driver import Driver
 SIZES = [(1280, 720), (1920, 1080), (1000, 800), (640, 360), (2000, 500)]
 
 
-class Probe:
+class Probe(Scene):
     """A scene that records what it is given and does as it is told."""
 
     def __init__(self) -> None:
         self.events: list[pygame.event.Event] = []
-        self.updates = self.draws = self.entered = self.left = 0
+        self.updates = self.draws = self.resumed = self.left = 0
         self.alphas: list[float] = []
         self.next = None
         self.fails_in = ""
@@ -34,9 +34,9 @@ class Probe:
         if self.fails_in == where:
             raise ZeroDivisionError("a fault on purpose")
 
-    def enter(self, context: Context) -> None:
-        self.entered += 1
-        self._fail("enter")
+    def resume(self) -> None:
+        self.resumed += 1
+        self._fail("resume")
 
     def exit(self) -> None:
         self.left += 1
@@ -85,7 +85,7 @@ def test_escape_in_the_menu_asks_twice(game: Driver):
 def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context: Context, name: str):
     rows = ["full_screen", "reduced_motion", "colour_safe", "show_hints"]
     before = getattr(Settings(), name)
-    game = open_game(SettingsScene())
+    game = open_game(SettingsScene)
     game.keys(*[pygame.K_DOWN] * rows.index(name), pygame.K_RETURN)
     game.app.settings_writer.wait()
     assert getattr(SettingsFile(context.user_dir).load(), name) is not before
@@ -96,7 +96,7 @@ def test_a_setting_acts_at_once_is_saved_at_once_and_survives(open_game, context
 
 
 def test_colours_change_with_the_setting(open_game):
-    game = open_game(SettingsScene())
+    game = open_game(SettingsScene)
     usual = game.app.canvas.palette
     game.click((460, 124 + 2 * 60 + 28))
     assert game.app.canvas.palette != usual
@@ -141,7 +141,7 @@ def test_full_screen_ten_times_in_a_row(game: Driver, context: Context):
 
 
 def test_a_mouse_at_rest_takes_nothing_from_the_keyboard(open_game, monkeypatch: pytest.MonkeyPatch):
-    game = open_game(SettingsScene())
+    game = open_game(SettingsScene)
     controls, at = game.app.context.controls, (600, 300)
     game.move(at)
     assert controls.mouse_in_use
@@ -160,7 +160,7 @@ def test_sixty_updates_a_second_and_no_spiral(open_game, context: Context):
     probe = Probe()
     app = App(
         context,
-        probe,
+        lambda _: probe,
         now=iter([0.0, *(n / 144 for n in range(1, 145)), 100.0, 100.01]).__next__,
         scene_of=scene_of,
         capped=False,
@@ -176,12 +176,20 @@ def test_sixty_updates_a_second_and_no_spiral(open_game, context: Context):
     app.close()
 
 
-@pytest.mark.parametrize("where", ["enter", "handle_event", "update", "draw"])
+@pytest.mark.parametrize("where", ["__init__", "handle_event", "update", "draw", "resume"])
 def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Context, where: str):
     log_to(context.user_dir)
     broken = Probe()
     broken.fails_in = where
-    game.app._guarded(lambda: game.app.scenes.apply(Push(broken)))
+
+    def make(_: Context) -> Probe:
+        broken._fail("__init__")
+        return broken
+
+    game.app.show(make)
+    if where == "resume":
+        game.app.show(lambda context: PauseScene(context, broken))
+        game.key(pygame.K_ESCAPE)
     game.key(pygame.K_x)
     game.frames(2)
     assert game.top_name == "ErrorScene"
@@ -192,23 +200,25 @@ def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Conte
 
 
 class Holder(Probe):
-    """Holds something that it gives back, unless it failed too early to have it."""
+    """Holds something that it gives back."""
 
     closed = 0
 
     def close(self) -> None:
-        if self.fails_in == "enter":
-            raise AttributeError("there is nothing to close yet")
         self.closed += 1
 
 
+def unbuildable(_: Context) -> Probe:
+    raise ZeroDivisionError("a fault on purpose")
+
+
 @pytest.mark.parametrize("way", ["first", "over another"])
-def test_a_scene_that_fails_too_early_to_be_closed_is_told_of_and_the_others_are_closed(open_game, way: str):
-    below, broken = Holder(), Holder()
-    broken.fails_in = "enter"
-    game = open_game(broken if way == "first" else below)
+def test_a_scene_that_cannot_be_built_is_told_of_and_the_others_are_closed(open_game, way: str):
+    below = Holder()
+    game = open_game(unbuildable if way == "first" else below)
     if way != "first":
-        game.app.show(broken)
+        game.app.show(unbuildable)
+        assert below.left == 0  # it was not even told that another was to come
     game.frames(2)
     assert game.top_name == "ErrorScene"
     assert below.closed == (way != "first")
@@ -220,7 +230,7 @@ def test_a_scene_that_fails_too_early_to_be_closed_is_told_of_and_the_others_are
 def test_a_scene_that_fails_to_leave_gives_back_what_it_holds(open_game, leave):
     held = [Holder(), Holder()]
     game = open_game(held[0])
-    game.app.show(held[1])
+    game.app.show(lambda _: held[1])
     held[1].fails_in = "exit"
     game.app._guarded(lambda: game.app.scenes.apply(leave))
     assert not game.app.scenes.running or game.top_name == "ErrorScene"
@@ -232,7 +242,7 @@ def test_closing_the_window_closes_every_scene_whatever_fails(open_game):
     held = [Holder(), Holder(), Holder()]
     game = open_game(held[0])
     for scene in held[1:]:
-        game.app.show(scene)
+        game.app.scenes.apply(Push(scene))
     held[1].close = lambda: 1 / 0
     held[2].fails_in = "exit"
     game.app.close()
@@ -245,9 +255,9 @@ def test_making_a_window_leaves_the_collector_of_the_process_alone(open_game):
     assert (gc.get_freeze_count(), gc.get_threshold()) == before
 
 
-@pytest.mark.parametrize("scene", [MenuScene, SettingsScene, lambda: PauseScene(Probe()), Probe])
+@pytest.mark.parametrize("scene", [MenuScene, SettingsScene, lambda context: PauseScene(context, Probe()), Probe()])
 def test_closing_the_window_anywhere_saves_the_settings(open_game, context: Context, scene):
-    game = open_game(scene())
+    game = open_game(scene)
     context.settings.model = "mine"
     pygame.event.post(pygame.event.Event(pygame.QUIT))
     assert game.app.run() == 0
@@ -266,27 +276,27 @@ def test_settings_are_saved_even_if_the_last_scene_fails_to_leave(open_game, con
 def test_pause_stops_the_scene_below_and_resumes_it(open_game):
     probe = Probe()
     game = open_game(probe)
-    game.app.scenes.apply(Push(PauseScene(probe)))
+    game.app.scenes.apply(Push(PauseScene(game.app.context, probe)))
     assert probe.left == 1
     updates = probe.updates
     game.frames(5)
     assert (probe.updates, probe.draws) == (updates, 1)
     game.key(pygame.K_ESCAPE)
     assert game.top is probe
-    assert probe.entered == 2
+    assert probe.resumed == 1
 
 
 def test_pause_offers_retry_settings_and_the_way_out(open_game):
     retried = []
     game = open_game()
     game.app.scenes.apply(Push(probe := Probe()))
-    game.app.scenes.apply(Push(PauseScene(probe, lambda: retried.append(True))))
+    game.app.scenes.apply(Push(PauseScene(game.app.context, probe, lambda: retried.append(True))))
     game.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
     game.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_SPACE)
     assert retried == [True]
     assert game.top is probe
-    game.app.scenes.apply(Push(PauseScene(probe)))
+    game.app.scenes.apply(Push(PauseScene(game.app.context, probe)))
     game.keys(pygame.K_UP, pygame.K_RETURN)
     assert game.top_name == "MenuScene"
 
@@ -366,7 +376,7 @@ def test_no_display_is_a_clear_error(context: Context, monkeypatch):
 def test_user_folder_that_cannot_be_written_does_not_stop_the_game(open_game, context: Context, tmp_path: Path):
     context.user_dir = tmp_path / "file" / "inside"
     (tmp_path / "file").write_text("in the way")
-    game = open_game(SettingsScene())
+    game = open_game(SettingsScene)
     game.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert game.app.context.settings.reduced_motion
     assert game.frames(3)

@@ -105,9 +105,9 @@ def test_drawing_changes_no_state(open_game: Callable[..., Driver], context: Con
 
 
 def test_neither_does_it_while_one_scene_gives_way_to_another(open_game: Callable[..., Driver], context: Context):
-    driver = open_game(SCREENS["MenuScene"](context))
+    driver = open_game(SCREENS["MenuScene"])
     driver.frames(5)
-    driver.app.show(SCREENS["SettingsScene"](context))
+    driver.app.show(SCREENS["SettingsScene"])
     for _ in range(15):
         assert not changed(driver)
         driver.app.scenes.update()

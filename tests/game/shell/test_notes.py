@@ -1,6 +1,7 @@
 """Notes stand where they hide nothing that is to be read or pressed."""
 
 from collections.abc import Callable
+from functools import partial
 
 import pygame
 import pytest
@@ -19,23 +20,24 @@ from game.scenes.runs import NetworksScene
 from game.scenes.settings import SettingsScene
 from game.scenes.train import TrainScene
 from game.scenes.watch import WatchScene
+from game.ui.context import Context
 from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
 NOTE = "Saved as a network with a rather long name: fly with it, or watch it."
 
 
-def scenes() -> dict[str, Scene]:
-    return {
-        "menu": MenuScene(), "settings": SettingsScene(), "logbook": LogbookScene(), "missions": MissionsScene(),
-        "runs": NetworksScene(), "digits": DigitsScene(), "play": PlayScene(seed=1), "watch": WatchScene(seed=1),
-        "pause": PauseScene(MenuScene()), "choices": PlayScene(seed=1), "naming": MenuScene(), "train": TrainScene(),
-    }  # fmt: skip
+SCENES: dict[str, Callable[[Context], Scene]] = {
+    "menu": MenuScene, "settings": SettingsScene, "logbook": LogbookScene, "missions": MissionsScene,
+    "runs": NetworksScene, "digits": DigitsScene, "play": partial(PlayScene, seed=1),
+    "watch": partial(WatchScene, seed=1), "pause": lambda context: PauseScene(context, MenuScene(context)),
+    "choices": partial(PlayScene, seed=1), "naming": MenuScene, "train": TrainScene,
+}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", scenes())
+@pytest.mark.parametrize("name", SCENES)
 def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, name: str):
-    driver = open_game(scenes()[name])
+    driver = open_game(SCENES[name])
     driver.frames(3)
     if name == "choices":
         driver.key(pygame.K_c)
@@ -54,7 +56,7 @@ def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, nam
 
 
 def test_a_note_moves_aside_where_the_middle_is_taken_in_every_row(open_game: Open, monkeypatch: pytest.MonkeyPatch):
-    driver = open_game(MenuScene())
+    driver = open_game(MenuScene)
     driver.frames(2)
     notes, canvas = driver.app._notes, driver.app.canvas
     taken = canvas.rect(800, 0, VIEW_SIZE[0] - 800, VIEW_SIZE[1])

@@ -59,7 +59,7 @@ def test_networks_of_any_shape_are_explained(context: Context, config):
 
 
 def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable[..., Driver], own: list[str]):
-    driver = open_game(DigitsScene())
+    driver = open_game(DigitsScene)
     draw(driver, strokes(3))
     seen = []
     for _ in range(5):
@@ -77,8 +77,8 @@ def test_all_of_them_can_be_chosen_by_keys_and_from_the_list(open_game: Callable
 
 
 def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable[..., Driver], context: Context):
-    driver = open_game(DigitsScene())
-    driver.click(next(word for word in driver.top._form.widgets if word.label == "Train").box.center)
+    driver = open_game(DigitsScene)
+    driver.click(next(word for word in driver.top.form.widgets if word.label == "Train").box.center)
     assert driver.top_name == "DigitTrainingScene"
     save(context, "mine")
     driver.key(pygame.K_ESCAPE)
@@ -88,7 +88,7 @@ def test_what_was_trained_meanwhile_stands_beside_the_others(open_game: Callable
 
 def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver], context: Context, own: list[str]):
     (runs_dir(context.user_dir) / own[0] / "config.json").write_text("{", encoding="utf-8")
-    driver = open_game(DigitsScene())
+    driver = open_game(DigitsScene)
     driver.keys(pygame.K_n, pygame.K_n)
     assert driver.top.chosen == own[1]
     assert "config.json" in driver.top._reader.problems[own[0]]

@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from game.core.collection import fitting
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Scene, Transition
 from game.drawing.canvas import Canvas
 from game.input.bindings import Command
 from game.ui import text_line
@@ -18,15 +18,13 @@ from game.ui.widgets import TextButton
 from tests.support.driver import Driver
 
 
-class Page:
+class Page(Scene):
     """An entry, a word, a list; and letters that would be commands."""
 
-    def __init__(self, rows: int = 20) -> None:
+    def __init__(self, context: Context, rows: int = 20) -> None:
+        super().__init__(context)
         self.log: list[object] = []
         self.commands = ""
-        self.rows = rows
-
-    def enter(self, context: Context) -> None:
         self.form = form = Form(context, on_back=Pop)
         log = self.log
         self.entry = form.add(
@@ -35,12 +33,9 @@ class Page:
         )  # fmt: skip
         self.word = form.add(TextButton(form.manager, (64, 160, 80, 24), "Save", lambda: log.append("saved")))
         self.list = form.add(
-            Listing(form.manager, (64, 220, 400, 160), [(f"run {n}", f"{n} %") for n in range(self.rows)],
+            Listing(form.manager, (64, 220, 400, 160), [(f"run {n}", f"{n} %") for n in range(rows)],
                     on_choose=log.append, on_press=lambda row: log.append(("open", row)), empty="none yet")
         )  # fmt: skip
-
-    def exit(self) -> None:
-        pass
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         outcome = self.form.handle_event(event)
@@ -58,8 +53,8 @@ class Page:
 
 @pytest.fixture
 def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
-    scene = Page()
-    return open_game(scene), scene
+    driver = open_game(Page)
+    return driver, driver.top  # type: ignore[return-value]
 
 
 def write(game: Driver, text: str) -> None:
@@ -451,8 +446,8 @@ def test_a_click_chooses_and_a_second_one_opens(page: tuple[Driver, Page]):
 
 
 def test_an_empty_list_is_harmless(open_game: Callable[..., Driver]):
-    scene = Page(rows=0)
-    game = open_game(scene)
+    game = open_game(Page, rows=0)
+    scene = game.top
     scene.form.focus(scene.list)
     game.keys(pygame.K_DOWN, pygame.K_RETURN, pygame.K_END)
     game.click((100, 240))

@@ -28,8 +28,8 @@ Take = Callable[[object], Player]
 def take(request: pytest.FixtureRequest, open_game: Open) -> Take:
     """Open a scene and take its first pointer in hand, by one device alone."""
 
-    def taken(scene: object) -> Player:
-        player = Player(open_game(scene), request.param)
+    def taken(*scene: object) -> Player:
+        player = Player(open_game(*scene), request.param)
         player.frames(3)
         pointer = next(widget for widget in player.form.widgets if isinstance(widget, VirtualPointer))
         player.form.focus(pointer)
@@ -61,7 +61,7 @@ def bring(player: Player, place: tuple[float, float]) -> None:
 
 
 def test_a_body_is_gripped_lifted_and_let_go(take: Take):
-    player = take(PhysicsScene("spin"))
+    player = take(PhysicsScene, "spin")
     scene = player.top
     disc = scene.exhibit.turning[0]
 
@@ -88,7 +88,7 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
 
 
 def test_who_looks_elsewhere_lets_go(take: Take):
-    player = take(PhysicsScene("spin"))
+    player = take(PhysicsScene, "spin")
     scene = player.top
     bring(player, tuple(scene._view(1.0).points(scene.exhibit.turning[0].position[0]).tolist()))
     player.hold("confirm", down=True)
@@ -105,7 +105,7 @@ def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
     records = Records(context.user_dir)
     for number in range(3):
         records.keep(fly_out(Flight(number)), NOON + number, alone=True)
-    player = take(LogbookScene())
+    player = take(LogbookScene)
     chart, other = player.top._charts.charts
     bring(player, chart.plot.center)
     assert chart._pointed
@@ -117,7 +117,7 @@ def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
 
 
 def test_the_network_of_a_run_can_be_pointed_into(take: Take):
-    player = take(TrainScene())
+    player = take(TrainScene)
     view = player.top.inside._view
     view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
     bring(player, view._centres[1][3])

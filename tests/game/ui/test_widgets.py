@@ -7,7 +7,7 @@ import pygame
 import pytest
 
 from game.core import texts
-from game.core.scene import Pop, Transition
+from game.core.scene import Pop, Scene, Transition
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
@@ -26,13 +26,12 @@ from tests.support.driver import Driver
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
 
 
-class Page:
+class Page(Scene):
     """One of each widget."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
         self.log: list[object] = []
-
-    def enter(self, context: Context) -> None:
         self.form = form = Form(context, on_back=Pop)
         manager, log = form.manager, self.log
         self.word = form.add(TextButton(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))  # type: ignore[func-returns-value]
@@ -41,9 +40,6 @@ class Page:
             Slider(manager, (64, 200, 400, 24), "Rate", 0.5, (0.0, 1.0), log.append, step=0.1, figure_width=60)
         )
         self.choice = form.add(Choice(manager, (64, 250, 400, 32), "", ["one", "two", "three"], 0, log.append))
-
-    def exit(self) -> None:
-        pass
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         return self.form.handle_event(event)
@@ -58,8 +54,8 @@ class Page:
 
 @pytest.fixture
 def page(open_game: Callable[..., Driver]) -> tuple[Driver, Page]:
-    page = Page()
-    return open_game(page), page
+    driver = open_game(Page)
+    return driver, driver.top  # type: ignore[return-value]
 
 
 @pytest.mark.parametrize(
@@ -141,7 +137,7 @@ def test_a_held_direction_repeats(page: tuple[Driver, Page]):
 
 
 def test_a_logarithmic_slider_gives_every_decade_the_same_room(context: Context, open_game: Callable[..., Driver]):
-    open_game(Page())
+    open_game(Page)
     form = Form(context)
     slider = Slider(form.manager, (0, 0, 300, 24), "", 1e-4, (1e-5, 1e-1), lambda _: None, logarithmic=True)
     assert slider.fraction == pytest.approx(0.25)
@@ -282,12 +278,12 @@ def test_a_choice_of_many_goes_on_pages_that_keys_and_mouse_turn():
 
 @pytest.mark.parametrize("scene", [SettingsScene, ChoicesScene])
 def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callable[..., Driver], scene: type):
-    driver = open_game(SettingsScene() if scene is SettingsScene else PlayScene(seed=1))
+    driver = open_game(SettingsScene if scene is SettingsScene else PlayScene(seed=1))
     driver.frames(2)
     if scene is ChoicesScene:
         driver.key(pygame.K_c)
     assert isinstance(driver.top, scene)
-    form = driver.top._form
+    form = driver.top.form
     seen = set()
     for widget in form.widgets:
         form.focus(widget)

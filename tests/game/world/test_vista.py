@@ -14,8 +14,7 @@ from game.ui.context import Context
 
 @pytest.mark.parametrize("folder", [None, "nothing here"], ids=["network", "no network"])
 def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: str | None, tmp_path: Path) -> None:
-    background = MenuBackground()
-    background.enter(replace(context, models_dir=tmp_path / folder) if folder else context)
+    background = MenuBackground(replace(context, models_dir=tmp_path / folder) if folder else context)
     end = time.monotonic() + 20
     while background._pilot is None:
         assert time.monotonic() < end
@@ -33,8 +32,7 @@ def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: st
 
 def test_it_stands_still_where_motion_is_reduced(context: Context) -> None:
     context.settings.reduced_motion = True
-    background = MenuBackground()
-    background.enter(context)
+    background = MenuBackground(context)
     pose = background._poses.at(1.0)
     for _ in range(60):
         background.update()
@@ -42,14 +40,13 @@ def test_it_stands_still_where_motion_is_reduced(context: Context) -> None:
 
 
 def test_it_stands_again_when_motion_is_reduced_in_its_midst(context: Context) -> None:
-    background = MenuBackground()
-    background.enter(context)
+    background = MenuBackground(context)
     pose = background._poses.at(1.0)
     for _ in range(60):
         background.update()
     assert not np.array_equal(background._poses.at(1.0), pose)
     context.settings.reduced_motion = True
-    background.enter(context)
+    background.resume()
     background.update()
     assert np.array_equal(background._poses.at(0.5), pose)
     assert not background._stage.thrust.any()

@@ -1,0 +1,99 @@
+"""Playback: a clock that can be stopped, stepped and sped up, with its row of speeds and its keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import pygame
+
+from game.core import texts
+from game.core.clock import TimeScale
+from game.drawing.tokens import SMALL
+from game.input.controls import Command
+from game.ui.actions import Action
+from game.ui.widget import PointsManager
+from game.ui.widgets import Choice
+
+LABEL_WIDTH: Final = 84.0
+_WORDS: Final = {0.25: "×¼", 0.5: "×½", 1.0: "×1", 2.0: "×2", 4.0: "×4"}
+
+
+class Playback:
+    """Clock of a scene that the player controls.
+
+    Args:
+        clock: how many steps are due in an update.
+        speeds: rates to choose from; 1 is the first.
+        advance: takes one step, as the player means it.
+
+    Attributes:
+        stopped: whether time stands still.
+
+    """
+
+    def __init__(self, clock: TimeScale, speeds: Sequence[float], advance: Callable[[], None]) -> None:
+        self._clock, self._speeds, self._advance = clock, speeds, advance
+        self.stopped = False
+
+    @property
+    def words(self) -> list[str]:
+        """The speeds as they are written."""
+        return [_WORDS[speed] for speed in self._speeds]
+
+    def row(self, manager: PointsManager, box: pygame.typing.RectLike) -> Choice:
+        """Return the row of speeds, a widget to be added to a form."""
+        now = self._speeds.index(self._clock.rate)
+        self._row = Choice(
+            manager, box, texts.WATCH_SPEED, self.words, now, self._choose, label_width=LABEL_WIDTH, size=SMALL
+        )
+        return self._row
+
+    def actions(
+        self,
+        step_hint: str,
+        *,
+        stop: Callable[[], None] | None = None,
+        pad: Command = Command.HANDOVER,
+        resting: bool = False,
+    ) -> list[Action]:
+        """Return the actions: stop or go, and step, with hints; slower and faster without.
+
+        Args:
+            step_hint: what a step is called.
+            stop: stops or goes, where that takes more than `toggle`.
+            pad: command that stops or goes from a gamepad.
+            resting: whether time stands still for another reason than being stopped.
+
+        """
+        go = texts.HINT_GO if self.stopped or resting else texts.HINT_STOP
+        return [
+            Action(pygame.K_SPACE, stop or self.toggle, go, pad=pad),
+            Action(Command.STEP, self.step, step_hint),
+            Action(Command.SLOWER, lambda: self._shift(-1)),
+            Action(Command.FASTER, lambda: self._shift(1)),
+        ]
+
+    def toggle(self) -> None:
+        """Stop, or go on."""
+        self.stopped = not self.stopped
+
+    def step(self) -> None:
+        """Stop, and take one step."""
+        self.stopped = True
+        self._advance()
+
+    def steps(self) -> int:
+        """Count one update, and return the number of steps due in it."""
+        return 0 if self.stopped else self._clock.steps()
+
+    def between(self, alpha: float) -> float:
+        """Interpolation between the last two steps, 0 to 1, once the fraction `alpha` of an update has passed."""
+        return 1.0 if self.stopped else self._clock.between(alpha)
+
+    def _shift(self, direction: int) -> None:
+        self._row.shift(direction)
+
+    def _choose(self, index: int) -> None:
+        self._clock.begin()
+        self._clock.rate = self._speeds[index]
