@@ -121,7 +121,7 @@ def test_nor_in_the_midst_of_things(open_game, context: Context, monkeypatch, na
     assert not wrong(write_down(driver, monkeypatch))
 
 
-@pytest.mark.parametrize("name", ["Logbook", "Missions", "Runs"])
+@pytest.mark.parametrize("name", ["LogbookScene", "MissionsScene", "NetworksScene"])
 def test_nor_where_there_is_much_to_list(open_game, context: Context, monkeypatch, name: str):
     stock(context)
     records = Records(context.user_dir)
