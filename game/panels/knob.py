@@ -31,7 +31,7 @@ _CLEAR: Final = 9.0  # from the middle of the handle to that text
 
 
 class Knob(Widget):
-    """Base of all knobs. The panel owns the value: `turn` requests another, `display` shows the current one.
+    """Base of all knobs. The panel owns the value: `turn`, given the knob's name, asks for another; `display` shows it.
 
     `enter` is called by Enter, or a gamepad's A, on a slider, which has nothing to press.
 
@@ -49,7 +49,7 @@ class Knob(Widget):
         manager: PointsManager,
         box: pygame.typing.RectLike,
         description: KnobDescription,
-        turn: Callable[[KnobDescription, Any], None],
+        turn: Callable[[str, Any], None],
         enter: Callable[[], None] = lambda: None,
     ) -> None:
         super().__init__(manager, box, description.label)
@@ -92,7 +92,7 @@ class Knob(Widget):
     def turn(self, value: Any) -> None:
         """Request another value from the panel."""
         if value != self.value:
-            self._turn(self.description, value)
+            self._turn(self.description.name, value)
 
     def take(self, event: pygame.event.Event) -> bool:
         """Restore the preset's value on the key for it."""

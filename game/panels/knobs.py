@@ -17,7 +17,7 @@ from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT,
 from game.panels import knob_foot
 from game.panels.knob import MARGIN, Knob, SliderKnob, SwitchKnob, WordsKnob
 from game.panels.seed_knob import SeedKnob
-from game.training.knob_descriptions import Configuration, KnobDescription, label, pages
+from game.training.knob_descriptions import Configuration, label, pages
 from game.training.run_settings import LANDER, SEED, Named, RunKind, RunSettings
 from game.ui.form import Form
 from game.ui.widget import Widget
@@ -180,9 +180,8 @@ class KnobsPanel:
             if (base, "") != named
         ]
         if self._run_kind.sabotages:
-            pick = partial(self._go, "body", picking=True)
-            leave = partial(self._go, "head")
-            others.append((texts.SABOTAGE_LEAVE, leave) if self._picking else (texts.SABOTAGE, pick))
+            word, section = (texts.SABOTAGE_LEAVE, "head") if self._picking else (texts.SABOTAGE, "body")
+            others.append((word, partial(self._go, section, picking=not self._picking)))
         return [chosen, *self._make_words(others, box.right, pygame.Rect(0, top, 14, 24), SMALL)]
 
     def _make_words(
@@ -212,9 +211,8 @@ class KnobsPanel:
         rows: list[Widget] = []
         for description in self._run_settings.knob_descriptions.values():
             if description.page == page:
-                rows.append(
-                    _KINDS[description.kind](manager, self._row(len(rows)), description, self._turned, self._seek)
-                )
+                kind, box = _KINDS[description.kind], self._row(len(rows))
+                rows.append(kind(manager, box, description, self.turn, self._seek))
         if page == self._run_kind.seed_page:
             rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), partial(self.turn, SEED)))
         return rows
@@ -245,15 +243,13 @@ class KnobsPanel:
 
     def _make_answers(self, answer: str) -> list[Widget]:
         """Make the buttons that apply or undo."""
-        undo, apply = (texts.KNOBS_UNDO, self._undo), (texts.KNOBS_APPLY, self._apply)
+        undo = (texts.KNOBS_UNDO, partial(self._settle, self._run_settings.undo))
+        apply = (texts.KNOBS_APPLY, partial(self._settle, self._run_settings.apply))
         words = {"apply": [apply, undo], "undo": [undo]}
         row = pygame.Rect(0, self._box.bottom - knob_foot.ANSWERS, 18, 28)
         return self._make_words(words.get(answer, []), self._box.right - 14.0, row, TEXT, HUMAN)
 
     # What the widgets ask for
-
-    def _turned(self, description: KnobDescription, value: Any) -> None:
-        self.turn(description.name, value)
 
     def _turn_page(self, page: int) -> None:
         for widget in self._widgets:
@@ -282,13 +278,10 @@ class KnobsPanel:
 
         return load
 
-    def _apply(self) -> None:
+    def _settle(self, deed: Callable[[], None]) -> None:
+        """Apply or undo the changes that wait, and leave the list of sabotages."""
         self._picking = False
-        self._run_settings.apply()
-        self._go("tabs")
-
-    def _undo(self) -> None:
-        self._run_settings.undo()
+        deed()
         self._go("tabs")
 
 

@@ -74,7 +74,10 @@ class QValues:
 
 
 def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, width: float) -> None:
-    """Draw the expected score, a bar for each action on the fixed scale, and the scale; `top` is the first baseline."""
+    """Draw the expected score, a bar for each action on the fixed scale, and the scale; in points.
+
+    `top` is the first baseline; the last is `HEIGHT` below it.
+    """
     track = (left + _NAME, width - _NAME - _FIGURE)
     canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE)
     canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)

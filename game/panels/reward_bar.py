@@ -15,6 +15,7 @@ from game.charts import plotting
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint import mix
+from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT, Colour
 
 # Neighbours in the strip differ in lightness as well as in hue, also for eyes without red, green or blue cones:
@@ -66,9 +67,7 @@ class RewardBar:
         self._lines = plotting.grid(-1.0, 1.0)
         self._limits = np.array([-1.0, 1.0])
         self._pointer: Point | None = None
-        self._sheet: Canvas | None = None
-        self._drawn: object = None  # what is on the sheet
-        self.redraws = 0
+        self._cache = PaintCache()
 
     def set(self, names: Sequence[str], values: npt.ArrayLike) -> None:
         """Set the reward of each part, per flight; a value that is not finite counts as 0."""
@@ -132,14 +131,9 @@ class RewardBar:
         """Draw the bar."""
         pieces = self.pieces()
         hovered = self.piece_at(self._pointer) if self._pointer else None
-        wanted = (pieces, hovered and hovered.name, canvas.scale)
-        if self._sheet is None or wanted != self._drawn:
-            self._sheet = canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN)
-            self._paint(self._sheet, pieces, hovered)
-            self._drawn = wanted
-            self.redraws += 1
-        corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
-        canvas.surface.blit(self._sheet.surface, corner)
+        box = self.box.inflate(2 * _MARGIN, 2 * _MARGIN)
+        shows = self.label, tuple(pieces), hovered and hovered.name
+        self._cache.draw(canvas, box, shows, lambda sheet: self._paint(sheet, pieces, hovered))
 
     def _paint(self, sheet: Canvas, pieces: Sequence[RewardPiece], hovered: RewardPiece | None) -> None:
         left, right, top = _MARGIN, _MARGIN + self.box.width, _MARGIN + _BAR_TOP

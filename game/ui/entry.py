@@ -77,6 +77,7 @@ class Entry(Widget):
         if not self.line.text.strip():
             return None
         self.typing = False
+        self.line.rest()
         return self._on_accept(self.line.text.strip())
 
     def take(self, event: pygame.event.Event) -> bool:
@@ -163,7 +164,8 @@ class Entry(Widget):
         self._first = self._first_shown()
         self.typing = self.typing and self.focused
         if not self.typing:
-            self._pressed, self.line.composition = None, ""
+            self._pressed = None
+            self.line.rest()
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the label, the text and the line under it."""

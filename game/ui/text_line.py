@@ -70,6 +70,10 @@ class TextLine(UITextEntryLine):
         self.text = self._fits(text)[: self._limit]
         self.edit_position = len(self.text)
         self.select_range = [0, len(self.text)]
+        self.rest()
+
+    def rest(self) -> None:
+        """Let go of a held key and of the mouse, and give up letters that are being composed."""
         self.composition = ""
         self.selection_in_progress = False
         self._held: pygame.event.Event | None = None

@@ -553,18 +553,22 @@ def test_ugly_parts_are_drawn(canvas: Canvas, values: list[float]) -> None:
         reward_bar.draw(canvas)
 
 
-def test_a_strip_that_rests_is_not_drawn_again(canvas: Canvas) -> None:
+def test_a_reward_bar_that_rests_is_not_painted_again(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
+    painted: list[object] = []
+    line = Canvas.line
+    monkeypatch.setattr(Canvas, "line", lambda *given, **more: painted.append(given) or line(*given, **more))
     reward_bar = RewardBar((40, 30, 380, 60))
     reward_bar.set(PARTS, [1.0, 2.0, 3.0, 4.0])
     reward_bar.set(PARTS, [2.0, 2.0, 3.0, 4.0])
     for _ in range(200):
         reward_bar.update()
         reward_bar.draw(canvas)
-    redraws = reward_bar.redraws
+    assert painted
+    painted.clear()
     for _ in range(20):
         reward_bar.update()
         reward_bar.draw(canvas)
-    assert reward_bar.redraws == redraws
+    assert not painted
 
 
 @pytest.mark.parametrize(

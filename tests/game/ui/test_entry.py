@@ -391,6 +391,15 @@ def test_a_composition_ends_with_the_typing(page: tuple[Driver, Page]):
     assert (scene.entry.typing, scene.entry.line.composition) == (False, "")
 
 
+def test_a_key_that_is_held_as_typing_ends_changes_nothing_more(page: tuple[Driver, Page]):
+    game, scene = page
+    game.keys(pygame.K_RETURN, pygame.K_END)
+    game.post(pygame.KEYDOWN, key=pygame.K_BACKSPACE, mod=0, unicode="", scancode=0)
+    game.click((80, 172))
+    game.frames(60)
+    assert scene.entry.text == "Modern "
+
+
 def test_a_long_text_keeps_its_caret_in_sight():
     text = "m" * 40
     first = first_shown(text, 40, 15, 300)
