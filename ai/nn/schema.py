@@ -41,9 +41,6 @@ def shown(value: object) -> str:
     return brief(repr(value), _SHOWN)
 
 
-# Rules for `Annotated`
-
-
 @dataclass(frozen=True)
 class Within:
     """Allows numbers from `low` to `high`, both included."""
@@ -98,9 +95,6 @@ Count = Annotated[int, Within(0, MOST)]  # the largest number up to which floats
 Seed = Annotated[int, Within(0, LARGEST_SEED)]
 Share = Annotated[float, Within(0, 1)]
 Duration = Annotated[float, Within(0, MOST)]  # in seconds
-
-
-# Reading
 
 
 def read_as(kind: type[T], values: Any, *, strict: bool = False) -> T:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -12,11 +11,12 @@ import numpy as np
 from ai.common.decision import Decision
 from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import LanderEnv, Outcome
-from ai.lander.ground import Ground, hilly
 from ai.lander.missions import STARTS
 from ai.lander.pilots import COAST
 from game.flight.handicap import OWN, Handicap
 from game.flight.networks import Policy, QPolicy, decide
+from game.flight.poses import Poses
+from game.flight.surface import ground_of
 
 if TYPE_CHECKING:
     from ai.copilot.copilot import CoPilot, SharedDecision
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 DECISION_STEPS: Final = 4
 # Steps that an ended flight of a swarm stays visible.
 REST_STEPS: Final = 75
-_PROFILE_REACH: Final = 30.0  # metres to both sides for which the ground's height is cached
-_PROFILE_STEP: Final = 0.02
 
 
 class StickHolder(Enum):
@@ -34,29 +32,6 @@ class StickHolder(Enum):
 
     HUMAN = "human"
     NETWORK = "network"
-
-
-class Poses:
-    """Last two poses x, y, angle of every lander, for interpolation when drawing."""
-
-    def __init__(self, env: LanderEnv) -> None:
-        self._env = env
-        self.now = self._read()
-        self.before = self.now
-
-    def take(self, jumped: Bools | None = None) -> None:
-        """Store the poses after a step; the slots of `jumped` were reset, and are not interpolated."""
-        self.before, self.now = self.now, self._read()
-        if jumped is not None and jumped.any():
-            self.before = np.where(jumped[:, None], self.now, self.before)
-
-    def at(self, alpha: float) -> Doubles:
-        """Return poses (n, 3), interpolated between the last two steps by `alpha`, 0 to 1."""
-        poses: Doubles = self.before + alpha * (self.now - self.before)
-        return poses
-
-    def _read(self) -> Doubles:
-        return np.concatenate([self._env.position, self._env.angle[:, None]], axis=1)
 
 
 @dataclass
@@ -266,12 +241,6 @@ class Flight:
         self.env.target[:] = int((likely - 1e-6 * away).argmax())
 
 
-@lru_cache(maxsize=8)
-def ground_of(seed: int, pads: int) -> Ground:
-    """Return the ground of a flight: a plain with one pad, or hills with a pad of every size."""
-    return Ground.flat() if pads == 1 else hilly(np.random.default_rng(seed))
-
-
 class Swarm:
     """Swarm of landers, all flown by one network, each again and again.
 
@@ -326,18 +295,3 @@ class Swarm:
         self.decision = self.decision.updated(due, decide(self.policy, self.observation[due], held))
         self.decided[due] += 1
         self._age[due] = 0
-
-
-def surface_height(env: LanderEnv, x: float) -> float:
-    """Return the height in metres of the surface at x: a pad, a hill or the plain; for drawing."""
-    heights = _profile(env.ground)
-    if env.conditions.moves:  # one pad on a plain
-        x -= float(env.pad_shift[0])
-    return heights[min(max(round((x + _PROFILE_REACH) / _PROFILE_STEP), 0), len(heights) - 1)]
-
-
-@lru_cache(maxsize=8)
-def _profile(ground: Ground) -> list[float]:
-    """Return the ground's height at even steps, cached for many look-ups per frame."""
-    heights: list[float] = ground.height(np.arange(-_PROFILE_REACH, _PROFILE_REACH, _PROFILE_STEP)).tolist()
-    return heights

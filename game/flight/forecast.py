@@ -18,8 +18,9 @@ from ai.lander.environment import PARAMS, LanderEnv
 from ai.lander.ground import Ground
 from engine import DT
 from engine.integrate import integrate_velocity
-from game.flight.flight import DECISION_STEPS, surface_height
+from game.flight.flight import DECISION_STEPS
 from game.flight.networks import Policy
+from game.flight.surface import surface_height
 
 # Metres above the ground at which to stop: the touchdown itself is not predicted.
 _CLEAR: Final = 0.3

@@ -10,8 +10,9 @@ import numpy as np
 from ai.lander.environment import LanderEnv, Outcome
 from game.core.clock import STEP
 from game.drawing.canvas import Canvas
-from game.flight.flight import DECISION_STEPS, Poses
+from game.flight.flight import DECISION_STEPS
 from game.flight.networks import Policy
+from game.flight.poses import Poses
 from game.ui.context import Context
 from game.world.camera import Camera, CameraTarget
 from game.world.craft import STAND

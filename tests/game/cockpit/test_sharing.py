@@ -4,9 +4,10 @@ import pytest
 from ai.common.decision import Decision, decide
 from ai.copilot.copilot import Mode
 from ai.lander.environment import Outcome
-from game.flight.flight import DECISION_STEPS, Flight, StickHolder, surface_height
+from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.forecast import coast_path
 from game.flight.handicap import HANDS, OWN, Handicap
+from game.flight.surface import surface_height
 
 COAST, LEFT, RIGHT, MAIN = range(4)
 
