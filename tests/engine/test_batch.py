@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from engine import Circle, Polygon, World
+from tests.support.worlds import advance
 
 STATE = ("pose", "velocity", "cos", "sin")
 
@@ -136,8 +137,7 @@ def test_same_start_same_flight():
     twins = [toys(3), toys(3)]
     for world in twins:
         throw(world, seed=5)
-        for _ in range(60):
-            world.step()
+        advance(world, 60)
     assert twins[0].state.pose.tobytes() == twins[1].state.pose.tobytes()
 
 
@@ -145,8 +145,7 @@ def test_a_reset_leaves_no_residue():
     used, fresh = toys(2), toys(2)
     throw(used, seed=1)
     start = {name: getattr(fresh.state, name).copy() for name in STATE}
-    for _ in range(100):
-        used.step()
+    advance(used, 100)
     for body in used.bodies:
         body.set(position=start["pose"][:, body.index, :2], angle=start["pose"][:, body.index, 2],
                  velocity=(0, 0), angular_velocity=0.0)  # fmt: skip

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from engine import DT, Circle, Polygon, World
+from tests.support.worlds import advance
 
 G = 9.81
 
@@ -24,11 +25,9 @@ def slope(tilt, friction, shape=None, batch=1):
 def test_a_box_slides_if_and_only_if_tan_tilt_exceeds_mu(friction, share):
     tilt = np.arctan(friction * share)
     world, body, downhill = slope(tilt, friction)
-    for _ in range(60):
-        world.step()
+    advance(world, 60)
     early = body.velocity[0] @ downhill
-    for _ in range(120):
-        world.step()
+    advance(world, 120)
     late = body.velocity[0] @ downhill
     if share < 1:
         assert abs(late) < 1e-6
@@ -57,11 +56,9 @@ def test_thrown_uphill_on_a_rough_slope_it_stays_up_there():
     world, body, downhill = slope(0.3, 0.6)
     world.step()
     body.velocity = -3.0 * downhill
-    for _ in range(120):
-        world.step()
+    advance(world, 120)
     place = body.position[0].copy()
-    for _ in range(300):
-        world.step()
+    advance(world, 300)
     assert body.position[0] == pytest.approx(place, abs=1e-4)
     assert -place @ downhill == pytest.approx(9.0 / (2 * G * (np.sin(0.3) + 0.6 * np.cos(0.3))), rel=0.06)
 
@@ -69,11 +66,9 @@ def test_thrown_uphill_on_a_rough_slope_it_stays_up_there():
 def test_a_disc_rolls_down_at_two_thirds():
     tilt = 0.3
     world, body, downhill = slope(tilt, 0.8, Circle(0.5))
-    for _ in range(60):
-        world.step()
+    advance(world, 60)
     early = body.velocity[0] @ downhill
-    for _ in range(60):
-        world.step()
+    advance(world, 60)
     speed = body.velocity[0] @ downhill
     assert speed - early == pytest.approx(2 / 3 * G * np.sin(tilt), rel=1e-3)
     assert body.angular_velocity[0] * 0.5 == pytest.approx(speed, rel=1e-3)
@@ -82,11 +77,9 @@ def test_a_disc_rolls_down_at_two_thirds():
 def test_a_disc_on_a_slippery_slope_slides_and_spins_up():
     tilt, friction = 0.8, 0.1
     world, body, downhill = slope(tilt, friction, Circle(0.5))
-    for _ in range(60):
-        world.step()
+    advance(world, 60)
     early, spin = body.velocity[0] @ downhill, body.angular_velocity[0]
-    for _ in range(60):
-        world.step()
+    advance(world, 60)
     assert body.velocity[0] @ downhill - early == pytest.approx(G * (np.sin(tilt) - 0.1 * np.cos(tilt)), rel=2e-3)
     assert body.angular_velocity[0] - spin == pytest.approx(2 * 0.1 * G * np.cos(tilt) / 0.5, rel=5e-3)
 
@@ -97,8 +90,7 @@ def test_a_sliding_box_stops_after_v_squared_over_two_mu_g():
     body = world.add(Polygon.box(1.0, 0.5), (0.0, 0.25), friction=0.4)
     world.step()
     body.velocity = (5.0, 0.0)
-    for _ in range(180):
-        world.step()
+    advance(world, 180)
     assert body.velocity[0] == pytest.approx(np.zeros(2), abs=1e-9)
     assert body.position[0, 0] == pytest.approx(25 / (2 * 0.4 * G), rel=0.03)
 
@@ -127,14 +119,12 @@ def test_a_moving_static_body_carries_a_box_along():
     lift = world.add(Polygon.box(6.0, 1.0), (0.0, -0.5), static=True, friction=0.8)
     box = world.add(Polygon.box(1.0, 1.0), (0.0, 0.5), mass=2.0)
     lift.velocity = [[1.0, 0.5], [0.0, 0.0]]
-    for _ in range(120):
-        world.step()
+    advance(world, 120)
     assert lift.position == pytest.approx(np.array([[2.0, 0.5], [0.0, -0.5]]))
     assert box.velocity == pytest.approx(np.array([[1.0, 0.5], [0.0, 0.0]]), abs=1e-6)
     assert box.position[0] == pytest.approx(np.array([2.0, 1.5]), abs=0.15)
     lift.velocity = (0.0, 0.0)
-    for _ in range(60):
-        world.step()
+    advance(world, 60)
     assert box.velocity == pytest.approx(np.zeros((2, 2)), abs=1e-6)
 
 

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import DT, Circle, Polygon, World
+from tests.support.worlds import advance
 
 SHAPES = {"circle": Circle(0.5), "box": Polygon.box(1.0, 1.0)}
 
@@ -37,8 +38,7 @@ def test_head_on(kind, bounce, mass_a, mass_b):
     a = world.add(SHAPES[kind], (-2.0, 0.0), mass=mass_a, restitution=bounce)
     b = world.add(SHAPES[kind], (2.0, 0.0), mass=mass_b, restitution=bounce)
     a.velocity, b.velocity = (3.0, 0.0), (-1.0, 0.0)
-    for _ in range(120):
-        world.step()
+    advance(world, 120)
     common = (mass_a * 3.0 - mass_b) / (mass_a + mass_b)
     assert a.velocity[0, 0] == pytest.approx(common - bounce * mass_b * 4.0 / (mass_a + mass_b), abs=1e-9)
     assert b.velocity[0, 0] == pytest.approx(common + bounce * mass_a * 4.0 / (mass_a + mass_b), abs=1e-9)
@@ -155,6 +155,5 @@ def test_a_slow_touch_does_not_bounce():
     world.add(Polygon.box(10.0, 2.0), (0.0, -1.0), static=True)
     body = world.add(Circle(0.5), (0.0, 0.502), restitution=1.0)
     body.velocity = (0.0, -0.2)
-    for _ in range(10):
-        world.step()
+    advance(world, 10)
     assert body.velocity[0, 1] == pytest.approx(0.0, abs=1e-12)

@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import DT, Circle, Polygon, World
+from tests.support.worlds import advance
 
 G = 1.62
 
 
 def run(world, steps):
-    for _ in range(steps):
-        world.step()
+    advance(world, steps)
 
 
 def test_free_fall_is_semi_implicit_euler_exactly_and_the_parabola_nearly():

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine import Circle, Polygon, World
+from tests.support.worlds import advance
 
 HULL = Polygon([(-0.62, -0.45), (0.62, -0.45), (0.72, 0.05), (0.42, 0.75), (-0.42, 0.75), (-0.72, 0.05)])
 FEET = [Polygon.box(0.4, 0.12, (side * 0.85, -0.9)) for side in (-1, 1)]
@@ -51,17 +52,14 @@ def test_a_ball_does_not_pass_a_floor_of_its_own_size(speed):
     world.add(Polygon.box(20.0, 0.6), (0.0, 0.0), static=True)
     ball = world.add(Circle(0.3), (0.0, 5.0))
     ball.set(velocity=(0.0, -speed), position=np.stack([np.zeros(64), 5 + np.arange(64) / 128], axis=1))
-    for _ in range(120):
-        world.step()
+    advance(world, 120)
     assert (ball.position[:, 1] > 0.55).all()
 
 
 def test_a_lying_craft_stays_in_one_place():
     world, craft = site(1)
     craft.set(position=(0.0, 2.8), angle=1.3)
-    for _ in range(900):
-        world.step()
+    advance(world, 900)
     place = world.state.pose.copy()
-    for _ in range(300):
-        world.step()
+    advance(world, 300)
     assert world.state.pose == pytest.approx(place, abs=1e-3)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from engine import Circle, Polygon, World
+from tests.support.worlds import advance
 
 
 def ground(gravity=9.81, batch=1):
@@ -20,8 +21,7 @@ def moon_and_earth():
 
 
 def run(world, seconds):
-    for _ in range(round(seconds * 60)):
-        world.step()
+    advance(world, round(seconds * 60))
 
 
 def overlap(world):

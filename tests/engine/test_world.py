@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from engine import Circle, Polygon, Sprite, World
+from tests.support.worlds import advance
 
 BOX = Polygon.box(1.0, 1.0)
 
@@ -15,8 +16,7 @@ def floor(batch=1, **settings):
 
 
 def run(world, steps):
-    for _ in range(steps):
-        world.step()
+    advance(world, steps)
 
 
 def test_an_empty_world_and_a_single_body():

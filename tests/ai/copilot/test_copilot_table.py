@@ -50,15 +50,15 @@ def test_the_co_pilot_brings_a_pilot_to_the_pad_they_have_in_mind(agent, few):
     assert guarded.own_pad <= guarded.success
 
 
-def test_the_table_follows_from_the_seed(agent, few):
-    assert list(one_pad(agent, agent, 5, seed=3)) == list(one_pad(agent, agent, 5, seed=3))
-
-
-def test_the_command_prints_both_tables(few, capsys):
-    assert main.main(["copilot-table", "--episodes", "2", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert [len(told["one_pad"]), len(told["three_pads"])] == [7, 3]
-    assert np.isfinite([row["mean_return"] for row in told["one_pad"]]).all()
+def test_the_command_prints_both_tables_which_follow_from_the_seed(few, monkeypatch, capsys):
+    monkeypatch.setattr(copilot_table, "PILOTS", {"laggy": copilot_table.PILOTS["laggy"]})
+    told = []
+    for _ in range(2):
+        assert main.main(["copilot-table", "--episodes", "2", "--json"]) == 0
+        told.append(json.loads(capsys.readouterr().out))
+    assert told[0] == told[1]
+    assert [len(told[0]["one_pad"]), len(told[0]["three_pads"])] == [4, 3]
+    assert np.isfinite([row["mean_return"] for row in told[0]["one_pad"]]).all()
     assert main.main(["copilot-table", "--episodes", "2"]) == 0
     assert "own pad" in capsys.readouterr().out
 

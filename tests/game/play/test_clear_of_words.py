@@ -13,9 +13,9 @@ from game.flight import networks
 from game.scenes.play import PlayScene
 from game.scenes.watch import WatchScene
 from game.ui.context import Context
-from tests.game.play.test_words_agree import Weighs
 from tests.support.driver import Driver
 from tests.support.flights import play
+from tests.support.reading import Weighs
 
 Open = Callable[..., Driver]
 READ_OUTS = 640

@@ -18,10 +18,10 @@ from game.scenes.train import TrainScene
 from game.scenes.watch import COUNTS, WatchScene
 from game.training.training_run import TrainingRun
 from game.ui.context import Context
-from tests.game.play.test_words_agree import COUNTS as EARNED
-from tests.game.play.test_words_agree import FLEW, OnlyFlies, Reading, Weighs, pattern
 from tests.game.scenes.test_digits import draw, strokes
 from tests.support.driver import Driver
+from tests.support.reading import COUNTS as EARNED
+from tests.support.reading import FLEW, OnlyFlies, Reading, Weighs, pattern
 
 Open = Callable[..., Driver]
 NOBODYS = [pattern(text) for text in (*FLEW, texts.YOU_FLY, texts.YOU_SHARE, *texts.NOT_COUNTED.values(), *EARNED)]

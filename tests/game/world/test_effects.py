@@ -71,6 +71,18 @@ def test_what_flies_about_falls_as_on_that_world(mission: str):
     assert stage.particles.velocity[0, 1] == pytest.approx(-env.params.gravity)
 
 
+def test_what_flies_about_is_gone_after_its_time():
+    particles = Particles(np.random.default_rng(0), Relief(LanderEnv()), PARAMS.gravity)
+    particles.add(ParticleKind.SHARD, np.full((2, 2), 20.0), np.zeros((2, 2)), np.array([0.5, 1.0]), np.full(2, 0.1))
+    left = []
+    for _ in range(62):
+        particles.update()
+        left.append(int(particles.alive.sum()))
+    assert left[28] == 2
+    assert left[31] == left[58] == 1
+    assert left[-1] == 0
+
+
 def test_the_wind_carries_what_is_light_and_no_faster_than_it_goes():
     env, calm = MISSIONS["wind"].begin(), LanderEnv(1, 0, frame_skip=1)
     calm.reset()
