@@ -494,7 +494,7 @@ KNOB_IDLE: Final = "no effect"
 # Why a knob changes nothing any more, or never would, and which one does
 KNOBS_IDLE: Final = {
     "learning_rate": "The schedule is over, so steps have the last learning rate: that is the knob to turn.",
-    "schedule_decisions": "Nothing changes over it: the learning rate begins as it ends, limits stay real.",
+    "schedule_decisions": "Nothing changes over it: neither the learning rate nor the touchdown limits.",
     "epsilon_start": "ε is the same at first and at last.",
     "epsilon_decay": "ε has come down to its last value: ε at last is the knob to turn.",
     "epsilon_decisions": "ε is at its last value from the start: ε at last is the knob to turn.",
