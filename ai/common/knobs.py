@@ -97,7 +97,12 @@ class Knobs:
 
     @classmethod
     def renamed(cls, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return values by present names, given by present or former ones; raises ValueError for one given twice."""
+        """Return values by present names, given by present or former ones.
+
+        Raises ValueError for a setting given under both, and for what is no mapping, as a file may hold anything.
+        """
+        if not isinstance(values, Mapping):
+            raise ValueError(f"settings are values by name, not {shown(values)}")
         named = {cls.name_now(name): value for name, value in values.items()}
         if len(named) < len(values):
             twice = sorted(name for name in values if cls.name_now(name) != name and cls.name_now(name) in values)

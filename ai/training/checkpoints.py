@@ -1,4 +1,4 @@
-"""Training runs on disk: the best network, the last one to go on from, and how they were made."""
+"""Training runs on disk: the best network, the last one to go on from, and how they were made; checkpoints to fly."""
 
 from __future__ import annotations
 
@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent.agent import DeepQAgent
-from ai.agent.config import LANDER, PRESETS
+from ai.agent.config import LANDER, PRESETS, Config
+from ai.agent.normalizer import Normalizer
 from ai.agent.storage import KIND, LAST, write_agent
 from ai.common.knobs import nearest_preset
+from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn import ModelFormatError, atomic_folder
 from ai.nn.files import count_of, inside, number_of, read_json
 from ai.training.gym_task import gym_config
-from ai.training.history import History
+from ai.training.history import Checkpoint, History
 from ai.training.loop import Progress, Training
 from ai.training.statistics import EpisodeStatistics
 from ai.training.task import TEST_SEED, Score
@@ -159,3 +161,27 @@ def _read_score(training: Training, described: Any) -> Score:
     score.better_than(score)
     str(score)
     return score
+
+
+def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
+    """Return an agent that flies as the run did at that checkpoint; raises ValueError if it does not fit."""
+    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, config)
+    if agent.online.values.shape != checkpoint.values.shape:
+        raise ValueError(
+            f"the checkpoint has {len(checkpoint.values)} parameters, the network {len(agent.online.values)}"
+        )
+    restore_checkpoint(agent, checkpoint)
+    agent.decisions = checkpoint.decisions
+    return agent
+
+
+def restore_checkpoint(agent: DeepQAgent, checkpoint: Checkpoint) -> None:
+    """Restore an agent's networks from a checkpoint of its size; raises ValueError if its normalizer makes no sense."""
+    normalizer = None
+    if checkpoint.normalizer is not None:
+        normalizer = Normalizer(agent.num_features)
+        try:
+            normalizer.load(checkpoint.normalizer)
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"the checkpoint's scale of observations makes no sense: {error}") from error
+    agent.restore(checkpoint.values, normalizer)

@@ -65,7 +65,7 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """Network that flew at one moment of a run; `ai.training.session.agent_of` makes an agent of it."""
+    """Network that flew at one moment of a run; `ai.training.checkpoints.agent_of` makes an agent of it."""
 
     seconds: float
     decisions: int

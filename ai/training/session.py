@@ -10,14 +10,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
-from ai.agent.normalizer import Normalizer
 from ai.agent.schedule import InForce, in_force
 from ai.common.environment import Ints, StepResult
-from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES, LanderEnv
+from ai.lander.environment import LanderEnv
 from ai.training.autosave import Autosave
-from ai.training.checkpoints import resume_run
+from ai.training.checkpoints import restore_checkpoint, resume_run
 from ai.training.demonstrations import Demonstration, read, taught, teach
 from ai.training.history import (
     PARTS,
@@ -49,7 +47,7 @@ from ai.training.validation_flights import ValidationFlights
 
 __all__ = [
     "CAREFUL", "REVERTED", "TAUGHT", "AddDemonstrations", "ChangeSetting", "NetworkState", "Refused",
-    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "agent_of", "live",
+    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "live",
 ]  # fmt: skip
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
@@ -90,18 +88,6 @@ def live(
         raise
     finally:
         run.end()
-
-
-def agent_of(config: Config, checkpoint: Checkpoint) -> DeepQAgent:
-    """Return an agent that flies as the run did at that checkpoint; raises ValueError if it does not fit."""
-    agent = DeepQAgent(NUM_FEATURES, NUM_ACTIONS, config)
-    if agent.online.values.shape != checkpoint.values.shape:
-        raise ValueError(
-            f"the checkpoint has {len(checkpoint.values)} parameters, the network {len(agent.online.values)}"
-        )
-    agent.restore(checkpoint.values, _normalizer_of(agent, checkpoint))
-    agent.decisions = checkpoint.decisions
-    return agent
 
 
 class _LiveRun:
@@ -180,7 +166,7 @@ class _LiveRun:
 
     def restore_last_checkpoint(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
-        self._restore(self.history.checkpoints[-1])
+        restore_checkpoint(self.training.agent, self.history.checkpoints[-1])
 
     def end(self) -> None:
         """Save what has not been saved, and wait until it is on the disk."""
@@ -292,21 +278,6 @@ class _LiveRun:
         if checkpoint is None:
             self._messages.append(Refused(command, "this run has no checkpoints yet"))
             return
-        self._restore(checkpoint)
+        restore_checkpoint(self.training.agent, checkpoint)
         self._record_change(REVERTED, None, checkpoint.decisions)
         self._messages += self._state_messages()
-
-    def _restore(self, checkpoint: Checkpoint) -> None:
-        agent = self.training.agent
-        agent.restore(checkpoint.values, _normalizer_of(agent, checkpoint))
-
-
-def _normalizer_of(agent: DeepQAgent, checkpoint: Checkpoint) -> Normalizer | None:
-    if checkpoint.normalizer is None:
-        return None
-    normalizer = Normalizer(agent.num_features)
-    try:
-        normalizer.load(checkpoint.normalizer)
-    except (KeyError, TypeError) as error:
-        raise ValueError(f"the checkpoint's scale of observations makes no sense: {error}") from error
-    return normalizer

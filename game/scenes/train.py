@@ -10,7 +10,7 @@ import numpy as np
 import pygame
 
 from ai.agent.config import PRESETS, Config
-from ai.training.session import agent_of
+from ai.training.checkpoints import agent_of
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.collection import LibraryError

@@ -92,3 +92,9 @@ def test_unknown_settings_are_named():
 def test_a_number_is_no_list_and_a_list_no_number(values):
     with pytest.raises(ValueError, match=next(iter(values))):
         Config.from_json(values)
+
+
+@pytest.mark.parametrize("wrong", [None, 3, [], [1], "horizon", [{"horizon": 5}]])
+def test_settings_that_are_no_table_are_refused(wrong):
+    with pytest.raises(ValueError, match="settings are values by name, not "):
+        Config.from_json(wrong)

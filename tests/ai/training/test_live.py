@@ -13,7 +13,7 @@ from ai.lander.environment import Outcome
 from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
 from ai.training import autosave
-from ai.training.checkpoints import resume_run
+from ai.training.checkpoints import agent_of, resume_run
 from ai.training.history import PARTS, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
@@ -28,7 +28,6 @@ from ai.training.session import (
     Save,
     Saved,
     SwarmState,
-    agent_of,
     live,
 )
 
