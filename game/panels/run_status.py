@@ -39,6 +39,18 @@ def draw_run_status(
         canvas.text(words, (end + 8, top + drop), size=SMALL, colour=MUTE)
 
 
+def draw_landings(canvas: Canvas, corner: Point, landed: int, lost: int) -> None:
+    """Draw the share of flights that have landed with its baseline at `corner`, and both counts; none before any."""
+    if landed + lost == 0:
+        return
+    (left, top), share = corner, f"{100 * landed / (landed + lost):.0f}"
+    figure = canvas.text(share, (left - 1, top), size=FIGURE, weight="light", tabular=True,
+                         colour=rate_colour(canvas.palette, float(share)))  # fmt: skip
+    canvas.text(texts.WATCH_LANDED, (figure.right + 6, top), size=SMALL, colour=MUTE)
+    counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
+    canvas.text(counts, (left, top + 22), size=SMALL, colour=MUTE, tabular=True)
+
+
 def draw_problem(canvas: Canvas, problem: str, corner: Point, width: float, most: int) -> None:
     """Draw why a run has failed, in at most so many lines."""
     left, top = corner

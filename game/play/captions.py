@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final
 
 from game.cockpit import hud
@@ -14,8 +15,8 @@ from game.flight.handicap import OWN
 from game.flight.networks import Network
 from game.input.controls import Command, Controls
 from game.play.challenge import Challenge
-from game.ui.hints import Hint, HintRow
-from game.ui.hints import flight_hints as control_hints
+from game.ui.actions import Action, Run
+from game.ui.hints import Hint, HintRow, flight_hints
 from game.world.camera import ClearArea
 
 BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of the opening text
@@ -44,11 +45,21 @@ def draw_opening(canvas: Canvas, controls: Controls, challenge: Challenge | None
     paths = [(texts.PATH_YOURS, HUMAN)]
     if forecast:
         paths.append((texts.PATH_NETWORK, NET))
-    hud.draw_opening(canvas, control_hints(controls), challenge.opening if challenge else texts.BEGIN, paths)
+    hud.draw_opening(canvas, flight_hints(controls), challenge.opening if challenge else texts.BEGIN, paths)
 
 
-def flight_hints(flight: Flight, challenge: Challenge | None, *, leaves: bool) -> dict[Command, str]:
-    """Return what the hints of a flight say at this moment; `leaves` is whether Escape goes straight back."""
+def flight_actions(
+    runs: Mapping[Command, Run], flight: Flight, challenge: Challenge | None, *, leaves: bool
+) -> list[Action]:
+    """Return what keys do in flight, with the hints that fit the moment.
+
+    Args:
+        runs: what each command does.
+        flight: the flight.
+        challenge: its course, if any.
+        leaves: whether Escape goes straight back.
+
+    """
     hints = {Command.PAUSE: texts.HINT_LEAVE if leaves else texts.HINT_PAUSE}
     if not challenge:
         hints[Command.CHOICES] = texts.CHOICES_HINT
@@ -57,7 +68,7 @@ def flight_hints(flight: Flight, challenge: Challenge | None, *, leaves: bool) -
     if flight.network and not flight.over:
         taken = flight.hand is StickHolder.NETWORK
         hints[Command.HANDOVER] = texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER
-    return hints
+    return [Action(command, run, hints.get(command, "")) for command, run in runs.items()]
 
 
 def flight_row(hints: list[Hint]) -> HintRow:
@@ -65,10 +76,12 @@ def flight_row(hints: list[Hint]) -> HintRow:
     return HintRow(hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
 
 
-def card_hints(good: bool, challenge: Challenge | None) -> tuple[str, tuple[Command, str]]:
-    """Return what Enter does at an outcome card, and another command with what it does; `good` is for a landing."""
-    if challenge and challenge.fixed:
-        other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.PAUSE, texts.HINT_LEAVE)
-        return texts.CARD_FIRST_FIXED[good], other
-    other = (Command.RETRY, texts.HINT_AGAIN) if good else (Command.NEXT, texts.HINT_NEW)
-    return texts.CARD_FIRST[good], other
+def card_actions(go_on: Run, runs: Mapping[Command, Run], challenge: Challenge | None, *, good: bool) -> list[Action]:
+    """Return the two actions that an outcome card names: to go on, and one of the others; `good` is for a landing."""
+    fixed = challenge is not None and challenge.fixed
+    if good:
+        other, hint = Command.RETRY, texts.HINT_AGAIN
+    else:
+        other, hint = (Command.PAUSE, texts.HINT_LEAVE) if fixed else (Command.NEXT, texts.HINT_NEW)
+    first = (texts.CARD_FIRST_FIXED if fixed else texts.CARD_FIRST)[good]
+    return [Action(Command.CONFIRM, go_on, first), Action(other, runs[other], hint)]

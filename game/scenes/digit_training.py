@@ -9,10 +9,6 @@ import pygame
 
 from ai.agent.schedule import InForce
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
-from ai.digits.session import DigitSettingChanged
-from ai.training.history import REVERTED
-from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
-from game.charts.charts import Charts
 from game.core import texts
 from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
@@ -23,14 +19,14 @@ from game.drawing.prose import wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, PANEL, SMALL, TEXT, VIEW_SIZE
 from game.input.controls import Command
+from game.panels.digit_charts import DigitCharts, draw_accuracy_legend
 from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_problem, draw_run_status, start_word
 from game.scenes.dialog import NameDialog, QuestionDialog
 from game.training.digit_models import runs_dir
-from game.training.digit_run import DigitCurves, DigitRun
-from game.training.knob_descriptions import figure, knob_descriptions, label
+from game.training.digit_run import DigitRun
+from game.training.knob_descriptions import knob_descriptions
 from game.training.run_settings import RunKind
-from game.training.training_run import EarlierRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
@@ -48,13 +44,11 @@ _WIDTH: Final = 836.0  # of charts and matrix; the panel has the rest
 _LEFT: Final = 40.0
 _PANEL: Final = 868.0
 _KNOBS: Final = pygame.Rect(868, 20, 384, 436)
-_CHARTS: Final = {"loss": (40, 146, 372, 152), "accuracy": (440, 146, 372, 152)}
 _MATRIX: Final = pygame.Rect(70, 372, 320, 320)
 _CELL: Final = pygame.Rect(440, 346, 372, 346)
 _SAID: Final = 500.0  # baseline of a problem's message
 _HINT: Final = pygame.Rect(868, 548, 384, 60)
 _EVERY: Final = 12  # frames between two drawings of the charts
-_BATCHES: Final = (MUTE, (2.0, 4.0))
 
 
 class DigitTrainingScene(FormScene):
@@ -64,7 +58,6 @@ class DigitTrainingScene(FormScene):
         super().__init__(context, self._leave)
         self._was_running = self._alive = False
         self._frame = 0
-        self._told: tuple[object, ...] = ()
         self._question: Transition | None = None
         self._asked = False
         self.stop_word: TextButton | None = None
@@ -74,10 +67,7 @@ class DigitTrainingScene(FormScene):
         self.digit_run = DigitRun(runs_dir(context.user_dir))
         self.digit_run.collection.hold()
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
-        self.charts = Charts([
-            Chart(_CHARTS[name], texts.PUPIL_CHARTS[name], read=form.format, empty=texts.PUPIL_CHARTS_SHOW[name])
-            for name, form in (("loss", "{:.3g}"), ("accuracy", "{:.2f}"))
-        ])  # fmt: skip
+        self.charts = DigitCharts()
         self._add_words()
         self.form.add(VirtualPointer(self.form.manager, self.charts.box, self.charts.follow))
         self.knobs = KnobsPanel(
@@ -139,7 +129,7 @@ class DigitTrainingScene(FormScene):
         self._offer_the_way_back()
         self._frame += 1
         if self._frame % _EVERY == 0:
-            self._set_charts()
+            self.charts.look(self.digit_run.curves, self.digit_run.earlier)
             self._name_words()
         self.charts.update(at_once=self._settings.reduced_motion)
         question, self._question = self._question, None
@@ -309,28 +299,6 @@ class DigitTrainingScene(FormScene):
             before = [self.start_word, *([old] if old else [])]
             self.form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
 
-    def _set_charts(self) -> None:
-        curves = self.digit_run.curves
-        told = (curves.seconds, len(curves.points), len(curves.scores), len(self.digit_run.earlier), *curves.turns)
-        if told == self._told:
-            return
-        self._told = told
-        runs = [EarlierRun(texts.TRAIN_THIS, curves, 0), *self.digit_run.earlier]
-        end = max(10.0, *(beside.run.seconds for beside in runs))
-        losses, accuracies = [], []
-        for beside in runs:
-            name, each, (colour, dash) = beside.name, beside.run, RUN_STYLES[beside.style]
-            if each.points:
-                seconds = [point.seconds for point in each.points]
-                losses.append(Series(seconds, [point.loss for point in each.points], name, colour, dash))
-                scores = ([score.seconds for score in each.scores], [100 * score.accuracy for score in each.scores])
-                accuracies.append(Series(*scores, name, colour, dash, smooth=False))
-        if curves.points:
-            accuracies.append(_batches(curves))
-        ticks = [Tick(turn.seconds, _turn_told(turn), "knob") for turn in curves.turns]
-        for chart, series in zip(self.charts.charts, (losses, accuracies), strict=True):
-            chart.set(series, (0.0, end), ticks)
-
     def _draw_title(self, canvas: Canvas) -> None:
         digit_run, curves = self.digit_run, self.digit_run.curves
         line = texts.PUPIL_LOADING if digit_run.alive else texts.PUPIL_LINE
@@ -338,7 +306,7 @@ class DigitTrainingScene(FormScene):
             last = curves.points[-1]
             line = texts.PUPIL_FIGURES.format(epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds,
                                               rate=last.images_per_second)  # fmt: skip
-            draw_legend(canvas, [Series((), (), texts.PUPIL_HELD_OUT), _batches(curves)], (440, 118))
+            draw_accuracy_legend(canvas, curves)
         part = digit_run.test if digit_run.test is not None else curves.scores[-1].accuracy if curves.scores else None
         figure = "" if part is None else f"{100 * part:.2f}"
         words = texts.PUPIL_READ if digit_run.test is None else texts.PUPIL_TESTED
@@ -358,16 +326,3 @@ class DigitTrainingScene(FormScene):
             said = texts.PUPIL_FALLEN.format(best=best, now=now)
             for number, text in enumerate(wrapped(canvas, said, SMALL, _HINT.width - 28)[:2]):
                 canvas.text(text, (_HINT.left + 14, _HINT.top + 34 + 16 * number), size=SMALL)
-
-
-def _turn_told(turn: DigitSettingChanged) -> str:
-    if turn.name == REVERTED:
-        return texts.PUPIL_WENT_BACK.format(part=turn.after)
-    return f"{label(turn.name)} {figure(turn.after)}"
-
-
-def _batches(curves: DigitCurves) -> Series:
-    """Return the curve of the training batches' accuracy."""
-    colour, dash = _BATCHES
-    return Series([point.seconds for point in curves.points], [100 * point.accuracy for point in curves.points],
-                  texts.PUPIL_BATCHES, colour, dash)  # fmt: skip

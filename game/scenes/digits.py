@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -11,17 +10,17 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pygame
 
-from ai.digits.preprocessing import redrawn
 from game.core import texts
 from game.core.scene import Push, Transition, push
 from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
 from game.digits.explanation import LEFT as EXPLANATION_LEFT
 from game.digits.explanation import STEPS, ExplanationView, StageSwitch
 from game.digits.fixing import FixRunner
+from game.digits.live_reading import LiveReading
 from game.digits.measuring import AccuracyMeasurement
 from game.digits.pad import DrawingPad
 from game.digits.pen import make_pen
-from game.digits.reader import Explanation, Numbers, Reader, Switches, Verdict
+from game.digits.reader import Numbers, Reading, Verdict
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import wrapped
@@ -55,37 +54,31 @@ _DIGITS: Final = {
 
 
 class DigitsScene(FormScene):
-    """Digits scene. `chosen` is the name of the network that is explained.
+    """Digits scene. `chosen` is the name of the network that is explained first.
 
     Attributes:
         pad: the drawing pad.
-        reading: the latest reading of the drawing; None before the first.
 
     """
 
     def __init__(self, context: Context, chosen: str = NAMES[0]) -> None:
         super().__init__(context)
-        self.chosen = chosen
         self.pad = DrawingPad(PAD)
-        self._switches = Switches()
+        self._live = LiveReading(self.pad, chosen, self._show_bars)
         self._sight = ExplanationView()
-        self._seen = -1  # revision of the drawing that was read last
-        self._looking: Iterator[None] = iter(())
-        self._why: Explanation | None = None
         self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
         self._fixing = FixRunner(context.user_dir, context.models_dir)
-        self._reader = Reader()
-        self._measuring = AccuracyMeasurement(lambda: {name: self._reader.sources[name] for name in self._pair})
-        for name in dict.fromkeys((*NAMES, self.chosen)):
+        self._measuring = AccuracyMeasurement(lambda: self._live.sources)
+        for name in dict.fromkeys((*NAMES, chosen)):
             self._load(name)
-        if self.chosen not in self._reader.classifiers:
-            self.chosen = next(iter(self._reader.classifiers), self.chosen)
+        if not self._live.known:
+            self._live.chosen = next(iter(self._live.reader.classifiers), chosen)
         self._tabs = self.form.add(self._make_tabs())
         self._pen = self.form.add(make_pen(self.form.manager, lambda: self.pad))
         self._add_words()
-        self._look_anew()
+        self._live.anew()
         self._offer_undo()
 
     def resume(self) -> None:
@@ -95,8 +88,8 @@ class DigitsScene(FormScene):
         if set(self._fixing.networks) == before:
             return
         if self.chosen not in self._fixing.networks:
-            self.chosen = NAMES[0]
-            self._look_anew()
+            self._live.chosen = NAMES[0]
+            self._live.anew()
         tabs = self._make_tabs()
         self.form.replace([self._tabs], [tabs])
         self._tabs = tabs
@@ -111,6 +104,16 @@ class DigitsScene(FormScene):
         self._measuring.close()
 
     @property
+    def chosen(self) -> str:
+        """Name of the network that is explained."""
+        return self._live.chosen
+
+    @property
+    def reading(self) -> Reading:
+        """The latest reading of the drawing."""
+        return self._live.reading
+
+    @property
     def canvas_rect(self) -> pygame.Rect:
         """The drawing area, in the window's pixels."""
         return self.context.in_window(self.pad.rect)
@@ -118,8 +121,7 @@ class DigitsScene(FormScene):
     @property
     def probabilities(self) -> Numbers | None:
         """The chosen network's probabilities (10,); None while nothing is drawn, or it can't be loaded."""
-        self._catch_up()
-        return None if self.reading.verdict(self.chosen) is Verdict.EMPTY else self.reading.probabilities[self.chosen]
+        return self._live.probabilities
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle drawing, and pass any other event to the actions and the widgets."""
@@ -147,9 +149,7 @@ class DigitsScene(FormScene):
 
     def update(self) -> Transition | None:
         """Read the drawing if it changed, and receive finished measurements."""
-        if next(self._looking, True) and self._seen != self.pad.revision:
-            self._looking = self._look()
-            next(self._looking)
+        self._live.update()
         self._measuring.listen()
         self._follow_fix()
         return self.form.update()
@@ -161,8 +161,8 @@ class DigitsScene(FormScene):
         self.pad.draw(canvas)
         if self.chosen in self.reading.probabilities:
             draw_answer(canvas, self.reading, self.chosen)
-        steps = list(asdict(self._switches).values())
-        self._sight.draw(canvas, self.reading, self.chosen, self._why, steps)
+        steps = list(asdict(self._live.switches).values())
+        self._sight.draw(canvas, self.reading, self.chosen, self._live.why, steps)
         self.form.draw(canvas)
         self._draw_words(canvas)
 
@@ -171,66 +171,27 @@ class DigitsScene(FormScene):
     def _load(self, name: str) -> None:
         """Load a network with the player's fixes, or with fewer of them if some are damaged."""
         if network := self._fixing.networks.get(name):
-            self._reader.load(name, *network.versions())
-
-    def _look(self) -> Iterator[None]:
-        """Preprocess the drawing, read it with all networks, and explain the chosen one's answer.
-
-        A generator that does a part at a time: while the pen moves, all of it would take too long for one frame.
-        """
-        self._seen = self.pad.revision
-        strokes = redrawn(self.pad.strokes)
-        yield
-        seen = self._switches.prepare(strokes, self.pad.ink)
-        self.reading = self._reader.read(seen, self._pair)
-        self._show_bars()
-        yield
-        known = self.chosen in self.reading.probabilities
-        self._why = self._reader.explain(self.chosen, seen.centred) if known else None
-        yield
-
-    def _catch_up(self) -> None:
-        """Finish reading the current drawing."""
-        if self._seen != self.pad.revision:
-            self._looking = self._look()
-        deque(self._looking, maxlen=0)
-
-    def _look_anew(self) -> None:
-        self._seen = -1
-        self._catch_up()
+            self._live.reader.load(name, *network.versions())
 
     def _show_bars(self) -> None:
-        drawn = bool(self.reading.stages.centred.any())
-        values = [self.reading.probabilities.get(name) for name in (self.chosen, self._other)]
         for row in self._rows:
-            one, other = (float(value[row.digit]) if drawn and value is not None else 0.0 for value in values)
-            row.values = (one, other)
-            row.best = drawn and values[0] is not None and int(values[0].argmax()) == row.digit
-
-    @property
-    def _other(self) -> str:
-        """Name of the network to compare with: Modern, or Classic beside Modern; empty if it can't be loaded."""
-        return next((name for name in NAMES if name != self.chosen and name in self._reader.classifiers), "")
-
-    @property
-    def _pair(self) -> list[str]:
-        return [name for name in (self.chosen, self._other) if name in self._reader.classifiers]
+            row.values, row.best = self._live.bars(row.digit)
 
     # Preprocessing steps and their measured effect
 
     def _switch(self, step: str, on: bool) -> None:
-        self._switches = replace(self._switches, **{step: on})
-        self._look_anew()
-        self._measuring.ask(self._switches)
+        self._live.switches = replace(self._live.switches, **{step: on})
+        self._live.anew()
+        self._measuring.ask(self._live.switches)
 
     # Fixing a wrong answer
 
     def _correct(self, digit: int) -> None:
         """Teach the chosen network that what is drawn is this digit."""
-        self._catch_up()
+        self._live.catch_up()
         image = self.reading.stages.centred
-        if image.any() and self.chosen in self._reader.classifiers:
-            self._fixing.begin(self.chosen, image, digit, self._reader.sources[self.chosen])
+        if image.any() and self._live.known:
+            self._fixing.begin(self.chosen, image, digit, self._live.reader.sources[self.chosen])
             self._fix_of = self.pad.revision
 
     def _undo_fix(self) -> None:
@@ -244,9 +205,9 @@ class DigitsScene(FormScene):
     def _take_anew(self, name: str) -> None:
         """Reload a network after a fix or its undo."""
         self._load(name)
-        self._look_anew()
+        self._live.anew()
         self._offer_undo()
-        self._measuring.anew(self._switches)
+        self._measuring.anew(self._live.switches)
 
     def _offer_undo(self) -> None:
         """Show the button that undoes a fix while there is one."""
@@ -291,17 +252,17 @@ class DigitsScene(FormScene):
 
     def _choose(self, index: int) -> None:
         """Choose another network; if it can't be loaded, say so and keep the last one."""
-        names, before = list(self._fixing.networks), self._pair
-        if names[index] not in self._reader.classifiers:
+        names, before = list(self._fixing.networks), self._live.pair
+        if names[index] not in self._live.reader.classifiers:
             self._load(names[index])
-        if names[index] not in self._reader.classifiers:
+        if names[index] not in self._live.reader.classifiers:
             self._tabs.index = names.index(self.chosen)
             return
-        self.chosen = names[index]
-        self._look_anew()
+        self._live.chosen = names[index]
+        self._live.anew()
         self._offer_undo()
-        if set(self._pair) != set(before):
-            self._measuring.anew(self._switches)
+        if set(self._live.pair) != set(before):
+            self._measuring.anew(self._live.switches)
 
     def _turn(self, direction: int) -> None:
         """Choose the next network that can be loaded."""
@@ -315,7 +276,7 @@ class DigitsScene(FormScene):
         """Open a list of all networks with their accuracy."""
         from game.scenes.dialog import ListDialog
 
-        damaged = self._reader.problems
+        damaged = self._live.reader.problems
         rows = [(called(name), texts.SHELF_DAMAGED if name in damaged else network.said)
                 for name, network in self._fixing.networks.items()]  # fmt: skip
         return Push(ListDialog(self, texts.DIGITS_PICK, rows, self._tabs.choose))
@@ -334,7 +295,7 @@ class DigitsScene(FormScene):
 
     def _with_chosen(self, lead: Callable[[DigitClassifier], Transition]) -> Transition | None:
         """Open a scene about the chosen network, if it could be loaded."""
-        classifier = self._reader.classifiers.get(self.chosen)
+        classifier = self._live.reader.classifiers.get(self.chosen)
         return lead(classifier) if classifier else None
 
     def _undo(self) -> None:
@@ -347,11 +308,11 @@ class DigitsScene(FormScene):
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
             draw_fix(canvas, self._fixing, same=self._fix_of == self.pad.revision)
         for number, line in enumerate(
-            wrapped(canvas, self._measuring.words(self._switches), LABEL, _RIGHT - EXPLANATION_LEFT)
+            wrapped(canvas, self._measuring.words(self._live.switches), LABEL, _RIGHT - EXPLANATION_LEFT)
         ):
             canvas.text(line, (EXPLANATION_LEFT, 184 + 15 * number), size=LABEL, colour=MUTE)
         problems = [texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
-                    for name, problem in self._reader.problems.items()]  # fmt: skip
+                    for name, problem in self._live.reader.problems.items()]  # fmt: skip
         lines = [line for words in reversed(problems) for line in wrapped(canvas, words, SMALL, _TABS[2])]
         for number, line in enumerate(lines[:_PROBLEM_LINES]):
             canvas.text(line, (LEFT, _PROBLEMS + 17 * number), size=SMALL, colour=canvas.palette.warn)

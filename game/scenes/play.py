@@ -115,33 +115,27 @@ class PlayScene(Scene):
         """Return the hints of the flight, and those of the card."""
         rows = [flight_words.flight_row(hints_of(self._flight_actions(), self._controls))]
         if self.ending.card and self.ending.shown > 0:
-            rows.append(
-                self.ending.hint_row(
-                    hints_of(self._card_actions(), self._controls), self._ghost, self._settings.show_hints
-                )
-            )
+            hints = hints_of(self._card_actions(), self._controls)
+            rows.append(self.ending.hint_row(hints, self._ghost, self._settings.show_hints))
         return rows
 
-    def _flight_actions(self) -> list[Action]:
-        """What the keys do in flight, with the hints that fit the moment."""
-        words = flight_words.flight_hints(self.flight, self._challenge, leaves=self._leaves)
-        runs: dict[Command, Run] = {
+    @property
+    def _runs(self) -> dict[Command, Run]:
+        """What each command does, whether or not a hint names it."""
+        return {
             Command.HANDOVER: self._hand_over,
             Command.CHOICES: self._choose,
             Command.NEXT: self._begin_elsewhere,
             Command.PAUSE: Pop if self._leaves else self._pause,
             Command.RETRY: self.retry,
         }
-        return [Action(command, run, words.get(command, "")) for command, run in runs.items()]
+
+    def _flight_actions(self) -> list[Action]:
+        return flight_words.flight_actions(self._runs, self.flight, self._challenge, leaves=self._leaves)
 
     def _card_actions(self) -> list[Action]:
-        """What the keys do that the outcome card names."""
         card = self.ending.card
-        if card is None:
-            return []
-        first, (other, word) = flight_words.card_hints(card.good, self._challenge)
-        runs = {action.key: action.run for action in self._flight_actions()}
-        return [Action(Command.CONFIRM, self._go_on, first), Action(other, runs[other], word)]
+        return flight_words.card_actions(self._go_on, self._runs, self._challenge, good=card.good) if card else []
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""

@@ -21,11 +21,11 @@ from game.core.clock import STEP, TimeScale
 from game.core.scene import Transition, push
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import FIGURE, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
+from game.drawing.tokens import INK, MARGIN, NET, SMALL, TEXT, VIEW_SIZE
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS, REST_STEPS, Swarm
 from game.input.controls import Command
-from game.panels.run_status import rate_colour
+from game.panels.run_status import draw_landings
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
@@ -209,12 +209,8 @@ class WatchScene(FormScene):
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        return [
-            (
-                texts.PAUSE_NETWORK.format(name=brief(self._wanted or self._network.name, _LONGEST_NAME)),
-                self._open_networks,
-            )
-        ]
+        name = brief(self._wanted or self._network.name, _LONGEST_NAME)
+        return [(texts.PAUSE_NETWORK.format(name=name), self._open_networks)]
 
     # Choices
 
@@ -298,7 +294,7 @@ class WatchScene(FormScene):
         crowd = texts.WATCH_LANDERS.format(count=count)
         hud.draw_corner(canvas, texts.WATCH_TITLE, crowd)
         hud.draw_hand(canvas, self._said, NET)
-        self._draw_counts(canvas)
+        draw_landings(canvas, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], (758, 880, 1002, 1124))
         if self.problem:
             middle, problem = VIEW_SIZE[0] / 2, brief(self.problem, _LONGEST_PROBLEM)
@@ -316,20 +312,3 @@ class WatchScene(FormScene):
         if self._network.name == networks.SCRIPTED:
             return texts.WATCH_SCRIPTED
         return texts.WATCH_FLIES.format(name=brief(self._network.name, _LONGEST_NAME))
-
-    def _draw_counts(self, canvas: Canvas) -> None:
-        landed, lost = self.swarm.landed, self.swarm.lost
-        if landed + lost == 0:
-            return
-        share = f"{100 * landed / (landed + lost):.0f}"
-        figure = canvas.text(
-            share,
-            (MARGIN - 1, 118),
-            size=FIGURE,
-            weight="light",
-            tabular=True,
-            colour=rate_colour(canvas.palette, float(share)),
-        )
-        canvas.text(texts.WATCH_LANDED, (figure.right + 6, 118), size=SMALL, colour=MUTE)
-        counts = texts.WATCH_COUNTS.format(landed=landed, lost=lost)
-        canvas.text(counts, (MARGIN, 140), size=SMALL, colour=MUTE, tabular=True)

@@ -47,7 +47,7 @@ class Form:
         self._context, self._on_back = context, on_back
         self._index = 0
         self._held_steps = 0
-        self.used = self._pressed = False
+        self.used = self._pressed = self._acted = False
 
     @property
     def typing(self) -> bool:
@@ -123,9 +123,9 @@ class Form:
 
     def _sounding(self, act: OnPress) -> Transition | None:
         """Do something, with the sound of its effect on the focused widget."""
-        before, self._pressed = (self.focused, _reading(self.focused)), False
+        before, self._pressed, self._acted = (self.focused, _reading(self.focused)), False, False
         outcome = act()
-        if outcome is None:  # the change to another scene has its own sound
+        if outcome is None and not self._acted:  # the change to another scene has its own sound
             self._sound(*before)
         self._tell_spelling()
         return outcome
@@ -146,7 +146,9 @@ class Form:
         if widget and widget.take(event):
             return _outcome(widget)
         if action := answering(actions, event):
-            return action.run()
+            outcome = action.run()
+            self._acted = True  # and has made its own sounds
+            return outcome
         command = translate(event)
         if command is None and presses_main(event):
             command = Command.CONFIRM

@@ -8,6 +8,7 @@ import pygame
 import pytest
 
 from ai.lander.missions import MISSIONS
+from game.core import texts
 from game.core.scene import Push, Scene
 from game.core.settings import Settings
 from game.input.controls import Command
@@ -151,3 +152,18 @@ def test_full_screen_is_switched_by_its_key_and_by_a_click(open_game: Open, cont
         switch()
         assert context.settings.full_screen is not before
     assert driver.app.window.full_screen is context.settings.full_screen
+
+
+@pytest.mark.usefixtures("unhurried")
+def test_a_press_and_a_click_on_its_hint_sound_the_same_and_once(
+    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch
+):
+    driver = open_game(SCREENS["SettingsScene"])
+    driver.frames(2)
+    played: list[str] = []
+    monkeypatch.setattr(context.sound, "play", played.append)
+    driver.key(pygame.K_RETURN)
+    by_key, played[:] = list(played), []
+    driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(driver.hints()[texts.HINT_CHANGE]), button=1)
+    assert len(by_key) == 1
+    assert played == by_key

@@ -91,7 +91,7 @@ def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver
     driver = open_game(DigitsScene)
     driver.keys(pygame.K_n, pygame.K_n)
     assert driver.top.chosen == own[1]
-    assert "config.json" in driver.top._reader.problems[own[0]]
+    assert "config.json" in driver.top._live.reader.problems[own[0]]
     draw(driver, strokes(3))
     guess(driver)
     driver.frames(3)
