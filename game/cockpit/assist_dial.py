@@ -15,6 +15,7 @@ from game.flight.credit import FlownBy
 from game.input.controls import Command, translate
 
 _MIDDLE: Final = VIEW_SIZE[0] / 2
+_ROOM: Final = 400.0  # points for who flies
 _TRACK: Final = (_MIDDLE - 90, _MIDDLE + 90)
 _LINE: Final = 59.0
 _HOLD: Final = pygame.Rect(_TRACK[0] - 14, _LINE - 12, 208, 24)  # where the mouse can grab the handle
@@ -81,8 +82,7 @@ class AssistDial:
 def draw_title(canvas: Canvas, text: str, lamp: tuple[Shape, Colour, float]) -> None:
     """Write who flies, with a lamp before it."""
     shape, colour, glow = lamp
-    width = canvas.text_width(text, size=TEXT)
-    canvas.text(text, (_MIDDLE + 9, 41), size=TEXT, align="centre")
+    width = canvas.text(text, (_MIDDLE + 9, 41), size=TEXT, align="centre", room=_ROOM).width
     spot = (_MIDDLE - width / 2 - 8, 36)
     canvas.glow(spot, 16, colour, glow)
     canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)

@@ -76,9 +76,9 @@ class QValues:
 def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, width: float) -> None:
     """Draw the expected score, a bar for each action on the fixed scale, and the scale; `top` is the first baseline."""
     track = (left + _NAME, width - _NAME - _FIGURE)
-    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE)
+    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
     canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)
-    canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right")
+    canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
     for action in range(len(ACTION_NAMES)):
         _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
     _draw_axis(canvas, left, top + _AXIS, width)
@@ -103,7 +103,9 @@ def _draw_row(canvas: Canvas, values: QValues, action: int, left: float, y: floa
     flown, feasible = action == values.flown, values.feasible[action]
     alpha = 1.0 if feasible or flown else 0.5
     colour = INK if flown else MUTE
-    canvas.text(texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20)
+    canvas.text(
+        texts.said(ACTION_NAMES[action]), (left, y + 4), size=SMALL, colour=colour, alpha=alpha, room=_NAME - 20
+    )
     loss = values.loss(action)
     fraction = values.fraction(loss)
     tone = NET if flown else mix(FAINT, NET, 0.45 if feasible else 0.12)
@@ -127,7 +129,7 @@ def _draw_axis(canvas: Canvas, left: float, y: float, width: float) -> None:
     canvas.text(texts.Q_ADVANTAGE, (left, y), size=LABEL, colour=MUTE, room=_NAME - 6)
     canvas.text(f"−{SPAN:g}", (x, y), size=LABEL, colour=MUTE, align="centre")
     canvas.text("0", (end, y), size=LABEL, colour=MUTE, align="centre")
-    canvas.text(texts.Q_UNIT, (left + width, y), size=LABEL, colour=MUTE, align="right")
+    canvas.text(texts.Q_UNIT, (left + width, y), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
 
 
 def decision_words(decision: Decision) -> Sequence[str]:

@@ -17,6 +17,7 @@ from game.play.challenge import Challenge
 from game.ui.hints import draw_hints, flight_hints
 from game.world.camera import ClearArea
 
+_KEYS_ROOM: Final = 352.0  # points, to the right of who flies
 BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of the opening text
 
 
@@ -57,7 +58,7 @@ def draw_keys(canvas: Canvas, controls: Controls, flight: Flight, challenge: Cha
     if flight.network and not flight.over:
         taken = flight.hand is StickHolder.NETWORK
         hints.insert(0, (word(Command.HANDOVER), texts.HINT_TAKE_BACK if taken else texts.HINT_HAND_OVER))
-    draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+    draw_hints(canvas, hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=_KEYS_ROOM)
 
 
 def card_keys(controls: Controls, good: bool, challenge: Challenge | None) -> list[tuple[str, str]]:

@@ -276,7 +276,7 @@ class PhysicsScene:
         drag = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
         text = texts.PHYSICS_STOPPED if self.stopped else "" if self._hand.typing else drag
         colour = INK if self.stopped else HUMAN
-        canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right")
+        canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right", room=right - self._tabs.box.right - 16)
 
     def _readouts(self) -> list[hud.Readout]:
         exhibit = self.exhibit

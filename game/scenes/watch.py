@@ -224,7 +224,9 @@ class WatchScene:
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         return [
             (
-                texts.PAUSE_NETWORK.format(name=brief(self._wanted or self._network.name, _LONGEST_NAME)),
+                texts.PAUSE_NETWORK.format(
+                    name=brief(networks.word(self._wanted or self._network.name), _LONGEST_NAME)
+                ),
                 self._open_networks,
             )
         ]
@@ -243,7 +245,7 @@ class WatchScene:
         return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
 
     def _network_row(self, index: int) -> ChoiceOrList:
-        words = [brief(name, _LONGEST_NAME) for name in self._policies.names]
+        words = [brief(networks.word(name), _LONGEST_NAME) for name in self._policies.names]
         box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
         return ChoiceOrList(
             self._form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,

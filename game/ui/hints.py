@@ -32,7 +32,8 @@ def draw_hints(
     x, y = position
     if room < math.inf:
         gaps = len(pairs) * _GAPS[0] + (len(pairs) - 1) * _GAPS[1]  # gaps do not shrink
-        size *= min(1.0, (room - gaps) / max(hints_width(canvas, pairs, size) - gaps, 1.0))
+        for _ in range(2):  # text that is made larger does not shrink in proportion
+            size *= min(1.0, (room - gaps) / max(hints_width(canvas, pairs, size) - gaps, 1.0))
     widths = [_width(canvas, pair, size) for pair in pairs]
     if from_right:
         x -= sum(widths) + (len(widths) - 1) * _GAPS[1]
