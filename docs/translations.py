@@ -24,18 +24,20 @@ from game.core import catalogue
 
 DOMAINS = (catalogue.DOMAIN, catalogue.AI_DOMAIN)
 STUB = ROOT / "game" / "core" / "texts.pyi"
-_HEAD = '''"""Names and shapes of all texts. Made by docs/translations.py from game/locale/tranquility.pot: do not edit."""
+_HEAD = '''"""Names and shapes of all texts, made by docs/translations.py from tranquility.pot: do not edit."""
 
 from typing import Final
 
 from game.core.catalogue import Plural
+
+LANGUAGE: Final[str]
 
 def said(sentence: str, /) -> str: ...
 
 '''
 
 
-_AI_HEAD = """# What the player reads of `ai`, in English. Made by docs/translations.py from the sources of `ai`: do not edit.
+_AI_HEAD = """# What the player reads of `ai`, in English, made by docs/translations.py from its sources: do not edit.
 msgid ""
 msgstr ""
 "Content-Type: text/plain; charset=utf-8\\n"
@@ -43,9 +45,10 @@ msgstr ""
 """
 
 
-def template(domain: str, folder: Path = catalogue.LOCALE) -> Catalog:
-    """Read an English template: the texts, each with an empty translation."""
-    return read_po((folder / f"{domain}.pot").read_bytes().splitlines(keepends=True), locale="en", abort_invalid=True)
+def template(domain: str, folder: Path = catalogue.LOCALE, language: str = catalogue.ENGLISH) -> Catalog:
+    """Read an English template: the texts, each with an empty translation, in a language's plural forms."""
+    lines = (folder / f"{domain}.pot").read_bytes().splitlines(keepends=True)
+    return read_po(lines, locale=language, abort_invalid=True)
 
 
 def english(folder: Path = catalogue.LOCALE) -> Catalog:
@@ -87,10 +90,8 @@ def begin(language: str, folder: Path = catalogue.LOCALE) -> None:
     for domain in DOMAINS:
         path = folder / language / "LC_MESSAGES" / f"{domain}.po"
         path.parent.mkdir(parents=True, exist_ok=True)
-        begun = template(domain, folder)
-        begun.locale = language
         if not path.exists():
-            _write_po(path, begun)
+            _write_po(path, template(domain, folder, language))
 
 
 def compile_all(folder: Path = catalogue.LOCALE) -> None:

@@ -235,7 +235,8 @@ class Chart:
                     sheet.text(text, (plot.right + 6, y + 4), size=_AXES_SIZE, colour=_AXES)
         if self._log:
             for word, y in zip(texts.CHART_LOG, (plot.centery - 2, plot.centery + 9), strict=True):
-                sheet.text(word, (plot.right + 6, y), size=_AXES_SIZE, colour=_AXES)
+                room = sheet.size[0] / sheet.scale - plot.right - 6
+                sheet.text(word, (plot.right + 6, y), size=_AXES_SIZE, colour=_AXES, room=room)
         ends: tuple[tuple[float, Align], ...] = ((plot.x, "left"), (plot.right, "right"))
         for (x, align), told in zip(ends, self._told, strict=False):
             place = (x, plot.bottom + 15)

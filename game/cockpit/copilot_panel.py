@@ -92,7 +92,7 @@ class CopilotPanel:
         pads = self._likely if len(self._likely) > 1 else []
         lower, left, top = PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
         canvas.panel((PANEL.left, top, PANEL.width, PANEL.height + lower))
-        canvas.text(texts.MIND_TITLE, (left, top + 34))
+        canvas.text(texts.MIND_TITLE, (left, top + 34), room=_WIDTH)
         if self.values is not None:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
@@ -112,7 +112,7 @@ class CopilotPanel:
 
     def _draw_pads(self, canvas: Canvas, pads: Sequence[float]) -> None:
         left, top, surest = PANEL.left + _LEFT, PANEL.top + _PADS, max(pads)
-        canvas.text(texts.INSIGHT_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium")
+        canvas.text(texts.INSIGHT_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
         for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
             y, likeliest = top + 22 * number, chance == surest
             canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)

@@ -11,7 +11,7 @@ from ai.common.decision import Decision
 from game.cockpit import hud
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL, TEXT
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, SMALL
 from game.panels.q_values import HEIGHT, QValues, decision_words, draw_actions, draw_q_values
 
 PANEL: Final = pygame.Rect(964, 84, 280, 504)
@@ -29,7 +29,7 @@ def draw_decision(canvas: Canvas, decision: Decision) -> None:
     left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
     canvas.panel(PANEL, _COVER)
     values = QValues.of(decision)
-    canvas.text(texts.MIND_SCRIPTED_TITLE if values is None else texts.MIND_TITLE, (left, top + 34), size=TEXT)
+    canvas.text(texts.MIND_SCRIPTED_TITLE if values is None else texts.MIND_TITLE, (left, top + 34), room=width)
     if values is None:
         draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
     else:

@@ -46,6 +46,7 @@ _LABEL_LINE: Final = 663.0
 _FIGURE_LINE: Final = 697.0
 _BAR: Final = (92.0, 2.0)
 _BAR_TOP: Final = 708.0
+_TITLE_ROOM: Final = 400.0  # points for who flies
 _SHADE, _SHADE_TOP = 0.6, 640.0  # greatest darkness behind the read-outs, and the row from which it begins
 _CAPITAL: Final = 0.72  # height of a figure, in shares of its font size
 # A readout's words are painted on a sheet: how far that reaches beyond them to the left and above, and its size.
@@ -154,8 +155,8 @@ def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
 def draw_title(canvas: Canvas, text: str, lamp: Lamp, reach: float = 16.0) -> float:
     """Write who flies, with a lamp before it that shines to `reach` points; return the text's width in points."""
     shape, colour, glow = lamp
-    middle, width = VIEW_SIZE[0] / 2, canvas.text_width(text, size=TEXT)
-    canvas.text(text, (middle + 9, 41), size=TEXT, align="centre")
+    middle = VIEW_SIZE[0] / 2
+    width = canvas.text(text, (middle + 9, 41), size=TEXT, align="centre", room=_TITLE_ROOM).width
     spot = (middle - width / 2 - 8, 36)
     canvas.glow(spot, reach, colour, glow)
     canvas.marker(shape, spot, 8 if shape == "circle" else 11, colour)

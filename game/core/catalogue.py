@@ -16,7 +16,7 @@ from typing import Any, Final
 DOMAIN: Final = "tranquility"
 AI_DOMAIN: Final = "ai"  # what `ai` says in English, which knows nothing of players or of languages
 ENGLISH: Final = "en"
-LOCALE: Final = Path(__file__).parents[1] / "locale"
+LOCALE = Path(__file__).parents[1] / "locale"  # a test reads another
 _CONTEXT_ENDS, _FORM_ENDS = "\x04", "\0"
 
 
@@ -41,7 +41,7 @@ class Plural(str):
         return self._choose(index(values["count"])).format(*args, **values)
 
 
-def read(folder: Path = LOCALE) -> dict[str, Any]:
+def read(folder: Path) -> dict[str, Any]:
     """Return all texts by name: a string, a `Plural`, or a group of texts, as a tuple or by key.
 
     A name's parts after its first are keys of groups. Keys from 0 on make a tuple; other numbers are whole numbers. In
@@ -58,7 +58,13 @@ def read(folder: Path = LOCALE) -> dict[str, Any]:
     return {name: _group(texts) if isinstance(texts, dict) else texts for name, texts in tree.items()}
 
 
-def said_in(folder: Path = LOCALE) -> Callable[[str], str]:
+def language(folder: Path) -> str:
+    """Return the code of the language that texts are in, as far as they are translated."""
+    path = gettext.find(DOMAIN, folder)
+    return Path(path).parts[-3] if path else ENGLISH
+
+
+def said_in(folder: Path) -> Callable[[str], str]:
     """Return what turns a sentence of `ai` into the player's language; one that is not in its catalogue stays."""
     return gettext.translation(AI_DOMAIN, folder, fallback=True).gettext
 

@@ -5,5 +5,6 @@
 
 from game.core import catalogue
 
-globals().update(catalogue.read())
-said = catalogue.said_in()
+globals().update(catalogue.read(catalogue.LOCALE))
+said = catalogue.said_in(catalogue.LOCALE)
+LANGUAGE = catalogue.language(catalogue.LOCALE)

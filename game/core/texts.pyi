@@ -1,8 +1,10 @@
-"""Names and shapes of all texts. Made by docs/translations.py from game/locale/tranquility.pot: do not edit."""
+"""Names and shapes of all texts, made by docs/translations.py from tranquility.pot: do not edit."""
 
 from typing import Final
 
 from game.core.catalogue import Plural
+
+LANGUAGE: Final[str]
 
 def said(sentence: str, /) -> str: ...
 
@@ -235,6 +237,7 @@ KEYS_KEYBOARD: Final[str]
 KEYS_PAD: Final[str]
 KEYS_TITLE: Final[str]
 KEY_NAMES: Final[dict[str, str]]
+KEY_OF_PAD: Final[str]
 KINETIC_ENERGY: Final[str]
 KNOBS: Final[dict[str, str]]
 KNOBS_APPLY: Final[str]
@@ -335,6 +338,7 @@ NETWORK_ELSEWHERE: Final[str]
 NETWORK_FLEW: Final[str]
 NETWORK_FLIES: Final[str]
 NETWORK_MISSING: Final[str]
+NETWORK_SCRIPTED: Final[str]
 NETWORK_YOURS: Final[str]
 NET_ALL: Final[Plural]
 NET_BIAS: Final[str]

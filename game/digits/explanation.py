@@ -127,7 +127,7 @@ class ExplanationView:
 
 
 def _label(canvas: Canvas, words: str, place: tuple[float, float]) -> None:
-    canvas.text(words, place, size=LABEL, colour=MUTE, weight="medium")
+    canvas.text(words, place, size=LABEL, colour=MUTE, weight="medium", room=RIGHT + 24 - place[0])
 
 
 def _legend(canvas: Canvas, words: tuple[str, ...], colours: tuple[Colour, ...], place: tuple[float, float]) -> None:

@@ -12,6 +12,8 @@ from typing import Final, Literal
 
 import pygame
 
+from game.core import texts
+from game.core.catalogue import ENGLISH
 from game.drawing import shapes, typeface
 from game.drawing.tokens import FAINT, INK, NIGHT0, PALETTE, PANEL, PANEL_ALPHA, TEXT, VIEW_SIZE, Colour, Palette
 from game.drawing.typeface import Weight
@@ -19,6 +21,9 @@ from game.drawing.typeface import Weight
 _MOST_WORDS: Final = 256  # text boxes noted in a frame, at most
 _FAINT_WORDS: Final = 0.4  # alpha below which text is not noted
 _AROUND: Final = 4.0  # points of margin around noted text
+# Least size of a text that has too little room, as a share of the size it is laid out in: English always fits; other
+# languages take a third more letters.
+LEAST: Final = 1.0 if texts.LANGUAGE == ENGLISH else 0.7
 
 _PARTS: Final = re.compile(r"\d|\D+")  # single digits, and the text between them
 
@@ -139,7 +144,8 @@ class Canvas:
         `position` is on the *baseline*: its left end, middle or right end as `align` says, so that texts
         of different sizes stand on one line when given the same y. `tabular` gives every digit the same
         width and takes digits from a cache one by one: use it for every figure that changes. Text that is
-        made larger for those who want it grows no further than `room`, in points.
+        made larger for those who want it grows no further than `room`, in points; a translation that is longer than
+        the English shrinks to it, to seven tenths of its size at least.
         """
         pixels = self._pixels(string, size, weight, tabular, room)
         width = self._width(string, pixels, weight, tabular)
@@ -164,10 +170,11 @@ class Canvas:
     def _pixels(self, string: str, size: float, weight: Weight, tabular: bool, room: float = math.inf) -> float:
         """Return the size in pixels at which a text is rendered."""
         pixels = round(typeface.grown(size) * self.scale, 2)
-        if room < math.inf and pixels > size * self.scale:
+        least = LEAST * size * self.scale
+        if room < math.inf and pixels > least:
             too_wide = self._width(string, pixels, weight, tabular) / max(room * self.scale, 1.0)
             if too_wide > 1:
-                pixels = round(max(pixels / too_wide, size * self.scale), 2)
+                pixels = round(max(pixels / too_wide, least), 2)
         return pixels
 
     def _width(self, string: str, pixels: float, weight: Weight, tabular: bool) -> float:

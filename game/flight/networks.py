@@ -56,6 +56,11 @@ class Network:
     problem: str = ""
 
 
+def word(name: str) -> str:
+    """Return a network's name for the player, and the word for the scripted pilot."""
+    return texts.NETWORK_SCRIPTED if name == SCRIPTED else name
+
+
 def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
     """Return every folder that looks like a lander's network, by name; the player's own come last.
 

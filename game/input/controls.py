@@ -287,7 +287,10 @@ def key_name(code: int) -> str:
     name = _KEY_NAMES.get(code)
     if name is None:
         return chr(code).upper() if 32 < code < 0x10000 and chr(code).isprintable() else f"#{code}"
-    return texts.KEY_NAMES.get(name) or name.replace("kp_", "Num ").replace("kp", "Num ").title()
+    if name in texts.KEY_NAMES:
+        return texts.KEY_NAMES[name]
+    plain = name.removeprefix("kp").removeprefix("_").title()
+    return texts.KEY_OF_PAD.format(name=plain) if name.startswith("kp") else plain
 
 
 def names(words: Iterable[str]) -> str:

@@ -79,9 +79,9 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
     `top` is the first baseline; the last is `HEIGHT` below it.
     """
     track = (left + _NAME, width - _NAME - _FIGURE)
-    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE)
+    canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
     canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)
-    canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right")
+    canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
     for action in range(len(ACTION_NAMES)):
         _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
     _draw_axis(canvas, left, top + _AXIS, width)
@@ -132,7 +132,7 @@ def _draw_axis(canvas: Canvas, left: float, y: float, width: float) -> None:
     canvas.text(texts.Q_ADVANTAGE, (left, y), size=LABEL, colour=MUTE, room=_NAME - 6)
     canvas.text(f"−{SPAN:g}", (x, y), size=LABEL, colour=MUTE, align="centre")
     canvas.text("0", (end, y), size=LABEL, colour=MUTE, align="centre")
-    canvas.text(texts.Q_UNIT, (left + width, y), size=LABEL, colour=MUTE, align="right")
+    canvas.text(texts.Q_UNIT, (left + width, y), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
 
 
 def decision_words(decision: Decision) -> Sequence[str]:

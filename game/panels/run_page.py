@@ -31,7 +31,7 @@ def suggestion(library: Library, run: SavedRun) -> str:
 def draw_run(canvas: Canvas, run: SavedRun, left: float, width: float, *, own: bool, named: bool, flies: bool) -> None:
     """Draw the details of a run; its name only if `named`, as an entry to rename it may stand there."""
     if named:
-        canvas.text(shortened(canvas, run.name, TITLE, width), (left, 165), size=TITLE)
+        canvas.text(shortened(canvas, run.name, TITLE, width), (left, 165), size=TITLE, room=width)
     y = 222 if run.problem else 294
     if run.problem:
         canvas.marker("cross", (left + 5, 190), 10, canvas.palette.warn)

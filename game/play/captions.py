@@ -19,6 +19,7 @@ from game.ui.actions import Action, Run
 from game.ui.hints import Hint, HintRow, flight_hints
 from game.world.camera import ClearArea
 
+_KEYS_ROOM: Final = 352.0  # points, to the right of who flies
 BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of the opening text
 
 
@@ -73,7 +74,7 @@ def flight_actions(
 
 def flight_row(hints: list[Hint]) -> HintRow:
     """Return the row of hints in the upper right corner of a flight."""
-    return HintRow(hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True)
+    return HintRow(hints, (VIEW_SIZE[0] - MARGIN, 42), from_right=True, room=_KEYS_ROOM)
 
 
 def card_actions(go_on: Run, runs: Mapping[Command, Run], challenge: Challenge | None, *, good: bool) -> list[Action]:

@@ -283,7 +283,7 @@ class DigitTrainingScene(FormScene):
         self.start_word = add(_PANEL, 664, texts.TRAIN_START, self._toggle)
         self.save_word = add(_PANEL + 316, 664, texts.TRAIN_SAVE, self._save)
         self.dream_word = add(_PANEL, 624, texts.PUPIL_DREAM, self._dream)
-        self.quiz_word = add(_PANEL + 120, 624, texts.PUPIL_QUIZ, self._quiz)
+        self.quiz_word = add(max(_PANEL + 120, self.dream_word.box.right + 18), 624, texts.PUPIL_QUIZ, self._quiz)
         self._name_words()
 
     def _name_words(self) -> None:

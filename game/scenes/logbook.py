@@ -188,7 +188,7 @@ class LogbookScene(FormScene):
         """Draw the list, the totals and the charts."""
         self._sky.draw(canvas)
         canvas.text(texts.LOGBOOK_TITLE, (MARGIN, 84), size=34, weight="light")
-        canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE)
+        canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE, room=700)
         _draw_totals(canvas, self._totals)
         y = _LIST.top - 9
         for label, column in zip(texts.LOGBOOK_COLUMNS, (None, *_COLUMNS), strict=True):

@@ -244,7 +244,7 @@ class PhysicsScene(FormScene):
         drag = texts.PHYSICS_HAND.format(key=controls.word(Command.CONFIRM)) if keys else texts.PHYSICS_DRAG
         text = texts.PHYSICS_STOPPED if self.playback.stopped else "" if self._hand.typing else drag
         colour = INK if self.playback.stopped else HUMAN
-        canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right")
+        canvas.text(text, (right, 62), size=SMALL, colour=colour, align="right", room=right - self._tabs.box.right - 16)
 
     def _readouts(self) -> list[hud.Readout]:
         exhibit = self.exhibit

@@ -269,7 +269,7 @@ class ReplayScene(FormScene):
         by = texts.YOU_FLEW if flight.flown_by is StickHolder.HUMAN else texts.NETWORK_FLEW
         if self.ended:
             by = texts.OUTCOMES[flight.outcome.name][0] if flight.over else by
-        canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre")
+        canvas.text(by, (middle, 34), size=SMALL, colour=MUTE, align="centre", room=2 * _FIGURE - 16)
         if flight.over:
             good = flight.outcome is Outcome.LANDED
             colour = canvas.palette.good if good else canvas.palette.warn

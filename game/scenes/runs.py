@@ -272,7 +272,7 @@ class NetworksScene(FormScene):
         self._sky.draw(canvas)
         title = texts.RUNS_CHOOSE_TITLE if self._choose else texts.RUNS_TITLE
         canvas.text(title, (MARGIN, 84), size=34, weight="light")
-        canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE)
+        canvas.text(shortened(canvas, self._line, SMALL, 700), (MARGIN, 110), size=SMALL, colour=MUTE, room=700)
         self._draw_headings(canvas)
         self.form.draw(canvas)
         if run := self.shown:

@@ -209,7 +209,7 @@ class WatchScene(FormScene):
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        name = brief(self._wanted or self._network.name, _LONGEST_NAME)
+        name = brief(networks.word(self._wanted or self._network.name), _LONGEST_NAME)
         return [(texts.PAUSE_NETWORK.format(name=name), self._open_networks)]
 
     # Choices
@@ -226,7 +226,7 @@ class WatchScene(FormScene):
         return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
 
     def _network_row(self, index: int) -> ChoiceOrList:
-        words = [brief(name, _LONGEST_NAME) for name in self._policies.names]
+        words = [brief(networks.word(name), _LONGEST_NAME) for name in self._policies.names]
         box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
         return ChoiceOrList(
             self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,

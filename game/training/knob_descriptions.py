@@ -71,12 +71,8 @@ def knob_descriptions(of: type[Configuration] = Config) -> list[KnobDescription]
             made += [_weight(part, bool(item.metadata["live"])) for part in fields(RewardWeights)]
         elif stops := _stops(item):
             described = item.metadata
-            made.append(
-                KnobDescription(
-                    item.name, "", label(item.name), texts.said(described["help"]), described["group"],
-                    described["live"], _kind(item), stops,
-                )
-            )  # fmt: skip
+            made.append(KnobDescription(item.name, "", label(item.name), texts.said(described["help"]),
+                             described["group"], described["live"], _kind(item), stops))  # fmt: skip
     return made
 
 

@@ -82,9 +82,10 @@ class HintRow:
         size, widths = self.size, self._widths(canvas, self.size)
         if self.room < math.inf:
             gaps = len(widths) * _GAPS[0] + (len(widths) - 1) * _GAPS[1]  # gaps do not shrink
-            wide = sum(widths) + (len(widths) - 1) * _GAPS[1]
-            size *= min(1.0, (self.room - gaps) / max(wide - gaps, 1.0))
-            widths = self._widths(canvas, size)
+            for _ in range(2):  # text that is made larger does not shrink in proportion
+                wide = sum(widths) + (len(widths) - 1) * _GAPS[1]
+                size *= min(1.0, (self.room - gaps) / max(wide - gaps, 1.0))
+                widths = self._widths(canvas, size)
         return size, widths
 
     def _widths(self, canvas: Canvas, size: float) -> list[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from typing import Final
@@ -9,13 +10,14 @@ from typing import Final
 import pygame
 
 from game.core.scene import Transition
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import LEAST, Canvas
 from game.drawing.tokens import FAINT, INK, LINE, MUTE, NET, SMALL, TEXT
 from game.input.controls import Command, translate
 from game.ui.widget import PointsManager, Widget, mix
 
 Row = tuple[str, ...]  # its name, then the text of each further column
 _BAR: Final = 3.0
+_BETWEEN: Final = 8.0  # points between two columns
 _GAP: Final = 12.0  # points between a row's text and the scroll bar
 
 
@@ -139,12 +141,16 @@ class Listing(Widget):
         baseline = top + 0.62 * self._pitch
         words, *cells = row
         room = right - left
+        before = math.inf
         for cell, column in zip(cells, self._columns, strict=False):
             end = right - column
-            box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True)
+            box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True,
+                              room=before - column - _BETWEEN)  # fmt: skip
+            before = column
             room = min(room, box.left - left - 24)
         colour = INK if chosen else mix(MUTE, INK, 0.35)
-        canvas.text(shortened(canvas, words, self._size, room), (left, baseline), size=self._size, colour=colour)
+        words = shortened(canvas, words, self._size, room)
+        canvas.text(words, (left, baseline), size=self._size, colour=colour, room=room)
         canvas.line((left, top + self._pitch - 1), (right, top + self._pitch - 1), LINE, 1)
         if chosen:
             canvas.line((left - 7, top + 0.26 * self._pitch), (left - 7, top + 0.76 * self._pitch), NET, 2)
@@ -159,7 +165,8 @@ class Listing(Widget):
 
 
 def shortened(canvas: Canvas, text: str, size: float, room: float) -> str:
-    """Return a text, cut to the room in points with an ellipsis if necessary."""
+    """Return a text, cut with an ellipsis if necessary, that `Canvas.text` can write within the room in points."""
+    room /= LEAST
     if canvas.text_width(text, size=size) <= room:
         return text
     lengths = range(len(text))

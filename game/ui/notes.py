@@ -7,13 +7,16 @@ from typing import Final
 
 import pygame
 
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import LEAST, Canvas
+from game.drawing.prose import wrapped
 from game.drawing.tokens import FAINT, INK, SMALL, VIEW_SIZE
 
 _STEPS_SHOWN: Final = 60 * 5
 _STEPS_FADING: Final = 20
-_LONGEST: Final = 150
-_HEIGHT: Final = 32
+_LONGEST: Final = round(150 / LEAST)  # characters; translations are longer than the English
+_WIDEST: Final = VIEW_SIZE[0] - 64.0  # points of a line; a longer message takes two
+_HEIGHT: Final = 32  # of one line
+_LINE: Final = 18  # from one to the next
 _TOPS: Final = (68, 640, 104, 24, 600, 140, 560, 176, 520, 212, 480, 248, 440)  # where its top may be, the best first
 _SHIFTS: Final = (0, -200, 200)  # horizontal shift, if there is no room in the middle
 _VIEW: Final = pygame.FRect(0, 0, *VIEW_SIZE)
@@ -31,6 +34,7 @@ class Note:
 
     def show(self, text: str) -> None:
         """Show a message in place of the last one."""
+        text = " ".join(text.split())
         if len(text) > _LONGEST:  # the end of a path or a reason matters most
             text = text[: _LONGEST // 3] + " … " + text[-_LONGEST * 2 // 3 :]
         self._text, self._left, self._place = text, _STEPS_SHOWN, _PLACES[0]
@@ -48,8 +52,9 @@ class Note:
         return self._box_at(canvas, self._place)
 
     def _box_at(self, canvas: Canvas, place: tuple[float, float]) -> pygame.FRect:
-        width = canvas.text_width(self._text, size=SMALL) + 32
-        box = pygame.FRect(place[0] - width / 2, place[1], width, _HEIGHT)
+        lines = wrapped(canvas, self._text, SMALL, _WIDEST)
+        width = max(canvas.text_width(line, size=SMALL) for line in lines) + 32
+        box = pygame.FRect(place[0] - width / 2, place[1], width, _HEIGHT + _LINE * (len(lines) - 1))
         return box.clamp(_VIEW) if width < _VIEW.w else box
 
     def _covers(self, canvas: Canvas, at: tuple[float, float]) -> int:
@@ -66,5 +71,6 @@ class Note:
         with canvas.unnoted():  # the note avoids the page, not itself
             canvas.panel(box, _COVER * alpha)
             canvas.outline(box, 8, FAINT, alpha=alpha)
-            middle = (box.centerx, box.top + 20)
-            canvas.text(self._text, middle, size=SMALL, colour=INK, align="centre", alpha=alpha)
+            for number, line in enumerate(wrapped(canvas, self._text, SMALL, _WIDEST)):
+                middle = (box.centerx, box.top + 20 + _LINE * number)
+                canvas.text(line, middle, size=SMALL, colour=INK, align="centre", alpha=alpha)

@@ -1,16 +1,23 @@
-"""English stands in one file, ready for translation."""
+"""Texts stand in one catalogue: what is used is there, what is there is used, and translations match the English."""
 
 import ast
 import re
 import string
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from shutil import copytree
 
 import pytest
+from babel.messages.catalog import Catalog, Message
+from babel.messages.mofile import read_mo
+from babel.messages.pofile import read_po
 
-from game.core import texts
+from docs import translations
+from game.core import catalogue, texts
+from game.core.catalogue import Plural
 
 GAME = Path(texts.__file__).parents[1]
+ROOT = GAME.parent
 WORDS = re.compile(r"[A-Za-z]{2,} [a-zA-Z]{2,}")
 NO_ENGLISH = {"tranquility flight", "wireless controller", "pro controller"}  # a file's format, devices' names
 
@@ -35,8 +42,6 @@ def spoken(tree: ast.AST) -> Iterator[ast.Constant]:
 
 @pytest.mark.parametrize("path", sorted(GAME.rglob("*.py")), ids=lambda path: path.relative_to(GAME).as_posix())
 def test_no_sentence_stands_elsewhere(path: Path):
-    if path.name == "texts.py":
-        return
     tree = ast.parse(path.read_text(encoding="utf-8"))
     found = [node.value for node in spoken(tree) if WORDS.search(node.value) and node.value not in NO_ENGLISH]
     assert not found
@@ -47,19 +52,198 @@ def test_the_scan_finds_a_sentence():
     assert [node.value for node in spoken(tree) if WORDS.search(node.value)] == ["Two words "]
 
 
+# Names
+
+
+def uses(source: str) -> Iterator[tuple[str, ...]]:
+    """Yield the texts that a module uses: a name, or a name and the key that it writes down."""
+
+    def name(node: ast.AST) -> str:
+        named = isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "texts"
+        return node.attr if named and node.attr.isupper() else ""
+
+    for node in ast.walk(ast.parse(source)):
+        if text := name(node):
+            yield (text,)
+        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant) and (text := name(node.value)):
+            yield text, str(node.slice.value)
+
+
+def unknown_and_unused(sources: list[str], names: set[str]) -> tuple[set[str], set[str]]:
+    """Return what is used and not in the catalogue, by its name or its key, and what is there and not used."""
+    used = {use for source in sources for use in uses(source)} - {("LANGUAGE",)}
+    roots = {name.partition(".")[0] for name in names}
+    groups = {".".join(name.split(".")[:2]) for name in names}
+    unknown = {".".join(use) for use in used if ".".join(use) not in (groups if len(use) > 1 else roots)}
+    return unknown, roots - {use[0] for use in used}
+
+
+def sources() -> list[str]:
+    return [path.read_text(encoding="utf-8") for path in (*GAME.rglob("*.py"), *(ROOT / "tranquility").rglob("*.py"))]
+
+
+def english() -> Catalog:
+    return translations.template(catalogue.DOMAIN)
+
+
+def test_every_text_that_is_used_is_there_and_every_text_there_is_used():
+    names = {message.context for message in english() if message.id}
+    unknown, unused = unknown_and_unused(sources(), names)
+    assert not unknown
+    assert not unused
+
+
+def test_a_text_that_is_missing_and_one_that_is_not_used_are_found():
+    program = ["texts.HERE; texts.GONE; texts.GROUP['here']; texts.GROUP['gone']"]
+    assert unknown_and_unused(program, {"HERE", "GROUP.here", "LEFT"}) == ({"GONE", "GROUP.gone"}, {"LEFT"})
+
+
+def test_no_name_stands_twice():
+    names = re.findall(r'^msgctxt "(.+)"', (catalogue.LOCALE / "tranquility.pot").read_text(encoding="utf-8"), re.M)
+    assert len(names) == len(set(names))
+
+
+# Translations
+
+
+def fields(text: str) -> set[str | None]:
+    return {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
+
+
+def faults(translated: Catalog, template: Catalog) -> Iterator[str]:
+    """Yield what is wrong with a language: other braces than the English, missing forms, texts of long ago."""
+    for message in translated:
+        told = [message.string] if isinstance(message.string, str) else list(message.string)
+        if not message.id or not any(told) or message.fuzzy:
+            continue
+        forms = [message.id] if isinstance(message.id, str) else list(message.id)
+        name = message.context or forms[0]
+        if template.get(forms[0], message.context) is None:
+            yield f"{name}: not in the template"
+        if len(forms) > 1 and (len(told) != translated.num_plurals or not all(told)):
+            yield f"{name}: plural forms are missing"
+        # The form for one may say the number in a word.
+        wanted, may_miss = set.union(*map(fields, forms)), {"count"} if len(forms) > 1 else set()
+        if any(not wanted - may_miss <= fields(form) <= wanted for form in told if form):
+            yield f"{name}: {told} has other braces than {forms}"
+
+
+@pytest.mark.parametrize("path", sorted(catalogue.LOCALE.glob("*/LC_MESSAGES/*.po")), ids=lambda path: path.parts[-3])
+def test_a_language_matches_the_english(path: Path):
+    translated = read_po(path.read_bytes().splitlines(keepends=True), locale=path.parts[-3])
+    assert not list(faults(translated, translations.template(path.stem)))
+
+
+@pytest.mark.parametrize(("told", "fault"), [
+    ({"SCREENSHOT_SAVED": "Bild gespeichert: {pfad}"}, "braces"),
+    ({"SCREENSHOT_SAVED": "Bild gespeichert"}, "braces"),
+    ({"WATCH_LANDERS": ("eine Fähre",)}, "plural forms"),
+    ({"WATCH_LANDERS": ("eine Fähre", "")}, "plural forms"),
+    ({"WATCH_LANDERS": ("eine Fähre", "{count} Fähren"), "SCREENSHOT_SAVED": "Bild: {path}"}, ""),
+])  # fmt: skip
+def test_faults_of_a_language_are_found(told: dict[str, str | tuple[str, ...]], fault: str):
+    template, german = english(), Catalog(locale="de")
+    for message in template:
+        if message.context in told:
+            german.add(message.id, told[message.context], context=message.context)
+    found = list(faults(german, template))
+    assert len(found) == bool(fault)
+    assert all(fault in each for each in found)
+
+
+def test_a_text_that_is_gone_is_found():
+    german = Catalog(locale="de")
+    german.add("Never said", "Nie gesagt", context="NEVER")
+    assert list(faults(german, english())) == ["NEVER: not in the template"]
+
+
 def test_what_is_filled_in_has_a_name():
     """A translation may need another order."""
-    for name, value in vars(texts).items():
-        for text in strings(value) if name.isupper() else ():
-            fields = [field for _, field, _, _ in string.Formatter().parse(text) if field is not None]
-            assert all(fields) or len(fields) == 1, f"{name}: {text}"
+    for message in english():
+        for text in (message.id,) if isinstance(message.id, str) else message.id:
+            assert all(fields(text)) or len(fields(text)) == 1, f"{message.context}: {text}"
 
 
-def strings(value: object) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, dict):
-        yield from strings(tuple(value.values()))
-    elif isinstance(value, tuple):
-        for each in value:
-            yield from strings(each)
+# What the game reads
+
+
+def contents(texts: Catalog) -> dict[object, object]:
+    found = {}
+    for message in texts:
+        context = message.context
+        name = context.decode() if isinstance(context, bytes) else context  # Babel's reader leaves it as it is
+        if message.id:
+            found[name, hashable(message.id)] = hashable(message.string)
+    return found
+
+
+def hashable(words: str | list[str] | tuple[str, ...] | None) -> str | tuple[str, ...]:
+    return words or "" if isinstance(words, str | None) else tuple(words)
+
+
+def test_what_the_game_reads_is_what_babel_makes_of_what_people_write():
+    folder = catalogue.LOCALE
+    with (folder / "en" / "LC_MESSAGES" / "tranquility.mo").open("rb") as file:
+        assert contents(read_mo(file)) == contents(translations.english())
+    assert contents(translations.template("ai")) == contents(translations.of_ai())
+    for path in folder.glob("*/LC_MESSAGES/*.po"):
+        translated = read_po(path.read_bytes().splitlines(keepends=True), locale=path.parts[-3])
+        kept = {key: told for key, told in contents(translated).items() if any(told)}
+        with path.with_suffix(".mo").open("rb") as file:
+            assert contents(read_mo(file)).items() <= kept.items()
+    assert translations.STUB.read_text(encoding="utf-8") == translations.stub(catalogue.read(folder))
+
+
+@pytest.fixture
+def german(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, object]]:
+    """The texts in German, of which so much is translated."""
+
+    def read(**told: str | tuple[str, ...]) -> dict[str, object]:
+        copytree(catalogue.LOCALE / "en", tmp_path / "en")
+        made = Catalog(locale="de")
+        for message in english():
+            if message.context in told:
+                made.add(message.id, told[message.context], context=message.context)
+        (tmp_path / "de" / "LC_MESSAGES").mkdir(parents=True)
+        translations.write_compiled(tmp_path / "de" / "LC_MESSAGES" / "tranquility.mo", made)
+        monkeypatch.setenv("LANGUAGE", "de_AT:en")
+        return catalogue.read(tmp_path)
+
+    return read
+
+
+def test_a_language_stands_in_for_english_as_far_as_it_goes(german, tmp_path: Path):
+    read = german(PAUSE_TITLE="Angehalten", WATCH_LANDERS=("eine Fähre", "{count} Fähren"))
+    assert read["PAUSE_TITLE"] == "Angehalten"
+    assert read["PAUSE_RESUME"] == "Resume"
+    landers = read["WATCH_LANDERS"]
+    assert isinstance(landers, Plural)
+    assert [landers.format(count=count) for count in (0, 1, 2)] == ["0 Fähren", "eine Fähre", "2 Fähren"]
+    assert catalogue.language(tmp_path) == "de"
+
+
+def test_without_a_language_that_is_there_texts_are_english(monkeypatch: pytest.MonkeyPatch):
+    for name in ("C", "fr_FR.UTF-8", "en_GB"):
+        monkeypatch.setenv("LANGUAGE", name)
+        assert catalogue.language(catalogue.LOCALE) == "en"
+        assert catalogue.read(catalogue.LOCALE)["PAUSE_RESUME"] == "Resume"
+
+
+def test_a_text_is_found_by_name_key_and_place():
+    assert texts.MENU["play"] == ("Play", "Fly it yourself, and hand over whenever you like.")
+    assert texts.OUTCOMES["CRASHED"] == ("Crashed", "")  # as long as the others of its group
+    assert texts.PAD_NAMES[3].startswith("narrow")
+    assert [texts.RUN_SETTINGS.format(preset="Modern", count=count) for count in (1, 2)] == [
+        "Modern, 1 setting changed", "Modern, 2 settings changed",
+    ]  # fmt: skip
+
+
+def test_a_language_is_begun_and_brought_up_to_date(tmp_path: Path):
+    for path in catalogue.LOCALE.glob("*.pot"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    translations.begin("pl", tmp_path)
+    begun = tmp_path / "pl" / "LC_MESSAGES" / "tranquility.po"
+    polish = read_po(begun.read_bytes().splitlines(keepends=True), locale="pl")
+    landers = polish.get("one lander", "WATCH_LANDERS")
+    assert isinstance(landers, Message)
+    assert len(landers.string) == 3  # Polish has a form for few

@@ -1,0 +1,224 @@
+"""Walks through every scene with other catalogues, and writes what it saw as JSON.
+
+A program, because texts are read when the game is imported: python -m tests.support.pseudo_walk FOLDER
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator
+from itertools import count
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+os.environ["SDL_VIDEODRIVER"] = os.environ["SDL_AUDIODRIVER"] = "dummy"
+os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
+
+from game.core import catalogue
+
+if __name__ == "__main__":  # and not in a worker's process, where nothing is written
+    catalogue.LOCALE = Path(sys.argv[1])
+
+import numpy as np
+import pygame
+from benchmarks.tour import stock
+
+from ai.agent.config import PRESETS
+from ai.digits.config import DIGIT_PRESETS
+from game.core import texts
+from game.core.scene import Push, Scene
+from game.core.settings import Settings
+from game.core.worker import WorkerState
+from game.drawing.canvas import Canvas
+from game.scenes import scene_of
+from game.scenes.error_screen import ErrorScene
+from game.scenes.play import PlayScene
+from game.shell.app import App
+from game.training.training_run import TrainingRun
+from game.ui.context import Context
+from game.ui.widgets import Choice
+from tests.game.drawing.test_text_size import FLOWN, shared
+from tests.game.scenes.test_dream_and_quiz import SEVEN, stroke
+from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
+from tests.support.driver import Driver
+from tests.support.written import Written, misplaced
+
+SIZES = ("normal", "large", "largest")
+LANDERS = PRESETS["modern"].changed(
+    num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1
+)  # fmt: skip
+DIGITS = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
+Happens = Callable[[Driver], object]
+
+
+def crashed(driver: Driver) -> None:
+    """Fall, and wait for the card."""
+    driver.frames(3)
+    driver.key(pygame.K_UP)
+    while not driver.top.flight.over:
+        driver.skip(10)
+    driver.skip(240)
+
+
+def trained(driver: Driver) -> None:
+    """Train landers for a moment."""
+    run = driver.top.lander_run
+    learn(driver, run, LANDERS, lambda: len(run.history) >= 2)
+
+
+def taught_to_read(driver: Driver) -> None:
+    """Train a network to read for a moment."""
+    run = driver.top.digit_run
+    learn(driver, run, DIGITS, lambda: run.confusion and run.curves.points)
+
+
+def learn(driver: Driver, run: TrainingRun, config: object, enough: Callable[[], object]) -> None:
+    driver.top.knobs.set_config(config, 3)
+    driver.key(pygame.K_RETURN)
+    driver.wait(enough, 90.0)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: run.state is WorkerState.PAUSED)
+    driver.frames(5)
+
+
+def drawn(driver: Driver) -> None:
+    """Draw a seven, and have it read."""
+    rect = driver.top.canvas_rect
+    stroke(driver, [(rect.x + x * rect.w, rect.y + y * rect.h) for x, y in ((0.3, 0.2), (0.7, 0.2), (0.5, 0.8))])
+    driver.frames(30)
+
+
+def handed_in(driver: Driver) -> None:
+    """Draw a seven in the quiz, and have it read."""
+    stroke(driver, SEVEN)
+    driver.key(pygame.K_RETURN)
+    driver.frames(5)
+
+
+def answered(driver: Driver) -> None:
+    """Say what a stranger wrote."""
+    handed_in(driver)
+    driver.keys(pygame.K_RETURN, pygame.K_3)
+    driver.frames(5)
+
+
+def told(driver: Driver) -> None:
+    """Have a long message shown."""
+    driver.app.context.note(texts.SETTINGS_UNREADABLE.format(reason=texts.FLIGHT_ACTIONS, name="/settings"))
+    driver.frames(2)
+
+
+class Blank(ErrorScene):
+    """Nothing, for a dialog to stand over."""
+
+    def __init__(self) -> None:
+        super().__init__(ValueError(), Path())
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw nothing."""
+        canvas.surface.fill((0, 0, 0))
+
+
+OTHERS: dict[str, Callable[[Context], Scene]] = {
+    "tutorial": lambda _: PlayScene(),
+    "error": lambda _: ErrorScene(ValueError(), Path("/home/somebody/log")),
+}
+# What happens in a scene: its name, settings, and what is done there.
+STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
+    "a crash": ("Play", {}, crashed),
+    "a mission's crash": ("mission", {}, crashed),
+    "sharing the stick": ("Play", {"assist": 0.6, "three_pads": True}, shared),
+    "practice": ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
+    "the tutorial": ("tutorial", {"tutored": False}, lambda _: None),
+    "an error": ("error", {}, lambda _: None),
+    "a message": ("MenuScene", {}, told),
+    "training": ("TrainScene", {}, trained),
+    "training to read": ("DigitTrainingScene", {}, taught_to_read),
+    "a digit": ("DigitsScene", {}, drawn),
+    "the quiz": ("QuizScene", {}, handed_in),
+    "the quiz, answered": ("QuizScene", {}, answered),
+    "a swarm": ("swarm", {}, lambda driver: driver.skip(400)),
+}
+
+
+class Walk:
+    """One walk; `seen` is what was written, `wrong` what met or left its place, each with where that was first."""
+
+    def __init__(self, user_dir: Path) -> None:
+        self.user_dir = user_dir
+        self.seen: dict[str, str] = {}
+        self.wrong: dict[str, str] = {}
+        self._written = Written(setattr)
+        self._whole = {text for text in strings(vars(texts)) if text.endswith("…")}
+
+    def visit(self, name: str, size: str, settings: dict[str, object], happens: Happens) -> None:
+        """Open a scene; note what stands there, and, at the largest size, with each widget and option chosen."""
+        driver = self._open(name, size, settings)
+        try:
+            happens(driver)
+            self._note(driver, f"{name}, {size}")
+            for widget in list(self._widgets(driver)) if size == SIZES[-1] else ():
+                if widget not in self._widgets(driver):
+                    break
+                driver.top._form.focus(widget)
+                driver.frames(1)
+                self._note(driver, f"{name}, {widget.label}, {size}")
+                for number in range(len(widget.options)) if isinstance(widget, Choice) else ():
+                    widget.choose(number)
+                    driver.frames(2)
+                    self._note(driver, f"{name}, {widget.label} {number}, {size}")
+        finally:
+            driver.app.close()
+
+    def _widgets(self, driver: Driver) -> list[object]:
+        form = getattr(driver.top, "_form", None)
+        return form.widgets if form else []
+
+    def _open(self, name: str, size: str, settings: dict[str, object]) -> Driver:
+        context = Context(self.user_dir, Settings(), rng=np.random.default_rng(1))
+        for setting, value in {"reduced_motion": True, "text_size": size, "tutored": True, **settings}.items():
+            setattr(context.settings, setting, value)
+        frames = count()
+        first = Blank() if name in OVER_OTHERS else {**SCREENS, **FLOWN, **OTHERS}[name](context)
+        driver = Driver(App(context, first, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False))
+        if name in OVER_OTHERS:
+            driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
+        driver.frames(5)
+        return driver
+
+    def _note(self, driver: Driver, place: str) -> None:
+        page = self._written.turn(driver.app.canvas)
+        driver.app._draw()
+        for note in page.notes:
+            self.seen.setdefault(note.text, place)
+        for text, how in misplaced(page):
+            if how != "is cut short" or text not in self._whole:
+                self.wrong.setdefault(f"{text} {how}", place)
+
+
+def strings(value: object) -> Iterator[str]:
+    """Yield all texts in a group of texts."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | tuple):
+        for each in value.values() if isinstance(value, dict) else value:
+            yield from strings(each)
+
+
+def main() -> None:
+    """Walk, and write what was seen and what was wrong."""
+    with TemporaryDirectory() as folder:
+        walk = Walk(Path(folder))
+        stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))
+        for name in (*SCREENS, *FLOWN, *OVER_OTHERS):
+            for size in SIZES:
+                walk.visit(name, size, {}, lambda _: None)
+        for name, settings, happens in STATES.values():
+            walk.visit(name, SIZES[-1], settings, happens)
+        json.dump({"seen": walk.seen, "wrong": walk.wrong}, sys.stdout)
+
+
+if __name__ == "__main__":
+    main()

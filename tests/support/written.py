@@ -1,0 +1,105 @@
+"""Notes of everything that is written on the screen, on sheets that are painted once as well, with its place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import pygame
+
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import TEXT, TITLE, VIEW_SIZE
+
+# A capital's height and what hangs below the line, in sizes of the type: where ink is.
+ABOVE, BELOW = 0.72, 0.2
+_VIEW = pygame.FRect((0, 0), VIEW_SIZE)
+_SEEN = 0.05  # alpha from which something is seen
+_EXACT = 1.06  # letters have whole pixels, so a text that was fitted may still be a little wider than its room
+
+
+@dataclass
+class Note:
+    """A text, the box of its ink in points, and the width and the box that it must keep to."""
+
+    text: str
+    box: pygame.FRect
+    room: float = math.inf
+    within: pygame.FRect = field(default_factory=_VIEW.copy)
+
+
+@dataclass
+class Page:
+    """What stands on one canvas."""
+
+    notes: list[Note] = field(default_factory=list)
+    panels: list[pygame.FRect] = field(default_factory=list)
+
+
+class Written:
+    """Takes notes of every canvas, from now on; `patch` sets an attribute, as `setattr` does."""
+
+    def __init__(self, patch: Callable[[object, str, object], None]) -> None:
+        # A canvas is kept beside its page: another one could be given its number once it is gone.
+        self._pages: dict[int, tuple[Canvas, Page]] = {}
+        text, panel, sheet, lay = Canvas.text, Canvas.panel, Canvas.sheet, Canvas.lay
+
+        def noted_text(canvas: Canvas, string: str, position: tuple[float, float], **more: Any) -> pygame.FRect:
+            box = text(canvas, string, position, **more)
+            if string.strip() and more.get("alpha", 1.0) > _SEEN:
+                size = box.height * TEXT / sum(typeface.extent(TEXT, "regular"))
+                top, height = position[1] - ABOVE * size, ABOVE * size + BELOW * min(size, TITLE)
+                note = Note(string, pygame.FRect(box.x, top, box.width, height), more.get("room", math.inf))
+                self.page(canvas).notes.append(note)
+            return box
+
+        def noted_panel(canvas: Canvas, rect: pygame.typing.RectLike, *more: Any) -> None:
+            panel(canvas, rect, *more)
+            self.page(canvas).panels.append(pygame.FRect(rect))
+
+        def noted_sheet(canvas: Canvas, width: float, height: float) -> Canvas:
+            made = sheet(canvas, width, height)
+            self.turn(made)
+            return made
+
+        def noted_lay(canvas: Canvas, laid: Canvas, x: float, y: float) -> None:
+            lay(canvas, laid, x, y)
+            page, size = self.page(canvas), (laid.size[0] / laid.scale, laid.size[1] / laid.scale)
+            for note in self.page(laid).notes:
+                within = pygame.FRect((x, y), size) if note.within == _VIEW else note.within.move(x, y)
+                page.notes.append(replace(note, box=note.box.move(x, y), within=within))
+            page.panels += [each.move(x, y) for each in self.page(laid).panels]
+
+        for name, method in (("text", noted_text), ("panel", noted_panel), ("sheet", noted_sheet), ("lay", noted_lay)):
+            patch(Canvas, name, method)
+
+    def page(self, canvas: Canvas) -> Page:
+        """Return what stands on a canvas."""
+        return self._pages.setdefault(id(canvas), (canvas, Page()))[1]
+
+    def turn(self, canvas: Canvas) -> Page:
+        """Forget what stands on a canvas, and return the empty page."""
+        self._pages[id(canvas)] = canvas, Page()
+        return self.page(canvas)
+
+
+def misplaced(page: Page) -> Iterator[tuple[str, str]]:
+    """Yield each text that leaves its place or meets another, and where it goes."""
+    for number, note in enumerate(page.notes):
+        ends = note.box.midleft, note.box.midright
+        around = [panel for panel in page.panels if any(map(panel.collidepoint, ends))]
+        if not _VIEW.contains(note.box):
+            yield note.text, "leaves the view"
+        elif not note.within.inflate(2, 2).contains(note.box):
+            yield note.text, "is cut off"
+        elif around and not any(panel.inflate(2, 2).contains(note.box) for panel in around):
+            yield note.text, "leaves its panel"
+        if note.box.width > _EXACT * note.room + 1:
+            yield note.text, f"is wider than its room of {note.room:.0f} points"
+        if note.text.endswith("…"):
+            yield note.text, "is cut short"
+        for other in page.notes[number + 1 :]:
+            if other.text != note.text and note.box.inflate(-2, -2).colliderect(other.box.inflate(-2, -2)):
+                yield note.text, f"meets {other.text}"
