@@ -22,6 +22,7 @@ from game.input.controls import Command
 from game.panels.digit_charts import DigitCharts, draw_accuracy_legend
 from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_problem, draw_run_status, start_word
+from game.panels.training_status import digit_status
 from game.scenes.dialog import NameDialog, QuestionDialog
 from game.training.digit_models import runs_dir
 from game.training.digit_run import DigitRun
@@ -300,20 +301,10 @@ class DigitTrainingScene(FormScene):
             self.form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
 
     def _draw_title(self, canvas: Canvas) -> None:
-        digit_run, curves = self.digit_run, self.digit_run.curves
-        line = texts.PUPIL_LOADING if digit_run.alive else texts.PUPIL_LINE
-        if curves.points:
-            last = curves.points[-1]
-            line = texts.PUPIL_FIGURES.format(epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds,
-                                              rate=last.images_per_second)  # fmt: skip
-            draw_accuracy_legend(canvas, curves)
-        part = digit_run.test if digit_run.test is not None else curves.scores[-1].accuracy if curves.scores else None
-        figure = "" if part is None else f"{100 * part:.2f}"
-        words = texts.PUPIL_READ if digit_run.test is None else texts.PUPIL_TESTED
-        if digit_run.test is not None and digit_run.kept_epoch is not None:
-            read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
-            line = texts.PUPIL_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
-        draw_run_status(canvas, (_LEFT, 46), texts.PUPIL_TITLE, line, figure, words, drop=72, room=_WIDTH - 2 * _LEFT)
+        if self.digit_run.curves.points:
+            draw_accuracy_legend(canvas, self.digit_run.curves)
+        status = digit_status(self.digit_run)
+        draw_run_status(canvas, (_LEFT, 46), texts.PUPIL_TITLE, *status, drop=72, room=_WIDTH - 2 * _LEFT)
         self.draw_hints(canvas)
 
     def _draw_said(self, canvas: Canvas) -> None:

@@ -6,7 +6,6 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import pygame
 
 from ai.agent.config import PRESETS, Config
@@ -25,6 +24,7 @@ from game.panels.knobs import KnobsPanel
 from game.panels.network_panel import NetworkPanel
 from game.panels.run_status import draw_problem, draw_run_status, start_word
 from game.panels.training_charts import TrainingCharts
+from game.panels.training_status import lander_status
 from game.training.lander_run import PACES, LanderRun
 from game.training.library import Library, SavedRun
 from game.ui.actions import Action, Table
@@ -343,18 +343,11 @@ class TrainScene(FormScene):
         return None
 
     def _draw_title(self, canvas: Canvas) -> None:
-        history, swarm_state = self.lander_run.history, self.lander_run.swarm_state
-        height, line, share = 66, texts.TRAIN_BEGINS if self.lander_run.alive else texts.TRAIN_LINE, ""
-        if len(history) and swarm_state is not None:
-            line = texts.TRAIN_FIGURES.format(
-                landers=len(swarm_state.outcome), seconds=history.points[-1][0], count=int(swarm_state.decisions)
-            )
-            height, landed = _TITLE.height, history["success"][-1]
-            share = "" if np.isnan(landed) else f"{100 * landed:.0f}"
-        for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
+        status, run = lander_status(self.lander_run), self.lander_run
+        figured = bool(len(run.history)) and run.swarm_state is not None
+        for box in ((*_TITLE.topleft, _TITLE.width, _TITLE.height if figured else 66), _WORDS):  # landers fly behind
             canvas.panel(box, _COVER)
-        draw_run_status(canvas, (_LEFT, 46), texts.TRAIN_TITLE, line, share, texts.TRAIN_LANDED, drop=76,
-                      room=_TITLE.width - 32)  # fmt: skip
+        draw_run_status(canvas, (_LEFT, 46), texts.TRAIN_TITLE, *status, drop=76, room=_TITLE.width - 32)
         self.draw_hints(canvas)
 
     def _draw_said(self, canvas: Canvas) -> None:

@@ -1,0 +1,47 @@
+"""What a run has come to so far, for the titles of the two scenes that train."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from game.core import texts
+from game.training.digit_run import DigitRun
+from game.training.lander_run import LanderRun
+
+
+class TrainingStatus(NamedTuple):
+    """A line of text, and a figure in percent with what it counts; the figure is empty before it is known."""
+
+    line: str
+    figure: str
+    words: str
+
+
+def lander_status(lander_run: LanderRun) -> TrainingStatus:
+    """Return the landers, the time and the decisions so far, and the share that lands."""
+    history, swarm_state = lander_run.history, lander_run.swarm_state
+    if not len(history) or swarm_state is None:
+        return TrainingStatus(texts.TRAIN_BEGINS if lander_run.alive else texts.TRAIN_LINE, "", texts.TRAIN_LANDED)
+    line = texts.TRAIN_FIGURES.format(
+        landers=len(swarm_state.outcome), seconds=history.points[-1][0], count=int(swarm_state.decisions)
+    )
+    landed = history["success"][-1]
+    return TrainingStatus(line, "" if np.isnan(landed) else f"{100 * landed:.0f}", texts.TRAIN_LANDED)
+
+
+def digit_status(digit_run: DigitRun) -> TrainingStatus:
+    """Return the epoch, the time and the speed, and the share of images that are read rightly."""
+    curves, tested = digit_run.curves, digit_run.test is not None
+    line = texts.PUPIL_LOADING if digit_run.alive else texts.PUPIL_LINE
+    if curves.points:
+        last = curves.points[-1]
+        line = texts.PUPIL_FIGURES.format(epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds,
+                                          rate=last.images_per_second)  # fmt: skip
+    if tested and digit_run.kept_epoch is not None:
+        read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
+        line = texts.PUPIL_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
+    part = digit_run.test if digit_run.test is not None else curves.scores[-1].accuracy if curves.scores else None
+    figure = "" if part is None else f"{100 * part:.2f}"
+    return TrainingStatus(line, figure, texts.PUPIL_TESTED if tested else texts.PUPIL_READ)
