@@ -57,8 +57,12 @@ class Window:
         self.process = subprocess.Popen(
             command, env=self._environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
-        self.id = self._find()
-        self.wait_for(self.picture_is_bright, "the first picture")
+        try:
+            self.id = self._find()
+            self.wait_for(self.picture_is_bright, "the first picture")
+        except BaseException:
+            self.end()  # or its pipe would be found by another test
+            raise
 
     def key(self, *names: str) -> None:
         """Press and let go of keys, named as xdotool does: Return, Escape, Down, F11, alt+Return."""
@@ -101,6 +105,14 @@ class Window:
         """Send what Ctrl-C sends, and return the exit code."""
         self.process.send_signal(signal.SIGINT)
         return self.process.wait(10)
+
+    def end(self) -> None:
+        """End the process by force if it still runs, and let go of its output."""
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait(10)
+        if self.process.stdout:
+            self.process.stdout.close()
 
     def output(self) -> str:
         assert self.process.stdout is not None
@@ -146,8 +158,4 @@ def start(display: str, user_dir: Path, *arguments: str) -> Iterator[Window]:
     try:
         yield window
     finally:
-        if window.process.poll() is None:
-            window.process.kill()
-            window.process.wait(10)
-        if window.process.stdout:
-            window.process.stdout.close()
+        window.end()
