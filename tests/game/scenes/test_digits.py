@@ -60,7 +60,7 @@ def wait_for(driver: Driver, done: Callable[[], object]) -> None:
     while not done() and time.monotonic() - started < 120:
         driver.frames(1)
         time.sleep(0.005)
-    assert done(), scene(driver)._measuring.words(scene(driver)._switches)
+    assert done(), scene(driver)._measuring.words(scene(driver)._live.switches)
 
 
 @pytest.mark.parametrize(
@@ -162,7 +162,7 @@ def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing
     filters = {}
     for press in (lambda: drawing.key(pygame.K_RIGHT), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
         press()
-        filters[scene(drawing).chosen] = scene(drawing)._why.filters.shape
+        filters[scene(drawing).chosen] = scene(drawing)._live.why.filters.shape
     assert filters == {"classic": (32, 28, 28), "modern": (32, 5, 5)}
     tabs = scene(drawing)._tabs
     drawing.click((tabs.row.lefts[1] + 5, tabs.box.centery))
@@ -172,7 +172,7 @@ def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing
 def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
     draw(drawing, strokes(2))
     drawing.frames(2)  # it is read in the frame after, and then explained
-    why, seen = scene(drawing)._why, scene(drawing).reading.stages.centred
+    why, seen = scene(drawing)._live.why, scene(drawing).reading.stages.centred
     assert np.abs(why.saliency).max() == pytest.approx(1)
     assert np.abs(why.saliency[seen == 0]).max() == 0
     assert [layer.shape for layer in why.layers] == [(32, 12, 12), (64, 4, 4), (128,)]
@@ -214,7 +214,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
     context.models_dir = tmp_path / "models"
     driver = open_game(DigitsScene)
     assert scene(driver).chosen == "classic"
-    assert "config.json" in scene(driver)._reader.problems["modern"]
+    assert "config.json" in scene(driver)._live.reader.problems["modern"]
     driver.key(pygame.K_n)
     assert scene(driver).chosen == "classic"
     draw(driver, strokes(3))
@@ -228,7 +228,7 @@ def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, conte
     draw(driver, strokes(3))
     driver.keys(pygame.K_n, pygame.K_3)
     assert scene(driver).probabilities is None
-    assert set(scene(driver)._reader.problems) == {"modern", "classic"}
+    assert set(scene(driver)._live.reader.problems) == {"modern", "classic"}
     assert driver.top_name == "DigitsScene"
 
 

@@ -10,7 +10,7 @@ from ai.agent.config import Config
 from game.core.settings import SettingsFile
 from game.drawing.canvas import Canvas
 from game.flight.flight import DECISION_STEPS
-from game.panels.run_status import draw_run_status
+from game.panels.run_status import draw_landings, draw_run_status
 from game.scenes.runs import NetworksScene
 from game.scenes.watch import WatchScene
 from game.training.library import Library
@@ -259,8 +259,6 @@ def test_motion_reduced_in_a_pause_brings_the_camera_to_rest(watching: Driver):
 def test_only_a_rate_of_success_has_its_colour(
     watching: Driver, monkeypatch: pytest.MonkeyPatch, landed: int, good: bool
 ):
-    watch = scene(watching)
-    watch.swarm.landed, watch.swarm.lost = landed, 10 - landed
     colours: dict[str, object] = {}
 
     def text(_: Canvas, string: str, *__: object, **looks: object) -> pygame.FRect:
@@ -268,7 +266,7 @@ def test_only_a_rate_of_success_has_its_colour(
         return pygame.FRect()
 
     monkeypatch.setattr(Canvas, "text", text)
-    watch._draw_counts(watching.app.canvas)
+    draw_landings(watching.app.canvas, (0, 0), landed, 10 - landed)
     draw_run_status(watching.app.canvas, (0, 0), "", "", f"{10 * landed}.00", "", drop=0, room=100)
     for figure in (f"{10 * landed}", f"{10 * landed}.00"):
         assert (colours[figure] == watching.app.canvas.palette.good) == good

@@ -16,6 +16,7 @@ from game.scenes.choices import ChoicesScene
 from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
 from game.ui import focus
+from game.ui.actions import hints_of
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.listing import shortened
@@ -290,5 +291,6 @@ def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callabl
         by_arrows = isinstance(widget, Slider)
         seen.add(by_arrows)
         expected = texts.ARROWS_ASIDE if by_arrows else driver.app.context.controls.word(Command.CONFIRM)
-        assert form.change_hint == (expected, texts.HINT_CHANGE)
+        (hint,) = hints_of([form.changes], driver.app.context.controls)
+        assert hint[:2] == (expected, texts.HINT_CHANGE)
     assert seen == {True, False}
