@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from game.core import texts
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import LEAST, Canvas
 from game.drawing.tokens import INK, MUTE, SMALL
 from game.input.controls import Controls, Held, KeyName
 
@@ -32,7 +32,7 @@ def draw_hints(
     x, y = position
     if room < math.inf:
         gaps = len(pairs) * _GAPS[0] + (len(pairs) - 1) * _GAPS[1]  # gaps do not shrink
-        for _ in range(2):  # text that is made larger does not shrink in proportion
+        for _ in range(1 if LEAST == 1 else 2):  # text that is made larger does not shrink quite in proportion
             size *= min(1.0, (room - gaps) / max(hints_width(canvas, pairs, size) - gaps, 1.0))
     widths = [_width(canvas, pair, size) for pair in pairs]
     if from_right:
