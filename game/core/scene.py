@@ -27,11 +27,11 @@ class Scene:
     def __init__(self, context: Context) -> None:
         self.context = context
 
-    def resume(self) -> None:
-        """Become the top scene again, after those above it have been left."""
+    def enter(self) -> None:
+        """Become the top scene again, after those above it have been left; the constructor does so the first time."""
 
     def exit(self) -> None:
-        """Stop being the top scene, until `resume` or for good; release held keys."""
+        """Stop being the top scene, until `enter` or for good; release held keys."""
 
     def close(self) -> None:
         """Release resources such as a process; called once, after `exit`, when the scene is left for good."""

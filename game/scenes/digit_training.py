@@ -77,7 +77,7 @@ class DigitTrainingScene(FormScene):
         self.matrix = self.form.add(ConfusionMatrix(self.form.manager, _MATRIX))
         self.form.focus(self.start_word)
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Resume the run."""
         if self._was_running:
             self.digit_run.resume()

@@ -81,7 +81,7 @@ class DigitsScene(FormScene):
         self._live.anew()
         self._offer_undo()
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Refresh the list of networks."""
         before = set(self._fixing.networks)
         self._fixing.refresh()

@@ -50,7 +50,7 @@ class LogbookScene(FormScene):
         self._build(context)
         self._reload()
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Reload the flights, to which one may have been added."""
         self._reload()
 

@@ -39,9 +39,9 @@ class MenuScene(FormScene):
             word = TextButton(self.form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
             self._lines.append((self.form.add(word), line))
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Follow a change of the settings; the focus stays where it was."""
-        self._background.resume()
+        self._background.enter()
 
     def update(self) -> Transition | None:
         """Animate the column and the background."""

@@ -49,7 +49,7 @@ class MenuBackground:
         self._begin()
         Thread(target=self._load_network, daemon=True).start()  # the first ascent needs none
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Follow a change of the settings."""
         self.still = self._context.settings.reduced_motion
         if self.still:

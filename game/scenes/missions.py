@@ -59,7 +59,7 @@ class MissionsScene(FormScene):
         self.form.add(TextButton(manager, (MARGIN, _FOOT, 72, 36), texts.BACK, Pop, size=18))
         self._reload(1)
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Reload the results, which a flight may have changed."""
         self._reload(self._list.index)
 

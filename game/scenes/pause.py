@@ -47,7 +47,7 @@ class PauseScene(FormScene):
         self._retry, self._retry_word, self._more = retry, retry_word, more
         self._build()
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Name the entries anew, for a scene above may have changed them."""
         self._build()
 

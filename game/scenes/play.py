@@ -74,7 +74,7 @@ class PlayScene(Scene):
             context.note(self._records.problem)
         self._begin(self._new_seed() if seed is None else seed)
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Resume the paused flight, unless choices made meanwhile require a new one."""
         self._scenery.calm = self.ending.calm = self._settings.reduced_motion
         if self.ending.calm:

@@ -70,7 +70,7 @@ class ReplayScene(FormScene):
         self._build()
         self._look()
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Show the moment where it was left, stopped."""
         self.playback.stopped = True
         self._scenery.calm = self.context.settings.reduced_motion

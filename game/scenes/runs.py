@@ -61,7 +61,7 @@ class NetworksScene(FormScene):
         flies = known.get(context.settings.model, known.get(networks.DEFAULT))
         self._reload(flies if self._choose else None)
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Reload the runs, to which one may have been added."""
         self._reload(self.shown.folder if self.shown else None)
 

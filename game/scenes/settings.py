@@ -46,7 +46,7 @@ class SettingsScene(FormScene):
         self._sky = NightSky(context.rng, ember=0.5, stars=70)
         self._build()
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Name the keys anew, for the player may have changed them."""
         self._build()
 

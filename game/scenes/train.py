@@ -69,7 +69,7 @@ class TrainScene(FormScene):
             self._go_on(resume)
             self._left = None
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Resume the run, after a duel with a checkpoint for instance."""
         if self._was_running:
             self.lander_run.resume()

@@ -82,7 +82,7 @@ class WatchScene(FormScene):
             self._network = self._policies.first_fit()
             self._begin()
 
-    def resume(self) -> None:
+    def enter(self) -> None:
         """Follow a change of the networks and of the settings."""
         self._look_again()
         if self._stage.calm != self._settings.reduced_motion:

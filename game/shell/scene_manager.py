@@ -121,7 +121,7 @@ class SceneManager:
             self.running = False  # `close` calls the top scene's `exit`
             return
         self._leave(levels)
-        self.top.resume()
+        self.top.enter()
 
     def _leave(self, levels: int) -> None:
         """Remove the top scenes for good, and free their memory.
