@@ -46,6 +46,11 @@ class App:
         now: clock that returns seconds.
         capped: whether the frame rate is limited to the screen's.
 
+    Attributes:
+        notes: the note over all scenes.
+        canvas: canvas of the window.
+        scenes: stack of scenes.
+
     Raises:
         NoDisplayError: no window can be opened.
 
@@ -64,14 +69,14 @@ class App:
         self._now, self._capped = now, capped
         self._clock = pygame.time.Clock()
         self._steps = FixedStep()
-        self._notes = Note()
+        self.notes = Note()
         self._mouse: tuple[tuple[int, int], ...] = ()  # the mouse's last position, in the window and on the desktop
         self._settled = 0.0  # time at which the window has kept its size long enough for a redraw
         self.settings_writer = SettingsWriter(context.settings_file, context.settings)
         self.window = GameWindow(context.settings.full_screen)
         self.canvas = Canvas(self.window.surface)
         self._follow_window()
-        context.note = self._notes.show
+        context.note = self.notes.show
         context.apply_settings = self.apply_settings
         context.in_window = self.canvas.in_window
         self._look()
@@ -104,13 +109,13 @@ class App:
         steps = self._steps.advance(time_now - self._last)
         self._last = time_now
         for _ in range(steps):
-            self._notes.update(self.canvas)
+            self.notes.update(self.canvas)
             if problem := self.settings_writer.problem():
-                self._notes.show(problem)
+                self.notes.show(problem)
             self._guarded(self.scenes.update)
             self.context.sound.update()
         if self.scenes.running and not self.window.minimised and time_now >= self._settled:
-            self._draw()
+            self.draw()
         if self._capped:
             self._clock.tick(self._frame_rate)
         return self.scenes.running
@@ -201,9 +206,9 @@ class App:
         used_mouse = controls.mouse_in_use
         controls.process(event)
         if event.type == pygame.CONTROLLERDEVICEADDED and controls.pad_name:
-            self._notes.show(texts.PAD_FOUND.format(name=controls.pad_name))
+            self.notes.show(texts.PAD_FOUND.format(name=controls.pad_name))
         elif translate(event) is Command.UNPLUGGED:
-            self._notes.show(texts.PAD_LOST)
+            self.notes.show(texts.PAD_LOST)
         if controls.mouse_in_use != used_mouse:
             pygame.mouse.set_visible(controls.mouse_in_use)
 
@@ -226,10 +231,11 @@ class App:
 
     # Drawing
 
-    def _draw(self) -> None:
+    def draw(self) -> None:
+        """Draw one frame: the scenes, and the note over them."""
         self.canvas.turn_page()
         self._guarded(lambda: self.scenes.draw(self.canvas, self._steps.alpha))
-        self._notes.draw(self.canvas)
+        self.notes.draw(self.canvas)
         self.window.flip()
 
     def _save_screenshot(self) -> None:
@@ -242,11 +248,11 @@ class App:
             pygame.image.save(self.canvas.surface, picture, path.name)
             write_bytes(path, picture.getvalue(), flush=False)
         except OSError as error:
-            self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error.strerror or error))
+            self.notes.show(texts.SCREENSHOT_FAILED.format(reason=error.strerror or error))
         except pygame.error as error:
-            self._notes.show(texts.SCREENSHOT_FAILED.format(reason=error))
+            self.notes.show(texts.SCREENSHOT_FAILED.format(reason=error))
         else:
-            self._notes.show(texts.SCREENSHOT_SAVED.format(path=path))
+            self.notes.show(texts.SCREENSHOT_SAVED.format(path=path))
 
     # Faults
 

@@ -25,10 +25,15 @@ _COVER: Final = 0.96  # opacity of the panel, over any background
 
 
 class Note:
-    """Note that shows one message at a time, for five seconds."""
+    """Note that shows one message at a time, for five seconds.
+
+    Attributes:
+        text: the message that is shown, or was shown last.
+
+    """
 
     def __init__(self) -> None:
-        self._text = ""
+        self.text = ""
         self._left = 0
         self._place = _PLACES[0]
 
@@ -37,7 +42,7 @@ class Note:
         text = " ".join(text.split())
         if len(text) > _LONGEST:  # the end of a path or a reason matters most
             text = text[: _LONGEST // 3] + " … " + text[-_LONGEST * 2 // 3 :]
-        self._text, self._left, self._place = text, _STEPS_SHOWN, _PLACES[0]
+        self.text, self._left, self._place = text, _STEPS_SHOWN, _PLACES[0]
 
     def update(self, canvas: Canvas) -> None:
         """Advance by 1/60 s; move to where the note hides least of the last frame's words, widgets and panels."""
@@ -48,11 +53,12 @@ class Note:
         if covered[self._place] > min(covered.values()):
             self._place = min(_PLACES, key=covered.__getitem__)
 
-    def _box(self, canvas: Canvas) -> pygame.FRect:
+    def box(self, canvas: Canvas) -> pygame.FRect:
+        """Return the note's panel, in points."""
         return self._box_at(canvas, self._place)
 
     def _box_at(self, canvas: Canvas, place: tuple[float, float]) -> pygame.FRect:
-        lines = wrapped(canvas, self._text, SMALL, _WIDEST)
+        lines = wrapped(canvas, self.text, SMALL, _WIDEST)
         width = max(canvas.text_width(line, size=SMALL) for line in lines) + 32
         box = pygame.FRect(place[0] - width / 2, place[1], width, _HEIGHT + _LINE * (len(lines) - 1))
         return box.clamp(_VIEW) if width < _VIEW.w else box
@@ -67,10 +73,10 @@ class Note:
         if not self._left:
             return
         alpha = min(1.0, self._left / _STEPS_FADING)
-        box = self._box(canvas)
+        box = self.box(canvas)
         with canvas.unnoted():  # the note avoids the page, not itself
             canvas.panel(box, _COVER * alpha)
             canvas.outline(box, 8, FAINT, alpha=alpha)
-            for number, line in enumerate(wrapped(canvas, self._text, SMALL, _WIDEST)):
+            for number, line in enumerate(wrapped(canvas, self.text, SMALL, _WIDEST)):
                 middle = (box.centerx, box.top + 20 + _LINE * number)
                 canvas.text(line, middle, size=SMALL, colour=INK, align="centre", alpha=alpha)

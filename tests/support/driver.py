@@ -35,7 +35,7 @@ class Driver:
     @property
     def said(self) -> str:
         """What the note over all scenes says, or said last."""
-        return self.app._notes._text
+        return self.app.notes.text
 
     @property
     def form(self) -> Form:
@@ -69,11 +69,11 @@ class Driver:
         return goes_on
 
     def wait(self, until: Callable[[], object], seconds: float = 40.0) -> None:
-        """Play frames until something holds; the limit is only there so that a failure ends."""
+        """Play frames until something holds, few of them drawn; the limit is only there so that a failure ends."""
         end = time.monotonic() + seconds
         while not until():
             assert time.monotonic() < end, "it never happened"
-            self.frames(1)
+            self.skip()
             time.sleep(0.005)
 
     def post(self, event_type: int, **values: Any) -> bool:

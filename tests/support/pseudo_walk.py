@@ -18,17 +18,14 @@ os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 
 from game.core import catalogue
 
-if __name__ == "__main__":  # and not in a worker's process, where nothing is written
+if __name__ == "__main__":
     catalogue.LOCALE = Path(sys.argv[1])
 
 import numpy as np
 import pygame
-from benchmarks.tour import stock
 
-from ai.agent.config import PRESETS
-from ai.digits.config import DIGIT_PRESETS
 from game.core import texts
-from game.core.scene import Push, Scene
+from game.core.scene import Scene
 from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
@@ -39,27 +36,16 @@ from game.shell.app import App
 from game.training.training_run import TrainingRun
 from game.ui.context import Context
 from game.ui.widgets import Choice
-from tests.game.drawing.test_text_size import FLOWN, shared
-from tests.game.scenes.test_dream_and_quiz import SEVEN, stroke
-from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
+from tests.support import inline_worker
 from tests.support.driver import Driver
+from tests.support.pen import SEVEN, stroke
+from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, settle, shared
+from tests.support.small import DIGITS, LANDERS
+from tests.support.tour import stock
 from tests.support.written import Written, misplaced
 
 SIZES = ("normal", "large", "largest")
-LANDERS = PRESETS["modern"].changed(
-    num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1
-)  # fmt: skip
-DIGITS = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
 Happens = Callable[[Driver], object]
-
-
-def crashed(driver: Driver) -> None:
-    """Fall, and wait for the card."""
-    driver.frames(3)
-    driver.key(pygame.K_UP)
-    while not driver.top.flight.over:
-        driver.skip(10)
-    driver.skip(240)
 
 
 def trained(driver: Driver) -> None:
@@ -110,20 +96,17 @@ def told(driver: Driver) -> None:
     driver.frames(2)
 
 
-class Blank(ErrorScene):
+class Blank(Scene):
     """Nothing, for a dialog to stand over."""
-
-    def __init__(self) -> None:
-        super().__init__(ValueError(), Path())
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw nothing."""
         canvas.surface.fill((0, 0, 0))
 
 
-OTHERS: dict[str, Callable[[Context], Scene]] = {
-    "tutorial": lambda _: PlayScene(),
-    "error": lambda _: ErrorScene(ValueError(), Path("/home/somebody/log")),
+OTHERS: dict[str, Make] = {
+    "tutorial": PlayScene,
+    "error": lambda context: ErrorScene(context, ValueError(), Path("/home/somebody/log")),
 }
 # What happens in a scene: its name, settings, and what is done there.
 STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
@@ -162,7 +145,7 @@ class Walk:
             for widget in list(self._widgets(driver)) if size == SIZES[-1] else ():
                 if widget not in self._widgets(driver):
                     break
-                driver.top._form.focus(widget)
+                driver.form.focus(widget)
                 driver.frames(1)
                 self._note(driver, f"{name}, {widget.label}, {size}")
                 for number in range(len(widget.options)) if isinstance(widget, Choice) else ():
@@ -173,24 +156,22 @@ class Walk:
             driver.app.close()
 
     def _widgets(self, driver: Driver) -> list[object]:
-        form = getattr(driver.top, "_form", None)
+        form = getattr(driver.top, "form", None)
         return form.widgets if form else []
 
     def _open(self, name: str, size: str, settings: dict[str, object]) -> Driver:
         context = Context(self.user_dir, Settings(), rng=np.random.default_rng(1))
-        for setting, value in {"reduced_motion": True, "text_size": size, "tutored": True, **settings}.items():
-            setattr(context.settings, setting, value)
-        frames = count()
-        first = Blank() if name in OVER_OTHERS else {**SCREENS, **FLOWN, **OTHERS}[name](context)
-        driver = Driver(App(context, first, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False))
-        if name in OVER_OTHERS:
-            driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
-        driver.frames(5)
-        return driver
+        settle(context, text_size=size, **settings)
+
+        def open_game(make: Make) -> Driver:
+            frames = count()
+            return Driver(App(context, make, now=lambda: next(frames) / 60, scene_of=scene_of, capped=False))
+
+        return open_game(OTHERS[name]) if name in OTHERS else opened(open_game, name, below=Blank)
 
     def _note(self, driver: Driver, place: str) -> None:
         page = self._written.turn(driver.app.canvas)
-        driver.app._draw()
+        driver.app.draw()
         for note in page.notes:
             self.seen.setdefault(note.text, place)
         for text, how in misplaced(page):
@@ -209,6 +190,7 @@ def strings(value: object) -> Iterator[str]:
 
 def main() -> None:
     """Walk, and write what was seen and what was wrong."""
+    inline_worker.install(setattr)
     with TemporaryDirectory() as folder:
         walk = Walk(Path(folder))
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))

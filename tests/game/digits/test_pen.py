@@ -6,8 +6,8 @@ import pytest
 from game.scenes.digits import DigitsScene
 from game.scenes.quiz import QuizScene
 from game.ui.virtual_pointer import VirtualPointer
-from tests.game.scenes.test_walks import reader
 from tests.support.player import DEVICES, Player
+from tests.support.screens import reader
 
 
 @pytest.fixture(params=DEVICES)

@@ -107,7 +107,7 @@ def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: 
 
 
 def said(driver: Driver) -> str:
-    return driver.app._notes._text
+    return driver.said
 
 
 def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):

@@ -18,8 +18,8 @@ from game.scenes.train import TrainScene
 from game.scenes.watch import COUNTS, WatchScene
 from game.training.training_run import TrainingRun
 from game.ui.context import Context
-from tests.game.scenes.test_digits import draw, strokes
 from tests.support.driver import Driver
+from tests.support.pen import draw, strokes
 from tests.support.reading import COUNTS as EARNED
 from tests.support.reading import FLEW, OnlyFlies, Reading, Weighs, pattern
 

@@ -9,21 +9,20 @@ import pytest
 
 from ai.lander.missions import MISSIONS
 from game.core import texts
-from game.core.scene import Push, Scene
-from game.core.settings import Settings
+from game.core.scene import Scene
 from game.input.controls import Command
 from game.play.challenge import FlownMission
 from game.scenes.play import PlayScene
 from game.scenes.watch import WatchScene
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 from tests.support.driver import Driver
+from tests.support.screens import OVER_OTHERS, SCREENS, Make, opened, settle
 
 Open = Callable[..., Driver]
 
 
-def opened(scene: Callable[[Context], Scene], *keys: int, frames: int = 0) -> Callable[[Open], Driver]:
+def after(scene: Make, *keys: int, frames: int = 0) -> Callable[[Open], Driver]:
     """A way to open a scene, with keys that are pressed there and frames that pass."""
 
     def open_it(open_game: Open) -> Driver:
@@ -36,27 +35,19 @@ def opened(scene: Callable[[Context], Scene], *keys: int, frames: int = 0) -> Ca
     return open_it
 
 
-def over(name: str, open_game: Open) -> Driver:
-    driver = open_game(SCREENS["MenuScene"])
-    driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
-    driver.frames(2)
-    return driver
-
-
 FLIGHT, MISSION = partial(PlayScene, seed=3), partial(PlayScene, seed=0, challenge=FlownMission(MISSIONS["fall"]))
 STATES: dict[str, Callable[[Open], Driver]] = {
-    **{name: opened(scene) for name, scene in SCREENS.items()},
-    **{name: partial(over, name) for name in OVER_OTHERS},
-    "swarm": opened(partial(WatchScene, count=16, seed=2)),
-    "stopped": opened(partial(WatchScene, seed=2), pygame.K_SPACE),
-    "flight": opened(FLIGHT),
-    "network": opened(FLIGHT, pygame.K_TAB),
-    "card": opened(FLIGHT, pygame.K_UP, frames=1300),
-    "mission": opened(MISSION),
-    "mission, card": opened(MISSION, pygame.K_UP, frames=700),
-    "naming": opened(SCREENS["NetworksScene"], pygame.K_F2),
-    "quiz, read": opened(SCREENS["QuizScene"], pygame.K_3),
-    "binding": opened(SCREENS["BindingsScene"], pygame.K_RETURN),
+    **{name: partial(opened, name=name) for name in (*SCREENS, *OVER_OTHERS)},
+    "swarm": after(partial(WatchScene, count=16, seed=2)),
+    "stopped": after(partial(WatchScene, seed=2), pygame.K_SPACE),
+    "flight": after(FLIGHT),
+    "network": after(FLIGHT, pygame.K_TAB),
+    "card": after(FLIGHT, pygame.K_UP, frames=1300),
+    "mission": after(MISSION),
+    "mission, card": after(MISSION, pygame.K_UP, frames=700),
+    "naming": after(SCREENS["NetworksScene"], pygame.K_F2),
+    "quiz, read": after(SCREENS["QuizScene"], pygame.K_3),
+    "binding": after(SCREENS["BindingsScene"], pygame.K_RETURN),
 }
 # What the keys of a typing widget, or the application itself, do before the scene's table is asked.
 TAKEN = {
@@ -89,8 +80,7 @@ class Recorder:
 
 @pytest.fixture
 def unhurried(context: Context) -> None:
-    context.settings = Settings(reduced_motion=True, tutored=True)
-    context.settings_file.save(context.settings)
+    settle(context)
 
 
 @pytest.mark.parametrize("state", STATES)

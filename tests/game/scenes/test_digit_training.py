@@ -1,8 +1,9 @@
-"""Train it here: the screen, through real pygame events and with a real worker beside it."""
+"""Train it here: the screen, through real pygame events; with a real worker beside it where its process matters."""
 
 import json
 from collections.abc import Callable
 from dataclasses import fields
+from multiprocessing import active_children
 from pathlib import Path
 
 import numpy as np
@@ -23,9 +24,9 @@ from game.scenes.quiz import QuizScene
 from game.training.digit_run import DigitRun
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run_settings import RunSettings
+from tests.support import inline_worker
 from tests.support.driver import Driver
-
-SMALL = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
+from tests.support.small import DIGITS as SMALL
 
 
 def wait(driver: Driver, until: Callable[[], object]) -> None:
@@ -33,11 +34,19 @@ def wait(driver: Driver, until: Callable[[], object]) -> None:
 
 
 @pytest.fixture
-def train(open_game: Callable[..., Driver]) -> Driver:
+def beside(open_game: Callable[..., Driver]) -> Driver:
+    """The screen, with a process of its own for its run."""
     driver = open_game(DigitTrainingScene)
     driver.frames(2)
     driver.top.knobs.set_config(SMALL, 3)
     return driver
+
+
+@pytest.fixture
+def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
+    """The screen, with a run within this process."""
+    inline_worker.install(monkeypatch.setattr)
+    return beside
 
 
 def confusion() -> Confusion:
@@ -75,27 +84,27 @@ def test_presets_are_named_and_no_sabotage_is_offered():
 # A run
 
 
-def test_start_pause_stop_and_go_on(train: Driver, tmp_path: Path):
-    scene = train.top
-    train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.digit_run.confusion and scene.digit_run.curves.points)
+def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
+    scene = beside.top
+    beside.key(pygame.K_RETURN)
+    wait(beside, lambda: scene.digit_run.confusion and scene.digit_run.curves.points)
     assert scene.digit_run.config == SMALL
     assert scene.digit_run.confusion.table.sum() == 2_000
     assert scene.matrix.confusion is scene.digit_run.confusion
-    train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.digit_run.state is WorkerState.PAUSED)
-    train.frames(5)
-    train.click(scene.stop_word.box.center)
-    wait(train, lambda: not scene.digit_run.alive)
+    beside.key(pygame.K_RETURN)
+    wait(beside, lambda: scene.digit_run.state is WorkerState.PAUSED)
+    beside.frames(5)
+    beside.click(scene.stop_word.box.center)
+    wait(beside, lambda: not scene.digit_run.alive)
     assert scene.digit_run.state is WorkerState.ENDED
     assert not scene.digit_run.problem
     assert 0 < scene.digit_run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
-    wait(train, lambda: scene.stop_word and scene.stop_word.label == texts.PUPIL_GO_ON)
+    wait(beside, lambda: scene.stop_word and scene.stop_word.label == texts.PUPIL_GO_ON)
     stood = scene.digit_run.curves.points[-1].step
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
-    train.click(scene.stop_word.box.center)
-    wait(train, lambda: scene.digit_run.curves.points)
+    beside.click(scene.stop_word.box.center)
+    wait(beside, lambda: scene.digit_run.curves.points)
     assert scene.digit_run.curves.points[0].step > stood - 1
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
     assert len(scene.digit_run.earlier) == 1
@@ -159,15 +168,16 @@ def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     assert notes == [texts.TRAIN_KEPT]
 
 
-def test_a_process_that_dies_is_told_of_and_another_can_be_started(train: Driver):
-    scene = train.top
-    train.key(pygame.K_RETURN)
-    wait(train, lambda: scene.digit_run.state is WorkerState.RUNNING)
-    scene.digit_run._worker._process.kill()
-    wait(train, lambda: scene.digit_run.state is WorkerState.FAILED)
+def test_a_process_that_dies_is_told_of_and_another_can_be_started(beside: Driver):
+    scene = beside.top
+    beside.key(pygame.K_RETURN)
+    wait(beside, lambda: scene.digit_run.state is WorkerState.RUNNING)
+    for child in active_children():
+        child.kill()
+    wait(beside, lambda: scene.digit_run.state is WorkerState.FAILED)
     assert "killed" in scene.digit_run.problem
-    train.frames(20)
-    train.key(pygame.K_RETURN)
+    beside.frames(20)
+    beside.key(pygame.K_RETURN)
     assert scene.digit_run.alive
 
 
@@ -207,15 +217,15 @@ def test_two_games_teach_two_runs(tmp_path: Path):
     other.collection.release()
 
 
-def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(train: Driver, tmp_path: Path):
-    digit_run, runs = train.top.digit_run, tmp_path / "user" / "digits" / "runs"
-    train.key(pygame.K_RETURN)
-    wait(train, lambda: digit_run.curves.points)
+def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driver, tmp_path: Path):
+    digit_run, runs = beside.top.digit_run, tmp_path / "user" / "digits" / "runs"
+    beside.key(pygame.K_RETURN)
+    wait(beside, lambda: digit_run.curves.points)
     assert digit_run.save("first") == ""
     digit_run.begin(SMALL, 4)
     assert digit_run.waiting
     assert digit_run.save("second") == texts.PUPIL_NOTHING
-    wait(train, lambda: digit_run.curves.points)
+    wait(beside, lambda: digit_run.curves.points)
     assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
     assert digit_run.seed == 4
 

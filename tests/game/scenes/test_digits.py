@@ -14,8 +14,8 @@ from game.drawing.tokens import INK
 from game.scenes.digits import DigitsScene
 from game.ui.context import Context
 from tests.support.chores import biased_fix
-from tests.support.digit_styles import TEMPLATES
 from tests.support.driver import Driver
+from tests.support.pen import draw, guess, strokes
 
 Open = Callable[..., Driver]
 
@@ -28,31 +28,6 @@ def drawing(open_game: Open) -> Driver:
 def scene(driver: Driver) -> DigitsScene:
     assert isinstance(driver.top, DigitsScene)
     return driver.top
-
-
-def strokes(digit: int, style: int = 0, height: float = 0.6, at: tuple[float, float] = (0.3, 0.2)) -> list[np.ndarray]:
-    """A digit's template in a pad of 1 x 1."""
-    return [np.array(stroke) * (0.7 * height, height) + at for stroke in TEMPLATES[digit][style]]
-
-
-def draw(driver: Driver, drawn: list[np.ndarray]) -> None:
-    """Draw with the mouse's events, all of a stroke in one frame."""
-    rect = scene(driver).canvas_rect
-    for stroke in drawn:
-        points = stroke * rect.size + rect.topleft
-        way = np.linspace(0, len(points) - 1, 60)
-        dense = np.stack([np.interp(way, np.arange(len(points)), axis) for axis in points.T], axis=1).tolist()
-        pygame.event.post(pygame.event.Event(pygame.MOUSEBUTTONDOWN, pos=dense[0], button=1))
-        for point in dense[1:]:
-            pygame.event.post(pygame.event.Event(pygame.MOUSEMOTION, pos=point, rel=(0, 0), buttons=(1, 0, 0)))
-        driver.post(pygame.MOUSEBUTTONUP, pos=dense[-1], button=1)
-
-
-def guess(driver: Driver) -> int:
-    probabilities = scene(driver).probabilities
-    assert probabilities is not None
-    assert probabilities.sum() == pytest.approx(1, abs=1e-4)
-    return int(probabilities.argmax())
 
 
 def wait_for(driver: Driver, done: Callable[[], object]) -> None:

@@ -1,7 +1,6 @@
 """The dream and the quiz, through real pygame events."""
 
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 import pygame
@@ -17,22 +16,12 @@ from game.scenes.dream import DreamScene
 from game.scenes.quiz import QuizScene
 from game.ui.widget import Widget
 from tests.support.driver import Driver
-
-SEVEN = [(200, 180), (380, 180), (280, 480)]
+from tests.support.pen import SEVEN, stroke
 
 
 @pytest.fixture(scope="module")
 def classifier():
     return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
-
-
-def stroke(driver: Driver, points: list[tuple[float, float]]) -> None:
-    driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(points[0]), button=1)
-    for start, end in pairwise(points):
-        for part in np.linspace(0, 1, 9)[1:]:
-            at = (start[0] + (end[0] - start[0]) * part, start[1] + (end[1] - start[1]) * part)
-            driver.post(pygame.MOUSEMOTION, pos=driver.to_window(at), rel=(0, 0), buttons=(1, 0, 0))
-    driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(points[-1]), button=1)
 
 
 def classifier_image() -> np.ndarray:

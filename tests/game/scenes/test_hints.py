@@ -6,40 +6,26 @@ import pygame
 import pytest
 
 from ai.lander.missions import FIRST, MISSIONS
-from game.core.scene import Push
 from game.drawing import glyphs, typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, VIEW_SIZE
 from game.input import signs
 from game.input.bindings import KEYBOARD, Bindings, Command, Held
 from game.input.controls import Controls, key_name
-from game.play.challenge import FlownMission
-from game.scenes.menu import MenuScene
-from game.scenes.play import PlayScene
 from game.ui.context import Context
 from game.ui.hints import Hint, HintRow
-from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
+from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, opened, settle
 
 NEW = {Command.HANDOVER: pygame.K_o, Command.RETRY: pygame.K_j, Command.CHOICES: pygame.K_i, Command.STEP: pygame.K_u,
        Command.NEXT: pygame.K_k, Command.PREVIOUS: pygame.K_l, Command.FULLSCREEN: pygame.K_F9,
        Held.MAIN: pygame.K_f, Held.LEFT: pygame.K_q, Held.RIGHT: pygame.K_e}  # fmt: skip
-FLOWN = {
-    "Play": lambda context: PlayScene(context, 3),
-    "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["fall"])),
-}
 
 
 def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name: str) -> Counter[str]:
     """Open a screen, and count the keys that its hints name."""
-    context.settings.tutored, context.settings.reduced_motion = True, True
-    context.settings_file.save(context.settings)
+    settle(context)
     context.controls = Controls()
-    if name in OVER_OTHERS:
-        driver = open_game(MenuScene)
-        driver.app.scenes.apply(Push(OVER_OTHERS[name](driver.top)))
-    else:
-        driver = open_game({**SCREENS, **FLOWN}[name])
-    driver.frames(5)
+    driver = opened(open_game, name)
     told: Counter[str] = Counter()
     text = Canvas.text
 
@@ -50,7 +36,7 @@ def keys_told(open_game, context: Context, monkeypatch: pytest.MonkeyPatch, name
 
     with monkeypatch.context() as patch:
         patch.setattr(Canvas, "text", noted)
-        driver.app._draw()
+        driver.app.draw()
     driver.app.close()
     return told
 
@@ -77,8 +63,7 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
     context.settings_file.save(context.settings)
     settings = open_game(SCREENS["SettingsScene"]).top
     assert settings.form.widgets[0]._hint.startswith("F9 ")
-    driver = open_game(MenuScene)
-    driver.app.scenes.apply(Push(OVER_OTHERS["ChoicesScene"](driver.top)))
+    driver = opened(open_game, "ChoicesScene")
     help_ = driver.top._rows[driver.top.form.widgets[0]]()
     assert " X" in help_
     assert "+" not in help_

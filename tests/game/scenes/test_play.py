@@ -252,7 +252,7 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
     assert scene(driver).flight.hand is StickHolder.HUMAN
     assert "weights" in scene(driver)._network.problem
     begins = scene(driver)._network.problem[:18]  # a long one is shortened in its middle
-    assert begins in driver.app._notes._text
+    assert begins in driver.said
 
 
 def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_other_flight(open_game: Open, context):
@@ -268,7 +268,7 @@ def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_othe
         crash(driver)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert "could not be kept: " in driver.app._notes._text
+    assert "could not be kept: " in driver.said
     assert {path.name: path.read_bytes() for path in context.user_dir.rglob("*.json*")} == before
     driver.key(pygame.K_r)
     crash(driver)
@@ -342,7 +342,7 @@ def test_a_network_that_breaks_on_the_way_gives_the_stick_back(open_game: Open, 
     scene(driver)._choose_network("hurt")
     driver.frames(5)
     assert scene(driver).flight.hand is StickHolder.HUMAN
-    assert "No network" in driver.app._notes._text
+    assert "No network" in driver.said
 
 
 def test_draw_changes_nothing(open_game: Open, flown_by):

@@ -91,7 +91,7 @@ def click_row(driver: Driver, number: int) -> None:
 
 
 def note(driver: Driver) -> str:
-    return driver.app._notes._text
+    return driver.said
 
 
 def type_text(driver: Driver, text: str) -> None:

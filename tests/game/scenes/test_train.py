@@ -1,4 +1,4 @@
-"""The training screen, through real pygame events and with a real worker beside it."""
+"""The training screen, through real pygame events; with a real worker beside it where its process matters."""
 
 import gc
 import threading
@@ -35,19 +35,26 @@ from game.training.library import Library
 from game.ui import focus
 from game.ui.widget import Widget
 from game.ui.widgets import Choice
+from tests.support import inline_worker
+from tests.support.chores import eager
 from tests.support.driver import Driver
-
-SMALL = PRESETS["modern"].changed(
-    num_envs=4, hidden=(8,), learning_starts=64, replay_size=1000, batch_size=16, gradient_steps=1
-)
+from tests.support.small import LANDERS as SMALL
 
 
 @pytest.fixture
-def train(open_game: Callable[..., Driver]) -> Driver:
+def beside(open_game: Callable[..., Driver]) -> Driver:
+    """The screen, with a process of its own for its run."""
     driver = open_game(TrainScene)
     driver.frames(2)
     driver.top.knobs.set_config(SMALL, 3)
     return driver
+
+
+@pytest.fixture
+def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
+    """The screen, with a run within this process."""
+    inline_worker.install(monkeypatch.setattr)
+    return beside
 
 
 def start(driver: Driver) -> None:
@@ -55,31 +62,32 @@ def start(driver: Driver) -> None:
     driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
 
 
-def test_start_pause_step_and_go_on(train: Driver) -> None:
-    start(train)
-    scene = train.top
+def test_start_pause_step_and_go_on(beside: Driver) -> None:
+    start(beside)
+    scene = beside.top
     assert scene.lander_run.state is WorkerState.RUNNING
     assert len(scene.swarm.swarm_state.outcome) == 4
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
-    train.frames(20)
+    beside.key(pygame.K_RETURN)
+    beside.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
+    beside.frames(20)
     time.sleep(0.2)
-    train.frames(5)
+    beside.frames(5)
     stood = scene.lander_run.swarm_state.decisions
     time.sleep(0.3)
-    train.frames(5)
+    beside.frames(5)
     assert scene.lander_run.swarm_state.decisions == stood
-    train.key(pygame.K_PERIOD)
-    train.wait(lambda: scene.lander_run.swarm_state.decisions > stood)
+    beside.key(pygame.K_PERIOD)
+    beside.wait(lambda: scene.lander_run.swarm_state.decisions > stood)
     assert scene.lander_run.swarm_state.decisions == stood + 4
-    train.key(pygame.K_RETURN)
-    train.wait(lambda: scene.lander_run.swarm_state.decisions > stood + 8)
+    beside.key(pygame.K_RETURN)
+    beside.wait(lambda: scene.lander_run.swarm_state.decisions > stood + 8)
 
 
-def test_it_learns_as_it_would_without_a_window(train: Driver) -> None:
-    start(train)
-    scene = train.top
-    train.wait(lambda: len(scene.lander_run.history.checkpoints) >= 2)
+def test_it_learns_as_it_would_without_a_window(beside: Driver) -> None:
+    beside.unseen = True
+    start(beside)
+    scene = beside.top
+    beside.wait(lambda: len(scene.lander_run.history.checkpoints) >= 2)
     checkpoint = scene.lander_run.history.checkpoints[1]
     training = Training(SMALL, 3)
     while training.agent.decisions < checkpoint.decisions:
@@ -303,15 +311,16 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
 
-def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(train: Driver, tmp_path: Path) -> None:
-    start(train)
-    scene = train.top
-    train.wait(lambda: scene.lander_run.library.unsaved.is_dir() or scene.lander_run.state is WorkerState.FAILED, 60)
+def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr("game.training.lander_run.live", eager)
+    start(beside)
+    scene = beside.top
+    beside.wait(lambda: scene.lander_run.library.unsaved.is_dir() or scene.lander_run.state is WorkerState.FAILED, 60)
     for child in active_children():
         child.kill()
-    train.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
+    beside.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
     assert scene.lander_run.problem
-    train.frames(20)
+    beside.frames(20)
     scene._save_as("saved all the same")
     (run,) = Library(tmp_path / "user").runs()
     assert (run.name, run.problem) == ("saved all the same", "")
@@ -327,16 +336,16 @@ def test_numbers_that_run_away_are_told(train: Driver) -> None:
     assert isinstance(train.top, TrainScene)
 
 
-def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(train: Driver) -> None:
-    scene = train.top
-    for number in range(4):
-        start(train)
+def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(beside: Driver) -> None:
+    scene = beside.top
+    for number in range(2):
+        start(beside)
         scene._save_as(f"run {number}")
         time.sleep(0.05 * number)
         for child in active_children():
             child.kill()
-        train.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
-        assert train.top is scene
+        beside.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
+        assert beside.top is scene
     for run in scene.lander_run.library.runs():
         assert not run.problem
         assert resume_run(run.folder).agent.decisions > 0
@@ -346,9 +355,9 @@ def _kept() -> list[object]:
     return [each for each in gc.get_objects() if isinstance(each, TrainScene | LanderRun | NetworkView)]
 
 
-def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
+def test_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> None:
     threads, others = threading.active_count(), set(map(id, _kept()))
-    for visit in range(10):
+    for visit in range(4):
         assert isinstance(game.top, MenuScene)
         scene = TrainScene(game.app.context)
         game.app.scenes.apply(Push(scene))
@@ -357,7 +366,7 @@ def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> Non
             game.key(pygame.K_ESCAPE)
         scene.knobs.set_config(SMALL, 0)
         game.key(pygame.K_RETURN)
-        if visit % 4 == 0:  # the others leave while it starts
+        if visit == 0:  # the others leave while it starts
             game.wait(lambda scene=scene: scene.lander_run.swarm_state)
         game.key(pygame.K_ESCAPE)
         assert not active_children()
@@ -367,7 +376,7 @@ def test_ten_visits_leave_no_process_no_thread_and_no_scene(game: Driver) -> Non
     assert not [each for each in _kept() if id(each) not in others]
 
 
-def test_closing_the_game_ends_the_worker(train: Driver) -> None:
-    start(train)
-    train.app.close()
+def test_closing_the_game_ends_the_worker(beside: Driver) -> None:
+    start(beside)
+    beside.app.close()
     assert not active_children()

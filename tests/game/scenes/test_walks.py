@@ -1,79 +1,27 @@
 """Every screen can be walked, seen and left by a gamepad alone and by the keyboard alone: real events, no window."""
 
 import json
-import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
 import pygame
 import pytest
 
-from ai.digits.classifier import DigitClassifier
 from ai.lander.environment import Outcome
 from game.core import texts
-from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
 from game.flight.flight import StickHolder
-from game.flight.flight_file import Record
-from game.flight.skill import Skill
-from game.scenes.bindings import BindingsScene
-from game.scenes.choices import ChoicesScene
-from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
-from game.scenes.digit_training import DigitTrainingScene
-from game.scenes.digits import DigitsScene
-from game.scenes.dream import DreamScene
-from game.scenes.logbook import LogbookScene
 from game.scenes.menu import MenuScene
-from game.scenes.missions import MissionsScene
-from game.scenes.pause import PauseScene
-from game.scenes.physics import PhysicsScene
 from game.scenes.play import PlayScene
-from game.scenes.quiz import QuizScene
-from game.scenes.replay import ReplayScene
-from game.scenes.runs import NetworksScene
-from game.scenes.settings import SettingsScene
-from game.scenes.train import TrainScene
-from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from game.ui.widget import Widget
 from tests.support.driver import Driver
-from tests.support.flights import kept, scripted
 from tests.support.player import DEVICES, Player
+from tests.support.screens import OVER_OTHERS, SCREENS, flown, settle
 from tests.support.tour import scene_types
 
-SCREENS: dict[str, Callable[[Context], Scene]] = {
-    "MenuScene": MenuScene,
-    "MissionsScene": MissionsScene,
-    "WatchScene": lambda context: WatchScene(context, seed=1),
-    "TrainScene": TrainScene,
-    "DigitsScene": DigitsScene,
-    "DigitTrainingScene": DigitTrainingScene,
-    "DreamScene": lambda context: DreamScene(context, reader()),
-    "QuizScene": lambda context: QuizScene(context, reader()),
-    "PhysicsScene": PhysicsScene,
-    "LogbookScene": LogbookScene,
-    "SettingsScene": SettingsScene,
-    "BindingsScene": BindingsScene,
-    "NetworksScene": NetworksScene,
-    "ReplayScene": lambda context: ReplayScene(context, flown(context)),
-}
-OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
-    "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),
-    "ChoicesScene": lambda below: ChoicesScene(below.context, below, Skill([]), begun=False),
-    "QuestionDialog": lambda below: QuestionDialog(below, "?", "", [("yes", lambda: None), ("no", lambda: None)]),
-    "NameDialog": lambda below: NameDialog(below, "?", "name", lambda _: ""),
-    "ListDialog": lambda below: ListDialog(below, "?", [("a",), ("b",)], lambda _: None),
-}
 # Flown rather than walked, shown once something has failed, or a part of others.
 NO_SCREENS = {"PlayScene", "ErrorScene", "Dialog", "MenuBackground"}
-
-
-def reader() -> DigitClassifier:
-    return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
-
-
-def flown(context: Context) -> Record:
-    return kept(context, scripted(), time.time(), alone=True)
 
 
 @pytest.fixture(params=DEVICES)
@@ -81,8 +29,7 @@ def open_screen(
     request: pytest.FixtureRequest, open_game: Callable[..., Driver], context: Context
 ) -> Iterator[Callable[..., Player]]:
     def open_it(make: Callable[[Context], Scene]) -> Player:
-        context.settings.reduced_motion = True
-        context.settings_file.save(context.settings)
+        settle(context)
         player = Player(open_game(make), request.param)
         player.frames(3)
         return player
@@ -122,8 +69,9 @@ def test_so_are_those_that_stand_over_another(open_screen, name: str):
 
 
 def walk(player: Player) -> None:
+    player.unseen = True
     found = player.ways()
-    player.app.context.settings.reduced_motion = True
+    player.unseen, player.app.context.settings.reduced_motion = False, True
     widgets = list(player.form.widgets)  # what is chosen on the way may have changed them
     assert not [widget.label for index, widget in enumerate(widgets) if index not in found]
     for widget in widgets[:24]:

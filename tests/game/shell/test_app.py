@@ -25,7 +25,7 @@ class Probe(Scene):
 
     def __init__(self) -> None:
         self.events: list[pygame.event.Event] = []
-        self.updates = self.draws = self.resumed = self.left = 0
+        self.updates = self.draws = self.entered = self.left = 0
         self.alphas: list[float] = []
         self.next = None
         self.fails_in = ""
@@ -34,9 +34,9 @@ class Probe(Scene):
         if self.fails_in == where:
             raise ZeroDivisionError("a fault on purpose")
 
-    def resume(self) -> None:
-        self.resumed += 1
-        self._fail("resume")
+    def enter(self) -> None:
+        self.entered += 1
+        self._fail("enter")
 
     def exit(self) -> None:
         self.left += 1
@@ -176,7 +176,7 @@ def test_sixty_updates_a_second_and_no_spiral(open_game, context: Context):
     app.close()
 
 
-@pytest.mark.parametrize("where", ["__init__", "handle_event", "update", "draw", "resume"])
+@pytest.mark.parametrize("where", ["__init__", "handle_event", "update", "draw", "enter"])
 def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Context, where: str):
     log_to(context.user_dir)
     broken = Probe()
@@ -187,7 +187,7 @@ def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Conte
         return broken
 
     game.app.show(make)
-    if where == "resume":
+    if where == "enter":
         game.app.show(lambda context: PauseScene(context, broken))
         game.key(pygame.K_ESCAPE)
     game.key(pygame.K_x)
@@ -283,7 +283,7 @@ def test_pause_stops_the_scene_below_and_resumes_it(open_game):
     assert (probe.updates, probe.draws) == (updates, 1)
     game.key(pygame.K_ESCAPE)
     assert game.top is probe
-    assert probe.resumed == 1
+    assert probe.entered == 1
 
 
 def test_pause_offers_retry_settings_and_the_way_out(open_game):
@@ -356,7 +356,7 @@ def test_a_screenshot_on_a_full_disk_is_no_picture_and_says_so(game: Driver, con
         game.key(pygame.K_F12)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert "could not be saved" in game.app._notes._text
+    assert "could not be saved" in game.said
     assert not list((context.user_dir / "screenshots").iterdir())
 
 

@@ -47,22 +47,23 @@ def test_a_note_hides_nothing_that_is_to_be_read_or_pressed(open_game: Open, nam
     driver.frames(3)
     driver.app.context.note(NOTE)
     driver.frames(2)
-    notes, canvas = driver.app._notes, driver.app.canvas
-    place = canvas.rect(*notes._box(canvas))
-    written = [area for area in canvas._covered if area.colliderect(place)]
-    assert not written, (notes._place, written)
+    notes, canvas = driver.app.notes, driver.app.canvas
+    place = canvas.rect(*notes.box(canvas))
+    canvas.turn_page()  # what stands on the last frame
+    written = [area for area in canvas.words if area.colliderect(place)]
+    assert not written, written
     driver.frames(30)
-    assert place == canvas.rect(*notes._box(canvas))  # and it stays there
+    assert place == canvas.rect(*notes.box(canvas))  # and it stays there
 
 
 def test_a_note_moves_aside_where_the_middle_is_taken_in_every_row(open_game: Open, monkeypatch: pytest.MonkeyPatch):
     driver = open_game(MenuScene)
     driver.frames(2)
-    notes, canvas = driver.app._notes, driver.app.canvas
+    notes, canvas = driver.app.notes, driver.app.canvas
     taken = canvas.rect(800, 0, VIEW_SIZE[0] - 800, VIEW_SIZE[1])
     monkeypatch.setattr(canvas, "words", [taken])
     notes.show(NOTE)
     notes.update(canvas)
-    box = canvas.rect(*notes._box(canvas))
+    box = canvas.rect(*notes.box(canvas))
     assert not box.colliderect(taken)
     assert canvas.surface.get_rect().contains(box)

@@ -15,8 +15,8 @@ from game.scenes.dialog import ListDialog
 from game.scenes.digits import DigitsScene
 from game.training.digit_models import called, runs_dir, shelf
 from game.ui.context import Context
-from tests.game.scenes.test_digits import draw, guess, strokes
 from tests.support.driver import Driver
+from tests.support.pen import draw, guess, strokes
 
 CONFIGS = [
     DIGIT_PRESETS["classic"].changed(hidden=(8,), dropout=0.4),  # dropout comes before all weights
