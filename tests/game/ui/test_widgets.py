@@ -16,6 +16,7 @@ from game.scenes.choices import ChoicesScene
 from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
 from game.ui import focus
+from game.ui.actions import hints_of
 from game.ui.context import Context
 from game.ui.form import Form
 from game.ui.listing import shortened
@@ -195,8 +196,9 @@ def test_a_line_that_fits_the_largest_screen_is_drawn_whole():
     line = "m" * 100
     while canvas.text_width(line + "m", size=SMALL) < VIEW_SIZE[0]:
         line += "m"
-    surface, _ = typeface.render(line, canvas._pixels(line, SMALL, "regular", tabular=False), "regular", INK)
-    assert surface.get_width() >= canvas.text_width(line, size=SMALL) * canvas.scale
+    canvas.text(line, (0, 360), size=SMALL, colour=INK)
+    inked = pygame.surfarray.array3d(canvas.surface).any(axis=(1, 2)).nonzero()[0]
+    assert inked[-1] >= canvas.text_width(line, size=SMALL) * canvas.scale - 3 * canvas.scale
 
 
 @pytest.mark.parametrize("letters", [0, 3, 30, 100_000])
@@ -290,5 +292,6 @@ def test_the_hint_names_the_keys_that_change_what_is_in_focus(open_game: Callabl
         by_arrows = isinstance(widget, Slider)
         seen.add(by_arrows)
         expected = texts.ARROWS_ASIDE if by_arrows else driver.app.context.controls.word(Command.CONFIRM)
-        assert form.change_hint == (expected, texts.HINT_CHANGE)
+        (hint,) = hints_of([form.changes], driver.app.context.controls)
+        assert hint[:2] == (expected, texts.HINT_CHANGE)
     assert seen == {True, False}
