@@ -62,7 +62,7 @@ class ActivationMaximisation:
         reach = round(_SHIFT * self.calm)
         down, across = self._rng.integers(-reach, reach + 1, 2).tolist()
         moved = np.roll(self.image, (down, across), axis=(0, 1))
-        gradient = _blurred(np.roll(self._gradient(moved), (-down, -across), axis=(0, 1)), self.calm)
+        gradient = _blurred(np.roll(self.gradient(moved), (-down, -across), axis=(0, 1)), self.calm)
         gradient /= max(float(np.abs(gradient).max()), 1e-12)
         length = STEP * (1 - (1 - _LAST) * self.step / STEPS)
         image = _blurred(self.image, _SOFT * self.calm) + length * gradient
@@ -70,7 +70,7 @@ class ActivationMaximisation:
         self.step += 1
         self.probabilities = self.classifier.predict(self.image)[0]
 
-    def _gradient(self, image: Image) -> Image:
+    def gradient(self, image: Image) -> Image:
         """Return the gradient (28, 28) towards the digit: of cross-entropy, or of its lead over the other outputs."""
         classifier, network = self.classifier, self.classifier.network
         shaped = classifier.shaped(image)

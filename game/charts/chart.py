@@ -67,14 +67,14 @@ class Chart:
         self._log, self._read = log, read
         self.fixed = limits
         self.redraws = 0  # number of times the sheet was drawn
-        self._runs: list[SavedSeries] = []
+        self.runs: list[SavedSeries] = []  # as shown, the current one first
         self._ticks: tuple[Tick, ...] = ()
-        self._x_range: Limits = (0.0, 1.0)
+        self.x_range: Limits = (0.0, 1.0)  # ends of the horizontal axis
         self._told: tuple[float, ...] = ()  # both ends of the x axis, or one if they are the same
         self._lines = self._make_grid(*(limits or (0.0, 1.0)))
         self._shown = self._goal
-        self._cursor: float | None = None
-        self._pointed = False
+        self.cursor: float | None = None  # an x, for all charts of a row
+        self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
         self._painted: Painted | None = None  # until the numbers or the window change
         self._stale = True
@@ -107,14 +107,14 @@ class Chart:
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
         span = (start, end) if end > start else (start, start + 1.0)
         if (
-            span == self._x_range
+            span == self.x_range
             and tuple(ticks) == self._ticks
-            and len(runs) == len(self._runs)
-            and all(run.same(old) for run, old in zip(runs, self._runs, strict=True))
+            and len(runs) == len(self.runs)
+            and all(run.same(old) for run, old in zip(runs, self.runs, strict=True))
         ):
             return
-        first = not any(run.last() is not None for run in self._runs)
-        self._runs, self._x_range, self._ticks = runs, span, tuple(ticks)
+        first = not any(run.last() is not None for run in self.runs)
+        self.runs, self.x_range, self._ticks = runs, span, tuple(ticks)
         self._told = tuple(dict.fromkeys((start, max(start, end))))
         self._set_limits()
         if first:
@@ -124,8 +124,8 @@ class Chart:
     def _set_limits(self) -> None:
         if self.fixed:
             return
-        start, end = self._x_range
-        shown = [run.y[(run.x >= start) & (run.x <= end)] for run in self._runs]
+        start, end = self.x_range
+        shown = [run.y[(run.x >= start) & (run.x <= end)] for run in self.runs]
         span = plotting.robust_range(np.concatenate(shown)) if shown else None
         if span is not None:
             self._lines = plotting.steady_grid(span, self._lines, self._make_grid)
@@ -140,7 +140,7 @@ class Chart:
 
     def point_to(self, x: float | None, *, pointed: bool = False) -> None:
         """Put the cursor at x; None removes it. A tooltip shows the values only if the mouse has `pointed` here."""
-        self._cursor, self._pointed = x, pointed and x is not None
+        self.cursor, self.pointed = x, pointed and x is not None
 
     def x_at(self, point: Point) -> float | None:
         """Return the x value under a point of the canvas, or None outside the chart."""
@@ -149,11 +149,11 @@ class Chart:
         if not plot.inflate(2 * _MARGIN, 0).collidepoint(point) and not foot.collidepoint(point):
             return None
         share = min(max((point[0] - plot.x) / plot.width, 0.0), 1.0)
-        return self._x_range[0] + share * (self._x_range[1] - self._x_range[0])
+        return self.x_range[0] + share * (self.x_range[1] - self.x_range[0])
 
     def place(self, x: float, y: float) -> Point:
         """Return the point of the canvas for x and a value, clipped to the plot."""
-        plot, (start, end), (low, high) = self.plot, self._x_range, self._shown
+        plot, (start, end), (low, high) = self.plot, self.x_range, self._shown
         across = min(max((x - start) / (end - start), 0.0), 1.0)
         up = min(max((y - low) / (high - low), 0.0), 1.0)
         return plot.x + across * plot.width, plot.bottom - up * plot.height
@@ -188,8 +188,8 @@ class Chart:
         canvas.lay(self._painted[0], self.box.x - _MARGIN, self.box.y - _MARGIN)
         if self._marker:
             self._draw_marker(canvas, *self._marker)
-        if self._cursor is not None:
-            self._draw_cursor(canvas, self._cursor)
+        if self.cursor is not None:
+            self._draw_cursor(canvas, self.cursor)
 
     def _paint(self, canvas: Canvas) -> Painted:
         self.redraws += 1
@@ -198,20 +198,20 @@ class Chart:
         plot = pygame.FRect(box.x, box.y + _HEADER, *self.plot.size)
         self._paint_header(sheet, box)
         area = sheet.rect(*plot)
-        axes = Axes(self._x_range, self._shown, self._goal)
-        traces = [trace_run(run, axes, area.width) for run in self._runs]
+        axes = Axes(self.x_range, self._shown, self._goal)
+        traces = [trace_run(run, axes, area.width) for run in self.runs]
         if any(np.isfinite(values).any() for values in traces):
             self._paint_grid(sheet, plot)
         else:
             self._paint_empty(sheet, plot)
-        for run, values in reversed(list(zip(self._runs, traces, strict=True))):
+        for run, values in reversed(list(zip(self.runs, traces, strict=True))):
             paint_run(sheet, area, run, values, axes)
         self._paint_ticks(sheet, plot)
         return sheet, traces
 
     def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
-        value = self._runs[0].last() if self._runs else None
-        figure, colour = ("–", FAINT) if value is None else (self.read(value), self._runs[0].series.colour)
+        value = self.runs[0].last() if self.runs else None
+        figure, colour = ("–", FAINT) if value is None else (self.read(value), self.runs[0].series.colour)
         right = (box.right - _GUTTER, box.y + 13)
         taken = sheet.text(figure, right, size=TEXT, colour=colour, align="right", tabular=True)
         room = taken.left - _APART - box.x
@@ -243,7 +243,7 @@ class Chart:
             sheet.text(self.read_x(told), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align)
 
     def _paint_ticks(self, sheet: Canvas, plot: pygame.FRect) -> None:
-        start, end = self._x_range
+        start, end = self.x_range
         last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
         for tick in self._ticks:
             x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
@@ -259,7 +259,7 @@ class Chart:
         if not traces:
             return None
         values = traces[0]
-        start, end = self._x_range
+        start, end = self.x_range
         column = round((x - start) / (end - start) * (len(values) - 1))
         if not 0 <= column < len(values) or np.isnan(values[column]):
             return None
@@ -283,14 +283,14 @@ class Chart:
         plot = self.plot
         across, _ = self.place(x, 0.0)
         canvas.line((across, plot.top), (across, plot.bottom), MUTE, 1, 0.7)
-        slack = _SLACK * (self._x_range[1] - self._x_range[0])
+        slack = _SLACK * (self.x_range[1] - self.x_range[0])
         rows = []
-        for run in self._runs:
+        for run in self.runs:
             point = run.nearest(x, slack)
             if point:
                 canvas.dot(self.place(*point), 3, run.series.colour)
                 rows.append(TooltipRow(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
-        if self._pointed:
+        if self.pointed:
             tick = self._tick_at(across)
             draw_tooltip(canvas, (across, plot.top), self.box, [self.read_x(x), *([tick.text] if tick else [])], rows)
 

@@ -55,5 +55,5 @@ class Charts:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw all charts, the one with the tooltip last so that nothing covers it."""
-        for chart in sorted(self.charts, key=lambda chart: chart._pointed):
+        for chart in sorted(self.charts, key=lambda chart: chart.pointed):
             chart.draw(canvas)

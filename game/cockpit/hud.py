@@ -146,7 +146,7 @@ def _paint_readout(canvas: Canvas, readout: Readout, colour: Colour) -> None:
     line = _FIGURE_LINE - _LABEL_LINE + _ABOVE
     label = canvas.text(readout.label, (_ASIDE, _ABOVE), size=LABEL, colour=MUTE, weight="medium")
     if readout.within is not None:
-        _draw_mark(canvas, (label.right + 9, _ABOVE - 4), readout.within)
+        draw_mark(canvas, (label.right + 9, _ABOVE - 4), readout.within)
     figure = canvas.text(readout.figure, (_ASIDE - 1, line), size=FIGURE, colour=colour, weight="light", tabular=True)
     gap, rise = (3, _CAPITAL * (FIGURE - SMALL)) if readout.unit == "°" else (6, 0.0)
     canvas.text(readout.unit, (figure.right + gap, line - rise), size=SMALL, colour=MUTE)
@@ -287,7 +287,8 @@ def draw_opening(canvas: Canvas, hints: Sequence[Hint], line: str, paths: Sequen
         x = canvas.text(text, (x + dots, 178), size=SMALL, colour=MUTE).right + gap
 
 
-def _draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
+def draw_mark(canvas: Canvas, place: Point, within: bool) -> None:
+    """Draw a dot for a value within its limit, a triangle for one beyond it."""
     if within:
         canvas.dot(place, 2.0, canvas.palette.good, 0.9)
     else:

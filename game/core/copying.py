@@ -13,8 +13,8 @@ from game.core import texts
 from game.core.names import LibraryError
 
 _DEEPEST: Final = 8  # depth of folders within a network's folder, its fixes included
-_MOST_FILES: Final = 5_000
-_MOST_BYTES: Final = 500_000_000
+MOST_FILES: Final = 5_000
+MOST_BYTES: Final = 500_000_000
 
 
 def copy_folder(source: Path, target: Path) -> None:
@@ -46,5 +46,5 @@ def _check_plain(folder: Path) -> None:
                     size += entry.stat(follow_symlinks=False).st_size
                 else:
                     raise LibraryError(texts.LIBRARY_NOT_PLAIN.format(name=folder.name, inside=brief(entry.name, 40)))
-                if files > _MOST_FILES or size > _MOST_BYTES:
+                if files > MOST_FILES or size > MOST_BYTES:
                     raise LibraryError(texts.LIBRARY_TOO_LARGE.format(name=folder.name))

@@ -91,6 +91,11 @@ class Worker:
         return WorkerState.PAUSED if self._paused else WorkerState.RUNNING
 
     @property
+    def process_id(self) -> int | None:
+        """Number of the process in the operating system; None if it could not be started."""
+        return self._process.pid
+
+    @property
     def gone(self) -> bool:
         """Whether the worker has ended and its process is cleaned up, which `poll` does."""
         return not self._release.alive

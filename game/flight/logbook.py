@@ -29,8 +29,8 @@ LOGBOOK: Final = "logbook.jsonl"
 RECENT: Final = 100  # latest flights, whose files are kept whatever their outcome
 BEST: Final = 5  # best landings of each mission, whose files are kept too
 _LARGEST: Final = 16_000_000  # last bytes of the logbook that are read: 50,000 flights
-_SLACK: Final = 25  # surplus files before they are cleared
-_MOST_THROWN: Final = 50  # deleted files that can be restored
+SLACK: Final = 25  # surplus files before they are cleared
+MOST_THROWN: Final = 50  # deleted files that can be restored
 RECENT_OWN: Final = 10  # number of last flights by the person alone that measure their skill
 
 
@@ -63,7 +63,7 @@ class Records:
     def __init__(self, user_dir: Path) -> None:
         self.folder = user_dir / FOLDER
         self.logbook = user_dir / LOGBOOK
-        self._trash = Trash(self.folder, _MOST_THROWN)
+        self._trash = Trash(self.folder, MOST_THROWN)
         self.problem = ""
 
     def keep(self, flight: Flight, when: float, **more: Any) -> Entry:
@@ -168,7 +168,7 @@ class Records:
     def _make_room(self) -> None:
         """Delete the files of flights that are neither recent nor among the best."""
         files = self.kept()
-        if len(files) <= RECENT + _SLACK:
+        if len(files) <= RECENT + SLACK:
             return
         entries = self.entries()
         self.problem = ""

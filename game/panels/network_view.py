@@ -53,8 +53,8 @@ class NetworkView:
         self.redraws = 0  # number of times that the sheets were painted
         self._show: Show = "weights"
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
-        self._hovered: tuple[int, int] | None = None
-        self._centres: list[list[Point]] = []  # of all units that are shown, in points
+        self.hovered: tuple[int, int] | None = None  # column and place in it of the highlighted unit
+        self.centres: list[list[Point]] = []  # of all units that are shown, in points
         self._canvas: Canvas | None = None  # for which the sheets were painted
         self._sheets: Sheets | None = None
         self._spare: Sheets | None = None
@@ -86,9 +86,9 @@ class NetworkView:
         """Show a network's current state, and its activations for an observation (inputs,) already normalised."""
         self._given = network, observation
         self.plan = NetworkPlan(network, observation, self._most_units, self.plan)
-        self._centres = self._lay_out()
-        if self._hovered and self._hovered not in self._places():
-            self._hovered = None
+        self.centres = self._lay_out()
+        if self.hovered and self.hovered not in self._places():
+            self.hovered = None
         self._pick_edges()
         self._stale = True
 
@@ -96,7 +96,7 @@ class NetworkView:
         """Move to another box; a larger one shows more of the network."""
         if pygame.FRect(box) != self.box:
             self.box = pygame.FRect(box)
-            self._sheets = self._spare = self._painting = self._hovered = self._canvas = None
+            self._sheets = self._spare = self._painting = self.hovered = self._canvas = None
             if self._given:
                 self.set(*self._given)
 
@@ -111,20 +111,20 @@ class NetworkView:
     def hover(self, point: Point | None) -> None:
         """Highlight the unit under a point of the canvas; None for none."""
         hovered = self.unit_at(point) if point else None
-        if hovered != self._hovered:
-            self._hovered = hovered
+        if hovered != self.hovered:
+            self.hovered = hovered
             self._due = True
 
     def unit_at(self, point: Point) -> tuple[int, int] | None:
         """Return the column and the place in it of the unit at a point of the canvas."""
-        if not self._centres or not self.box.inflate(8, 8).collidepoint(point):
+        if not self.centres or not self.box.inflate(8, 8).collidepoint(point):
             return None
-        away = {(i, j): math.dist(point, self._centres[i][j]) for i, j in self._places()}
+        away = {(i, j): math.dist(point, self.centres[i][j]) for i, j in self._places()}
         nearest = min(away, key=away.__getitem__)
         return nearest if away[nearest] <= max(10.0, 2.2 * self._radius) else None
 
     def _places(self) -> list[tuple[int, int]]:
-        return [(number, place) for number, column in enumerate(self._centres) for place in range(len(column))]
+        return [(number, place) for number, column in enumerate(self.centres) for place in range(len(column))]
 
     def name(self, number: int, place: int) -> str:
         """Return the name of a unit, given its column and its place in it."""
@@ -218,8 +218,8 @@ class NetworkView:
         canvas.surface.blit(signs.surface, corner)
         if self._show == "gradients" and not self._still:
             self._draw_pulses(canvas)
-        if self._hovered:
-            self._draw_tooltip(canvas, *self._hovered)
+        if self.hovered:
+            self._draw_tooltip(canvas, *self.hovered)
 
     def _blank(self, canvas: Canvas) -> Sheets:
         """Return empty sheets: the spare ones, or new ones."""
@@ -237,8 +237,8 @@ class NetworkView:
         """Paint the current network onto new sheets, in parts, and return them."""
         self.redraws += 1
         light, signs = self._blank(canvas)
-        plan, edges, hovered = self.plan, self.edges, self._hovered
-        centres = [[self._on_sheet(centre) for centre in column] for column in self._centres]
+        plan, edges, hovered = self.plan, self.edges, self.hovered
+        centres = [[self._on_sheet(centre) for centre in column] for column in self.centres]
         if not plan or not centres:
             middle = (_MARGIN + self.box.width / 2, _MARGIN + self.box.height / 2)
             signs.text(texts.NET_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
@@ -335,7 +335,7 @@ class NetworkView:
         radius = max(1.4, 0.4 * self._radius)
         for number, edge in enumerate(self.edges[-_MOST_PULSES:]):
             along = (self._phase * (1.0, 1.5, 1.0)[number % 3] + _GOLDEN * number) % 1.0
-            (x0, y0), (x1, y1) = self._centres[edge.column][edge.start], self._centres[edge.column + 1][edge.end]
+            (x0, y0), (x1, y1) = self.centres[edge.column][edge.start], self.centres[edge.column + 1][edge.end]
             place = (x1 + (x0 - x1) * along, y1 + (y0 - y1) * along)
             alpha = (0.35 + 0.65 * edge.size) * min(1.0, 6 * along, 6 * (1 - along))
             colour = ADDS if edge.positive else TAKES
@@ -350,7 +350,7 @@ class NetworkView:
         if column.bias is not None:
             rows.append(TooltipRow(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
         head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
-        draw_tooltip(canvas, self._centres[number][place], self.box, [head], rows)
+        draw_tooltip(canvas, self.centres[number][place], self.box, [head], rows)
 
 
 def _all_of(painting: Generator[None, None, Sheets]) -> Sheets:

@@ -80,7 +80,7 @@ class TrainingCharts:
         runs = [EarlierRun(texts.TRAIN_THIS, history, 0), *beside]
         series = [self._series(_CHARTS[number][0], each) for each in runs if len(each.run)]
         end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
-        ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in _ticks(history)] if number == 0 else ()
+        ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(history)] if number == 0 else ()
         self.charts.charts[number].set(series, (0.0, end), ticks)
         if number == 0:
             self._legend = series if len(series) > 1 else []
@@ -134,7 +134,7 @@ def _shown(run: History, name: str) -> Doubles:
     return 100.0 * run[name] if name == "success" else run[name]
 
 
-def _ticks(history: History) -> list[Tick]:
+def ticks_of(history: History) -> list[Tick]:
     """Return the marks on the axis: checkpoints and changed knobs."""
     ticks = [Tick(each.seconds, texts.TRAIN_CHECKPOINT.format(seconds=each.seconds)) for each in history.checkpoints]
     if history.setting_changes and len(history):

@@ -23,6 +23,11 @@ SMALL = [
 ]
 
 
+@pytest.fixture(autouse=True)
+def _measured_quickly(monkeypatch):
+    monkeypatch.setattr(LanderTask, "test_episodes", 4)
+
+
 def test_train_evaluate_resume(tmp_path, capsys):
     run = str(tmp_path / "run")
     assert main(["train", "--decisions", "400", "--output", run, *SMALL]) == 0

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import ai.cli.digits
 import ai.digits.training
 from ai.digits.checkpoints import resume_digit_run
 from ai.digits.classifier import DigitClassifier
@@ -92,14 +91,22 @@ def test_numbers_that_run_away_end_in_a_sentence_and_the_work_is_kept(tmp_path, 
         assert resume_digit_run(run).classifier.network.values.max() < 1e30, "a wreck is nothing to go on from"
 
 
+def write_diary(folder):
+    """Put something of a person's own where a training is about to be kept."""
+    folder.mkdir(exist_ok=True)
+    (folder / "diary").write_text("dear")
+
+
 @pytest.mark.usefixtures("few")
 def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, capsys, monkeypatch):
-    def advance(seconds, training, output, stop):
-        output.mkdir()
-        (output / "diary").write_text("dear")
+    advance = DigitTraining.advance
 
-    monkeypatch.setattr(ai.cli.digits, "_advance", advance)
-    small = ["--preset", "classic", "--set", "hidden=[8]", "--set", "held_out=100"]
+    def meddled(training):
+        write_diary(tmp_path / "run")
+        return advance(training)
+
+    monkeypatch.setattr(DigitTraining, "advance", meddled)
+    small = ["--preset", "classic", "--set", "hidden=[8]", "--set", "held_out=100", "--epochs", "1"]
     assert main(["train-digits", *small, "--output", str(tmp_path / "run")]) == 0
     assert (tmp_path / "run" / "diary").read_text() == "dear"
     assert DigitClassifier.load(tmp_path / "run 2")

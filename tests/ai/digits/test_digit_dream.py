@@ -47,7 +47,7 @@ def test_the_gradient_is_that_of_what_is_to_grow(classifier):
             return outputs[2] - np.log(np.exp(outputs).sum())
         return outputs[2] - np.delete(outputs, 2).mean()
 
-    gradient = dream._gradient(dream.image)
+    gradient = dream.gradient(dream.image)
     way = gradient / np.linalg.norm(gradient)
     step = 1e-2
     rise = (worth(dream.image + step * way) - worth(dream.image - step * way)) / (2 * step)

@@ -400,13 +400,14 @@ def test_places_that_cannot_be_written_are_told_in_a_sentence(output, tmp_path, 
 
 
 def test_what_is_put_into_a_run_meanwhile_is_kept_and_so_is_the_run(tmp_path, monkeypatch, capsys):
-    from ai.cli import lander as cli
+    advance = Training.advance
 
-    def advance(training, clock, output, stop):
-        output.mkdir()
-        (output / "diary").write_text("dear")
+    def meddled(training):
+        (tmp_path / "run").mkdir(exist_ok=True)
+        (tmp_path / "run" / "diary").write_text("dear")
+        return advance(training)
 
-    monkeypatch.setattr(cli, "_advance", advance)
+    monkeypatch.setattr(Training, "advance", meddled)
     assert main(["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]) == 0
     assert (tmp_path / "run" / "diary").read_text() == "dear"
     assert resume_run(tmp_path / "run 2")

@@ -78,21 +78,21 @@ class TestLearningOthersEnvironments:
 
     def test_cart_pole_is_learnt_kept_evaluated_and_gone_on_with(self, tmp_path, capsys):
         run = tmp_path / "run"
-        assert train_cart_pole(run, 10_000, "--set", "epsilon_decisions=5000", "--set", "learning_starts=500") == 0
+        assert train_cart_pole(run, 6_000, "--set", "epsilon_decisions=3000", "--set", "learning_starts=500") == 0
         assert "mean return" in capsys.readouterr().out
         described = json.loads((run / "training.json").read_text())
         assert (described["env"], described["preset"]) == ("CartPole-v1", "gym")
         assert described["evaluation"]["episodes"] == 100
         assert main(["evaluate", "--model", str(run), "--episodes", "10", "--seed", "3", "--json"]) == 0
         measured = json.loads(capsys.readouterr().out)
-        assert measured["mean_return"] > 150
+        assert measured["mean_return"] > 100
         assert measured["mean_length"] == measured["mean_return"]
         assert 0 <= measured["success"] <= 1
         resumed, best = resume_run(run), DeepQAgent.load(run)
         assert resumed.agent.normalizer.to_json() == DeepQAgent.load(run / "last").normalizer.to_json()
         assert np.array_equal(resumed.best_agent().q_values(np.ones(4)), best.q_values(np.ones(4)))
-        assert main(["train", "--resume", str(run), "--decisions", "10400"]) == 0
-        assert json.loads((run / "training.json").read_text())["decisions"] == 10_400
+        assert main(["train", "--resume", str(run), "--decisions", "6400"]) == 0
+        assert json.loads((run / "training.json").read_text())["decisions"] == 6_400
         assert main(["evaluate", "--model", str(run), "--spawn", "hard"]) == 1
         assert "--spawn is for the lander" in capsys.readouterr().err
 

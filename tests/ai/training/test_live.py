@@ -171,32 +171,24 @@ def test_a_knob_is_turned_at_once_and_without_a_decision(begin):
     assert of(SwarmState, next(run))[0].decisions == 30 * 32
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "words"),
-    [
-        ("no_such_knob", 1, "no setting"),
-        ("", 1, "no setting"),
-        ("reward_weights.charm", 1.0, "no setting"),
-        ("discount.time", 1.0, "no setting"),
-        ("hidden", (4,), "cannot change"),
-        ("num_envs", 4, "cannot change"),
-        ("learning_rate", 1e9, "between"),
-        ("learning_rate", float("nan"), "between"),
-        ("learning_rate", "fast", "between"),
-        ("batch_size", 2.5, "whole"),
-        ("double", 1, "yes or no"),
-        ("reward_weights.time", float("inf"), "finite"),
-        ("reward_weights.time", None, "finite"),
-        ("reward_weights", 3, "finite"),
-    ],
-)
-def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin, name, value, words):
+REFUSED = [
+    ("no_such_knob", 1, "no setting"), ("", 1, "no setting"), ("reward_weights.charm", 1.0, "no setting"),
+    ("discount.time", 1.0, "no setting"), ("hidden", (4,), "cannot change"), ("num_envs", 4, "cannot change"),
+    ("learning_rate", 1e9, "between"), ("learning_rate", float("nan"), "between"),
+    ("learning_rate", "fast", "between"), ("batch_size", 2.5, "whole"), ("double", 1, "yes or no"),
+    ("reward_weights.time", float("inf"), "finite"), ("reward_weights.time", None, "finite"),
+    ("reward_weights", 3, "finite"),
+]  # fmt: skip
+
+
+def test_what_cannot_be_changed_is_refused_and_nothing_else_happens(begin):
     run, quiet = begin(), begin()
     told_in(run, 10)
-    told_in(quiet, 10)
-    (answer,) = run.send(ChangeSetting(name, value))
-    assert isinstance(answer, Refused)
-    assert words in answer.problem
+    for name, value, words in REFUSED:
+        (answer,) = run.send(ChangeSetting(name, value))
+        assert isinstance(answer, Refused), (name, value)
+        assert words in answer.problem
+    assert not of(SettingChange, told_in(quiet, 10))
     told, expected = of(SwarmState, told_in(run, 30))[-1], of(SwarmState, told_in(quiet, 30))[-1]
     assert np.array_equal(told.position, expected.position)
 
@@ -228,13 +220,13 @@ def test_every_live_knob_makes_a_difference(begin, name):
         for each in (run, quiet):  # there are no landings yet to learn from: give it some
             training = each.gi_frame.f_locals["run"].training
             rng = np.random.default_rng(0)
-            cells = training.agent.replay.cells._replace()
+            cells = training.agent.replay.cells
             picked = [part[:64].copy() for part in cells]
             picked[0] = rng.normal(size=picked[0].shape).astype(np.float32)
             training.agent.successes.add(type(cells)(*picked))
     told_in(run, 10), told_in(quiet, 10)
     assert isinstance(run.send(ChangeSetting(name, value))[0], SettingChange)
-    told_in(run, 60), told_in(quiet, 60)
+    told_in(run, 25), told_in(quiet, 25)
     ours, theirs = (each.gi_frame.f_locals["run"].training for each in (run, quiet))
     assert getattr(ours.agent.config, name) == value
     same = np.array_equal(ours.observation, theirs.observation)
@@ -302,18 +294,17 @@ def test_a_run_that_is_closed_has_kept_itself(begin, tmp_path):
     assert not (tmp_path / "unused").exists()
 
 
-def test_it_keeps_itself_by_the_clock(begin, tmp_path, monkeypatch):
-    monkeypatch.setattr(autosave, "KEEP_SECONDS", 0.0)
-    run = begin(TINY, keep=tmp_path / "keep")
-    told_in(run, 2)
-    monkeypatch.setattr(autosave, "KEEP_SECONDS", 1e9)
-    run.gi_frame.f_locals["run"]._autosave.wait()
-    told_in(run, 2)  # one more was due
-    run.gi_frame.f_locals["run"]._autosave.wait()
-    kept = resume_run(tmp_path / "keep").agent.decisions
-    assert kept > 32
-    told_in(run, 20)
-    assert resume_run(tmp_path / "keep").agent.decisions == kept
+def test_it_keeps_itself_by_the_clock(tmp_path):
+    training = Training(TINY, clock=(clock := Clock()))
+    saving = autosave.Autosave(training, History(), tmp_path / "keep")
+    for seconds, kept in ((9.9, 0), (0.2, 2), (9.9, 2), (0.2, 4)):
+        clock.now += seconds
+        training.advance()
+        assert saving.go_on(clock.now) == []
+        saving.wait()
+        assert (tmp_path / "keep").exists() == bool(kept)
+        assert not kept or resume_run(tmp_path / "keep").agent.decisions == 32 * kept
+    saving.end()
 
 
 def full(*_):

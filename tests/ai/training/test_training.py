@@ -80,13 +80,12 @@ def test_a_change_of_what_cannot_change_while_a_run_goes_on_changes_nothing():
 
 
 def test_evaluation_shares_add_up_and_the_pilot_is_asked_for_living_slots_only():
-    result = evaluate(NoPilot(), 50, 0)
+    result = evaluate(NoPilot(), 8, 0)
     assert result.success == 0.0
     assert result.crash + result.out_of_bounds + result.time_out == 1.0
     assert result.switches == 0.0
     assert result.mean_time is None
-    again = evaluate(ScriptedPilot(), 20, 3, "near")
-    assert again == evaluate(ScriptedPilot(), 20, 3, "near")
+    assert evaluate(ScriptedPilot(), 6, 3, "near") == evaluate(ScriptedPilot(), 6, 3, "near")
 
 
 def test_the_best_checkpoint_is_kept():

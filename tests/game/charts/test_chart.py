@@ -15,7 +15,7 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.panels.reward_bar import PART_COLOURS, RewardBar, signed
-from game.panels.training_charts import _ticks
+from game.panels.training_charts import ticks_of
 from tests.ai.training.test_hints import HEALTHY
 
 BOX = (40, 450, 372, 128)
@@ -349,7 +349,7 @@ def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_the
     heights = [chart.place(0.0, np.log10(value))[1] for value in (1.0, 10.0, 100.0)]
     assert heights[0] - heights[1] == pytest.approx(heights[1] - heights[2])
     assert chart.read(2.0) == "100"
-    assert chart._runs[0].last() == 2.0
+    assert chart.runs[0].last() == 2.0, "the logarithm of the last value that has one"
 
 
 def test_a_log_axis_says_so(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -604,6 +604,6 @@ def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
     for name in ("learning_rate", "final_learning_rate", "discount", "n_step", "updates"):
         run.append(SettingChange(10_000, name, 0, 1))
     run.append(SettingChange(20_000, "gradient_steps", 1, 2))
-    marks = [tick for tick in _ticks(run) if tick.kind == "knob"]
+    marks = [tick for tick in ticks_of(run) if tick.kind == "knob"]
     assert [tick.x for tick in marks] == [10.0, 20.0]
     assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"

@@ -164,9 +164,9 @@ def test_what_is_no_plain_network_is_not_copied(
         case "deep":
             (strange / Path(*"abcdefghijkl")).mkdir(parents=True)
         case "many":
-            monkeypatch.setattr(copying, "_MOST_FILES", 4)
+            monkeypatch.setattr(copying, "MOST_FILES", 4)
         case "large":
-            monkeypatch.setattr(copying, "_MOST_BYTES", 10)
+            monkeypatch.setattr(copying, "MOST_BYTES", 10)
     with pytest.raises(LibraryError, match="strange is not copied"):
         library.import_folder(strange)
     assert library.runs() == []

@@ -103,7 +103,7 @@ def test_within_and_beyond_differ_in_shape():
     masks = []
     for within in (True, False):
         canvas.surface.fill((0, 0, 0))
-        hud._draw_mark(canvas, (100, 100), within)
+        hud.draw_mark(canvas, (100, 100), within)
         masks.append(pygame.surfarray.array3d(canvas.surface)[..., 0] > 100)
     assert all(mask.any() for mask in masks)
     for a, b in combinations(masks, 2):

@@ -180,7 +180,7 @@ def test_without_a_disk_the_flight_is_lost_and_the_game_goes_on(tmp_path: Path):
 
 def test_old_files_make_room_but_the_best_and_the_logbook_stay(kept: Records, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(records, "RECENT", 6)
-    monkeypatch.setattr(records, "_SLACK", 2)
+    monkeypatch.setattr(records, "SLACK", 2)
     flight = fly()
     good = [kept.keep(flight, NOON + second, alone=True).file for second in range(6)]
     fall = fly(by_hand=True)
@@ -195,7 +195,7 @@ def test_old_files_make_room_but_the_best_and_the_logbook_stay(kept: Records, mo
 
 def test_a_clock_that_is_set_back_costs_no_new_flight(kept: Records, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(records, "RECENT", 6)
-    monkeypatch.setattr(records, "_SLACK", 2)
+    monkeypatch.setattr(records, "SLACK", 2)
     fall = fly(by_hand=True)
     for second in range(8):
         kept.keep(fall, NOON + second)
@@ -230,7 +230,7 @@ def test_a_flight_can_be_thrown_away_and_brought_back_and_its_line_stays(kept: R
 
 
 def test_the_latest_that_were_thrown_away_can_be_brought_back(kept: Records, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(records, "_MOST_THROWN", 3)
+    monkeypatch.setattr(records, "MOST_THROWN", 3)
     kept = Records(kept.folder.parent)
     flight = fly()
     lines = [kept.keep(flight, NOON + second) for second in range(5)]
@@ -242,7 +242,7 @@ def test_the_latest_that_were_thrown_away_can_be_brought_back(kept: Records, mon
 
 def test_why_a_flight_is_gone_is_told_as_it_is(kept: Records, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(records, "RECENT", 3)
-    monkeypatch.setattr(records, "_SLACK", 0)
+    monkeypatch.setattr(records, "SLACK", 0)
     flight = fly(by_hand=True)
     lines = [kept.keep(flight, NOON + second) for second in range(5)]
     assert kept.why_gone(lines[0]) == texts.FLIGHT_TOO_OLD

@@ -46,10 +46,11 @@ def test_every_hint_has_room_in_its_frame(growth: float) -> None:
         typeface.grow(1.0)
 
 
-def test_while_something_else_waits_no_hint_asks(context: Context, collapsed: History) -> None:
+def test_while_something_else_waits_no_hint_asks(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
     form = Form(context)
     advice = Advice(form, pygame.Rect(868, 612, 384, 60), lambda *_: None, lambda _: None)
-    advice._lay(Hint("overfed", {"num_envs": 256}))
+    monkeypatch.setattr(advice.adviser, "advise", lambda *_: Hint("overfed", {"num_envs": 256}))
+    advice.follow(History(), MODERN)
     assert advice.shown
     advice.hush(True)
     assert not advice.shown

@@ -10,7 +10,7 @@ from ai.lander.environment import ACTION_NAMES, FEATURE_NAMES
 from ai.nn import CostFunctions, FullyConnectedLayer, NeuralNetwork
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.panels.network_plan import NetworkPlan, steady_choice, strongest_edges
+from game.panels.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges
 from game.panels.network_view import NetworkView
 from tests.game.shell.test_draw import state_of
 
@@ -132,7 +132,7 @@ def test_the_best_output_is_the_one_the_network_would_take() -> None:
 
 def test_a_unit_is_found_where_it_is_drawn_and_named() -> None:
     view = view_of(network_of())
-    for number, column in enumerate(view._centres):
+    for number, column in enumerate(view.centres):
         for place, centre in enumerate(column):
             assert view.unit_at(centre) == (number, place)
             assert view.box.collidepoint(centre)
@@ -144,24 +144,23 @@ def test_a_unit_is_found_where_it_is_drawn_and_named() -> None:
 
 def test_the_hovered_unit_s_edges_stand_out(canvas: Canvas) -> None:
     view = view_of(network_of())
-    play(view, canvas)
     edge = view.edges[-1]
-    plain = _light_along(view, edge.column, edge.start, edge.end)
-    view.hover(view._centres[edge.column][edge.start])
-    play(view, canvas)
-    touched = _light_along(view, edge.column, edge.start, edge.end)
+    plain = _light_along(view, canvas, edge)
+    view.hover(view.centres[edge.column][edge.start])
+    touched = _light_along(view, canvas, edge)
     other = next(e for e in view.edges[::-1] if e.column == edge.column and e.start != edge.start)
-    view.hover(view._centres[other.column][other.start])
+    view.hover(view.centres[other.column][other.start])
+    assert touched > plain > _light_along(view, canvas, edge)
+
+
+def _light_along(view: NetworkView, canvas: Canvas, edge: Edge) -> float:
+    """Return how bright the drawing is near the end of an edge, beyond the tooltip."""
     play(view, canvas)
-    assert touched > plain > _light_along(view, edge.column, edge.start, edge.end)
-
-
-def _light_along(view: NetworkView, column: int, start: int, end: int) -> float:
-    """Return how bright the sheet of light is a quarter along an edge, where not many cross."""
-    assert view._sheets is not None
-    (x0, y0), (x1, y1) = (view._on_sheet(view._centres[column + k][place]) for k, place in enumerate((start, end)))
-    x, y = x0 + 0.25 * (x1 - x0), y0 + 0.25 * (y1 - y0)
-    pixels = pygame.surfarray.array3d(view._sheets[0].surface)
+    canvas.surface.fill((0, 0, 0))
+    view.draw(canvas)
+    (x0, y0), (x1, y1) = view.centres[edge.column][edge.start], view.centres[edge.column + 1][edge.end]
+    x, y = x0 + 0.85 * (x1 - x0), y0 + 0.85 * (y1 - y0)
+    pixels = pygame.surfarray.array3d(canvas.surface)
     return float(pixels[round(x) - 1 : round(x) + 2, round(y) - 2 : round(y) + 3].max(axis=(0, 1)).sum())
 
 
@@ -200,21 +199,20 @@ def test_drawing_leaves_the_painting_to_steps(canvas: Canvas) -> None:
 
 def test_what_is_drawn_in_parts_ends_up_the_same_as_at_once(canvas: Canvas) -> None:
     network = network_of()
-    view = view_of(network, LARGE)
-    view.draw(canvas)
+    in_parts, at_once = view_of(network, LARGE), view_of(network, LARGE)
+    in_parts.draw(canvas)
     network.values *= -1
-    view.set(network, -OBSERVATION)
-    view.update()
-    play(view, canvas, 90)
-    other = NetworkView(LARGE, FEATURE_NAMES, ACTION_NAMES)
-    other.plan, other._given = view.plan, view._given
-    other._centres = other._lay_out()
-    other._pick_edges()
-    other.draw(canvas)
-    assert view._sheets is not None
-    assert other._sheets is not None
-    for mine, theirs in zip(view._sheets, other._sheets, strict=True):
-        assert pygame.image.tobytes(mine.surface, "RGBA") == pygame.image.tobytes(theirs.surface, "RGBA")
+    for view in (in_parts, at_once):
+        view.set(network, -OBSERVATION)
+    play(in_parts, canvas, 90)
+    assert (in_parts.redraws, in_parts.busy) == (2, False)
+    pictures = []
+    for view in (in_parts, at_once):
+        canvas.surface.fill((0, 0, 0))
+        view.draw(canvas)
+        pictures.append(pygame.image.tobytes(canvas.surface, "RGB"))
+    assert at_once.redraws == 1
+    assert pictures[0] == pictures[1]
 
 
 def test_pulses_travel_backwards_and_stand_still_with_reduced_motion(canvas: Canvas) -> None:
@@ -246,7 +244,7 @@ def test_any_network_is_drawn_in_any_box(
     view = view_of(network_of(**options), box)
     for view.show in ("weights", "activations", "gradients"):
         play(view, canvas, 2)
-    view.hover(view._centres[1][0])
+    view.hover(view.centres[1][0])
     play(view, canvas, 8)
 
 
@@ -266,7 +264,7 @@ def test_damaged_numbers_are_drawn_and_marked(canvas: Canvas, bad: float) -> Non
     network.gradients[::5] = bad
     view = view_of(network)
     for view.show in ("weights", "activations", "gradients"):
-        view.hover(view._centres[1][3])
+        view.hover(view.centres[1][3])
         play(view, canvas, 8)
     if not np.isfinite(bad):
         assert view.columns[1].damaged.any()
@@ -294,7 +292,7 @@ def test_nothing_is_drawn_of_no_network(canvas: Canvas) -> None:
 
 def test_a_network_of_another_size_takes_its_place_while_a_unit_is_looked_at(canvas: Canvas) -> None:
     view = view_of(network_of())
-    view.hover(view._centres[2][11])
+    view.hover(view.centres[2][11])
     play(view, canvas, 3)
     view.set(network_of(hidden=(3,)), OBSERVATION)
     play(view, canvas, 20)
@@ -318,7 +316,7 @@ def test_outputs_are_told_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -
     play(view, Canvas(pygame.Surface((1280, 720))))
     for value in (values / np.float32(0.01)).tolist():
         assert f"{value:.2f}".replace("-", "\u2212") in written
-    view.hover(view._centres[-1][0])
+    view.hover(view.centres[-1][0])
     written.clear()
     play(view, Canvas(pygame.Surface((1280, 720))))
     assert texts.NET_POINTS in written

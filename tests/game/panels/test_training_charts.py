@@ -49,10 +49,13 @@ def test_a_run_says_in_which_unit_it_counts(preset: str, tmp_path, monkeypatch: 
     assert History.read(tmp_path / "run").reward_scale == config.reward_scale
 
     class Tells:
+        def __init__(self, *_: object, **__: object) -> None: ...
+        def set_pace(self, _: object) -> None: ...
         def poll(self) -> tuple[object, ...]:
             return tuple(message for message in told if isinstance(message, RunStarted))
 
+    monkeypatch.setattr("game.training.lander_run.Worker", Tells)
     lander_run = LanderRun(Library(tmp_path))
-    lander_run._worker = Tells()  # type: ignore[assignment]
+    lander_run.begin(config, 0)
     lander_run.poll()
     assert lander_run.history.reward_scale == config.reward_scale

@@ -108,11 +108,11 @@ def test_a_chart_says_what_is_under_the_pointer(take: Take, context: Context):
     player = take(LogbookScene)
     chart, other = player.top._charts.charts
     bring(player, chart.plot.center)
-    assert chart._pointed
-    assert not other._pointed
-    assert np.isclose(chart._cursor, 2.0, atol=0.1)
+    assert chart.pointed
+    assert not other.pointed
+    assert np.isclose(chart.cursor, 2.0, atol=0.1)
     player.press("back")
-    assert not chart._pointed
+    assert not chart.pointed
     assert player.top_name == "LogbookScene"
 
 
@@ -120,8 +120,8 @@ def test_the_network_of_a_run_can_be_pointed_into(take: Take):
     player = take(TrainScene)
     view = player.top.inside._view
     view.set(build_network(NUM_FEATURES, NUM_ACTIONS, Config(hidden=(8,)), np.random.default_rng(0)))
-    bring(player, view._centres[1][3])
-    assert view._hovered == (1, 3)
+    bring(player, view.centres[1][3])
+    assert view.hovered == (1, 3)
     player.press("back")
-    assert view._hovered is None
+    assert view.hovered is None
     assert player.top_name == "TrainScene"
