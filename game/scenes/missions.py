@@ -11,76 +11,65 @@ import pygame
 from ai.lander.missions import FIRST, MISSIONS
 from ai.lander.rules import tenths
 from game.core import texts
-from game.core.scene import Pop, Transition, push
+from game.core.scene import Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.glyphs import icon
-from game.drawing.prose import wrapped
-from game.drawing.sky import NightSky
-from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MARGIN, MEDALS, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import HUMAN, INK, MARGIN, MEDALS, MUTE, SMALL, TEXT, TITLE, VIEW_SIZE
 from game.flight import flight_file
 from game.flight.flight_file import Entry, Record
 from game.flight.logbook import Records, rank
 from game.play.challenge import Challenge, DailyStart, FlownMission
 from game.play.tutorial import Tutorial
-from game.ui.actions import Table
 from game.ui.context import Context
-from game.ui.form_scene import FormScene
-from game.ui.listing import Listing
-from game.ui.widgets import Choice, TextButton
+from game.ui.list_scene import ListLayout, ListScene
+from game.ui.listing import Row
+from game.ui.widget import Widget
+from game.ui.widgets import Choice
 
-_LIST: Final = pygame.Rect(MARGIN, 164, 560, 416)
-_PITCH: Final = 32
-_COLUMNS: Final = (112.0, 0.0)
-_LAMP, _LAMPS = 13.0, 62.0  # from one lamp of a medal to the next, and from the last to the end of its column
 _LEFT: Final = 720
+_LAYOUT: Final = ListLayout(
+    box=pygame.Rect(MARGIN, 164, 560, 416),
+    columns=(112.0, 0.0),
+    headings=texts.MISSIONS_COLUMNS,
+    pitch=32,
+    verbs=(_LEFT, 524),
+    foot=608,
+)
+_LAMP, _LAMPS = 13.0, 62.0  # from one lamp of a medal to the next, and from the last to the end of its column
 _WIDTH: Final = VIEW_SIZE[0] - MARGIN - _LEFT
 _RIVAL: Final = (_LEFT, 412, _WIDTH, 32)
 _RIVAL_LABEL: Final = 112.0
 _NETWORK: Final = 468.0  # baseline of the network's result
-_VERB: Final = (_LEFT, 524.0, 200.0, 36.0)
-_FOOT: Final = 608
 _DAILY: Final = "daily"
 _FLIGHTS: Final = "flights"  # in the game's own data
+_NAMES: Final = (FIRST.name, *MISSIONS, _DAILY)
 
 
-class MissionsScene(FormScene):
+class MissionsScene(ListScene[str]):
     """Missions scene: missions on the left, in teaching order; the chosen one on the right."""
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context)
+        super().__init__(context, texts.MISSIONS_TITLE, _LAYOUT)
         self._rival = ""  # the player's choice of ghost; empty for the default of each mission
-        self._sky = NightSky(context.rng, ember=0.5, stars=70)
-        manager = self.form.manager
-        self._names = [FIRST.name, *MISSIONS, _DAILY]
-        self._list = self.form.add(Listing(manager, _LIST, [], on_press=lambda _: self._fly(), columns=_COLUMNS,
-                                            on_choose=lambda _: self._offer_rivals(), pitch=_PITCH))  # fmt: skip
-        self._rivals: list[Choice] = []
-        self._verb = self.form.add(TextButton(manager, _VERB, texts.MISSION_FLY, self._fly, size=18))
-        self.form.add(TextButton(manager, (MARGIN, _FOOT, 72, 36), texts.BACK, Pop, size=18))
-        self._reload(1)
+        self._fly_button = self._buttons([(texts.MISSION_FLY, self._fly)])
+        self._reload()
 
-    def enter(self) -> None:
-        """Reload the results, which a flight may have changed."""
-        self._reload(self._list.index)
-
-    def _reload(self, index: int) -> None:
-        """Reload the results from disk, and choose a mission."""
+    def _reload(self) -> None:
+        """Reload the results from disk."""
         self._records = Records(self.context.user_dir)
         self._best = _best_by_course(self._records.entries())
         if self._records.problem:
             self.context.note(self._records.problem)
         self._kept = self._records.kept()
-        self._list.set_rows([self._row(name) for name in self._names], index)
-        self._offer_rivals()
-
-    def actions(self) -> Table:
-        """Move, choose, go back."""
-        return [self.form.moves, *super().actions()]
+        gold = sum(entry.medal == 3 for name, entry in self._best.items() if name in MISSIONS)
+        self._line = texts.MISSIONS_LINE.format(gold=gold, count=len(MISSIONS))
+        self._show(_NAMES, self.items and self.chosen, otherwise=1)
 
     @property
     def chosen(self) -> str:
         """Name of the chosen mission."""
-        return self._names[self._list.index]
+        return _NAMES[self._list.index]
 
     def _challenge(self) -> Challenge:
         if self.chosen == FIRST.name:
@@ -92,6 +81,9 @@ class MissionsScene(FormScene):
             FlownMission(mission, record, texts.MISSION_GHOSTS[self._chosen_rival]) if record else FlownMission(mission)
         )
 
+    def _press_row(self) -> Transition:
+        return self._fly()
+
     def _fly(self) -> Transition:
         challenge = self._challenge()
         return push("play", challenge.seed if isinstance(challenge, DailyStart) else 0, challenge=challenge)
@@ -99,7 +91,7 @@ class MissionsScene(FormScene):
     # Ghosts
 
     @property
-    def _offered(self) -> list[str]:
+    def _ghosts(self) -> list[str]:
         """Names of the ghosts available in the chosen mission."""
         if self.chosen not in MISSIONS:
             return []
@@ -109,20 +101,19 @@ class MissionsScene(FormScene):
     @property
     def _chosen_rival(self) -> str:
         """The player's choice of ghost if available; else the network where it lands, or a recorded landing."""
-        if self._rival in self._offered:
+        if self._rival in self._ghosts:
             return self._rival
         return "network" if MISSIONS[self.chosen].network_lands else "recorded"
 
-    def _offer_rivals(self) -> None:
-        """Offer the choice of ghosts for the chosen mission."""
-        old, offered = self._rivals, self._offered
-        self._rivals = []
-        if offered:
-            words = [texts.MISSION_RIVALS[name] for name in offered]
-            index = offered.index(self._chosen_rival)
-            self._rivals = [Choice(self.form.manager, _RIVAL, texts.MISSION_RIVAL_LABEL, words, index,
-                                   self._choose_rival(offered), label_width=_RIVAL_LABEL)]  # fmt: skip
-        self.form.replace(old or [self._verb], [*self._rivals, *([] if old else [self._verb])])
+    def _make_verbs(self) -> list[Widget]:
+        """Return the choice of ghosts for the chosen mission, and the button that begins it."""
+        offered = self._ghosts
+        if not offered:
+            return self._fly_button
+        words = [texts.MISSION_RIVALS[name] for name in offered]
+        rivals = Choice(self.form.manager, _RIVAL, texts.MISSION_RIVAL_LABEL, words, offered.index(self._chosen_rival),
+                        self._choose_rival(offered), label_width=_RIVAL_LABEL)  # fmt: skip
+        return [rivals, *self._fly_button]
 
     def _choose_rival(self, offered: list[str]) -> Callable[[int], None]:
         def choose(index: int) -> None:
@@ -141,7 +132,7 @@ class MissionsScene(FormScene):
             self.context.note(str(error))
         return None
 
-    def _row(self, name: str) -> tuple[str, str, str]:
+    def _row(self, name: str) -> Row:
         best = self._best.get(name)
         title = f"{icon(name)}   {(_TOLD.get(name) or texts.MISSIONS[name])[0]}"
         if name == FIRST.name:
@@ -154,36 +145,22 @@ class MissionsScene(FormScene):
 
     # The picture
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the list, and the chosen mission beside it."""
-        self._sky.draw(canvas)
-        canvas.text(texts.MISSIONS_TITLE, (MARGIN, 84), size=34, weight="light")
-        gold = sum(entry.medal == 3 for name, entry in self._best.items() if name in MISSIONS)
-        line = texts.MISSIONS_LINE.format(gold=gold, count=len(MISSIONS))
-        canvas.text(line, (MARGIN, 110), size=SMALL, colour=MUTE)
-        for label, column in zip(texts.MISSIONS_COLUMNS, (_LIST.width, *_COLUMNS), strict=True):
-            align = "left" if column == _LIST.width else "right"
-            place = (self._list.right - column, _LIST.top - 14)
-            canvas.text(label, place, size=LABEL, weight="medium", colour=MUTE, align=align)  # type: ignore[arg-type]
-        canvas.line((_LIST.left, _LIST.top), (self._list.right, _LIST.top), LINE)
-        self.form.draw(canvas)
-        for row, name in enumerate(self._names):
+    def _draw_chosen(self, canvas: Canvas) -> None:
+        """Draw the lamps of the medals in the list, and the chosen mission beside it."""
+        for row, name in enumerate(_NAMES):
             if name in MISSIONS and name in self._best:
-                end, medal = self._list.right - _COLUMNS[0] - _LAMPS, self._best[name].medal
+                end, medal = self._list.right - _LAYOUT.columns[0] - _LAMPS, self._best[name].medal
                 _draw_lamps(canvas, (end - _LAMP * medal, self._list.baseline(row) - 4), medal)
         self._draw_mission(canvas, self.chosen)
-        self.draw_hints(canvas)
 
     def _draw_mission(self, canvas: Canvas, name: str) -> None:
         title, asked = _TOLD.get(name) or texts.MISSIONS[name]
         canvas.text(title, (_LEFT, 190), size=TITLE + 6, weight="light")
-        for row, line in enumerate(wrapped(canvas, asked, TEXT, _WIDTH)):
-            canvas.text(line, (_LEFT, 224 + 22 * row), size=TEXT, colour=INK)
+        draw_wrapped(canvas, asked, (_LEFT, 224), _WIDTH, size=TEXT, leading=22)
         best = self._best.get(name)
         if name in MISSIONS:
             self._draw_medals(canvas, name)
-            for row, line in enumerate(wrapped(canvas, _network_words(name), SMALL, _WIDTH)):
-                canvas.text(line, (_LEFT, _NETWORK + 19 * row), size=SMALL, colour=MUTE)
+            draw_wrapped(canvas, _network_words(name), (_LEFT, _NETWORK), _WIDTH, colour=MUTE, leading=19)
         if best:
             fuel, seconds = tenths(best.fuel), tenths(best.seconds)
             words = texts.MISSION_BEST.format(fuel=fuel, seconds=seconds, count=best.score)

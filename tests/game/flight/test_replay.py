@@ -247,20 +247,20 @@ def test_an_empty_logbook_can_be_looked_at_and_left(open_game: Open):
 
 
 def test_flights_are_listed_newest_first_and_filtered(book: Driver):
-    assert [entry.outcome for entry in page(book)._shown] == ["CRASHED", "LANDED"]
+    assert [entry.outcome for entry in page(book).items] == ["CRASHED", "LANDED"]
     page(book).form.focus(page(book)._filter)
     book.key(pygame.K_RIGHT)
-    assert [entry.outcome for entry in page(book)._shown] == ["LANDED"]
+    assert [entry.outcome for entry in page(book).items] == ["LANDED"]
     book.key(pygame.K_RIGHT)
-    assert [entry.alone for entry in page(book)._shown] == [True]
+    assert [entry.alone for entry in page(book).items] == [True]
     assert page(book)._totals.flights == 2
 
 
 def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(book: Driver, monkeypatch):
     entry = page(book).chosen
     book.key(pygame.K_DELETE)
-    assert len(page(book)._shown) == 2
-    assert [word.label for word in page(book)._verbs] == [texts.LOGBOOK_BRING_BACK, texts.BACK]
+    assert len(page(book).items) == 2
+    assert [word.label for word in page(book)._verbs] == [texts.LOGBOOK_BRING_BACK]
     assert said(book) == texts.LOGBOOK_THROWN
     book.key(pygame.K_RETURN)  # there is nothing to watch any more
     assert book.top_name == "LogbookScene"

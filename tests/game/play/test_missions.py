@@ -230,7 +230,7 @@ def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(o
     land(driver)
     driver.key(pygame.K_RETURN)
     assert driver.top._offered == ["network", "recorded", "own"]
-    driver.top._rivals[0].choose(2)
+    driver.top._verbs[0].choose(2)
     driver.top._list.press()
     assert isinstance(driver.top._challenge()._rival, Record)
     file = Records(context.user_dir).folder / driver.top._best["fall"].file

@@ -71,7 +71,7 @@ def scene(driver: Driver) -> NetworksScene:
 
 
 def shown(driver: Driver) -> str:
-    run = scene(driver).shown
+    run = scene(driver).chosen
     assert run is not None
     return run.name
 
@@ -101,7 +101,7 @@ def type_text(driver: Driver, text: str) -> None:
 
 def test_the_latest_runs_come_first_and_the_games_own_last(open_runs, three: Library):
     driver = open_runs()
-    assert [run.name for run in scene(driver).runs] == ["a", "b", "c", "modern"]
+    assert [run.name for run in scene(driver).items] == ["a", "b", "c", "modern"]
     assert scene(driver)._list.rows[0][:3] == ("a", "75.0 %", "5 k")
     assert "Go on training" in verbs(driver)
     driver.keys(DOWN, DOWN, DOWN)
@@ -248,7 +248,7 @@ def test_what_cannot_be_done_is_said_and_the_screen_stays(open_runs, three: Libr
 def test_a_damaged_run_is_shown_with_its_problem(open_runs, three: Library):
     (three.folder / "a" / "config.json").unlink()
     driver = open_runs()
-    assert scene(driver).shown.problem == "config.json is missing"
+    assert scene(driver).chosen.problem == "config.json is missing"
     assert verbs(driver) == [texts.RUN_RENAME, texts.RUN_EXPORT, texts.RUN_DELETE]
     driver.frames(3)
 
@@ -341,7 +341,7 @@ def test_many_runs_scroll(open_runs, library: Library):
     driver.key(pygame.K_PAGEUP)
     driver.post(pygame.MOUSEWHEEL, x=0, y=3, flipped=False)
     driver.frames(3)
-    assert len(scene(driver).runs) == 31
+    assert len(scene(driver).items) == 31
 
 
 def test_draw_changes_nothing(open_runs, three: Library):
