@@ -39,7 +39,7 @@ class Reader:
         self.read: list[tuple[str, dict[str, str]]] = []
         self.still = 0  # frames in which nothing has moved, in a row
         self.touch()
-        driver.unseen = device != "mouse"  # which finds its links where they were drawn
+        driver.unseen = True
 
     @property
     def challenge(self) -> Tutorial:
@@ -144,7 +144,8 @@ class Reader:
             driver.button(pygame.CONTROLLER_BUTTON_Y)
         else:
             driver.frames(1)
-            driver.click(driver.hints()[texts.HINT_HAND_OVER])
+            hints = driver.hints()
+            driver.click(hints.get(texts.HINT_HAND_OVER) or hints[texts.HINT_TAKE_BACK])
 
 
 Open = Callable[..., Driver]

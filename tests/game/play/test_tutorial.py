@@ -102,7 +102,7 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     assert play(driver)._challenge is None
     assert play(driver).waiting
     driver.app.close()
-    assert saved(context) == (True, True)
+    assert saved(driver, context) == (True, True)
     missions = open_game(MissionsScene).top
     assert missions._row(FIRST.name)[1] == texts.TUTORIAL_FLOWN
 
@@ -209,10 +209,11 @@ def test_each_lesson_can_be_skipped(open_game: Open, context: Context):
         assert tutorial(driver).lesson.name == name
         driver.key(pygame.K_n)
     assert play(driver)._challenge is None
-    assert saved(context) == (True, False)  # left out, and not flown
+    assert saved(driver, context) == (True, False)  # left out, and not flown
 
 
-def saved(context: Context) -> tuple[bool, bool]:
+def saved(driver: Driver, context: Context) -> tuple[bool, bool]:
+    driver.app.settings_writer.wait()
     values = json.loads((context.user_dir / FILE_NAME).read_text())
     return values["tutored"], values["first_flown"]
 
@@ -223,7 +224,7 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     assert driver.top_name == "MenuScene"
     driver.key(pygame.K_RETURN)
     assert tutorial(driver).lesson.name == "fire"
-    assert saved(context) == (False, False)
+    assert saved(driver, context) == (False, False)
     driver.key(pygame.K_UP)
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "PauseScene"
@@ -231,7 +232,7 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     driver.form.focus(word)
     driver.key(pygame.K_RETURN)
     assert play(driver)._challenge is None
-    assert saved(context) == (True, False)
+    assert saved(driver, context) == (True, False)
 
 
 def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):

@@ -4,6 +4,7 @@ from typing import Any
 import pytest
 
 from ai.agent.config import PRESETS, Config
+from ai.digits.config import DigitConfig
 from ai.lander.rewards import RewardWeights
 from ai.training.sabotage import SABOTAGES, sabotaged
 from game.core import texts
@@ -25,15 +26,15 @@ def run_settings(heard: list[Any]) -> RunSettings:
     )
 
 
-# Dials
+# Knobs
 
 
-def test_every_field_that_can_be_turned_has_a_dial_and_a_word():
+def test_every_field_that_can_be_turned_has_a_knob_and_a_word():
     turned = {item.name for item in fields(Config)} - {"env"}
     assert {knob.field for knob in KNOBS.values()} == turned
     assert {knob.part for knob in KNOBS.values()} - {""} == {part.name for part in fields(RewardWeights)}
     assert turned <= set(texts.KNOBS)
-    assert set(pages(KNOBS.values())) == set(texts.KNOB_PAGES)
+    assert {*pages(KNOBS.values()), *pages(knob_descriptions(DigitConfig))} == set(texts.KNOB_PAGES)
     assert all(knob.help for knob in KNOBS.values())
 
 
