@@ -73,13 +73,10 @@ class Advice:
         """Draw the box and the sentence; the form draws the words."""
         if not self.shown:
             return
-        box = self._box
-        canvas.outline(box, 8, HUMAN, 1, 0.35)
         title, said = (
             (texts.HINT_TITLE, texts.HINTS[self._hint.name]) if self._hint else (texts.HINT_APPLIED, self.done)
         )
-        canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
-        draw_wrapped(canvas, said, (box.left + 14, box.top + 34), box.width - 28, most=_LINES)
+        draw_hint(canvas, self._box, title, said)
 
     def _lay(self, hint: Hint | None) -> None:
         """Add the buttons that fit the hint that is shown."""
@@ -133,3 +130,10 @@ class Advice:
         """Keep the remedy, and close the hint."""
         self.adviser.undo()
         self._lay(None)
+
+
+def draw_hint(canvas: Canvas, box: pygame.Rect, title: str, said: str) -> None:
+    """Draw the box of a hint, with its title and what it says, at most two lines."""
+    canvas.outline(box, 8, HUMAN, 1, 0.35)
+    canvas.text(title, (box.left + 14, box.top + 17), size=LABEL, colour=HUMAN)
+    draw_wrapped(canvas, said, (box.left + 14, box.top + 34), box.width - 28, most=_LINES)

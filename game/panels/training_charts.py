@@ -7,6 +7,7 @@ from functools import partial
 from typing import Final
 
 import numpy as np
+import pygame
 
 from ai.common.decision import in_points
 from ai.common.environment import Doubles
@@ -14,16 +15,22 @@ from ai.training.history import Checkpoint, History, SettingChange
 from ai.training.session import REVERTED, TAUGHT
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
+from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.drawing.canvas import Canvas
+from game.drawing.tokens import SMALL
 from game.training.knob_descriptions import told
 from game.training.training_run import EarlierRun
+from game.ui.virtual_pointer import VirtualPointer
+from game.ui.widget import OnPress, PointsManager, Widget
+from game.ui.widgets import Choice
 
 _TURNS: Final = 12  # frames in a round: in every second one, one chart reads the history, which spreads the load
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
 _LEGEND: Final = (40.0, 450.0)
+_AXES: Final = pygame.Rect(560, 436, 260, 20)  # by what the charts are measured, while runs are compared
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
     ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),
@@ -51,11 +58,11 @@ class TrainingCharts:
             for name, box, limits, form in _CHARTS
         ])  # fmt: skip
         self._turn = self.axis = 0
-        self._history = History()
         self.clear()
 
     def clear(self) -> None:
         """Reset for another run, or for other runs beside it."""
+        self._history = History()
         self.chosen: Checkpoint | None = None
         self.charts.mark(None)
         self._told = [-1] * len(_CHARTS)  # points of the history shown in each chart
@@ -119,6 +126,23 @@ class TrainingCharts:
         else:
             self.chosen = min(checkpoints, key=lambda each: abs(self._place(each.seconds) - place))
         self._mark()
+
+    def widgets(self, manager: PointsManager, duel: OnPress, *, compared: bool) -> list[Widget]:
+        """Return a pointer for the charts, the scrubber of checkpoints and, beside earlier runs, the choice of axis.
+
+        `duel` is called when the chosen checkpoint is pressed.
+        """
+
+        def scrub(place: float | int) -> None:
+            self.choose(place, self._history.checkpoints)
+
+        found: list[Widget] = [
+            VirtualPointer(manager, self.charts.box, self.charts.follow), Scrubber(manager, self.charts, scrub, duel)
+        ]  # fmt: skip
+        if compared:
+            axes = Choice(manager, _AXES, "", texts.TRAIN_AXES, self.axis, self.measure_by, size=SMALL, gap=14)
+            found.append(axes)
+        return found
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts and their legend."""

@@ -91,7 +91,7 @@ class MissionsScene(ListScene[str]):
     # Ghosts
 
     @property
-    def _ghosts(self) -> list[str]:
+    def _offered(self) -> list[str]:
         """Names of the ghosts available in the chosen mission."""
         if self.chosen not in MISSIONS:
             return []
@@ -101,13 +101,13 @@ class MissionsScene(ListScene[str]):
     @property
     def _chosen_rival(self) -> str:
         """The player's choice of ghost if available; else the network where it lands, or a recorded landing."""
-        if self._rival in self._ghosts:
+        if self._rival in self._offered:
             return self._rival
         return "network" if MISSIONS[self.chosen].network_lands else "recorded"
 
     def _make_verbs(self) -> list[Widget]:
         """Return the choice of ghosts for the chosen mission, and the button that begins it."""
-        offered = self._ghosts
+        offered = self._offered
         if not offered:
             return self._fly_button
         words = [texts.MISSION_RIVALS[name] for name in offered]

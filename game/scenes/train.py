@@ -10,79 +10,63 @@ import pygame
 
 from ai.agent.config import PRESETS, Config
 from ai.training.checkpoints import agent_of
-from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.collection import LibraryError
 from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import LINE, NIGHT0, PANEL, SMALL, VIEW_SIZE
+from game.drawing.tokens import LINE, NIGHT0, VIEW_SIZE
 from game.flight.demonstrations import FILE_NAME, lessons
 from game.input.controls import Command
 from game.panels.advice import Advice
 from game.panels.knobs import KnobsPanel
 from game.panels.network_panel import NetworkPanel
-from game.panels.run_status import draw_problem, draw_run_status, start_word
+from game.panels.run_status import draw_run_status
 from game.panels.training_charts import TrainingCharts
 from game.panels.training_status import lander_status
+from game.scenes.dialog import ListDialog, QuestionDialog
+from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, TrainingScene
 from game.training.lander_run import PACES, LanderRun
 from game.training.library import Library, SavedRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
-from game.ui.form_scene import FormScene
 from game.ui.hints import HintRow
-from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, TextButton
 from game.world.swarm import LearningSwarm
 
-_WIDTH: Final = 836.0  # of the swarm and the charts; the panel has the rest
-_LEFT: Final = 40.0
 _FLOOR: Final = 434.0  # where the charts begin
 _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
-_AXES: Final = pygame.Rect(560, 436, 260, 20)  # by what the charts are measured, while runs are compared
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
 _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene(FormScene):
+class TrainScene(TrainingScene[LanderRun]):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
     def __init__(self, context: Context, resume: Path | None = None) -> None:
-        super().__init__(context, self._back)
-        self._was_running = self._alive = self._compared = False
-        self._settings = context.settings
+        self._resume = resume
+        self._compared = False
         self.lander_run = LanderRun(Library(context.user_dir))
-        self._left: SavedRun | None = self.lander_run.library.claim()  # the run left unnamed by the last visit
-        self.swarm = LearningSwarm(_WIDTH / VIEW_SIZE[0])
+        super().__init__(context, self.lander_run, self.lander_run.library, ((_SAID.left, _SAID.top + 17.0), 3))
+
+    def _build(self) -> None:
+        left = self.lander_run.library.claim()  # the run left unnamed by the last visit
+        self.swarm = LearningSwarm(DISPLAY_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer)
-        self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self._change, self._begin)
+        self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin)
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
-        if resume is not None:
-            self._go_on(resume)
-            self._left = None
-
-    def enter(self) -> None:
-        """Resume the run, after a duel with a checkpoint for instance."""
-        if self._was_running:
-            self.lander_run.resume()
-
-    def exit(self) -> None:
-        """Pause the run while another scene has the window."""
-        self._was_running = self.lander_run.state in (WorkerState.RUNNING, WorkerState.STARTING)
-        self.lander_run.pause()
-
-    def close(self) -> None:
-        """End the run's process."""
-        self.lander_run.close()
-        self.lander_run.library.release()
+        if self._resume:
+            self._go_on(self._resume)
+        elif left:
+            self._question = self._ask_what_becomes_of(left)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, step, knobs and the large network."""
@@ -95,13 +79,11 @@ class TrainScene(FormScene):
         return super().handle_event(event)
 
     def actions(self) -> Table:
-        """Go back; step, change the pace, start or pause, as the buttons say."""
+        """Go back; step, start or pause, and change the pace, as the buttons say."""
         return [
-            self.form.goes_back(texts.HINT_BACK),
-            Action(Command.STEP, self.lander_run.step),
+            *super().actions(),
             Action(Command.SLOWER, lambda: self._turn_pace(-1)),
             Action(Command.FASTER, lambda: self._turn_pace(1)),
-            Action(Command.HANDOVER, self._toggle),
         ]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
@@ -113,21 +95,12 @@ class TrainScene(FormScene):
 
     def update(self) -> Transition | None:
         """Receive the worker's messages, and animate the screen."""
-        if self._left:
-            return self._ask_what_becomes_of(self._left)
         lander_run = self.lander_run
         looked = self._listen()
-        if lander_run.begun:
-            lander_run.begun = False
-            self.knobs.set_config(lander_run.config, lander_run.seed)
-            lander_run.call(self.knobs.name)  # of one that goes on, that is known only now
+        self._follow_run()
         self._advice.hush(bool(self.knobs.waiting))
         if lander_run.alive:
             self.knobs.show_in_force(lander_run.in_force)
-        if lander_run.alive != self._alive:
-            self._alive = lander_run.alive
-            self._advice.clear()
-            self.knobs.set_running(self._alive)
         still = self._settings.reduced_motion
         self.training_charts.look(lander_run.history, lander_run.earlier)
         if bool(lander_run.earlier) != self._compared:
@@ -137,8 +110,7 @@ class TrainScene(FormScene):
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
-        self._start_word.label = start_word(lander_run.state)
-        return self.form.update()
+        return self._ask_or(self.form.update())
 
     def _listen(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
@@ -158,46 +130,27 @@ class TrainScene(FormScene):
             self._advice.follow(lander_run.history, lander_run.config, health.dead_share, health.clipped_share)
         return True
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the swarm and the charts, or the network large, and the panel."""
-        if self.inside.large:
-            canvas.fill(canvas.rect(0, 0, _WIDTH, VIEW_SIZE[1]), NIGHT0)
-        else:
-            self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
-            canvas.fill(canvas.rect(0, _FLOOR, _WIDTH, VIEW_SIZE[1] - _FLOOR), NIGHT0)
-            canvas.line((0, _FLOOR), (_WIDTH, _FLOOR), LINE)
-            self._draw_title(canvas)
-            self.training_charts.draw(canvas)
-        canvas.fill(canvas.rect(_WIDTH, 0, VIEW_SIZE[0] - _WIDTH, VIEW_SIZE[1]), PANEL)
-        self.inside.draw(canvas)
-        self.knobs.draw(canvas)
-        self._draw_said(canvas)
-        self.form.draw(canvas)
-
     # The run
 
-    def _toggle(self) -> None:
-        state = self.lander_run.state
-        if state is WorkerState.PAUSED:
-            self.lander_run.resume()
-        elif self.lander_run.alive:
-            self.lander_run.pause()
-        else:
-            self._begin(self.knobs.config, self.knobs.seed)
+    @property
+    def _learnt(self) -> bool:
+        return len(self.lander_run.history) > 0
 
-    def _begin(self, config: Config, seed: int, resume: Path | None = None) -> None:
-        if note := self.lander_run.begin(config, seed, resume, self.knobs.name):
-            self.context.note(note)
+    def _begin(self, config: Config, seed: int) -> None:
+        self._start(config, seed)
+
+    def _go_on(self, folder: Path) -> None:
+        """Resume a saved run, with its own settings."""
+        self._start(Config(), 0, folder)
+
+    def _clear(self) -> None:
         self.swarm.clear()
         self._advice.clear()
         self.training_charts.clear()
         self.inside.clear()
-        if resume is None:
-            self.knobs.set_config(config, seed)
 
-    def _go_on(self, folder: Path) -> None:
-        """Resume a saved run, with its own settings."""
-        self._begin(Config(), 0, folder)  # its first message brings its real configuration
+    def _clear_advice(self) -> None:
+        self._advice.clear()
 
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
@@ -209,21 +162,14 @@ class TrainScene(FormScene):
             self._begin(self.knobs.config, self.knobs.seed)
         self.lander_run.teach(folder / FILE_NAME)
 
-    def _change(self, name: str, value: object) -> None:
-        self.lander_run.change(name, value)
-
     def _save(self) -> Transition | None:
-        from game.scenes.dialog import NameDialog
-
         if not self.lander_run.kept:
             self.context.note(texts.TRAIN_NOTHING)
             return None
         name = texts.TRAIN_TAUGHT_NAME if self.lander_run.lessons else texts.TRAIN_NAME
-        suggestion = self.lander_run.library.free_name(name.format(preset=self.knobs.name))
-        return Push(NameDialog(self, texts.NAMING, suggestion, self._save_as))
+        return self._ask_name(name.format(preset=self.knobs.name))
 
     def _save_as(self, name: str) -> str:
-        """Save the run under a name; return why the name is invalid, empty if it is not."""
         try:
             if note := self.lander_run.save(name):
                 self.context.note(note)
@@ -240,9 +186,6 @@ class TrainScene(FormScene):
 
     def _ask_what_becomes_of(self, left: SavedRun) -> Transition:
         """Offer the run that was left without a name by the last visit, or by a game that ended too early."""
-        from game.scenes.dialog import QuestionDialog
-
-        self._left = None
         more = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
         more = left.problem or more.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
         answers = [(texts.TRAIN_LEFT_DISCARD, partial(self._discard, left.name))]
@@ -260,8 +203,6 @@ class TrainScene(FormScene):
 
     def _compare(self) -> Transition:
         """Ask for a saved run whose curves shall be seen beside these."""
-        from game.scenes.dialog import ListDialog
-
         runs = self.lander_run.library.runs()
 
         def put(number: int) -> None:
@@ -278,9 +219,6 @@ class TrainScene(FormScene):
         checkpoint = self.lander_run.history.checkpoint_at(decisions)
         if checkpoint is not None:
             self.lander_run.revert(checkpoint)
-
-    def _scrub_to(self, place: float | int) -> None:
-        self.training_charts.choose(place, self.lander_run.history.checkpoints)
 
     def _duel(self) -> Transition | None:
         """Fly against the chosen checkpoint, or the latest."""
@@ -301,7 +239,7 @@ class TrainScene(FormScene):
 
     def _add_controls(self) -> None:
         left, top = _CONTROLS.topleft
-        self._start_word = self.form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
+        self.start_word = self.form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
         self._step_word = self.form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
         self._pace_choice = self.form.add(Choice(
             self.form.manager, (left + 144, top, 148, 28), "", texts.TRAIN_PACES, len(PACES) - 1,
@@ -321,12 +259,7 @@ class TrainScene(FormScene):
             beside = [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
-            charts = self.training_charts.charts
-            beside += [VirtualPointer(self.form.manager, charts.box, charts.follow),
-                       Scrubber(self.form.manager, charts, self._scrub_to, self._duel)]  # fmt: skip
-            if self._compared:
-                beside.append(Choice(self.form.manager, _AXES, "", texts.TRAIN_AXES, self.training_charts.axis,
-                                     self.training_charts.measure_by, size=SMALL, gap=14))  # fmt: skip
+            beside += self.training_charts.widgets(self.form.manager, self._duel, compared=self._compared)
         self.form.replace(self._beside, beside)
         self._beside = beside
 
@@ -336,23 +269,32 @@ class TrainScene(FormScene):
 
     def _back(self) -> Transition | None:
         if not self.inside.large:
-            if self.lander_run.alive and len(self.lander_run.history):
-                self.context.note(texts.TRAIN_KEPT)
-            return Pop()
+            return super()._back()
         self._look_closer()
         return None
+
+    def _draw_display(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the swarm and the charts, or the ground of the large network."""
+        if self.inside.large:
+            canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0)
+            return
+        self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
+        canvas.fill(canvas.rect(0, _FLOOR, DISPLAY_WIDTH, VIEW_SIZE[1] - _FLOOR), NIGHT0)
+        canvas.line((0, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
+        self._draw_title(canvas)
+        self.training_charts.draw(canvas)
+
+    def _draw_panel(self, canvas: Canvas) -> None:
+        self.inside.draw(canvas)
+        super()._draw_panel(canvas)
+
+    def _draw_advice(self, canvas: Canvas) -> None:
+        self._advice.draw(canvas)
 
     def _draw_title(self, canvas: Canvas) -> None:
         status, run = lander_status(self.lander_run), self.lander_run
         figured = bool(len(run.history)) and run.swarm_state is not None
         for box in ((*_TITLE.topleft, _TITLE.width, _TITLE.height if figured else 66), _WORDS):  # landers fly behind
             canvas.panel(box, _COVER)
-        draw_run_status(canvas, (_LEFT, 46), texts.TRAIN_TITLE, *status, drop=76, room=_TITLE.width - 32)
+        draw_run_status(canvas, (LEFT, 46), texts.TRAIN_TITLE, *status, drop=76, room=_TITLE.width - 32)
         self.draw_hints(canvas)
-
-    def _draw_said(self, canvas: Canvas) -> None:
-        """Draw the current problem, or what to do first."""
-        if problem := self.lander_run.problem:
-            draw_problem(canvas, problem, (_SAID.left, _SAID.top + 17), _SAID.width, 3)
-        else:
-            self._advice.draw(canvas)

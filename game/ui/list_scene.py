@@ -81,7 +81,7 @@ class ListScene(FormScene, ABC, Generic[Item]):
         )  # fmt: skip
         self.items: list[Item] = []
         self._verbs: list[Widget] = []
-        self._offered: list[Widget] = []  # the verbs, and what is below the list
+        self._beside: list[Widget] = []  # the verbs, and what is below the list
 
     def enter(self) -> None:
         """Read again what there is, which the scene above may have changed."""
@@ -147,8 +147,8 @@ class ListScene(FormScene, ABC, Generic[Item]):
         """Offer what can be done now."""
         self._verbs = self._make_verbs()
         new = [*self._verbs, *self._below_list()]
-        self.form.replace(self._offered, new)
-        self._offered = new
+        self.form.replace(self._beside, new)
+        self._beside = new
 
     def _buttons(self, rows: Sequence[tuple[str, OnPress]]) -> list[Widget]:
         """Return a column of buttons for the chosen item, given their labels and actions."""

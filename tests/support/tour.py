@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from datetime import date
 from functools import partial
-from inspect import Parameter, isclass, signature
+from inspect import Parameter, isabstract, isclass, signature
 from shutil import copytree
 
 import game.scenes
@@ -40,7 +40,7 @@ def scene_types() -> list[type[Scene]]:
     for module in pkgutil.iter_modules(game.scenes.__path__):
         for each in vars(importlib.import_module(f"game.scenes.{module.name}")).values():
             here = isclass(each) and each.__module__ == f"game.scenes.{module.name}"
-            if here and not each.__name__.startswith("_") and issubclass(each, Scene):
+            if here and not each.__name__.startswith("_") and issubclass(each, Scene) and not isabstract(each):
                 found.append(each)
     return found
 

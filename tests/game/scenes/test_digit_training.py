@@ -162,7 +162,8 @@ def test_leaving_ends_the_process_and_keeps_the_run(train: Driver):
     wait(train, lambda: scene.digit_run.curves.points)
     notes: list[str] = []
     train.app.context.note = notes.append
-    train.key(pygame.K_ESCAPE)
+    assert not train.key(pygame.K_ESCAPE)
+    train.app.scenes.close()
     assert scene.digit_run.state is WorkerState.ENDED
     assert scene.digit_run.unfinished
     assert notes == [texts.TRAIN_KEPT]
