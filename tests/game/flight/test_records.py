@@ -17,7 +17,7 @@ from game.flight import logbook as records
 from game.flight.flight import Flight, Recording, StickHolder
 from game.flight.flight_file import Entry, Record, from_text, to_text
 from game.flight.logbook import Records, best, skill, totals
-from game.scenes.logbook import _row
+from game.scenes.logbook import entry_row
 from game.scenes.missions import _best_by_course
 from tests.support.flights import NOON, fly_out, scripted
 
@@ -271,7 +271,7 @@ def test_a_flight_from_before_a_mission_was_changed_is_kept_and_counts_no_more(k
     before = kept.read("older.json").entry
     assert (before.outdated, line.outdated) == (True, False)
     assert best([replace(before, file="older.json"), line], most=1) == [replace(before, file="older.json"), line]
-    assert [(each.bar, _row(each)[-1]) for each in (before, line)] == [("outdated", "network"), ("", "network")]
+    assert [(each.bar, entry_row(each)[-1]) for each in (before, line)] == [("outdated", "network"), ("", "network")]
     assert _best_by_course([replace(before, fuel=0.0, medal=3, outcome="LANDED")]) == {}
     assert not entry(course="wind").outdated
     assert not entry().outdated
