@@ -23,7 +23,7 @@ if __name__ == "__main__":  # and not in a worker's process, where nothing is wr
 
 import numpy as np
 import pygame
-from benchmarks.tour import stock
+from tests.support.tour import stock
 
 from ai.agent.config import PRESETS
 from ai.digits.config import DIGIT_PRESETS

@@ -607,3 +607,12 @@ def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
     marks = [tick for tick in ticks_of(run) if tick.kind == "knob"]
     assert [tick.x for tick in marks] == [10.0, 20.0]
     assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"
+
+
+def test_an_axis_that_begins_later_has_its_ends_at_the_ends_of_the_plot(canvas: Canvas) -> None:
+    chart = Chart((40, 40, 300, 100), "LOSS", limits=(0.0, 1.0))
+    x = np.linspace(10.0, 20.0, 50)
+    chart.set([Series(x, np.full(50, 0.5), "this run")], (10.0, 20.0))
+    places = [chart.place(value, 0.5)[0] for value in (10.0, 15.0, 20.0)]
+    assert places == pytest.approx([chart.plot.left, chart.plot.centerx, chart.plot.right])
+    assert [chart.x_at((place, chart.plot.centery)) for place in places] == pytest.approx([10.0, 15.0, 20.0])
