@@ -119,7 +119,7 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     driver.frames(6)
     assert flight.env.actions[0] == MAIN
     assert cockpit.overrides.lamp(flight)[0] == "diamond"
-    assert cockpit.overrides.times == len(cockpit.track.callouts) == 1
+    assert cockpit.overrides.times == len(cockpit.track.moments) == 1
     assert difference(RIGHT, MAIN) in words
     assert texts.INSIGHT_WHY["COPILOT"][0] in words
 

@@ -1,7 +1,8 @@
 """At the largest size of text, nothing leaves the view and no two texts meet, in any screen."""
 
+import json
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pygame
 import pytest
@@ -12,7 +13,7 @@ from game.core.scene import Push, Scene
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LABEL, SMALL, TEXT, TEXT_SIZES, TITLE, VIEW_SIZE
-from game.flight.logbook import Records
+from game.flight.logbook import LOGBOOK, Records
 from game.play.challenge import FlownMission
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
@@ -48,7 +49,7 @@ def write_down(driver: Driver, monkeypatch: pytest.MonkeyPatch) -> Written:
 
     with monkeypatch.context() as patch:
         patch.setattr(Canvas, "text", noted)
-        driver.app._draw()
+        driver.frames()
     return written
 
 
@@ -124,9 +125,9 @@ def test_nor_in_the_midst_of_things(open_game, context: Context, monkeypatch, na
 @pytest.mark.parametrize("name", ["LogbookScene", "MissionsScene", "NetworksScene"])
 def test_nor_where_there_is_much_to_list(open_game, context: Context, monkeypatch, name: str):
     stock(context)
-    records = Records(context.user_dir)
-    entry = replace(records.entries()[0], course="ferry", medal=3, gravity=0.8, outcome="OUT_OF_BOUNDS", human=0.5)
-    records._append(entry)
+    entry = replace(Records(context.user_dir).entries()[0], course="ferry", medal=3, gravity=0.8, outcome="OUT_OF_BOUNDS", human=0.5)
+    with (context.user_dir / LOGBOOK).open("a", encoding="utf-8") as file:
+        file.write(json.dumps(asdict(entry)) + "\n")
     driver = opened(open_game, context, name, "largest")
     driver.keys(pygame.K_DOWN)
     assert not wrong(write_down(driver, monkeypatch))

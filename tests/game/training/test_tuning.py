@@ -4,6 +4,7 @@ from typing import Any
 import pytest
 
 from ai.agent.config import PRESETS, Config
+from ai.digits.config import DigitConfig
 from ai.lander.rewards import RewardWeights
 from ai.training.sabotage import SABOTAGES, sabotaged
 from game.core import texts
@@ -33,7 +34,7 @@ def test_every_field_that_can_be_turned_has_a_dial_and_a_word():
     assert {knob.field for knob in KNOBS.values()} == turned
     assert {knob.part for knob in KNOBS.values()} - {""} == {part.name for part in fields(RewardWeights)}
     assert turned <= set(texts.KNOBS)
-    assert set(pages(KNOBS.values())) == set(texts.KNOB_PAGES)
+    assert {*pages(KNOBS.values()), *pages(knob_descriptions(DigitConfig))} == set(texts.KNOB_PAGES)
     assert all(knob.help for knob in KNOBS.values())
 
 
@@ -103,7 +104,9 @@ def test_undo_takes_back_what_waits_and_leaves_what_holds(run_settings: RunSetti
     run_settings.set_running(True)
     run_settings.turn("learning_rate", 0.01)
     run_settings.turn("hidden", (32, 32))
+    run_settings.turn("seed", 7)
     run_settings.undo()
+    assert (run_settings.waiting, run_settings.draft_seed) == ([], 0)
     assert run_settings.draft == run_settings.config == PRESETS["modern"].changed(learning_rate=0.01)
     assert heard == [("learning_rate", 0.01)]
 
