@@ -23,7 +23,6 @@ if __name__ == "__main__":  # and not in a worker's process, where nothing is wr
 
 import numpy as np
 import pygame
-from tests.support.tour import stock
 
 from ai.agent.config import PRESETS
 from ai.digits.config import DIGIT_PRESETS
@@ -43,6 +42,7 @@ from tests.game.drawing.test_text_size import FLOWN, shared
 from tests.game.scenes.test_dream_and_quiz import SEVEN, stroke
 from tests.game.scenes.test_walks import OVER_OTHERS, SCREENS
 from tests.support.driver import Driver
+from tests.support.tour import stock
 from tests.support.written import Written, misplaced
 
 SIZES = ("normal", "large", "largest")

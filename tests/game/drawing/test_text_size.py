@@ -125,7 +125,9 @@ def test_nor_in_the_midst_of_things(open_game, context: Context, monkeypatch, na
 @pytest.mark.parametrize("name", ["LogbookScene", "MissionsScene", "NetworksScene"])
 def test_nor_where_there_is_much_to_list(open_game, context: Context, monkeypatch, name: str):
     stock(context)
-    entry = replace(Records(context.user_dir).entries()[0], course="ferry", medal=3, gravity=0.8, outcome="OUT_OF_BOUNDS", human=0.5)
+    entry = replace(
+        Records(context.user_dir).entries()[0], course="ferry", medal=3, gravity=0.8, outcome="OUT_OF_BOUNDS", human=0.5
+    )
     with (context.user_dir / LOGBOOK).open("a", encoding="utf-8") as file:
         file.write(json.dumps(asdict(entry)) + "\n")
     driver = opened(open_game, context, name, "largest")
