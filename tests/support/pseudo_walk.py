@@ -47,7 +47,7 @@ from tests.support.written import Written, misplaced
 
 SIZES = ("normal", "large", "largest")
 LANDERS = PRESETS["modern"].changed(
-    num_envs=4, hidden=(8,), warm_up=64, replay_size=1000, batch_size=16, updates=1
+    num_envs=4, hidden=(8,), learning_starts=64, replay_size=1000, batch_size=16, gradient_steps=1
 )  # fmt: skip
 DIGITS = DIGIT_PRESETS["classic"].changed(hidden=(8,), held_out=2_000, batch_size=20, augmentation=0.0)
 Happens = Callable[[Driver], object]
