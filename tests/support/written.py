@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import pygame
+import pytest
 
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -36,6 +37,19 @@ class Page:
 
     notes: list[Note] = field(default_factory=list)
     panels: list[pygame.FRect] = field(default_factory=list)
+
+
+def words_written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Return a list to which every text is added that is drawn from now on."""
+    words: list[str] = []
+    text = Canvas.text
+
+    def noted(canvas: Canvas, string: str, *more: Any, **options: Any) -> pygame.FRect:
+        words.append(string)
+        return text(canvas, string, *more, **options)
+
+    monkeypatch.setattr(Canvas, "text", noted)
+    return words
 
 
 class Written:

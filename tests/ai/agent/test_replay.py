@@ -72,7 +72,7 @@ def test_a_sum_tree_finds_rows_in_proportion():
 def test_surprising_memories_are_drawn_more_often_and_weigh_less():
     buffer = PrioritisedReplayBuffer(64, 2, exponent=1.0, importance=1.0)
     rows = buffer.add(cells(0, 64))
-    buffer.update_priorities(rows, np.where(rows == 7, 10.0, 0.1).astype(np.float32))
+    buffer.update_priorities(rows, np.where(rows == 7, -10.0, 0.1).astype(np.float32))
     drawn, _, weights = buffer.sample(4000, np.random.default_rng(0))
     often = drawn.reward == 7
     assert often.mean() == pytest.approx(10 / (10 + 63 * 0.101), abs=0.02)

@@ -17,6 +17,7 @@ from game.drawing.canvas import Canvas
 from game.panels.reward_bar import PART_COLOURS, RewardBar, signed
 from game.panels.training_charts import ticks_of
 from tests.ai.training.test_hints import HEALTHY
+from tests.support.written import words_written
 
 BOX = (40, 450, 372, 128)
 NAN, INF = float("nan"), float("inf")
@@ -353,11 +354,7 @@ def test_on_a_log_axis_a_tenth_is_as_far_as_ten_times_and_values_are_read_as_the
 
 
 def test_a_log_axis_says_so(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    written: list[str] = []
-    write = Canvas.text
-    monkeypatch.setattr(
-        Canvas, "text", lambda self, string, *a, **k: written.append(string) or write(self, string, *a, **k)
-    )
+    written = words_written(monkeypatch)
     for log in (False, True):
         written.clear()
         chart = Chart((40, 40, 172, 112), "LOSS", log=log)
@@ -472,9 +469,7 @@ def test_an_empty_chart_has_no_x_but_its_axis(canvas: Canvas) -> None:
 
 
 def test_a_chart_writes_no_number_that_is_not_there(canvas: Canvas, monkeypatch: pytest.MonkeyPatch) -> None:
-    written: list[str] = []
-    write = Canvas.text
-    monkeypatch.setattr(Canvas, "text", lambda *args, **more: written.append(args[1]) or write(*args, **more))
+    written = words_written(monkeypatch)
     chart = Chart(BOX, "SKILL", limits=(0.0, 100.0), read_x="flight {:.0f}".format, empty="of your last ten")
     chart.draw(canvas)
     assert written == ["–", "SKILL", "of your last ten"]
@@ -607,3 +602,12 @@ def test_knobs_that_are_turned_in_one_moment_share_a_mark() -> None:
     marks = [tick for tick in ticks_of(run) if tick.kind == "knob"]
     assert [tick.x for tick in marks] == [10.0, 20.0]
     assert marks[0].text == "Learning rate 1, Learning rate, last 1, Discount γ 1 and 2 more"
+
+
+def test_an_axis_that_begins_later_has_its_ends_at_the_ends_of_the_plot(canvas: Canvas) -> None:
+    chart = Chart((40, 40, 300, 100), "LOSS", limits=(0.0, 1.0))
+    x = np.linspace(10.0, 20.0, 50)
+    chart.set([Series(x, np.full(50, 0.5), "this run")], (10.0, 20.0))
+    places = [chart.place(value, 0.5)[0] for value in (10.0, 15.0, 20.0)]
+    assert places == pytest.approx([chart.plot.left, chart.plot.centerx, chart.plot.right])
+    assert [chart.x_at((place, chart.plot.centery)) for place in places] == pytest.approx([10.0, 15.0, 20.0])

@@ -11,7 +11,6 @@ from ai.lander.environment import PARAMS, Outcome
 from game.cockpit.overrides import difference
 from game.core import texts
 from game.core.settings import SettingsFile
-from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.flight_file import Entry
@@ -20,6 +19,7 @@ from game.scenes.play import PlayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import play
+from tests.support.written import words_written
 
 Open = Callable[..., Driver]
 COAST, LEFT, RIGHT, MAIN = range(4)
@@ -65,12 +65,6 @@ def start_at(driver: Driver, *start: float) -> None:
     play(driver).flight.env.place(np.ones(1, bool), np.array([start]))
 
 
-def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    words: list[str] = []
-    monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: words.append(text) or pygame.FRect())
-    return words
-
-
 def test_the_dial_is_turned_by_keys_wheel_drag_and_stick_and_kept(open_game: Open, context: Context):
     driver = fly(open_game, context)
     settings = driver.app.context.settings
@@ -114,7 +108,7 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     assert cockpit.overrides.lamp(flight)[0] == "circle"
     assert cockpit.overrides.times == 0
     up(driver, pygame.K_LEFT)
-    words = written(monkeypatch)
+    words = words_written(monkeypatch)
     down(driver, pygame.K_RIGHT)
     driver.frames(6)
     assert flight.env.actions[0] == MAIN
@@ -127,7 +121,7 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
 def test_without_assist_nothing_of_the_co_pilot_is_seen_or_felt(open_game: Open, context: Context, monkeypatch):
     driver = fly(open_game, context)
     start_at(driver, 0, 16, 0, 0, 0, 0)
-    words = written(monkeypatch)
+    words = words_written(monkeypatch)
     driver.frames(20)
     assert set(play(driver).flight.recording.actions) == {COAST}
     assert play(driver).flight.share == 1.0
@@ -165,7 +159,7 @@ def test_the_card_of_a_shared_flight_names_the_co_pilot_and_its_moments(open_gam
     driver.app.context.settings.assist = 0.0
     up(driver, pygame.K_RIGHT)
     start_at(driver, 0, PARAMS.pad_top + PARAMS.stand + 0.01, 0, 0, 0, 0)
-    words = written(monkeypatch)
+    words = words_written(monkeypatch)
     driver.frames(140)
     assert play(driver).flight.outcome is Outcome.LANDED
     you = round(100 * play(driver).flight.share)

@@ -1,6 +1,7 @@
 """At the largest size of text, nothing leaves the view and no two texts meet, in any screen."""
 
-from dataclasses import replace
+import json
+from dataclasses import asdict, replace
 
 import pygame
 import pytest
@@ -9,7 +10,7 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LABEL, SMALL, TEXT_SIZES, VIEW_SIZE
-from game.flight.logbook import Records
+from game.flight.logbook import LOGBOOK, Records
 from game.scenes.settings import SettingsScene
 from game.ui.context import Context
 from tests.support.driver import Driver
@@ -64,9 +65,11 @@ def test_nor_in_the_midst_of_things(open_game, context: Context, written: Writte
 @pytest.mark.parametrize("name", ["LogbookScene", "MissionsScene", "NetworksScene"])
 def test_nor_where_there_is_much_to_list(open_game, context: Context, written: Written, name: str):
     stock(context)
-    records = Records(context.user_dir)
-    entry = replace(records.entries()[0], course="ferry", medal=3, gravity=0.8, outcome="OUT_OF_BOUNDS", human=0.5)
-    records._append(entry)
+    entry = replace(
+        Records(context.user_dir).entries()[0], course="ferry", medal=3, gravity=0.8, outcome="OUT_OF_BOUNDS", human=0.5
+    )
+    with (context.user_dir / LOGBOOK).open("a", encoding="utf-8") as file:
+        file.write(json.dumps(asdict(entry)) + "\n")
     settle(context, text_size="largest")
     driver = opened(open_game, name)
     driver.keys(pygame.K_DOWN)

@@ -8,7 +8,6 @@ import pytest
 from ai.lander.environment import Outcome
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
-from game.drawing.canvas import Canvas
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
@@ -18,6 +17,7 @@ from game.scenes.replay import ReplayScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import NOON, fly_out, kept, scripted
+from tests.support.written import words_written
 
 Open = Callable[..., Driver]
 
@@ -103,11 +103,7 @@ def test_a_flight_that_goes_another_way_now_is_told_of(open_game: Open, record: 
     assert not flight_replay.faithful
     driver = open_game(ReplayScene, replace(record, end=(x, y + 1, angle)))
     driver.frames(120)
-    assert "other rules" in said(driver)
-
-
-def said(driver: Driver) -> str:
-    return driver.said
+    assert "other rules" in driver.said
 
 
 def test_a_tape_whose_inputs_end_too_early_stands_still(record: Record):
@@ -261,17 +257,16 @@ def test_a_flight_that_is_thrown_away_keeps_its_line_says_why_and_comes_back(boo
     book.key(pygame.K_DELETE)
     assert len(page(book).items) == 2
     assert [word.label for word in page(book)._verbs] == [texts.LOGBOOK_BRING_BACK]
-    assert said(book) == texts.LOGBOOK_THROWN
+    assert book.said == texts.LOGBOOK_THROWN
     book.key(pygame.K_RETURN)  # there is nothing to watch any more
     assert book.top_name == "LogbookScene"
-    written: list[str] = []
-    monkeypatch.setattr(Canvas, "text", lambda self, text, *_, **__: written.append(text) or pygame.FRect())
+    written = words_written(monkeypatch)
     book.frames(1)
     assert texts.FLIGHT_THROWN in written
     assert texts.FLIGHT_TOO_OLD not in written
     page(book).form.focus(page(book)._verbs[0])
     book.key(pygame.K_RETURN)
-    assert said(book) == texts.LOGBOOK_BROUGHT_BACK
+    assert book.said == texts.LOGBOOK_BROUGHT_BACK
     assert page(book).chosen == entry
     book.key(pygame.K_RETURN)
     assert book.top_name == "ReplayScene"
@@ -284,5 +279,5 @@ def test_a_damaged_flight_is_named_and_left_alone(book: Driver):
     path.write_text("{")
     book.key(pygame.K_RETURN)
     assert book.top_name == "LogbookScene"
-    assert "damaged" in said(book)
+    assert "damaged" in book.said
     assert path.read_text() == "{"

@@ -8,22 +8,23 @@ import pytest
 from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import in_force
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition
+from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.panels.knob import Knob, SliderKnob
 from game.panels.knobs import KnobsPanel
 from game.panels.seed_knob import SeedKnob
 from game.training.knob_descriptions import knob_descriptions, pages
 from game.ui.context import Context
-from game.ui.form import Form
 from game.ui.widgets import Choice, TextButton
 from tests.support.driver import Driver
+from tests.support.form_page import FormPage
+from tests.support.written import words_written
 
 BOX = pygame.Rect(868, 20, 384, 404)
 PAGES = pages(knob_descriptions())
 
 
-class Panel(Scene):
+class Panel(FormPage):
     """The panel, and one more widget."""
 
     def __init__(self, context: Context, box: pygame.Rect = BOX) -> None:
@@ -31,8 +32,6 @@ class Panel(Scene):
         self.box = box
         self.heard: list[Any] = []
         self.retries = 0
-
-        self.form = Form(context, on_back=Pop)
         heard = self.heard
         self.knobs = KnobsPanel(
             self.form, self.box, PRESETS["modern"], 0,
@@ -41,17 +40,13 @@ class Panel(Scene):
         self.other = self.form.add(TextButton(self.form.manager, (64, 600, 80, 24), "Other", lambda: None))
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        outcome = self.form.handle_event(event)
+        outcome = super().handle_event(event)
         if not self.form.used and event.type == pygame.KEYDOWN and event.key == pygame.K_r:
             self.retries += 1
         return outcome
 
-    def update(self) -> Transition | None:
-        return self.form.update()
-
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        canvas.surface.fill((14, 19, 36))
-        self.form.draw(canvas)
+        super().draw(canvas, alpha)
         self.knobs.draw(canvas)
 
     def knob(self, name: str) -> Any:
@@ -364,15 +359,8 @@ def test_what_is_not_turned_on_says_so(panel: tuple[Driver, Panel]):
 
 def words_drawn(game: Driver, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Return what is written in a frame."""
-    written: list[str] = []
-    real = Canvas.text
-
-    def text(canvas: Canvas, words: str, *args: Any, **options: Any) -> Any:
-        written.append(words)
-        return real(canvas, words, *args, **options)
-
     with monkeypatch.context() as patch:
-        patch.setattr(Canvas, "text", text)
+        written = words_written(patch)
         game.frames(1)
     return written
 

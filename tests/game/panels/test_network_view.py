@@ -1,5 +1,3 @@
-from typing import Any
-
 import numpy as np
 import pygame
 import pytest
@@ -13,6 +11,7 @@ from game.drawing.canvas import Canvas
 from game.panels.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges
 from game.panels.network_view import NetworkView
 from tests.game.shell.test_draw import state_of
+from tests.support.written import words_written
 
 BOX = (868, 420, 384, 180)
 LARGE = (90, 80, 1100, 560)
@@ -305,14 +304,7 @@ def test_outputs_are_told_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -
     view = NetworkView(LARGE, FEATURE_NAMES, ACTION_NAMES)
     view.output_scale = 0.01
     view.set(network, OBSERVATION)
-    written: list[str] = []
-    real = Canvas.text
-
-    def text(self: Canvas, string: str, *args: Any, **kinds: Any) -> pygame.FRect:
-        written.append(string)
-        return real(self, string, *args, **kinds)
-
-    monkeypatch.setattr(Canvas, "text", text)
+    written = words_written(monkeypatch)
     play(view, Canvas(pygame.Surface((1280, 720))))
     for value in (values / np.float32(0.01)).tolist():
         assert f"{value:.2f}".replace("-", "\u2212") in written

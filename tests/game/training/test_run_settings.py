@@ -104,7 +104,9 @@ def test_undo_takes_back_what_waits_and_leaves_what_holds(run_settings: RunSetti
     run_settings.set_running(True)
     run_settings.turn("learning_rate", 0.01)
     run_settings.turn("hidden", (32, 32))
+    run_settings.turn("seed", 7)
     run_settings.undo()
+    assert (run_settings.waiting, run_settings.draft_seed) == ([], 0)
     assert run_settings.draft == run_settings.config == PRESETS["modern"].changed(learning_rate=0.01)
     assert heard == [("learning_rate", 0.01)]
 

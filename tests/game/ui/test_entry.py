@@ -4,29 +4,26 @@ import pygame
 import pytest
 
 from game.core.collection import fitting
-from game.core.scene import Pop, Scene, Transition
-from game.drawing.canvas import Canvas
+from game.core.scene import Transition
 from game.input.bindings import Command
 from game.ui import text_line
 from game.ui.context import Context
 from game.ui.entry import Entry, first_shown
-from game.ui.form import Form
 from game.ui.listing import Listing
 from game.ui.text_line import Fits, TextLine, digits, printable
 from game.ui.widget import PointsManager
 from game.ui.widgets import TextButton
 from tests.support.driver import Driver
+from tests.support.form_page import FormPage
 
 
-class Page(Scene):
+class Page(FormPage):
     """An entry, a word, a list; and letters that would be commands."""
 
     def __init__(self, context: Context, rows: int = 20) -> None:
         super().__init__(context)
-        self.log: list[object] = []
         self.commands = ""
-        self.form = form = Form(context, on_back=Pop)
-        log = self.log
+        form, log = self.form, self.log
         self.entry = form.add(
             Entry(form.manager, (64, 100, 300, 32), "NAME", "Modern 3", log.append, limit=12, fits=fitting,
                   on_cancel=lambda: log.append("cancelled"))
@@ -38,17 +35,10 @@ class Page(Scene):
         )  # fmt: skip
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        outcome = self.form.handle_event(event)
+        outcome = super().handle_event(event)
         if not self.form.used and event.type == pygame.KEYDOWN:
             self.commands += event.unicode
         return outcome
-
-    def update(self) -> Transition | None:
-        return self.form.update()
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        canvas.surface.fill((0, 0, 0))
-        self.form.draw(canvas)
 
 
 @pytest.fixture

@@ -7,7 +7,6 @@ import pygame
 import pytest
 
 from game.core import texts
-from game.core.scene import Pop, Scene, Transition
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, SMALL, VIEW_SIZE
@@ -23,34 +22,23 @@ from game.ui.listing import shortened
 from game.ui.widget import PointsManager
 from game.ui.widgets import CHOICE_GAP, Choice, Slider, TextButton, Toggle
 from tests.support.driver import Driver
+from tests.support.form_page import FormPage
 
 COLUMNS = [pygame.Rect(x, y, 80, 20) for x in (0, 200) for y in (0, 40, 80)]
 
 
-class Page(Scene):
+class Page(FormPage):
     """One of each widget."""
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self.log: list[object] = []
-        self.form = form = Form(context, on_back=Pop)
-        manager, log = form.manager, self.log
+        form, manager, log = self.form, self.form.manager, self.log
         self.word = form.add(TextButton(manager, (64, 100, 120, 32), "Go", lambda: log.append("go")))  # type: ignore[func-returns-value]
         self.toggle = form.add(Toggle(manager, (64, 150, 400, 32), "Switch", False, log.append))
         self.slider = form.add(
             Slider(manager, (64, 200, 400, 24), "Rate", 0.5, (0.0, 1.0), log.append, step=0.1, figure_width=60)
         )
         self.choice = form.add(Choice(manager, (64, 250, 400, 32), "", ["one", "two", "three"], 0, log.append))
-
-    def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        return self.form.handle_event(event)
-
-    def update(self) -> Transition | None:
-        return self.form.update()
-
-    def draw(self, canvas: Canvas, alpha: float) -> None:
-        canvas.surface.fill((0, 0, 0))
-        self.form.draw(canvas)
 
 
 @pytest.fixture
