@@ -113,11 +113,7 @@ class LogbookScene(ListScene[Entry]):
             chart.set([series], span)
 
     def _row(self, entry: Entry) -> Row:
-        when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
-        points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
-        by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
-        end, seconds = texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s"
-        return when, _challenge(entry), end, seconds, points if entry.landed else "–", by
+        return row(entry)
 
     def _make_verbs(self) -> list[Widget]:
         self._why_gone = self._records.why_gone(self.chosen) if self.chosen else ""
@@ -190,6 +186,15 @@ def _draw_totals(canvas: Canvas, sums: Totals) -> None:
         canvas.text(label, (x, y), size=LABEL, weight="medium", colour=MUTE)
         box = canvas.text(figure, (x - 1, y + 30), size=TITLE + 4, weight="light", tabular=True)
         canvas.text(unit, (box.right + 5, y + 30), size=SMALL, colour=MUTE)
+
+
+def row(entry: Entry) -> Row:
+    """Return the row of a flight: when, where, how it ended, seconds, score, and who flew."""
+    when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
+    points = (texts.LOGBOOK_UNCOUNTED if entry.bar else "{points}").format(points=entry.score)
+    by = {1.0: texts.LOGBOOK_YOU, 0.0: texts.LOGBOOK_NETWORK}.get(entry.human, texts.LOGBOOK_SHARED)
+    end, seconds = texts.OUTCOMES[entry.outcome][0], f"{tenths(entry.seconds):.1f} s"
+    return when, _challenge(entry), end, seconds, points if entry.landed else "–", by
 
 
 def _challenge(entry: Entry) -> str:

@@ -20,7 +20,7 @@ from game.play.challenge import DailyStart, FlownMission
 from game.play.race import fly_on, race
 from game.play.tutorial import Tutorial
 from game.scenes.choices import ChoicesScene
-from game.scenes.logbook import LogbookScene, _row
+from game.scenes.logbook import LogbookScene, row
 from game.scenes.missions import MissionsScene
 from game.scenes.play import PlayScene
 from game.scenes.replay import ReplayScene
@@ -108,7 +108,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     assert entry.alone == (False not in page.counts) == (not entry.bar)
     if entry.bar:
         assert any(texts.NOT_COUNTED[entry.bar] in word or texts.PRACTICE in word for word in page.words), page.words
-    assert _row(entry)[-1] == flew(flight.recording.hands)
+    assert row(entry)[-1] == flew(flight.recording.hands)
     won = [medal for medal in (1, 2, 3) if texts.MEDALS[medal] in page.words]
     assert won == [entry.medal] * bool(entry.medal)
     best = [word for word in page.words if word == texts.SCORE_BEST.format(count=entry.score)]
@@ -155,7 +155,7 @@ def land(driver: Driver) -> None:
 
 def end(driver: Driver, outcome: Outcome) -> None:
     """Bring the flight to an end of that kind."""
-    play(driver).waiting = False
+    play(driver).flown.waiting = False
     env = play(driver).flight.env
     x, y = env.pad[0].tolist()
     driver.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)
@@ -287,6 +287,6 @@ def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
     assert (entry.outcome, entry.medal, entry.score) == (outcome.name, 0, 0)
     assert entry.alone == (not entry.bar)
     assert False not in page.counts or entry.bar
-    assert _row(entry)[2] == title
-    assert _row(entry)[-1] == flew(play(reading.driver).flight.recording.hands)
+    assert row(entry)[2] == title
+    assert row(entry)[-1] == flew(play(reading.driver).flight.recording.hands)
     assert_book_agrees(reading, entry)
