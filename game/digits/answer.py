@@ -11,7 +11,7 @@ from game.core import texts
 from game.digits.fixing import FixRunner
 from game.digits.reader import LEAST_INK, Numbers, Reading, Verdict
 from game.drawing.canvas import Canvas
-from game.drawing.prose import wrapped
+from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT, TITLE
 from game.training.digit_models import called
 from game.ui.widget import PointsManager, Widget, mix
@@ -133,8 +133,7 @@ def draw_fix(canvas: Canvas, fixing: FixRunner, *, same: bool) -> None:
     """Draw how to correct an answer, or a fix's progress or result; `same`: whether its drawing is unchanged."""
     first, second = _fix_lines(fixing, same)
     canvas.text(first, (LEFT, FIX_TOP), size=SMALL, colour=HUMAN)
-    for number, line in enumerate(wrapped(canvas, second, SMALL, RIGHT + 30 - LEFT)[:2]):
-        canvas.text(line, (LEFT, FIX_TOP + 20 + 16 * number), size=SMALL, colour=MUTE)
+    draw_wrapped(canvas, second, (LEFT, FIX_TOP + 20), RIGHT + 30 - LEFT, colour=MUTE, most=2)
 
 
 def _fix_lines(fixing: FixRunner, same: bool) -> tuple[str, str]:

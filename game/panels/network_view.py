@@ -11,7 +11,6 @@ import math
 from collections.abc import Generator, Sequence
 from typing import Final
 
-import numpy as np
 import numpy.typing as npt
 import pygame
 
@@ -20,25 +19,17 @@ from game.charts import plotting
 from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing import typeface
-from game.drawing.canvas import Align, Canvas, Point
-from game.drawing.tokens import EMBER, FAINT, INK, LABEL, MUTE, NET, NIGHT0, NIGHT1, SMALL, Colour
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import LABEL, SMALL
+from game.panels.network_painting import ADDS, LARGE, MARGIN, TAKES, NetworkPainting, Sheets, all_of
 from game.panels.network_plan import Column, Edge, NetworkPlan, Show
 
-Sheets = tuple[Canvas, Canvas]  # additive light, and the signs above it
-
-ADDS: Final = NET
-TAKES: Final = EMBER
-
-_LARGE: Final = 300.0  # points of height from which there is room for values beside the names
 _PITCH: Final = 13.0  # points between units, at least
 _MOST_UNITS: Final = 24  # in a column
-_MARGIN: Final = 8.0  # of the sheets around the box
 _REST: Final = 6  # sixtieths of a second between two drawings of new numbers
 _FLOW: Final = 1 / 90  # of an edge that a pulse travels in a sixtieth of a second
 _MOST_PULSES: Final = 26
 _GOLDEN: Final = 0.618034  # golden ratio: spreads the pulses' starts as evenly as possible
-_CHUNK: Final = 9_000.0  # pixels of edges drawn in one step: about a millisecond
-_GLOWING: Final = 0.55  # units lit more than this shine on what is around them
 
 
 class NetworkView:
@@ -167,7 +158,7 @@ class NetworkView:
 
     @property
     def _large(self) -> bool:
-        return self.box.height >= _LARGE
+        return self.box.height >= LARGE
 
     @property
     def _foot(self) -> float:
@@ -211,8 +202,8 @@ class NetworkView:
         """Draw the network, and the pulses and the read-out over it."""
         if self._sheets is None or self._sheets[0].scale != canvas.scale:
             self._spare = self._painting = None
-            self._canvas, self._sheets = canvas, _all_of(self._paint(canvas))
-        corner = (canvas.px(self.box.x - _MARGIN), canvas.px(self.box.y - _MARGIN))
+            self._canvas, self._sheets = canvas, all_of(self._paint(canvas))
+        corner = (canvas.px(self.box.x - MARGIN), canvas.px(self.box.y - MARGIN))
         light, signs = self._sheets
         canvas.surface.blit(light.surface, corner, special_flags=pygame.BLEND_RGB_ADD)
         canvas.surface.blit(signs.surface, corner)
@@ -224,7 +215,7 @@ class NetworkView:
     def _blank(self, canvas: Canvas) -> Sheets:
         """Return empty sheets: the spare ones, or new ones."""
         if self._spare is None or self._spare[0].scale != canvas.scale:
-            light, signs = (canvas.sheet(self.box.width + 2 * _MARGIN, self.box.height + 2 * _MARGIN) for _ in range(2))
+            light, signs = (canvas.sheet(self.box.width + 2 * MARGIN, self.box.height + 2 * MARGIN) for _ in range(2))
             light.surface = pygame.Surface(light.size)
             return light, signs
         light, signs = self._spare
@@ -234,101 +225,19 @@ class NetworkView:
         return light, signs
 
     def _paint(self, canvas: Canvas) -> Generator[None, None, Sheets]:
-        """Paint the current network onto new sheets, in parts, and return them."""
+        """Return the painting of the network as it is now onto new sheets."""
         self.redraws += 1
-        light, signs = self._blank(canvas)
-        plan, edges, hovered = self.plan, self.edges, self.hovered
-        centres = [[self._on_sheet(centre) for centre in column] for column in self.centres]
-        if not plan or not centres:
-            middle = (_MARGIN + self.box.width / 2, _MARGIN + self.box.height / 2)
-            signs.text(texts.NET_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
-            return light, signs
-        yield
-        drawn = 0.0
-        for edge in edges:
-            ends = centres[edge.column][edge.start], centres[edge.column + 1][edge.end]
-            self._paint_edge(light, edge, ends, hovered)
-            drawn += math.dist(*ends) * canvas.scale
-            if drawn > _CHUNK:
-                drawn = 0.0
-                yield
-        yield
-        best, last = plan.best(), len(centres) - 1
-        for number, column in enumerate(plan.columns):
-            lights = plan.brightness(number).tolist()
-            for place, (centre, lit) in enumerate(zip(centres[number], lights, strict=True)):
-                chosen = number == last and place == best
-                self._paint_unit(light, signs, centre, lit, damaged=bool(column.damaged[place]), chosen=chosen)
-            self._paint_names(signs, number, column, centres[number], best if number == last else None)
-        if hovered:
-            signs.marker("ring", centres[hovered[0]][hovered[1]], 2 * self._radius + 6, INK)
-        self._paint_legend(signs)
-        return light, signs
+        last = len(self.columns) - 1
+        return NetworkPainting(
+            self.plan, self.edges, self._show, self.hovered,
+            centres=[[self._on_sheet(centre) for centre in column] for column in self.centres],
+            names=[self._names(number) for number in range(last + 1)],
+            output_scale=self.output_scale, size=self.box.size, radius=self._radius,
+            name_size=self._name_size, large=self._large,
+        ).paint(*self._blank(canvas))  # fmt: skip
 
     def _on_sheet(self, point: Point) -> Point:
-        return point[0] - self.box.x + _MARGIN, point[1] - self.box.y + _MARGIN
-
-    def _paint_edge(
-        self, light: Canvas, edge: Edge, ends: tuple[Point, Point], hovered: tuple[int, int] | None
-    ) -> None:
-        strength = 0.10 + 0.62 * edge.size**1.5
-        if hovered:
-            touched = hovered in ((edge.column, edge.start), (edge.column + 1, edge.end))
-            strength = 0.35 + 0.65 * edge.size if touched else 0.25 * strength
-        wide = 0.7 + 1.3 * edge.size * min(1.0, self.box.height / _LARGE)
-        half = 0.5 / light.scale  # a line runs through the middles of pixels, a dot lies between them
-        colour = _dimmed(ADDS if edge.positive else TAKES, strength)
-        start, end = ends
-        light.line((start[0] - half, start[1] - half), (end[0] - half, end[1] - half), colour, wide)
-
-    def _paint_unit(
-        self, light: Canvas, signs: Canvas, centre: Point, lit: float, *, damaged: bool, chosen: bool
-    ) -> None:
-        radius, tone = self._radius, NET if chosen else INK if lit >= 0 else TAKES
-        signs.dot(centre, radius + 0.9, NIGHT0)
-        signs.dot(centre, radius, NIGHT1)
-        if damaged:
-            signs.marker("cross", centre, 2.4 * radius, signs.palette.warn)
-            return
-        if abs(lit) > _GLOWING:
-            light.glow(centre, 4.2 * radius, tone, _GLOWING * abs(lit))
-        signs.dot(centre, radius, FAINT, 0.75)
-        if abs(lit) > 0.02:
-            signs.dot(centre, radius, tone, abs(lit) ** 0.8)
-
-    def _paint_names(
-        self, signs: Canvas, number: int, column: Column, centres: Sequence[Point], best: int | None
-    ) -> None:
-        """Write names beside the units (with values, in a large drawing), and the unit counts below."""
-        names, size = self._names(number), self._name_size
-        values = self._large and bool(np.isfinite(column.values).any())
-        side = self._radius + 6
-        align: Align
-        shift, align = (-side, "right") if number == 0 else (side, "left")
-        for place, unit in enumerate(column.units.tolist()):
-            if unit >= len(names):
-                break
-            x, y = centres[place][0] + shift, centres[place][1] + 0.36 * size - (7 if values else 0)
-            signs.text(names[unit], (x, y), size=size, colour=NET if place == best else MUTE, align=align)
-            if values:
-                figure = _figure(float(column.values[place]) / self._unit(number))
-                signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
-        shown = len(column.units)
-        if shown < column.total or not names:
-            words = (texts.NET_ALL if shown == column.total else texts.NET_SOME).format(shown=shown, count=column.total)
-            middle = (centres[0][0], self._last_line)
-            signs.text(words, middle, size=LABEL - 1, colour=MUTE, align="centre")
-
-    @property
-    def _last_line(self) -> float:
-        return _MARGIN + self.box.height - 3
-
-    def _paint_legend(self, signs: Canvas) -> None:
-        y, (adds, takes) = self._last_line, texts.NET_LEGEND[self._show]
-        signs.pill((_MARGIN, y - 5, 9, 2), ADDS)
-        signs.text(adds, (_MARGIN + 13, y), size=LABEL - 1, colour=MUTE)
-        word = signs.text(takes, (_MARGIN + self.box.width, y), size=LABEL - 1, colour=MUTE, align="right")
-        signs.pill((word.left - 13, y - 5, 9, 2), TAKES)
+        return point[0] - self.box.x + MARGIN, point[1] - self.box.y + MARGIN
 
     def _draw_pulses(self, canvas: Canvas) -> None:
         """Draw pulses that run backwards along the edges with the largest gradients."""
@@ -351,23 +260,3 @@ class NetworkView:
             rows.append(TooltipRow(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
         head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
         draw_tooltip(canvas, self.centres[number][place], self.box, [head], rows)
-
-
-def _all_of(painting: Generator[None, None, Sheets]) -> Sheets:
-    """Paint all parts at once."""
-    while True:
-        try:
-            next(painting)
-        except StopIteration as done:
-            sheets: Sheets = done.value
-            return sheets
-
-
-def _figure(value: float) -> str:
-    return f"{value:.2f}".replace("-", "−") if abs(value) < 1000 else plotting.compact(value)
-
-
-def _dimmed(colour: Colour, strength: float) -> Colour:
-    """Return a colour dimmed to `strength`, for additive blending."""
-    red, green, blue = (round(min(max(strength, 0.0), 1.0) * part) for part in colour)
-    return red, green, blue

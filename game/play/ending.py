@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Final
 
 from ai.lander.environment import Outcome
@@ -12,12 +11,9 @@ from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.flight import outcomes
 from game.flight.flight import Flight
-from game.flight.logbook import Records
-from game.flight.networks import Network
 from game.flight.skill import Skill
 from game.play.challenge import Challenge
 from game.play.ghost import Ghost
-from game.ui.context import Context
 from game.ui.hints import Hint, HintRow
 from game.world.camera import CameraTarget
 from game.world.scenery import Scenery
@@ -88,25 +84,3 @@ class FlightEnding:
         """Return the row of hints at the foot of the card."""
         assert self.card is not None
         return hud.card_row(self.card, hints, self.shown, advise, rival=ghost is not None)
-
-
-def write_down(
-    context: Context, flight: Flight, cockpit: Cockpit, challenge: Challenge | None,
-    records: Records, skill: Skill, network: Network, hands: str,
-) -> None:  # fmt: skip
-    """Record a finished flight, save it as a demonstration if wished, and report failures to the player."""
-    credit = cockpit.credit
-    told = "" if challenge or credit.bar == "practice" else cockpit.keep_lesson(context.user_dir, hands)
-    entry = records.keep(
-        flight,
-        time.time(),
-        alone=credit.counts,
-        barred=credit.bar,
-        network=network.name if network.policy else "",
-        course=challenge.name if challenge else "",
-        medal=credit.medal,
-        pace=credit.pace,
-    )
-    skill.add(entry)
-    if told or records.problem:
-        context.note(told or records.problem)

@@ -19,8 +19,8 @@ from game.flight.handicap import HANDS
 from game.flight.logbook import RECENT_OWN
 from game.flight.skill import Skill
 from game.input.controls import Command
-from game.scenes.pause import BlurredPicture
 from game.ui.actions import Action, Table
+from game.ui.blurred_picture import BlurredPicture
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
 from game.ui.widget import Widget

@@ -12,8 +12,8 @@ from game.core.collection import LONGEST_NAME, fitting
 from game.core.scene import Pop, Scene, Transition
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.prose import wrapped
-from game.drawing.tokens import FAINT, MUTE, NIGHT0, SMALL, TEXT
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import FAINT, MUTE, NIGHT0, TEXT
 from game.ui.actions import Table, hints_of
 from game.ui.entry import Entry
 from game.ui.form_scene import FormScene
@@ -47,8 +47,7 @@ class Dialog(FormScene):
         left, top = self.box.left + _MARGIN, self.box.top
         canvas.text(self._question, (left, top + 40), size=TEXT)
         if self._more:
-            for number, line in enumerate(wrapped(canvas, self._more, SMALL, _ROOM)):
-                canvas.text(line, (left, top + 66 + 18 * number), size=SMALL, colour=MUTE)
+            draw_wrapped(canvas, self._more, (left, top + 66), _ROOM, colour=MUTE, leading=18)
         self.form.draw(canvas)
         self.draw_hints(canvas)
 

@@ -23,7 +23,7 @@ from game.digits.pen import make_pen
 from game.digits.reader import Numbers, Reading, Verdict
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.prose import wrapped
+from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import LABEL, MUTE, SMALL, TEXT, TITLE
 from game.input.controls import Command
@@ -307,15 +307,15 @@ class DigitsScene(FormScene):
     def _draw_words(self, canvas: Canvas) -> None:
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
             draw_fix(canvas, self._fixing, same=self._fix_of == self.pad.revision)
-        for number, line in enumerate(
-            wrapped(canvas, self._measuring.words(self._live.switches), LABEL, _RIGHT - EXPLANATION_LEFT)
-        ):
-            canvas.text(line, (EXPLANATION_LEFT, 184 + 15 * number), size=LABEL, colour=MUTE)
+        measured = self._measuring.words(self._live.switches)
+        place, width = (EXPLANATION_LEFT, 184), _RIGHT - EXPLANATION_LEFT
+        draw_wrapped(canvas, measured, place, width, size=LABEL, colour=MUTE, leading=15)
         problems = [texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
                     for name, problem in self._live.reader.problems.items()]  # fmt: skip
-        lines = [line for words in reversed(problems) for line in wrapped(canvas, words, SMALL, _TABS[2])]
-        for number, line in enumerate(lines[:_PROBLEM_LINES]):
-            canvas.text(line, (LEFT, _PROBLEMS + 17 * number), size=SMALL, colour=canvas.palette.warn)
+        y: float = _PROBLEMS
+        for words in reversed(problems):
+            most = _PROBLEM_LINES - round((y - _PROBLEMS) / 17)
+            y = draw_wrapped(canvas, words, (LEFT, y), _TABS[2], colour=canvas.palette.warn, leading=17, most=most)
         for action, widget in zip(self._pad_actions, self._under, strict=True):
             left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
             canvas.text(action.key_word(self.context.controls), (left, widget.baseline), size=SMALL, weight="medium")

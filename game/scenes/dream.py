@@ -16,7 +16,7 @@ from game.digits.answer import LEFT, DigitRow, percent
 from game.digits.pictures import Numbers, picture
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.prose import wrapped
+from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE
 from game.input.controls import Command
@@ -151,8 +151,7 @@ class DreamScene(FormScene):
         canvas.marker("check" if best == self.digit else "triangle", (LEFT + 5, 203), 10, colour)
         canvas.text(words, (LEFT + 18, 208), size=TEXT, colour=colour, tabular=True)
         canvas.text(texts.DREAM_ALL, (_RIGHT, 42), size=LABEL, colour=MUTE, weight="medium")
-        for number, line in enumerate(wrapped(canvas, texts.DREAM_CALM_HELP, LABEL, 344)):
-            canvas.text(line, (_RIGHT, 312 + 16 * number), size=LABEL, colour=MUTE)
+        draw_wrapped(canvas, texts.DREAM_CALM_HELP, (_RIGHT, 312), 344, size=LABEL, colour=MUTE)
         self.form.draw(canvas)
         self.draw_hints(canvas)
 

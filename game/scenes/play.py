@@ -6,16 +6,11 @@ from typing import Final
 
 import pygame
 
-from game.audio.flight_sounds import FlightSound
-from game.cockpit import hud
-from game.cockpit.cockpit import Cockpit
 from game.core import texts
-from game.core.pace import SlowMotion
 from game.core.scene import Pop, Scene, Transition, push
 from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.credit import Credit
-from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import HANDS, OWN
 from game.flight.logbook import Records
@@ -23,14 +18,13 @@ from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.input.mouse import MouseStick
 from game.play import captions as flight_words
-from game.play.challenge import Challenge, DrawnFlight, Duel
-from game.play.ending import FlightEnding, write_down
+from game.play.challenge import Challenge, Duel
+from game.play.ending import FlightEnding
+from game.play.flown_flight import FlownFlight
 from game.ui.actions import Action, Run, Table, answering, hints_of
 from game.ui.context import Context
 from game.ui.hints import HintRow
 from game.ui.widget import OnPress
-from game.world.path_preview import PathPreview
-from game.world.scenery import Scenery
 
 # Switching to full screen and back removes the window's focus for a moment, which must not pause the game.
 _AWAY_STEPS: Final = 10
@@ -43,10 +37,7 @@ class PlayScene(Scene):
     its own starts and rules.
 
     Attributes:
-        flight: the flight on the screen.
-        credit: who flies it, and whether it counts as the player's own.
-        ending: the ending, with slow motion and outcome card.
-        waiting: whether the craft still hangs until the pilot's first touch.
+        flown: the flight on the screen, with all that belongs to it.
 
     """
 
@@ -76,10 +67,8 @@ class PlayScene(Scene):
 
     def enter(self) -> None:
         """Resume the paused flight, unless choices made meanwhile require a new one."""
-        self._scenery.calm = self.ending.calm = self._settings.reduced_motion
-        if self.ending.calm:
-            self._pace.hurry()
-        if self.waiting and not self._challenge and self._chosen() != (self.flight.recording.pads, self._hands):
+        self.flown.set_calm(self._settings.reduced_motion)
+        if self.waiting and not self._challenge and self._chosen() != (self.flight.recording.pads, self.flown.hands):
             self.retry()
 
     def exit(self) -> None:
@@ -95,7 +84,7 @@ class PlayScene(Scene):
         """Handle handover, retry, pause and the dial."""
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
-        if self._cockpit.take(event):
+        if self.flown.cockpit.take(event):
             self._name_what_lacks()
             return None
         self._mouse.take(event)
@@ -116,7 +105,7 @@ class PlayScene(Scene):
         rows = [flight_words.flight_row(hints_of(self._flight_actions(), self._controls))]
         if self.ending.card and self.ending.shown > 0:
             hints = hints_of(self._card_actions(), self._controls)
-            rows.append(self.ending.hint_row(hints, self._ghost, self._settings.show_hints))
+            rows.append(self.ending.hint_row(hints, self.flown.ghost, self._settings.show_hints))
         return rows
 
     @property
@@ -139,126 +128,84 @@ class PlayScene(Scene):
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
-        self._scenery.breathe()
+        self.flown.breathe()
         self._away += self._away > 0
-        self._cockpit.ease()
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
-        self._pace.rate = self._settings.pace
-        if self._waits():
-            self._path_preview.follow(waiting=True)
+        action = self._held
+        due = self.flown.due(action)
+        if self.waiting:
             return None
-        if self._pace.steps():
-            self._fly()
-        self._heard.follow(self._scenery.stage.thrust[0])  # between steps too, or fire would fall silent
+        if due:
+            self.flown.prepare()
+            self.flight.step(action)
+            self.flown.follow()
+            self._follow_flight()
+        self.flown.sound()
         return None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the world, the craft, the read-outs and, at the end, the card."""
-        alpha = self._pace.between(alpha)
-        view, flight = self._scenery.view(canvas.scale, alpha), self.flight
-        self._scenery.draw_land(canvas, alpha)
-        if self._ghost:
-            self._ghost.draw_way(canvas, view)
-        if flight.over:
-            self._cockpit.track.draw(canvas, view)
-        self._path_preview.draw(canvas, view, self._scenery.clear.head)
-        if self._ghost:
-            self._ghost.draw(canvas, view, alpha)
-        self._scenery.draw_craft(canvas, alpha, words=self.ending.shown == 0)
-        pose = flight.poses.at(alpha)[0]
-        self._cockpit.draw_panel(canvas, view, pose)
-        self._cockpit.draw_beside(canvas, view, pose)
-        if self._challenge:
-            self._challenge.draw(canvas, view, flight, self._moment(alpha))
-        self._draw_words(canvas)
-        self.ending.draw(canvas, self._ghost, self._settings.show_hints)
-        for row in self.hint_rows(canvas)[1:]:
+        """Draw the flight, the hints and, at the end, the card."""
+        self.flown.draw(canvas, alpha, self._network)
+        hints, *of_card = self.hint_rows(canvas)
+        if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
+            hints.draw(canvas)
+        self.ending.draw(canvas, self.flown.ghost, self._settings.show_hints)
+        for row in of_card:
             row.draw(canvas)
 
     # The flight
 
+    @property
+    def flight(self) -> Flight:
+        """The flight on the screen."""
+        return self.flown.flight
+
+    @property
+    def credit(self) -> Credit:
+        """Who flies it, and whether it counts as the player's own."""
+        return self.flown.credit
+
+    @property
+    def ending(self) -> FlightEnding:
+        """Its ending, with slow motion and outcome card."""
+        return self.flown.ending
+
+    @property
+    def waiting(self) -> bool:
+        """Whether the craft still hangs until the pilot's first touch."""
+        return self.flown.waiting
+
     def _begin(self, seed: int) -> None:
-        self.waiting, self._let_go = True, False
-        challenge = self._challenge
-        pads, self._hands = (1, OWN) if challenge else self._chosen()
-        check = challenge is None and self._settings.check_flights and self._skill.check_due and not self._eased
-        if check:
-            self._hands = OWN
-        alone = check or (challenge is not None and challenge.alone)
-        network = None if alone else self._network.policy
-        self.flight: Flight = (
-            challenge.flight(seed, network) if challenge else Flight(seed, network, pads=pads, hands=self._hands)
-        )
-        self._difficulty = Difficulty(self._settings, self.flight, free=not challenge)
-        self.credit = Credit(self.flight, self._difficulty, challenge, self._hands, check=check)
-        self._cockpit = Cockpit(self.flight, self._settings, self.credit)
-        self._ghost = challenge.ghost(seed, network) if challenge else None
-        told = not challenge or bool(challenge.opening)
-        self._scenery = Scenery(
-            self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
-        )
-        self._pace = SlowMotion()
-        self._heard = FlightSound(self._sound, self.flight.env, self._pace)
-        self.ending = FlightEnding(self.flight, self._pace, self._settings.reduced_motion)
-        self._readouts = hud.flight_readouts(self.flight.env)
-        self._path_preview = PathPreview(self.flight, None if alone else self._guide)
-
-    def _fly(self) -> None:
-        """Fly a step; after the end, advance only what still moves."""
-        flight = self.flight
-        was_over = flight.over
-        if not was_over:  # at the end, the figures stay those of the last moment before
-            self._readouts = hud.flight_readouts(flight.env)
-            self._difficulty.heed()
-        self._cockpit.help()
-        flight.step(self._held)
-        if self._ghost:
-            self._ghost.step()
-        self._path_preview.follow(waiting=False)
-        if not was_over:
-            self._cockpit.follow()
-        self._scenery.clear = self._cockpit.clear
-        self._scenery.follow(flight.over and not was_over, self.ending.shot)
         if self._challenge:
-            if told := self._challenge.follow(flight):
-                self._sound.play(told)
-            self._remember(self._challenge)
-        if flight.over:
-            self._end()
+            self.flown = FlownFlight(self.context, seed, self._network.policy, self._challenge)
+            return
+        pads, hands = self._chosen()
+        check = self._settings.check_flights and self._skill.check_due and not self._eased
+        hands = OWN if check else hands
+        self.flown = FlownFlight(self.context, seed, self._network.policy, pads=pads, hands=hands, check=check)
 
-    def _end(self) -> None:
-        """Advance a step after the end: towards the card, or at once to the next try."""
-        ending, challenge = self.ending, self._challenge
+    def _follow_flight(self) -> None:
+        """Save what a step has brought the player in a course; after the end, go on to the card or the next try."""
+        challenge, ending = self._challenge, self.ending
+        if challenge:
+            self._remember(challenge)
+        if not self.flight.over:
+            return
         ending.follow()
         if challenge and challenge.again():
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            ending.make_card(self._cockpit, challenge, self._skill, self._scenery)
+            self.flown.make_card(self._skill)
             if challenge is None or challenge.kept:
-                write_down(self.context, self.flight, self._cockpit, challenge, self._records, self._skill,
-                           self._network, self._hands)  # fmt: skip
+                self.flown.write_down(self._records, self._skill, self._network)
 
     @property
     def _held(self) -> int:
         """The action that keys, pads or the mouse ask for."""
         mouse = self._mouse
-        return self._controls.action or (mouse.action(self._scenery.across) if mouse.holds else 0)
-
-    def _waits(self) -> bool:
-        """Whether the craft still hangs; a key that began the flight itself must first be let go."""
-        action = self._held
-        self._let_go = self._let_go or not action
-        touched = bool(action) or (self._challenge is not None and not self._challenge.waits)
-        if self.flight.hand is StickHolder.NETWORK or (touched and self._let_go):
-            self.waiting = False
-        return self.waiting
-
-    @property
-    def _guide(self) -> networks.Policy | None:
-        """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
-        return None if self._challenge else self._network.policy
+        return self._controls.action or (mouse.action(self.flown.scenery.across) if mouse.holds else 0)
 
     def _chosen(self) -> tuple[int, str]:
         """Return the number of pads and the handicap, as chosen by the player."""
@@ -352,22 +299,4 @@ class PlayScene(Scene):
         self._settings.model = name
         self.context.apply_settings()
         self._load_network()
-        if not self.credit.alone:
-            self.flight.change_network(self._network.policy)
-            self._path_preview.ask(self._guide)
-
-    # The picture
-
-    def _moment(self, alpha: float) -> DrawnFlight:
-        stuck = self.waiting and not self._let_go
-        return DrawnFlight(alpha, self._controls, self._cockpit.clear, self.waiting, stuck)
-
-    def _draw_words(self, canvas: Canvas) -> None:
-        challenge = self._challenge
-        self._cockpit.draw_top(canvas)
-        flight_words.draw_title(canvas, self.flight, challenge, self._network, self._hands, self.credit.notice)
-        hud.draw_readouts(canvas, self._readouts)
-        if self.waiting and not (challenge and not challenge.opening):
-            flight_words.draw_opening(canvas, self._controls, challenge, self._path_preview.asks)
-        if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
-            self.hint_rows(canvas)[0].draw(canvas)
+        self.flown.change_network(self._network.policy)

@@ -19,7 +19,7 @@ from game.digits.pictures import picture
 from game.digits.quiz_rules import ROUNDS, QuizGame, QuizRound
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.prose import wrapped
+from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import (
     FIGURE,
@@ -224,8 +224,7 @@ class QuizScene(FormScene):
         canvas.text(question, (LEFT, _QUESTION), size=FIGURE, weight="light")
         if current.answer is None:
             how = texts.QUIZ_DRAW_HOW if draws else texts.QUIZ_READ_HOW
-            for line_number, line in enumerate(wrapped(canvas, how, SMALL, _COLUMN)):
-                canvas.text(line, (LEFT, _QUESTION + 28 + 18 * line_number), size=SMALL, colour=MUTE)
+            draw_wrapped(canvas, how, (LEFT, _QUESTION + 28), _COLUMN, colour=MUTE, leading=18)
             return
         assert current.probabilities is not None
         best = int(current.probabilities.argmax())
@@ -250,8 +249,7 @@ class QuizScene(FormScene):
         canvas.text(texts.QUIZ_OVER[self.contest.lead], (LEFT, _QUESTION), size=TITLE,
                     colour={1: HUMAN, 0: INK, -1: NET}[self.contest.lead])  # fmt: skip
         told = texts.QUIZ_OVER_LINE.format(you=you, asked=asked, net=net, drawn=drawn)
-        for number, line in enumerate(wrapped(canvas, told, SMALL, _COLUMN)):
-            canvas.text(line, (LEFT, _QUESTION + 28 + 18 * number), size=SMALL, colour=MUTE)
+        draw_wrapped(canvas, told, (LEFT, _QUESTION + 28), _COLUMN, colour=MUTE, leading=18)
 
     def _draw_score(self, canvas: Canvas) -> None:
         sides: tuple[tuple[int, int], ...] = (self.contest.score("read"), self.contest.score("draw"))

@@ -61,7 +61,7 @@ def up(driver: Driver, key: int) -> None:
 
 
 def start_at(driver: Driver, *start: float) -> None:
-    play(driver).waiting = False
+    play(driver).flown.waiting = False
     play(driver).flight.env.place(np.ones(1, bool), np.array([start]))
 
 
@@ -99,7 +99,7 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     driver = fly(open_game, context, assist=0.5)
     start_at(driver, 0, 16, 0, 0, 0, 0)
     driver.frames(6)
-    flight, cockpit = play(driver).flight, play(driver)._cockpit
+    flight, cockpit = play(driver).flight, play(driver).flown.cockpit
     assert flight.env.actions[0] == MAIN
     assert cockpit.overrides.lamp(flight)[0] == "ring"
     down(driver, pygame.K_LEFT)
@@ -197,7 +197,7 @@ def test_choices_are_made_with_any_device_and_the_waiting_flight_follows(
     assert settings.hands == "laggy"
     assert play(driver).waiting
     assert len(play(driver).flight.env.ground.pads) == 3
-    assert play(driver)._hands == "laggy"
+    assert play(driver).flown.hands == "laggy"
 
 
 def test_pads_and_hands_do_not_change_under_a_flight_that_has_begun(open_game: Open, context: Context):
@@ -235,7 +235,7 @@ def test_nonsense_in_the_settings_flies_as_usual(open_game: Open, context: Conte
     driver = fly(open_game, context, hands="three", copilot="captain", assist=0.5)
     driver.key(pygame.K_UP)
     driver.frames(10)
-    assert play(driver)._hands == "own"
+    assert play(driver).flown.hands == "own"
     assert driver.app.context.settings.copilot == "tolerance"
 
 

@@ -32,7 +32,7 @@ def shared(open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch) -
 
 
 def place(driver: Driver, *state: float) -> None:
-    play(driver).waiting = False
+    play(driver).flown.waiting = False
     play(driver).flight.env.place(np.ones(1, bool), np.array([state]))
 
 
@@ -54,12 +54,12 @@ def note(draw: Callable[..., None], places: list[tuple[float, float]], at: int) 
 
 def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(shared: Driver, monkeypatch):
     panels: list[bool] = []
-    copilot_panel = play(shared)._cockpit._copilot_panel
+    copilot_panel = play(shared).flown.cockpit._copilot_panel
     monkeypatch.setattr(copilot_panel, "draw", lambda *_: panels.append(True))
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.frames(4)
     assert panels
-    x, y = play(shared)._scenery.view(1.0).metres(PANEL.center).tolist()
+    x, y = play(shared).flown.scenery.view(1.0).metres(PANEL.center).tolist()
     place(shared, x, y, 0, 0, 0, 0)
     shared.frames(2)  # it leaps there between two steps
     panels.clear()
@@ -72,11 +72,13 @@ def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Ope
     driver.frames(40)
     scene = play(driver)
     x, y = scene.flight.env.position[0].tolist()
-    scene._path_preview._drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
+    scene.flown.path_preview._drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
     places = drawn(monkeypatch, "dot", "marker")
-    scene._path_preview.draw(driver.app.canvas, scene._scenery.view(driver.app.canvas.scale), scene._scenery.clear.head)
+    scene.flown.path_preview.draw(
+        driver.app.canvas, scene.flown.scenery.view(driver.app.canvas.scale), scene.flown.scenery.clear.head
+    )
     assert places
-    assert min(row for _, row in places) > scene._scenery.clear.head
+    assert min(row for _, row in places) > scene.flown.scenery.clear.head
 
 
 @pytest.mark.parametrize("state", [(21.9, 3.0, 6.0, 0.0, 0, 0), (0, 25.9, 0, 6.0, 0, 0), (-21.9, 12, -6.0, 0, 0, 0)])
@@ -89,9 +91,9 @@ def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context
     driver.frames(10)
     assert play(driver).flight.outcome is Outcome.OUT_OF_BOUNDS
     crafts: list[object] = []
-    monkeypatch.setattr(play(driver)._scenery.stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    monkeypatch.setattr(play(driver).flown.scenery.stage, "draw_lander", lambda *args, **_: crafts.append(args))
     places = drawn(monkeypatch, "marker")
-    play(driver)._scenery.draw_craft(driver.app.canvas, 1.0)
+    play(driver).flown.scenery.draw_craft(driver.app.canvas, 1.0)
     assert not crafts
     ((x, y),) = places
     assert 0 < x < 1280
@@ -99,13 +101,13 @@ def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context
 
 
 def test_the_word_beside_a_craft_keeps_off_the_panel(shared: Driver, monkeypatch):
-    left = play(shared)._cockpit.clear.right
+    left = play(shared).flown.cockpit.clear.right
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     shared.frames(6)
-    overrides, view = play(shared)._cockpit.overrides, play(shared)._scenery.view(1.0)
+    overrides, view = play(shared).flown.cockpit.overrides, play(shared).flown.scenery.view(1.0)
     assert overrides.strength > 0
-    clear = play(shared)._cockpit.clear
+    clear = play(shared).flown.cockpit.clear
     assert clear.right < PANEL.left < left
     boxes: list[pygame.FRect] = []
     write = Canvas.text

@@ -47,7 +47,7 @@ def scene(driver: Driver) -> PlayScene:
 
 
 def ghost(driver: Driver) -> Ghost:
-    found = scene(driver)._ghost
+    found = scene(driver).flown.ghost
     assert found is not None
     return found
 
@@ -59,7 +59,7 @@ def press(driver: Driver, key: int) -> None:
 def end(driver: Driver, *start: float) -> None:
     """Bring the player's own flight to its end from a state near the ground."""
     play = scene(driver)
-    play.waiting = False
+    play.flown.waiting = False
     play.flight.env.place(np.ones(1, bool), np.array([start]))
     while play.ending.shown < 1:
         driver.skip()
@@ -116,8 +116,8 @@ def test_the_ghost_waits_in_a_pause(duel):
 def ghost_below(driver: Driver) -> Ghost:
     below = driver.app.scenes._stack[-2]
     assert isinstance(below, PlayScene)
-    assert below._ghost is not None
-    return below._ghost
+    assert below.flown.ghost is not None
+    return below.flown.ghost
 
 
 def test_escape_leaves_before_the_start_and_after_the_end(duel):

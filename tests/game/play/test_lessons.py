@@ -59,7 +59,7 @@ class Reader:
     def sentence(self) -> tuple[str, dict[str, str]]:
         """Return which sentence is written, and the keys that it names."""
         scene = play(self.driver)
-        moment = scene._moment(1.0)
+        moment = scene.flown.moment(1.0)
         words = self.challenge.words(scene.flight, moment.controls, waiting=moment.waiting, stuck=moment.stuck)
         for name, pattern in SENTENCES:
             if found := pattern.fullmatch(words):

@@ -39,7 +39,7 @@ pytestmark = pytest.mark.usefixtures("scripted_network")
 def land(driver: Driver) -> None:
     """Bring the flight to a landing by hand."""
     scene = play(driver)
-    scene.waiting = False
+    scene.flown.waiting = False
     env = scene.flight.env
     x, y = env.pad[0].tolist()
     env.place(np.ones(1, bool), np.array([[x, y + PARAMS.stand + 0.002, 0, 0, 0, 0]]))
@@ -123,7 +123,7 @@ def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open
     assert driver.top_name == "MissionsScene"
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert play(driver)._challenge.name == "brake"
-    assert play(driver)._ghost is not None
+    assert play(driver).flown.ghost is not None
     land(driver)
     assert play(driver).ending.card.score == "gold"
     driver.key(pygame.K_RETURN)
@@ -212,12 +212,12 @@ def test_what_surrounds_a_flight_is_told():
 def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open):
     driver = open_game(MissionsScene)
     driver.key(pygame.K_RETURN)
-    assert play(driver)._ghost.flight.hand is StickHolder.NETWORK
-    assert not isinstance(play(driver)._ghost.flight, ReplayedFlight)
+    assert play(driver).flown.ghost.flight.hand is StickHolder.NETWORK
+    assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
     driver.keys(*[pygame.K_DOWN] * 10, pygame.K_RETURN)
     assert play(driver)._challenge.name == "outage"
-    assert isinstance(play(driver)._ghost.flight, ReplayedFlight)
+    assert isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
     driver.key(pygame.K_TAB)
     driver.key(pygame.K_LEFT)
@@ -303,13 +303,13 @@ def test_the_ghost_of_a_race_flies_as_the_flight_did(book: Driver):
     book.keys(pygame.K_DOWN)
     word = next(widget for widget in book.form.widgets if widget.label == texts.LOGBOOK_RACE)
     book.click(word.box.center)
-    ghost = play(book)._ghost
-    play(book).waiting = False
+    ghost = play(book).flown.ghost
+    play(book).flown.waiting = False
     book.skip(1200)
     assert ghost.flight.outcome is Outcome.LANDED
     book.key(pygame.K_r)
     assert play(book).waiting
-    assert play(book)._ghost is not ghost
+    assert play(book).flown.ghost is not ghost
 
 
 def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
@@ -326,7 +326,7 @@ def test_a_flight_is_flown_on_from_the_moment_that_is_shown(book: Driver):
     book.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     book.frames(10)
     assert len(flight.recording.actions) > at
-    assert play(book)._ghost.flight.env.steps[0] == flight.env.steps[0]
+    assert play(book).flown.ghost.flight.env.steps[0] == flight.env.steps[0]
     land(book)
     entry = Records(book.app.context.user_dir).entries()[-1]
     assert not entry.alone

@@ -43,7 +43,7 @@ def tutorial(driver: Driver) -> Tutorial:
 
 def obey(scene: PlayScene, name: str) -> int:
     """The action that does what a lesson asks; nothing while a new flight waits for the keys to be let go."""
-    if scene.waiting and not scene._let_go:
+    if scene.flown.moment(1.0).stuck:
         return 0
     fall = -scene.flight.env.velocity[0, 1]
     simple = {"fire": 3, "fall": 0, "brake": 3 * (fall > 0.7), "lean": 1, "hand_over": 0, "take_back": 0}

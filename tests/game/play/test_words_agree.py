@@ -155,7 +155,7 @@ def land(driver: Driver) -> None:
 
 def end(driver: Driver, outcome: Outcome) -> None:
     """Bring the flight to an end of that kind."""
-    play(driver).waiting = False
+    play(driver).flown.waiting = False
     env = play(driver).flight.env
     x, y = env.pad[0].tolist()
     driver.post(pygame.KEYUP, key=pygame.K_UP, mod=0, unicode="", scancode=0)

@@ -53,7 +53,7 @@ def let_go(driver: Driver, key: int) -> None:
 
 
 def start_at(play: PlayScene, *start: float) -> None:
-    play.waiting = False
+    play.flown.waiting = False
     play.flight.env.place(np.ones(1, bool), np.array([start]))
 
 
@@ -276,7 +276,7 @@ def test_a_disk_that_is_full_at_the_end_of_a_flight_is_told_of_and_harms_no_othe
 
 
 def crash(driver: Driver) -> None:
-    scene(driver).waiting = False
+    scene(driver).flown.waiting = False
     scene(driver).flight.env.place(np.ones(1, bool), np.array([[8.0, 2.2, 0.0, -3.0, 0.0, 0.0]]))
     while scene(driver).ending.card is None:
         driver.frames(1)
@@ -377,8 +377,8 @@ def test_the_networks_way_is_drawn_in_its_colour_if_there_is_one(open_game: Open
     flown_by(ScriptedPilot())
     driver = open_game(PlayScene, seed=4)
     driver.frames(200)
-    assert len(scene(driver)._path_preview._forecast.path) > 5
+    assert len(scene(driver).flown.path_preview._forecast.path) > 5
     flown_by(None)
     driver = open_game(PlayScene, seed=4)
     driver.frames(2)
-    assert not scene(driver)._path_preview.asks
+    assert not scene(driver).flown.path_preview.asks

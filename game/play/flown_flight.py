@@ -1,0 +1,204 @@
+"""A flight of the player's with all that belongs to it alone: scenery, cockpit, paths, ghost, sounds and ending."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from game.audio.flight_sounds import FlightSound
+from game.cockpit import hud
+from game.cockpit.cockpit import Cockpit
+from game.core.pace import SlowMotion
+from game.drawing.canvas import Canvas
+from game.flight.credit import Credit
+from game.flight.difficulty import Difficulty
+from game.flight.flight import Flight, StickHolder
+from game.flight.handicap import OWN
+from game.flight.logbook import Records
+from game.flight.networks import Network, Policy
+from game.flight.skill import Skill
+from game.play import captions
+from game.play.challenge import Challenge, DrawnFlight
+from game.play.ending import FlightEnding
+from game.world.path_preview import PathPreview
+from game.world.scenery import Scenery
+
+if TYPE_CHECKING:
+    from game.ui.context import Context
+
+
+class FlownFlight:
+    """One flight of the player's, made anew for every start; around every step, call `prepare` and `follow`.
+
+    Args:
+        context: the shared services.
+        seed: seed of the start.
+        policy: the network to hand over to, if there is one; unused where the player must fly alone.
+        challenge: the course; None for a free flight.
+        pads: number of landing pads of a free flight.
+        hands: handicap of a free flight, a name of `game.flight.handicap.HANDS`.
+        check: whether it is a check flight.
+
+    Attributes:
+        flight: the flight itself.
+        credit: who flies it, and whether it counts as the player's own.
+        difficulty: its changes of gravity and pace.
+        pace: the clock that slows down after a crash.
+        ending: the ending, with slow motion and outcome card.
+        waiting: whether the craft still hangs until the pilot's first touch.
+
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        seed: int,
+        policy: Policy | None,
+        challenge: Challenge | None = None,
+        *,
+        pads: int = 1,
+        hands: str = OWN,
+        check: bool = False,
+    ) -> None:
+        self._context, self._settings = context, context.settings
+        self.challenge, self.hands = challenge, hands
+        self.waiting = self._held_before = True
+        self._was_over = False  # whether the flight was over before its latest step
+        alone = check or (challenge is not None and challenge.alone)
+        self._policy = None if alone else policy
+        self.flight = (
+            challenge.flight(seed, self._policy) if challenge else Flight(seed, self._policy, pads=pads, hands=hands)
+        )
+        self.difficulty = Difficulty(self._settings, self.flight, free=not challenge)
+        self.credit = Credit(self.flight, self.difficulty, challenge, hands, check=check)
+        self.cockpit = Cockpit(self.flight, self._settings, self.credit)
+        self.ghost = challenge.ghost(seed, self._policy) if challenge else None
+        told = not challenge or bool(challenge.opening)
+        calm = self._settings.reduced_motion
+        self.scenery = Scenery(self.flight, calm, captions.BELOW_OPENING if told else self.cockpit.clear)
+        self.pace = SlowMotion()
+        self._heard = FlightSound(context.sound, self.flight.env, self.pace)
+        self.ending = FlightEnding(self.flight, self.pace, calm)
+        self._readouts = hud.flight_readouts(self.flight.env)
+        self.path_preview = PathPreview(self.flight, self._guide)
+
+    @property
+    def _guide(self) -> Policy | None:
+        """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
+        return None if self.challenge else self._policy
+
+    def set_calm(self, calm: bool) -> None:
+        """Set whether motion is reduced."""
+        self.scenery.calm = self.ending.calm = calm
+        if calm:
+            self.pace.hurry()
+
+    def change_network(self, policy: Policy | None) -> None:
+        """Change the network to hand over to, unless the player must fly alone."""
+        if not self.credit.alone:
+            self._policy = policy
+            self.flight.change_network(policy)
+            self.path_preview.ask(self._guide)
+
+    # Time
+
+    def breathe(self) -> None:
+        """Advance by 1/60 s what moves whether or not anything flies."""
+        self.scenery.breathe()
+        self.cockpit.ease()
+
+    def due(self, action: int) -> bool:
+        """Count 1/60 s; return whether a step is due: the craft may wait, or slowed time make none due."""
+        self.pace.rate = self._settings.pace
+        if self._waits(action):
+            self.path_preview.follow(waiting=True)
+            return False
+        return bool(self.pace.steps())
+
+    def sound(self) -> None:
+        """Let the flight be heard; call it in every 1/60 s, between steps too, or fire would fall silent."""
+        self._heard.follow(self.scenery.stage.thrust[0])
+
+    def _waits(self, action: int) -> bool:
+        """Whether the craft still hangs; a key that began the flight itself must first be let go."""
+        self._held_before = self._held_before and bool(action)
+        touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
+        if self.flight.hand is StickHolder.NETWORK or (touched and not self._held_before):
+            self.waiting = False
+        return self.waiting
+
+    def prepare(self) -> None:
+        """Make ready for the flight's next step; after the end, only what still moves goes on."""
+        self._was_over = self.flight.over
+        if not self._was_over:  # at the end, the figures stay those of the last moment before
+            self._readouts = hud.flight_readouts(self.flight.env)
+            self.difficulty.heed()
+        self.cockpit.help()
+
+    def follow(self) -> None:
+        """Follow the flight's step."""
+        flight = self.flight
+        if self.ghost:
+            self.ghost.step()
+        self.path_preview.follow(waiting=False)
+        if not self._was_over:
+            self.cockpit.follow()
+        self.scenery.clear = self.cockpit.clear
+        self.scenery.follow(flight.over and not self._was_over, self.ending.shot)
+        if self.challenge and (told := self.challenge.follow(flight)):
+            self._context.sound.play(told)
+
+    # The end
+
+    def make_card(self, skill: Skill) -> None:
+        """Make the outcome card of the finished flight."""
+        self.ending.make_card(self.cockpit, self.challenge, skill, self.scenery)
+
+    def write_down(self, records: Records, skill: Skill, network: Network) -> None:
+        """Record the finished flight, save it as a demonstration if wished, and report failures to the player."""
+        context, credit, challenge = self._context, self.credit, self.challenge
+        told = "" if challenge or credit.bar == "practice" else self.cockpit.keep_lesson(context.user_dir, self.hands)
+        entry = records.keep(
+            self.flight,
+            time.time(),
+            alone=credit.counts,
+            barred=credit.bar,
+            network=network.name if network.policy else "",
+            course=challenge.name if challenge else "",
+            medal=credit.medal,
+            pace=credit.pace,
+        )
+        skill.add(entry)
+        if told or records.problem:
+            context.note(told or records.problem)
+
+    # The picture
+
+    def moment(self, alpha: float) -> DrawnFlight:
+        """Return the moment that a course draws over, once the fraction `alpha` of a step has passed."""
+        controls, clear = self._context.controls, self.cockpit.clear
+        return DrawnFlight(alpha, controls, clear, self.waiting, self.waiting and self._held_before)
+
+    def draw(self, canvas: Canvas, alpha: float, network: Network) -> None:
+        """Draw the world, the craft and the read-outs; `network` is the one whose name the title tells."""
+        alpha = self.pace.between(alpha)
+        view, flight = self.scenery.view(canvas.scale, alpha), self.flight
+        self.scenery.draw_land(canvas, alpha)
+        if self.ghost:
+            self.ghost.draw_way(canvas, view)
+        if flight.over:
+            self.cockpit.track.draw(canvas, view)
+        self.path_preview.draw(canvas, view, self.scenery.clear.head)
+        if self.ghost:
+            self.ghost.draw(canvas, view, alpha)
+        self.scenery.draw_craft(canvas, alpha, words=self.ending.shown == 0)
+        pose = flight.poses.at(alpha)[0]
+        self.cockpit.draw_panel(canvas, view, pose)
+        self.cockpit.draw_beside(canvas, view, pose)
+        if self.challenge:
+            self.challenge.draw(canvas, view, flight, self.moment(alpha))
+        self.cockpit.draw_top(canvas)
+        captions.draw_title(canvas, flight, self.challenge, network, self.hands, self.credit.notice)
+        hud.draw_readouts(canvas, self._readouts)
+        if self.waiting and not (self.challenge and not self.challenge.opening):
+            captions.draw_opening(canvas, self._context.controls, self.challenge, self.path_preview.asks)
