@@ -29,13 +29,18 @@ _GAP: Final = 28.0  # between words
 
 
 class Dialog(FormScene):
-    """Base of all dialogs; a subclass adds its widgets to the form. Escape closes without effect."""
+    """Base of all dialogs; a subclass adds its widgets to the form. Escape closes without effect.
+
+    Attributes:
+        more: what is said below the question.
+
+    """
 
     height = 164
 
     def __init__(self, below: Scene, question: str, more: str = "") -> None:
         super().__init__(below.context)
-        self._below, self._question, self._more = below, question, more
+        self._below, self._question, self.more = below, question, more
         self.box = pygame.Rect(_LEFT, (720 - self.height) // 2 - 16, _WIDTH, self.height)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -46,8 +51,8 @@ class Dialog(FormScene):
         canvas.outline(self.box, 8, FAINT)
         left, top = self.box.left + _MARGIN, self.box.top
         canvas.text(self._question, (left, top + 40), size=TEXT)
-        if self._more:
-            for number, line in enumerate(wrapped(canvas, self._more, SMALL, _ROOM)):
+        if self.more:
+            for number, line in enumerate(wrapped(canvas, self.more, SMALL, _ROOM)):
                 canvas.text(line, (left, top + 66 + 18 * number), size=SMALL, colour=MUTE)
         self.form.draw(canvas)
         self.draw_hints(canvas)

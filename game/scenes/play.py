@@ -47,6 +47,10 @@ class PlayScene(Scene):
         credit: who flies it, and whether it counts as the player's own.
         ending: the ending, with slow motion and outcome card.
         waiting: whether the craft still hangs until the pilot's first touch.
+        challenge: what is flown besides free flights; None in a free flight.
+        ghost: the flight beside it, if any.
+        network: the network to hand over to.
+        cockpit, scenery, path_preview, pace: what is drawn of the flight, and how fast its time goes.
 
     """
 
@@ -59,15 +63,15 @@ class PlayScene(Scene):
         challenge: Challenge | None = None,
     ) -> None:
         super().__init__(context)
-        self._challenge = Duel(rival, rival_name) if rival else challenge
+        self.challenge = Duel(rival, rival_name) if rival else challenge
         self._mouse = MouseStick()
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
-        if self._challenge is None and seed is None and not context.settings.tutored:
+        if self.challenge is None and seed is None and not context.settings.tutored:
             from game.play.tutorial import Tutorial
 
-            self._challenge = Tutorial()
+            self.challenge = Tutorial()
         self._records = Records(context.user_dir)
         self._skill = Skill(self._records.entries())
         if self._records.problem:
@@ -76,10 +80,10 @@ class PlayScene(Scene):
 
     def enter(self) -> None:
         """Resume the paused flight, unless choices made meanwhile require a new one."""
-        self._scenery.calm = self.ending.calm = self._settings.reduced_motion
+        self.scenery.calm = self.ending.calm = self._settings.reduced_motion
         if self.ending.calm:
-            self._pace.hurry()
-        if self.waiting and not self._challenge and self._chosen() != (self.flight.recording.pads, self._hands):
+            self.pace.hurry()
+        if self.waiting and not self.challenge and self._chosen() != (self.flight.recording.pads, self._hands):
             self.retry()
 
     def exit(self) -> None:
@@ -95,7 +99,7 @@ class PlayScene(Scene):
         """Handle handover, retry, pause and the dial."""
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
-        if self._cockpit.take(event):
+        if self.cockpit.take(event):
             self._name_what_lacks()
             return None
         self._mouse.take(event)
@@ -116,7 +120,7 @@ class PlayScene(Scene):
         rows = [flight_words.flight_row(hints_of(self._flight_actions(), self._controls))]
         if self.ending.card and self.ending.shown > 0:
             hints = hints_of(self._card_actions(), self._controls)
-            rows.append(self.ending.hint_row(hints, self._ghost, self._settings.show_hints))
+            rows.append(self.ending.hint_row(hints, self.ghost, self._settings.show_hints))
         return rows
 
     @property
@@ -131,48 +135,48 @@ class PlayScene(Scene):
         }
 
     def _flight_actions(self) -> list[Action]:
-        return flight_words.flight_actions(self._runs, self.flight, self._challenge, leaves=self._leaves)
+        return flight_words.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
-        return flight_words.card_actions(self._go_on, self._runs, self._challenge, good=card.good) if card else []
+        return flight_words.card_actions(self._go_on, self._runs, self.challenge, good=card.good) if card else []
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
-        self._scenery.breathe()
+        self.scenery.breathe()
         self._away += self._away > 0
-        self._cockpit.ease()
+        self.cockpit.ease()
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
-        self._pace.rate = self._settings.pace
+        self.pace.rate = self._settings.pace
         if self._waits():
-            self._path_preview.follow(waiting=True)
+            self.path_preview.follow(waiting=True)
             return None
-        if self._pace.steps():
+        if self.pace.steps():
             self._fly()
-        self._heard.follow(self._scenery.stage.thrust[0])  # between steps too, or fire would fall silent
+        self._heard.follow(self.scenery.stage.thrust[0])  # between steps too, or fire would fall silent
         return None
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the craft, the read-outs and, at the end, the card."""
-        alpha = self._pace.between(alpha)
-        view, flight = self._scenery.view(canvas.scale, alpha), self.flight
-        self._scenery.draw_land(canvas, alpha)
-        if self._ghost:
-            self._ghost.draw_way(canvas, view)
+        alpha = self.pace.between(alpha)
+        view, flight = self.scenery.view(canvas.scale, alpha), self.flight
+        self.scenery.draw_land(canvas, alpha)
+        if self.ghost:
+            self.ghost.draw_way(canvas, view)
         if flight.over:
-            self._cockpit.track.draw(canvas, view)
-        self._path_preview.draw(canvas, view, self._scenery.clear.head)
-        if self._ghost:
-            self._ghost.draw(canvas, view, alpha)
-        self._scenery.draw_craft(canvas, alpha, words=self.ending.shown == 0)
+            self.cockpit.track.draw(canvas, view)
+        self.path_preview.draw(canvas, view, self.scenery.clear.head)
+        if self.ghost:
+            self.ghost.draw(canvas, view, alpha)
+        self.scenery.draw_craft(canvas, alpha, words=self.ending.shown == 0)
         pose = flight.poses.at(alpha)[0]
-        self._cockpit.draw_panel(canvas, view, pose)
-        self._cockpit.draw_beside(canvas, view, pose)
-        if self._challenge:
-            self._challenge.draw(canvas, view, flight, self._moment(alpha))
+        self.cockpit.draw_panel(canvas, view, pose)
+        self.cockpit.draw_beside(canvas, view, pose)
+        if self.challenge:
+            self.challenge.draw(canvas, view, flight, self.moment(alpha))
         self._draw_words(canvas)
-        self.ending.draw(canvas, self._ghost, self._settings.show_hints)
+        self.ending.draw(canvas, self.ghost, self._settings.show_hints)
         for row in self.hint_rows(canvas)[1:]:
             row.draw(canvas)
 
@@ -180,29 +184,29 @@ class PlayScene(Scene):
 
     def _begin(self, seed: int) -> None:
         self.waiting, self._let_go = True, False
-        challenge = self._challenge
+        challenge = self.challenge
         pads, self._hands = (1, OWN) if challenge else self._chosen()
         check = challenge is None and self._settings.check_flights and self._skill.check_due and not self._eased
         if check:
             self._hands = OWN
         alone = check or (challenge is not None and challenge.alone)
-        network = None if alone else self._network.policy
+        network = None if alone else self.network.policy
         self.flight: Flight = (
             challenge.flight(seed, network) if challenge else Flight(seed, network, pads=pads, hands=self._hands)
         )
         self._difficulty = Difficulty(self._settings, self.flight, free=not challenge)
         self.credit = Credit(self.flight, self._difficulty, challenge, self._hands, check=check)
-        self._cockpit = Cockpit(self.flight, self._settings, self.credit)
-        self._ghost = challenge.ghost(seed, network) if challenge else None
+        self.cockpit = Cockpit(self.flight, self._settings, self.credit)
+        self.ghost = challenge.ghost(seed, network) if challenge else None
         told = not challenge or bool(challenge.opening)
-        self._scenery = Scenery(
-            self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self._cockpit.clear
+        self.scenery = Scenery(
+            self.flight, self._settings.reduced_motion, flight_words.BELOW_OPENING if told else self.cockpit.clear
         )
-        self._pace = SlowMotion()
-        self._heard = FlightSound(self._sound, self.flight.env, self._pace)
-        self.ending = FlightEnding(self.flight, self._pace, self._settings.reduced_motion)
+        self.pace = SlowMotion()
+        self._heard = FlightSound(self._sound, self.flight.env, self.pace)
+        self.ending = FlightEnding(self.flight, self.pace, self._settings.reduced_motion)
         self._readouts = hud.flight_readouts(self.flight.env)
-        self._path_preview = PathPreview(self.flight, None if alone else self._guide)
+        self.path_preview = PathPreview(self.flight, None if alone else self._guide)
 
     def _fly(self) -> None:
         """Fly a step; after the end, advance only what still moves."""
@@ -211,46 +215,46 @@ class PlayScene(Scene):
         if not was_over:  # at the end, the figures stay those of the last moment before
             self._readouts = hud.flight_readouts(flight.env)
             self._difficulty.heed()
-        self._cockpit.help()
+        self.cockpit.help()
         flight.step(self._held)
-        if self._ghost:
-            self._ghost.step()
-        self._path_preview.follow(waiting=False)
+        if self.ghost:
+            self.ghost.step()
+        self.path_preview.follow(waiting=False)
         if not was_over:
-            self._cockpit.follow()
-        self._scenery.clear = self._cockpit.clear
-        self._scenery.follow(flight.over and not was_over, self.ending.shot)
-        if self._challenge:
-            if told := self._challenge.follow(flight):
+            self.cockpit.follow()
+        self.scenery.clear = self.cockpit.clear
+        self.scenery.follow(flight.over and not was_over, self.ending.shot)
+        if self.challenge:
+            if told := self.challenge.follow(flight):
                 self._sound.play(told)
-            self._remember(self._challenge)
+            self._remember(self.challenge)
         if flight.over:
             self._end()
 
     def _end(self) -> None:
         """Advance a step after the end: towards the card, or at once to the next try."""
-        ending, challenge = self.ending, self._challenge
+        ending, challenge = self.ending, self.challenge
         ending.follow()
         if challenge and challenge.again():
             if ending.due:
                 self.retry()
         elif ending.card is None:
-            ending.make_card(self._cockpit, challenge, self._skill, self._scenery)
+            ending.make_card(self.cockpit, challenge, self._skill, self.scenery)
             if challenge is None or challenge.kept:
-                write_down(self.context, self.flight, self._cockpit, challenge, self._records, self._skill,
-                           self._network, self._hands)  # fmt: skip
+                write_down(self.context, self.flight, self.cockpit, challenge, self._records, self._skill,
+                           self.network, self._hands)  # fmt: skip
 
     @property
     def _held(self) -> int:
         """The action that keys, pads or the mouse ask for."""
         mouse = self._mouse
-        return self._controls.action or (mouse.action(self._scenery.across) if mouse.holds else 0)
+        return self._controls.action or (mouse.action(self.scenery.across) if mouse.holds else 0)
 
     def _waits(self) -> bool:
         """Whether the craft still hangs; a key that began the flight itself must first be let go."""
         action = self._held
         self._let_go = self._let_go or not action
-        touched = bool(action) or (self._challenge is not None and not self._challenge.waits)
+        touched = bool(action) or (self.challenge is not None and not self.challenge.waits)
         if self.flight.hand is StickHolder.NETWORK or (touched and self._let_go):
             self.waiting = False
         return self.waiting
@@ -258,7 +262,7 @@ class PlayScene(Scene):
     @property
     def _guide(self) -> networks.Policy | None:
         """The network whose path is previewed; None beside a ghost, where one blue path is enough."""
-        return None if self._challenge else self._network.policy
+        return None if self.challenge else self.network.policy
 
     def _chosen(self) -> tuple[int, str]:
         """Return the number of pads and the handicap, as chosen by the player."""
@@ -272,9 +276,9 @@ class PlayScene(Scene):
 
     def _load_network(self) -> None:
         context = self.context
-        self._network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
-        if self._network.problem:
-            context.note(texts.NO_NETWORK.format(problem=self._network.problem))
+        self.network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        if self.network.problem:
+            context.note(texts.NO_NETWORK.format(problem=self.network.problem))
 
     def _new_seed(self) -> int:
         return int(self.context.rng.integers(2**31))
@@ -283,13 +287,13 @@ class PlayScene(Scene):
         if self.flight.hand_over():
             self._sound.play("to_network" if self.flight.hand is StickHolder.NETWORK else "to_human")
         elif self.flight.network is None and not self.flight.over:
-            problem = texts.NO_NETWORK.format(problem=self._network.problem)
+            problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     def _name_what_lacks(self) -> None:
         """Tell the player why the dial has no effect, where it has none."""
         if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
-            network = self._network
+            network = self.network
             text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
             self.context.note(text.format(name=network.name, problem=network.problem))
 
@@ -297,19 +301,19 @@ class PlayScene(Scene):
         """Go to a new start after a landing (or leave a course with only one); after a crash, retry the same start."""
         if self.ending.card is None or not self.ending.card.good:
             self.retry()
-        elif self._challenge and self._challenge.fixed:
+        elif self.challenge and self.challenge.fixed:
             return Pop()
         else:
             self._begin_elsewhere()
         return None
 
     def _begin_elsewhere(self) -> None:
-        if self._challenge:
-            self._challenge.skip()
-            self._remember(self._challenge)
-            if self._challenge.through:
-                self._challenge = None
-        self._begin(self.flight.recording.seed if self._challenge and self._challenge.fixed else self._new_seed())
+        if self.challenge:
+            self.challenge.skip()
+            self._remember(self.challenge)
+            if self.challenge.through:
+                self.challenge = None
+        self._begin(self.flight.recording.seed if self.challenge and self.challenge.fixed else self._new_seed())
 
     def _remember(self, challenge: Challenge) -> None:
         """Save the pilot's progress in a course as soon as it is made."""
@@ -318,56 +322,57 @@ class PlayScene(Scene):
 
     def _leave_course(self) -> Transition:
         """Leave the course for free flights, from the pause menu."""
-        assert self._challenge is not None
-        self._challenge.leave()
-        self._remember(self._challenge)
-        self._challenge = None
+        assert self.challenge is not None
+        self.challenge.leave()
+        self._remember(self.challenge)
+        self.challenge = None
         self._begin(self._new_seed())
         return Pop()
 
     @property
     def _leaves(self) -> bool:
         """Whether Escape goes straight back: in a course that has not begun or is over, where nothing is lost."""
-        return self._challenge is not None and (self.waiting or self.flight.over)
+        return self.challenge is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
         self._away = 0
         return push("pause", self, retry=self.retry, more=self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
-        if self._challenge and self._challenge.next_hint:
+        words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self.network.name), self._open_networks)]
+        if self.challenge and self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_course))
-        return [*words, (texts.PAUSE_CHOICES if self._challenge is None else texts.PACE, self._choose)]
+        return [*words, (texts.PAUSE_CHOICES if self.challenge is None else texts.PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a course, few can be changed."""
-        return push("choices", self, self._skill, begun=not self.waiting, challenge=self._challenge is not None)
+        return push("choices", self, self._skill, begun=not self.waiting, challenge=self.challenge is not None)
 
     def _open_networks(self) -> Transition:
-        return push("runs", choose=self._choose_network)
+        return push("runs", choose=self.choose_network)
 
-    def _choose_network(self, name: str) -> None:
+    def choose_network(self, name: str) -> None:
         """Change the network to hand over to, also during a flight."""
         self._settings.model = name
         self.context.apply_settings()
         self._load_network()
         if not self.credit.alone:
-            self.flight.change_network(self._network.policy)
-            self._path_preview.ask(self._guide)
+            self.flight.change_network(self.network.policy)
+            self.path_preview.ask(self._guide)
 
     # The picture
 
-    def _moment(self, alpha: float) -> DrawnFlight:
+    def moment(self, alpha: float) -> DrawnFlight:
+        """Return what a challenge is told of the flight at this moment, `alpha` between the last two steps."""
         stuck = self.waiting and not self._let_go
-        return DrawnFlight(alpha, self._controls, self._cockpit.clear, self.waiting, stuck)
+        return DrawnFlight(alpha, self._controls, self.cockpit.clear, self.waiting, stuck)
 
     def _draw_words(self, canvas: Canvas) -> None:
-        challenge = self._challenge
-        self._cockpit.draw_top(canvas)
-        flight_words.draw_title(canvas, self.flight, challenge, self._network, self._hands, self.credit.notice)
+        challenge = self.challenge
+        self.cockpit.draw_top(canvas)
+        flight_words.draw_title(canvas, self.flight, challenge, self.network, self._hands, self.credit.notice)
         hud.draw_readouts(canvas, self._readouts)
         if self.waiting and not (challenge and not challenge.opening):
-            flight_words.draw_opening(canvas, self._controls, challenge, self._path_preview.asks)
+            flight_words.draw_opening(canvas, self._controls, challenge, self.path_preview.asks)
         if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
             self.hint_rows(canvas)[0].draw(canvas)

@@ -131,10 +131,11 @@ def looking_around():
 
 def eager(config, seed, keep):
     """A live run that saves itself all the time."""
-    from ai.training import session as live
+    from ai.training import autosave
+    from ai.training.session import live
 
-    live.KEEP_SECONDS = 0.0
-    yield from live.live(config, seed, keep=keep)
+    autosave.KEEP_SECONDS = 0.0
+    yield from live(config, seed, keep=keep)
 
 
 def biased_fix(folder, image, digit, keep, before=None):

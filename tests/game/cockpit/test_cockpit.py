@@ -105,7 +105,7 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     driver = fly(open_game, context, assist=0.5)
     start_at(driver, 0, 16, 0, 0, 0, 0)
     driver.frames(6)
-    flight, cockpit = play(driver).flight, play(driver)._cockpit
+    flight, cockpit = play(driver).flight, play(driver).cockpit
     assert flight.env.actions[0] == MAIN
     assert cockpit.overrides.lamp(flight)[0] == "ring"
     down(driver, pygame.K_LEFT)
@@ -223,7 +223,7 @@ def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Ope
     (context.user_dir / LOGBOOK).write_text(4 * (json.dumps(asdict(helped)) + "\n"))
     driver = fly(open_game, context, check_flights=True, assist=0.8, hands="noisy")
     start_at(driver, 0, 16, 0, 0, 0, 0)
-    play(driver)._choose_network("modern")  # in a pause
+    play(driver).choose_network("modern")  # in a pause
     driver.keys(pygame.K_TAB, pygame.K_PLUS)
     driver.frames(10)
     assert driver.app.context.settings.assist == pytest.approx(0.8)

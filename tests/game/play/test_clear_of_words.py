@@ -54,12 +54,12 @@ def note(draw: Callable[..., None], places: list[tuple[float, float]], at: int) 
 
 def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(shared: Driver, monkeypatch):
     panels: list[bool] = []
-    copilot_panel = play(shared)._cockpit._copilot_panel
+    copilot_panel = play(shared).cockpit.copilot_panel
     monkeypatch.setattr(copilot_panel, "draw", lambda *_: panels.append(True))
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.frames(4)
     assert panels
-    x, y = play(shared)._scenery.view(1.0).metres(PANEL.center).tolist()
+    x, y = play(shared).scenery.view(1.0).metres(PANEL.center).tolist()
     place(shared, x, y, 0, 0, 0, 0)
     shared.frames(2)  # it leaps there between two steps
     panels.clear()
@@ -72,11 +72,11 @@ def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Ope
     driver.frames(40)
     scene = play(driver)
     x, y = scene.flight.env.position[0].tolist()
-    scene._path_preview._drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
+    scene.path_preview.drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
     places = drawn(monkeypatch, "dot", "marker")
-    scene._path_preview.draw(driver.app.canvas, scene._scenery.view(driver.app.canvas.scale), scene._scenery.clear.head)
+    scene.path_preview.draw(driver.app.canvas, scene.scenery.view(driver.app.canvas.scale), scene.scenery.clear.head)
     assert places
-    assert min(row for _, row in places) > scene._scenery.clear.head
+    assert min(row for _, row in places) > scene.scenery.clear.head
 
 
 @pytest.mark.parametrize("state", [(21.9, 3.0, 6.0, 0.0, 0, 0), (0, 25.9, 0, 6.0, 0, 0), (-21.9, 12, -6.0, 0, 0, 0)])
@@ -89,9 +89,9 @@ def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context
     driver.frames(10)
     assert play(driver).flight.outcome is Outcome.OUT_OF_BOUNDS
     crafts: list[object] = []
-    monkeypatch.setattr(play(driver)._scenery.stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    monkeypatch.setattr(play(driver).scenery.stage, "draw_lander", lambda *args, **_: crafts.append(args))
     places = drawn(monkeypatch, "marker")
-    play(driver)._scenery.draw_craft(driver.app.canvas, 1.0)
+    play(driver).scenery.draw_craft(driver.app.canvas, 1.0)
     assert not crafts
     ((x, y),) = places
     assert 0 < x < 1280
@@ -99,13 +99,13 @@ def test_a_craft_that_is_lost_lies_on_no_words(open_game: Open, context: Context
 
 
 def test_the_word_beside_a_craft_keeps_off_the_panel(shared: Driver, monkeypatch):
-    left = play(shared)._cockpit.clear.right
+    left = play(shared).cockpit.clear.right
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
     shared.frames(6)
-    overrides, view = play(shared)._cockpit.overrides, play(shared)._scenery.view(1.0)
+    overrides, view = play(shared).cockpit.overrides, play(shared).scenery.view(1.0)
     assert overrides.strength > 0
-    clear = play(shared)._cockpit.clear
+    clear = play(shared).cockpit.clear
     assert clear.right < PANEL.left < left
     boxes: list[pygame.FRect] = []
     write = Canvas.text
@@ -130,10 +130,10 @@ def test_what_is_lost_in_a_swarm_lies_on_no_words_either(open_game: Open, monkey
             watch._fly()
     assert swarm.env.outcome[0] == Outcome.OUT_OF_BOUNDS
     crafts: list[object] = []
-    monkeypatch.setattr(watch._stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    monkeypatch.setattr(watch.stage, "draw_lander", lambda *args, **_: crafts.append(args))
     places = drawn(monkeypatch, "marker")
-    canvas, view = driver.app.canvas, watch._camera.view(driver.app.canvas.scale)
-    watch._trails.draw(canvas, view, 0, 80.0)
+    canvas, view = driver.app.canvas, watch.camera.view(driver.app.canvas.scale)
+    watch.trails.draw(canvas, view, 0, 80.0)
     watch._draw_shown(canvas, view, swarm.poses.at(1.0)[0])
     assert not crafts
     assert places

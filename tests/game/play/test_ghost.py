@@ -47,7 +47,7 @@ def scene(driver: Driver) -> PlayScene:
 
 
 def ghost(driver: Driver) -> Ghost:
-    found = scene(driver)._ghost
+    found = scene(driver).ghost
     assert found is not None
     return found
 
@@ -114,10 +114,10 @@ def test_the_ghost_waits_in_a_pause(duel):
 
 
 def ghost_below(driver: Driver) -> Ghost:
-    below = driver.app.scenes._stack[-2]
+    below = driver.app.scenes.stack[-2]
     assert isinstance(below, PlayScene)
-    assert below._ghost is not None
-    return below._ghost
+    assert below.ghost is not None
+    return below.ghost
 
 
 def test_escape_leaves_before_the_start_and_after_the_end(duel):

@@ -39,11 +39,11 @@ class Reader:
         self.read: list[tuple[str, dict[str, str]]] = []
         self.still = 0  # frames in which nothing has moved, in a row
         self.touch()
-        driver.unseen = device != "mouse"  # which finds its links where they were drawn
+        driver.unseen = True
 
     @property
     def challenge(self) -> Tutorial:
-        challenge = play(self.driver)._challenge
+        challenge = play(self.driver).challenge
         assert isinstance(challenge, Tutorial)
         return challenge
 
@@ -51,7 +51,7 @@ class Reader:
         """Let the game know which device is in use."""
         if self.device == "pad":
             self.driver.axis(pygame.CONTROLLER_AXIS_RIGHTY, 0)
-            self.driver.app.context.controls._used = 0
+            self.driver.app.context.controls.used_pad = 0
         elif self.device == "mouse":
             self.driver.move((640, 300))
             self.driver.move((644, 300))
@@ -59,7 +59,7 @@ class Reader:
     def sentence(self) -> tuple[str, dict[str, str]]:
         """Return which sentence is written, and the keys that it names."""
         scene = play(self.driver)
-        moment = scene._moment(1.0)
+        moment = scene.moment(1.0)
         words = self.challenge.words(scene.flight, moment.controls, waiting=moment.waiting, stuck=moment.stuck)
         for name, pattern in SENTENCES:
             if found := pattern.fullmatch(words):
@@ -144,7 +144,8 @@ class Reader:
             driver.button(pygame.CONTROLLER_BUTTON_Y)
         else:
             driver.frames(1)
-            driver.click(driver.hints()[texts.HINT_HAND_OVER])
+            hints = driver.hints()
+            driver.click(hints.get(texts.HINT_HAND_OVER) or hints[texts.HINT_TAKE_BACK])
 
 
 Open = Callable[..., Driver]

@@ -71,7 +71,7 @@ def test_a_crash_is_slow_for_under_a_second_more_and_adds_nothing_to_the_flight(
     crash(game)
     flight = scene(game).flight
     flown = len(flight.recording.actions)
-    assert scene(game)._pace.slow
+    assert scene(game).pace.slow
     slowly = frames_to_card(game)
     assert len(flight.recording.actions) == flown
     assert flight.env.steps[0] == flown
@@ -79,7 +79,7 @@ def test_a_crash_is_slow_for_under_a_second_more_and_adds_nothing_to_the_flight(
     game.app.context.settings.reduced_motion = True
     game.key(pygame.K_r)
     crash(game)
-    assert not scene(game)._pace.slow
+    assert not scene(game).pace.slow
     assert 20 < slowly - frames_to_card(game) < 60
 
 
@@ -106,16 +106,16 @@ def test_with_and_without_motion_the_same_hands_fly_the_same_flight(game: Driver
 def test_slow_motion_can_be_cut_short_and_loses_no_key(game: Driver):
     crash(game)
     game.frames(30)
-    assert scene(game)._pace.slow
+    assert scene(game).pace.slow
     game.key(pygame.K_RETURN)
-    assert not scene(game)._pace.slow
+    assert not scene(game).pace.slow
     assert frames_to_card(game) < 20
     game.key(pygame.K_r)
     crash(game)
     game.frames(5)
     game.key(pygame.K_r)  # in the midst of it
     assert not scene(game).flight.over
-    assert not scene(game)._pace.slow
+    assert not scene(game).pace.slow
 
 
 def test_slow_motion_ends_where_motion_is_reduced_in_its_midst(game: Driver):
@@ -124,7 +124,7 @@ def test_slow_motion_ends_where_motion_is_reduced_in_its_midst(game: Driver):
         game.key(pygame.K_ESCAPE)
         game.app.context.settings.reduced_motion = reduced
         game.key(pygame.K_ESCAPE)
-        assert scene(game)._pace.slow is not reduced
+        assert scene(game).pace.slow is not reduced
 
 
 @pytest.mark.parametrize("reduced", [False, True])
@@ -138,7 +138,7 @@ def test_a_crash_is_heard_as_it_is_seen_also_if_motion_was_reduced_on_the_way(ga
     game.app.context.settings.reduced_motion = reduced
     game.key(pygame.K_ESCAPE)
     crash(game)
-    assert scene(game)._pace.slow is not reduced
+    assert scene(game).pace.slow is not reduced
     assert [key for key in heard if "crash" in key] == ["crash" if reduced else "slow_crash"]
 
 
@@ -171,21 +171,21 @@ def test_contact_light_is_told_when_both_feet_are_down_and_then_no_more(
 def test_the_camera_comes_near_lingers_and_draws_back_for_the_card(game: Driver):
     place(game, REST)
     game.frames(120)
-    near = scene(game)._scenery.view(1.0).zoom
+    near = scene(game).scenery.view(1.0).zoom
     frames_to_card(game)
     game.frames(240)
     assert near > 1.6
-    assert scene(game)._scenery.view(1.0).zoom == pytest.approx(1.0, abs=0.02)
+    assert scene(game).scenery.view(1.0).zoom == pytest.approx(1.0, abs=0.02)
 
 
 def test_with_reduced_motion_nothing_zooms_pans_or_shakes(game: Driver):
     game.app.context.settings.reduced_motion = True
     game.key(pygame.K_r)
-    still = scene(game)._scenery.view(1.5)
+    still = scene(game).scenery.view(1.5)
     place(game, FALL)
     for _ in range(150):
         game.frames(1)
-        assert scene(game)._scenery.view(1.5, 0.3) == still
+        assert scene(game).scenery.view(1.5, 0.3) == still
 
 
 @pytest.mark.parametrize("reduced", [False, True])
@@ -193,7 +193,7 @@ def test_a_craft_that_waits_high_up_hangs_below_the_words(game: Driver, reduced:
     game.app.context.settings.reduced_motion = reduced
     game.key(pygame.K_r)
     place(game, (3.0, 16.0, 0.0, 0.0, 0.0, 0.0))
-    scenery = scene(game)._scenery
+    scenery = scene(game).scenery
     scenery.cut()
     _, y = scenery.view(1.0).points((3.0, 16.0 + PARAMS.stand))
     assert y > BELOW_OPENING.head
@@ -204,7 +204,7 @@ def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypat
     place(game, (0.0, PARAMS.pad_top + PARAMS.stand + 0.4, 0.0, -1.6, 0.0, 0.0))
     game.frames(2)
     jolts = []
-    stage = scene(game)._scenery.stage
+    stage = scene(game).scenery.stage
     for _ in range(60):
         game.frames(1)
         jolts.append(stage.jolt)
@@ -215,17 +215,17 @@ def test_a_hard_touch_shakes_the_world_and_not_the_words(game: Driver, monkeypat
 def test_motion_can_be_reduced_in_the_midst_of_a_flight(game: Driver):
     place(game, (8.0, 12.0, 0.0, 0.0, 0.0, 0.0))
     game.frames(30)
-    assert scene(game)._scenery.view(1.0) != View(1.0)
+    assert scene(game).scenery.view(1.0) != View(1.0)
     game.key(pygame.K_ESCAPE)
     game.app.context.settings.reduced_motion = True
     game.key(pygame.K_ESCAPE)
     game.frames(2)
-    assert scene(game)._scenery.view(1.0) == View(1.0)
+    assert scene(game).scenery.view(1.0) == View(1.0)
 
 
 def test_nothing_is_heard_of_a_craft_that_hangs_and_waits(game: Driver, monkeypatch: pytest.MonkeyPatch):
     heard: list[str] = []
-    monkeypatch.setattr(scene(game)._sound, "play", lambda key, *_: heard.append(key))
+    monkeypatch.setattr(game.app.context.sound, "play", lambda key, *_: heard.append(key))
     game.frames(200)
     assert scene(game).waiting
     assert heard == []
