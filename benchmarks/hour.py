@@ -116,7 +116,7 @@ class Player:
                     yield name
             if isinstance(self.app.scenes.top, ErrorScene):
                 raise RuntimeError(f"a fault in {name}")
-            if (depth := len(self.app.scenes._stack)) > 1:
+            if (depth := len(self.app.scenes.stack)) > 1:
                 self.app.scenes.apply(Pop(depth - 1))
 
     def _draw(self, frame: int, second: int) -> None:

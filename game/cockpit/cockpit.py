@@ -37,6 +37,12 @@ class Cockpit:
     """Cockpit of one flight; call `help` before every step, `follow` after it.
 
     Where `credit` allows no help, the dial is disabled.
+
+    Attributes:
+        track: the path that was flown.
+        overrides: the marks beside a craft whose action was changed.
+        copilot_panel: what the co-pilot weighs.
+
     """
 
     def __init__(self, flight: Flight, settings: Settings, credit: Credit) -> None:
@@ -44,7 +50,7 @@ class Cockpit:
         self._dial = AssistDial(settings)
         self.overrides = Overrides()
         self.track = FlownPath(flight)
-        self._copilot_panel = CopilotPanel(flight.env.ground)
+        self.copilot_panel = CopilotPanel(flight.env.ground)
         if settings.copilot not in MODES:
             settings.copilot = MODES[0]
         self.help()
@@ -66,7 +72,7 @@ class Cockpit:
         """Update the displays after a step."""
         stepped_in = self.overrides.follow(self._flight)
         self.track.follow(self._flight, stepped_in)
-        self._copilot_panel.follow(self._flight)
+        self.copilot_panel.follow(self._flight)
         self.credit.follow()
 
     def keep_lesson(self, folder: Path, hands: str) -> str:
@@ -99,12 +105,12 @@ class Cockpit:
 
     @property
     def _explains(self) -> bool:
-        return self._settings.explain and self._copilot_panel.shown and not self._flight.over
+        return self._settings.explain and self.copilot_panel.shown and not self._flight.over
 
     def draw_panel(self, canvas: Canvas, view: View, pose: Doubles) -> None:
         """Draw the panel that explains the flight; hide it while the craft flies behind it."""
         if self._explains and not self._meets(view, pose):
-            self._copilot_panel.draw(canvas, self._flight.share)
+            self.copilot_panel.draw(canvas, self._flight.share)
 
     def _meets(self, view: View, pose: Doubles) -> bool:
         """Return whether the craft is behind the panel, which happens only where the camera can't keep it clear."""

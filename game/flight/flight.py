@@ -250,6 +250,7 @@ class Swarm:
         fresh: mask of the slots whose flight began with the last step.
         decision: latest decision of each slot, which is being flown.
         decided: number of decisions of each slot.
+        steps: number of steps since the beginning.
 
     """
 
@@ -264,7 +265,7 @@ class Swarm:
         self.decision = decide(policy, self.observation, np.zeros(count, dtype=np.intp))
         self.decided: Ints = np.ones(count, dtype=np.intp)
         self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; staggered at first
-        self._step = 0
+        self.steps = 0
 
     def step(self) -> Bools:
         """Advance by 1/60 s, and restart flights that have been over for a while. Return a mask of those just ended."""
@@ -274,7 +275,7 @@ class Swarm:
             self.since_end[self.fresh] = 0
         self._decide(np.flatnonzero(self.fresh | ((self._age == DECISION_STEPS) & (self.since_end == 0))))
         self._age += self.since_end == 0
-        self._step += 1
+        self.steps += 1
         self.env.fly(self.decision.action)
         self.observation = self.env.observe()
         outcome = self.env.outcome

@@ -111,20 +111,20 @@ def chosen(models_dir: Path, user_dir: Path, name: str = "") -> Network:
 
 
 class Policies:
-    """All flyers by name, the scripted pilot last. A network is read on first use."""
+    """All flyers by name, the scripted pilot last. A network is read on first use; `read` has those read so far."""
 
     def __init__(self, models_dir: Path, user_dir: Path) -> None:
         self._models_dir = models_dir
         self._folders = folders(models_dir, user_dir)
         missing = [] if DEFAULT in self._folders else [DEFAULT]
         self.names = [*missing, *self._folders, SCRIPTED]
-        self._read: dict[str, Network] = {}
+        self.read: dict[str, Network] = {}
 
     def __getitem__(self, name: str) -> Network:
         """Return the network of that name, a damaged one too; raises KeyError if there is none."""
-        if name not in self._read:
-            self._read[name] = self._load(name)
-        return self._read[name]
+        if name not in self.read:
+            self.read[name] = self._load(name)
+        return self.read[name]
 
     def first_fit(self) -> Network:
         """Return the first network that can fly; the scripted pilot always can."""

@@ -96,6 +96,7 @@ class Controls:
         mouse_in_use: whether the mouse was used last; then no ring is drawn around the focused widget.
         listening: whether the next press is to be bound; it gives no command.
         spelling: whether text is being entered: a key that types a character gives no command.
+        used_pad: number of the gamepad that was used last; None while the keyboard is in use.
         pad_name: reported name of the gamepad plugged in last; empty if it was unplugged at once.
 
     """
@@ -104,14 +105,14 @@ class Controls:
         self.keys, self.buttons = Bindings(KEYBOARD), Bindings(PAD)
         self._keys: set[int] = set()
         self._pads: dict[int, _Pad] = {}
-        self._used: int | None = None  # the gamepad used last, while a gamepad is in use
+        self.used_pad: int | None = None
         self.mouse_in_use = self.listening = self.spelling = False
         self.pad_name = ""
 
     @property
     def pad_in_use(self) -> bool:
         """Whether a gamepad was used last, rather than the keyboard; then hints show its buttons."""
-        return self._used is not None
+        return self.used_pad is not None
 
     @property
     def pads(self) -> int:
@@ -171,7 +172,7 @@ class Controls:
     def pad_sign(self, number: int) -> str:
         """Return the sign of a button by its number, or one of the further signs of `game.input.signs`."""
         pads = [*self._pads.values()]
-        pad = self._pads.get(-1 if self._used is None else self._used) or (pads[-1] if pads else _Pad())
+        pad = self._pads.get(-1 if self.used_pad is None else self.used_pad) or (pads[-1] if pads else _Pad())
         return signs.sign(pad.family, number)
 
     # Events
@@ -196,7 +197,7 @@ class Controls:
                 self._keys.add(event.key)
                 event.command = self._command(event)
                 event.main_keys = self.keys.codes(Held.MAIN)
-                self._used, self.mouse_in_use = None, False
+                self.used_pad, self.mouse_in_use = None, False
             case pygame.MOUSEMOTION | pygame.MOUSEBUTTONDOWN:
                 self.mouse_in_use = True
             case pygame.KEYUP:
@@ -232,7 +233,7 @@ class Controls:
         )
 
     def _use(self, event: pygame.event.Event) -> None:
-        self._used, self.mouse_in_use = event.instance_id, False
+        self.used_pad, self.mouse_in_use = event.instance_id, False
 
     def _pad(self, event: pygame.event.Event) -> _Pad:
         return self._pads.setdefault(event.instance_id, _Pad())
@@ -252,8 +253,8 @@ class Controls:
 
     def _close(self, event: pygame.event.Event) -> None:
         self._pads.pop(event.instance_id, None)
-        if event.instance_id == self._used:
-            self._used = None
+        if event.instance_id == self.used_pad:
+            self.used_pad = None
             event.command = Command.UNPLUGGED
 
     def _move(self, event: pygame.event.Event) -> None:

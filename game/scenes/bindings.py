@@ -124,14 +124,19 @@ class BindingCell(Widget):
 
 
 class BindingsScene(FormScene):
-    """Table of all commands with their keys and gamepad buttons. Each change is saved at once."""
+    """Table of all commands with their keys and gamepad buttons. Each change is saved at once.
+
+    Attributes:
+        said: what came of the last change, in words.
+
+    """
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self._controls = context.controls
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
         form = self.form
-        self._said = ""
+        self.said = ""
         for row, meaning in enumerate(self._controls.keys.table):
             for left, bindings in ((_KEYS, self._controls.keys), (_BUTTONS, self._controls.buttons)):
                 box = (left, _FIRST + row * _ROW + 2, _CELL, _ROW - 3)
@@ -162,8 +167,8 @@ class BindingsScene(FormScene):
             canvas.line((MARGIN, y), (VIEW_SIZE[0] - MARGIN, y), LINE, 1)
             canvas.text(texts.BINDINGS[meaning.name], (MARGIN, y + _ROW / 2 + 5), size=TEXT, colour=INK)
         self.form.draw(canvas)
-        if self._said:
-            canvas.text(self._said, (_BUTTONS - 120, _WORDS + 21), size=SMALL, colour=HUMAN)
+        if self.said:
+            canvas.text(self.said, (_BUTTONS - 120, _WORDS + 21), size=SMALL, colour=HUMAN)
         self.draw_hints(canvas)
 
     def actions(self) -> Table:
@@ -180,7 +185,7 @@ class BindingsScene(FormScene):
         ]
 
     def _changed(self, said: str) -> None:
-        self._said = said
+        self.said = said
         settings = self.context.settings
         settings.keys, settings.buttons = self._controls.keys.to_dict(), self._controls.buttons.to_dict()
         self.context.apply_settings()

@@ -29,13 +29,18 @@ _GAP: Final = 28.0  # between words
 
 
 class Dialog(FormScene):
-    """Base of all dialogs; a subclass adds its widgets to the form. Escape closes without effect."""
+    """Base of all dialogs; a subclass adds its widgets to the form. Escape closes without effect.
+
+    Attributes:
+        more: what is said below the question.
+
+    """
 
     height = 164
 
     def __init__(self, below: Scene, question: str, more: str = "") -> None:
         super().__init__(below.context)
-        self._below, self._question, self._more = below, question, more
+        self._below, self._question, self.more = below, question, more
         self.box = pygame.Rect(_LEFT, (720 - self.height) // 2 - 16, _WIDTH, self.height)
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -46,8 +51,8 @@ class Dialog(FormScene):
         canvas.outline(self.box, 8, FAINT)
         left, top = self.box.left + _MARGIN, self.box.top
         canvas.text(self._question, (left, top + 40), size=TEXT)
-        if self._more:
-            draw_wrapped(canvas, self._more, (left, top + 66), _ROOM, colour=MUTE, leading=18)
+        if self.more:
+            draw_wrapped(canvas, self.more, (left, top + 66), _ROOM, colour=MUTE, leading=18)
         self.form.draw(canvas)
         self.draw_hints(canvas)
 

@@ -58,38 +58,41 @@ class DigitsScene(FormScene):
 
     Attributes:
         pad: the drawing pad.
+        live: reads and explains the drawing.
+        fixing: teaches a network a drawing that it misreads.
+        measuring: measures what each step of the preprocessing is worth.
 
     """
 
     def __init__(self, context: Context, chosen: str = NAMES[0]) -> None:
         super().__init__(context)
         self.pad = DrawingPad(PAD)
-        self._live = LiveReading(self.pad, chosen, self._show_bars)
+        self.live = LiveReading(self.pad, chosen, self._show_bars)
         self._sight = ExplanationView()
         self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
-        self._fixing = FixRunner(context.user_dir, context.models_dir)
-        self._measuring = AccuracyMeasurement(lambda: self._live.sources)
+        self.fixing = FixRunner(context.user_dir, context.models_dir)
+        self.measuring = AccuracyMeasurement(lambda: self.live.sources)
         for name in dict.fromkeys((*NAMES, chosen)):
             self._load(name)
-        if not self._live.known:
-            self._live.chosen = next(iter(self._live.reader.classifiers), chosen)
+        if not self.live.known:
+            self.live.chosen = next(iter(self.live.reader.classifiers), chosen)
         self._tabs = self.form.add(self._make_tabs())
         self._pen = self.form.add(make_pen(self.form.manager, lambda: self.pad))
         self._add_words()
-        self._live.anew()
+        self.live.anew()
         self._offer_undo()
 
     def enter(self) -> None:
         """Refresh the list of networks."""
-        before = set(self._fixing.networks)
-        self._fixing.refresh()
-        if set(self._fixing.networks) == before:
+        before = set(self.fixing.networks)
+        self.fixing.refresh()
+        if set(self.fixing.networks) == before:
             return
-        if self.chosen not in self._fixing.networks:
-            self._live.chosen = NAMES[0]
-            self._live.anew()
+        if self.chosen not in self.fixing.networks:
+            self.live.chosen = NAMES[0]
+            self.live.anew()
         tabs = self._make_tabs()
         self.form.replace([self._tabs], [tabs])
         self._tabs = tabs
@@ -100,18 +103,18 @@ class DigitsScene(FormScene):
 
     def close(self) -> None:
         """End the processes that measure and learn."""
-        self._fixing.close()
-        self._measuring.close()
+        self.fixing.close()
+        self.measuring.close()
 
     @property
     def chosen(self) -> str:
         """Name of the network that is explained."""
-        return self._live.chosen
+        return self.live.chosen
 
     @property
     def reading(self) -> Reading:
         """The latest reading of the drawing."""
-        return self._live.reading
+        return self.live.reading
 
     @property
     def canvas_rect(self) -> pygame.Rect:
@@ -121,7 +124,7 @@ class DigitsScene(FormScene):
     @property
     def probabilities(self) -> Numbers | None:
         """The chosen network's probabilities (10,); None while nothing is drawn, or it can't be loaded."""
-        return self._live.probabilities
+        return self.live.probabilities
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle drawing, and pass any other event to the actions and the widgets."""
@@ -149,8 +152,8 @@ class DigitsScene(FormScene):
 
     def update(self) -> Transition | None:
         """Read the drawing if it changed, and receive finished measurements."""
-        self._live.update()
-        self._measuring.listen()
+        self.live.update()
+        self.measuring.listen()
         self._follow_fix()
         return self.form.update()
 
@@ -161,8 +164,8 @@ class DigitsScene(FormScene):
         self.pad.draw(canvas)
         if self.chosen in self.reading.probabilities:
             draw_answer(canvas, self.reading, self.chosen)
-        steps = list(asdict(self._live.switches).values())
-        self._sight.draw(canvas, self.reading, self.chosen, self._live.why, steps)
+        steps = list(asdict(self.live.switches).values())
+        self._sight.draw(canvas, self.reading, self.chosen, self.live.why, steps)
         self.form.draw(canvas)
         self._draw_words(canvas)
 
@@ -170,48 +173,48 @@ class DigitsScene(FormScene):
 
     def _load(self, name: str) -> None:
         """Load a network with the player's fixes, or with fewer of them if some are damaged."""
-        if network := self._fixing.networks.get(name):
-            self._live.reader.load(name, *network.versions())
+        if network := self.fixing.networks.get(name):
+            self.live.reader.load(name, *network.versions())
 
     def _show_bars(self) -> None:
         for row in self._rows:
-            row.values, row.best = self._live.bars(row.digit)
+            row.values, row.best = self.live.bars(row.digit)
 
     # Preprocessing steps and their measured effect
 
     def _switch(self, step: str, on: bool) -> None:
-        self._live.switches = replace(self._live.switches, **{step: on})
-        self._live.anew()
-        self._measuring.ask(self._live.switches)
+        self.live.switches = replace(self.live.switches, **{step: on})
+        self.live.anew()
+        self.measuring.ask(self.live.switches)
 
     # Fixing a wrong answer
 
     def _correct(self, digit: int) -> None:
         """Teach the chosen network that what is drawn is this digit."""
-        self._live.catch_up()
+        self.live.catch_up()
         image = self.reading.stages.centred
-        if image.any() and self._live.known:
-            self._fixing.begin(self.chosen, image, digit, self._live.reader.sources[self.chosen])
+        if image.any() and self.live.known:
+            self.fixing.begin(self.chosen, image, digit, self.live.reader.sources[self.chosen])
             self._fix_of = self.pad.revision
 
     def _undo_fix(self) -> None:
-        if self._fixing.undo(self.chosen):
+        if self.fixing.undo(self.chosen):
             self._take_anew(self.chosen)
 
     def _follow_fix(self) -> None:
-        if self._fixing.poll():
-            self._take_anew(self._fixing.name)
+        if self.fixing.poll():
+            self._take_anew(self.fixing.name)
 
     def _take_anew(self, name: str) -> None:
         """Reload a network after a fix or its undo."""
         self._load(name)
-        self._live.anew()
+        self.live.anew()
         self._offer_undo()
-        self._measuring.anew(self._live.switches)
+        self.measuring.anew(self.live.switches)
 
     def _offer_undo(self) -> None:
         """Show the button that undoes a fix while there is one."""
-        wanted = self._fixing.count(self.chosen) > 0
+        wanted = self.fixing.count(self.chosen) > 0
         if wanted and self._unfix is None:
             box = (LEFT, FIX_TOP + 48, 96, 24)
             self._unfix = TextButton(self.form.manager, box, texts.DIGITS_UNDO_FIX, self._undo_fix, size=SMALL + 1)
@@ -242,7 +245,7 @@ class DigitsScene(FormScene):
 
     def _make_tabs(self) -> Choice:
         """Return the row of networks; with networks of the player's own, it also leads to a list of all."""
-        names = list(self._fixing.networks)
+        names = list(self.fixing.networks)
         words = [word if len(word) <= _LONGEST_TAB else word[:_LONGEST_TAB] + "…" for word in map(called, names)]
         index = names.index(self.chosen) if self.chosen in names else 0
         if len(names) == len(NAMES):
@@ -252,17 +255,17 @@ class DigitsScene(FormScene):
 
     def _choose(self, index: int) -> None:
         """Choose another network; if it can't be loaded, say so and keep the last one."""
-        names, before = list(self._fixing.networks), self._live.pair
-        if names[index] not in self._live.reader.classifiers:
+        names, before = list(self.fixing.networks), self.live.pair
+        if names[index] not in self.live.reader.classifiers:
             self._load(names[index])
-        if names[index] not in self._live.reader.classifiers:
+        if names[index] not in self.live.reader.classifiers:
             self._tabs.index = names.index(self.chosen)
             return
-        self._live.chosen = names[index]
-        self._live.anew()
+        self.live.chosen = names[index]
+        self.live.anew()
         self._offer_undo()
-        if set(self._live.pair) != set(before):
-            self._measuring.anew(self._live.switches)
+        if set(self.live.pair) != set(before):
+            self.measuring.anew(self.live.switches)
 
     def _turn(self, direction: int) -> None:
         """Choose the next network that can be loaded."""
@@ -276,9 +279,9 @@ class DigitsScene(FormScene):
         """Open a list of all networks with their accuracy."""
         from game.scenes.dialog import ListDialog
 
-        damaged = self._live.reader.problems
+        damaged = self.live.reader.problems
         rows = [(called(name), texts.SHELF_DAMAGED if name in damaged else network.said)
-                for name, network in self._fixing.networks.items()]  # fmt: skip
+                for name, network in self.fixing.networks.items()]  # fmt: skip
         return Push(ListDialog(self, texts.DIGITS_PICK, rows, self._tabs.choose))
 
     def _quiz(self) -> Transition | None:
@@ -295,7 +298,7 @@ class DigitsScene(FormScene):
 
     def _with_chosen(self, lead: Callable[[DigitClassifier], Transition]) -> Transition | None:
         """Open a scene about the chosen network, if it could be loaded."""
-        classifier = self._live.reader.classifiers.get(self.chosen)
+        classifier = self.live.reader.classifiers.get(self.chosen)
         return lead(classifier) if classifier else None
 
     def _undo(self) -> None:
@@ -306,12 +309,12 @@ class DigitsScene(FormScene):
 
     def _draw_words(self, canvas: Canvas) -> None:
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
-            draw_fix(canvas, self._fixing, same=self._fix_of == self.pad.revision)
-        measured = self._measuring.words(self._live.switches)
+            draw_fix(canvas, self.fixing, same=self._fix_of == self.pad.revision)
+        measured = self.measuring.words(self.live.switches)
         place, width = (EXPLANATION_LEFT, 184), _RIGHT - EXPLANATION_LEFT
         draw_wrapped(canvas, measured, place, width, size=LABEL, colour=MUTE, leading=15)
         problems = [texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
-                    for name, problem in self._live.reader.problems.items()]  # fmt: skip
+                    for name, problem in self.live.reader.problems.items()]  # fmt: skip
         y: float = _PROBLEMS
         for words in reversed(problems):
             most = _PROBLEM_LINES - round((y - _PROBLEMS) / 17)

@@ -31,21 +31,27 @@ _LEFT, _RIGHT, _MAIN = 1, 2, 3
 
 
 class MenuBackground:
-    """Background of the menu; while `still`, the lander stands on its pad and nothing moves."""
+    """Background of the menu; while `still`, the lander stands on its pad and nothing moves.
+
+    Attributes:
+        env, poses, stage: the lander, and what is drawn of it.
+        pilot: flies it down; None until its network is loaded.
+
+    """
 
     def __init__(self, context: Context) -> None:
         self._context = context
         self.still = context.settings.reduced_motion
         self._camera = Camera()
         self._camera.cut(_ASIDE)
-        self._env = LanderEnv(1, 0, frame_skip=1)
-        self._env.reset()
-        self._pilot: Policy | None = None
+        self.env = LanderEnv(1, 0, frame_skip=1)
+        self.env.reset()
+        self.pilot: Policy | None = None
         self._step = self._flights = 0
         self._action = np.zeros(1, np.intp)
         self._rested: int  # steps since a landing
-        self._poses: Poses
-        self._stage: Stage
+        self.poses: Poses
+        self.stage: Stage
         self._begin()
         Thread(target=self._load_network, daemon=True).start()  # the first ascent needs none
 
@@ -61,15 +67,15 @@ class MenuBackground:
 
         context = self._context
         network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
-        self._pilot = network.policy or ScriptedPilot()
+        self.pilot = network.policy or ScriptedPilot()
 
     def update(self) -> None:
         """Advance by 1/60 s."""
         if self.still:
             return
         self._step += 1
-        env = self._env
-        was_over = self._over
+        env = self.env
+        was_over = self.over
         if not was_over:
             self._decide()
             env.fly(self._action)
@@ -78,45 +84,46 @@ class MenuBackground:
         else:
             self._stand(env.position[0, 0] if env.outcome[0] == Outcome.LANDED else env.pad[0, 0])
             self._climbs, self._rested, self._flights = True, 0, self._flights + 1
-        self._poses.take()
-        self._stage.follow(np.ones(1, bool), np.array([self._over and not was_over]))
+        self.poses.take()
+        self.stage.follow(np.ones(1, bool), np.array([self.over and not was_over]))
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Fill the view."""
         time = 0.0 if self.still else (self._step + alpha) * STEP
         view = self._camera.view(canvas.scale)
         landscape(canvas.surface.get_size(), self.still).draw(canvas, self._camera, time, earth=_EARTH)
-        draw_ground(canvas, view, self._env.ground, time)
-        self._stage.draw_lander(canvas, view, self._poses.at(alpha)[0])
-        self._stage.draw_dust(canvas, view, alpha)
+        draw_ground(canvas, view, self.env.ground, time)
+        self.stage.draw_lander(canvas, view, self.poses.at(alpha)[0])
+        self.stage.draw_dust(canvas, view, alpha)
 
     @property
-    def _over(self) -> bool:
-        return bool(self._env.outcome[0] != Outcome.FLYING)
+    def over(self) -> bool:
+        """Whether the flight has ended."""
+        return bool(self.env.outcome[0] != Outcome.FLYING)
 
     def _begin(self) -> None:
         """Place the lander on the pad, ready to ascend."""
-        self._stand(self._env.pad[0, 0])
+        self._stand(self.env.pad[0, 0])
         self._climbs, self._rested = True, 0
-        self._poses, self._stage = Poses(self._env), Stage(self._env, np.random.default_rng(0))
-        self._stage.blue[:] = 1.0
+        self.poses, self.stage = Poses(self.env), Stage(self.env, np.random.default_rng(0))
+        self.stage.blue[:] = 1.0
 
     def _stand(self, x: float) -> None:
-        self._env.place(np.ones(1, bool), np.array([[x, self._env.pad[0, 1] + STAND, 0.0, 0.0, 0.0, 0.0]]))
+        self.env.place(np.ones(1, bool), np.array([[x, self.env.pad[0, 1] + STAND, 0.0, 0.0, 0.0, 0.0]]))
 
     def _decide(self) -> None:
         """Return the next action: the ascent's until the lander falls and the network is loaded, then the network's."""
-        env = self._env
+        env = self.env
         falls = env.position[0, 1] > _HIGH and env.velocity[0, 1] < 0
-        if self._climbs and not (falls and self._pilot):
+        if self._climbs and not (falls and self.pilot):
             self._action[:] = self._ascend()
-        elif self._pilot is not None and (self._climbs or self._step % DECISION_STEPS == 0):
+        elif self.pilot is not None and (self._climbs or self._step % DECISION_STEPS == 0):
             self._climbs = False
-            self._action = self._pilot.act(env.observe(), held=env.actions)
+            self._action = self.pilot.act(env.observe(), held=env.actions)
 
     def _ascend(self) -> int:
         """Return the ascent's action: lean to a side, and fire only below a limit of speed, to stay in view."""
-        env = self._env
+        env = self.env
         off = _LEANS[self._flights % len(_LEANS)] - float(env.angle[0]) - 0.9 * float(env.angular_velocity[0])
         steer = _LEFT if off > _SLACK else _RIGHT if off < -_SLACK else 0
         return steer + _MAIN * bool(env.velocity[0, 1] < _CLIMB and env.position[0, 1] < _HIGH)

@@ -79,7 +79,7 @@ class PhysicsScene(FormScene):
 
     def restart(self) -> None:
         """Rebuild the exhibit."""
-        self.exhibit = EXHIBITS[self._names[self._chosen]](GRAVITIES[self._gravity])
+        self.exhibit = EXHIBITS[self.chosen](GRAVITIES[self._gravity])
         self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
         self._clock.begin()
@@ -126,7 +126,7 @@ class PhysicsScene(FormScene):
         """Draw the exhibit and the text around it."""
         between = self.playback.between(alpha)
         poses = self._poses_before + between * (self._poses - self._poses_before)
-        view = self._view(canvas.scale)
+        view = self.view(canvas.scale)
         self._sky.draw(canvas)
         self._draw_ground(canvas, view)
         lit = self.grip.body.index if self.grip else self._hovered()
@@ -150,12 +150,18 @@ class PhysicsScene(FormScene):
         self.step_time += (spent - self.step_time) * (_SMOOTHING if self.step_time else 1.0)
         self._poses_before, self._poses = self._poses, self.exhibit.poses
 
-    def _view(self, scale: float) -> View:
+    @property
+    def chosen(self) -> str:
+        """Name of the exhibit."""
+        return self._names[self._chosen]
+
+    def view(self, scale: float) -> View:
+        """Return how the exhibit's metres lie on the canvas."""
         zoom = WORLD_WIDTH / self.exhibit.width
         return View(scale, (0.0, (_GROUND - VIEW_SIZE[1] / 2) / (POINTS_PER_METRE * zoom)), zoom)
 
     def _place(self, point: tuple[float, float]) -> Array:
-        return self._view(1.0).metres(point)
+        return self.view(1.0).metres(point)
 
     def _hovered(self) -> int | None:
         """Index of the body under the mouse, if that is in use, or under the virtual pointer."""
@@ -224,7 +230,7 @@ class PhysicsScene(FormScene):
 
     def _draw_words(self, canvas: Canvas) -> None:
         canvas.text(texts.PHYSICS_TITLE, (MARGIN, 38), size=SMALL, colour=MUTE)
-        _, law, live = texts.EXHIBITS[self._names[self._chosen]]
+        _, law, live = texts.EXHIBITS[self.chosen]
         canvas.text(law, (MARGIN, 112), size=TEXT)
         sentence = live[self.exhibit.state].format(**self.exhibit.figures())
         write_figures(canvas, sentence, (MARGIN, 136), size=SMALL + 1)

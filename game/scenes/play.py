@@ -50,15 +50,15 @@ class PlayScene(Scene):
         challenge: Challenge | None = None,
     ) -> None:
         super().__init__(context)
-        self._challenge = Duel(rival, rival_name) if rival else challenge
+        self.challenge = Duel(rival, rival_name) if rival else challenge
         self._mouse = MouseStick()
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
-        if self._challenge is None and seed is None and not context.settings.tutored:
+        if self.challenge is None and seed is None and not context.settings.tutored:
             from game.play.tutorial import Tutorial
 
-            self._challenge = Tutorial()
+            self.challenge = Tutorial()
         self._records = Records(context.user_dir)
         self._skill = Skill(self._records.entries())
         if self._records.problem:
@@ -68,7 +68,7 @@ class PlayScene(Scene):
     def enter(self) -> None:
         """Resume the paused flight, unless choices made meanwhile require a new one."""
         self.flown.set_calm(self._settings.reduced_motion)
-        if self.waiting and not self._challenge and self._chosen() != (self.flight.recording.pads, self.flown.hands):
+        if self.waiting and not self.challenge and self._chosen() != (self.flight.recording.pads, self.flown.hands):
             self.retry()
 
     def exit(self) -> None:
@@ -120,11 +120,11 @@ class PlayScene(Scene):
         }
 
     def _flight_actions(self) -> list[Action]:
-        return flight_words.flight_actions(self._runs, self.flight, self._challenge, leaves=self._leaves)
+        return flight_words.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
-        return flight_words.card_actions(self._go_on, self._runs, self._challenge, good=card.good) if card else []
+        return flight_words.card_actions(self._go_on, self._runs, self.challenge, good=card.good) if card else []
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -146,7 +146,7 @@ class PlayScene(Scene):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the flight, the hints and, at the end, the card."""
-        self.flown.draw(canvas, alpha, self._network)
+        self.flown.draw(canvas, alpha, self.network)
         hints, *of_card = self.hint_rows(canvas)
         if self._settings.show_hints or self._controls.mouse_in_use:  # for the mouse, they are what it presses
             hints.draw(canvas)
@@ -177,17 +177,17 @@ class PlayScene(Scene):
         return self.flown.waiting
 
     def _begin(self, seed: int) -> None:
-        if self._challenge:
-            self.flown = FlownFlight(self.context, seed, self._network.policy, self._challenge)
+        if self.challenge:
+            self.flown = FlownFlight(self.context, seed, self.network.policy, self.challenge)
             return
         pads, hands = self._chosen()
         check = self._settings.check_flights and self._skill.check_due and not self._eased
         hands = OWN if check else hands
-        self.flown = FlownFlight(self.context, seed, self._network.policy, pads=pads, hands=hands, check=check)
+        self.flown = FlownFlight(self.context, seed, self.network.policy, pads=pads, hands=hands, check=check)
 
     def _follow_flight(self) -> None:
         """Save what a step has brought the player in a course; after the end, go on to the card or the next try."""
-        challenge, ending = self._challenge, self.ending
+        challenge, ending = self.challenge, self.ending
         if challenge:
             self._remember(challenge)
         if not self.flight.over:
@@ -199,7 +199,7 @@ class PlayScene(Scene):
         elif ending.card is None:
             self.flown.make_card(self._skill)
             if challenge is None or challenge.kept:
-                self.flown.write_down(self._records, self._skill, self._network)
+                self.flown.write_down(self._records, self._skill, self.network)
 
     @property
     def _held(self) -> int:
@@ -219,9 +219,9 @@ class PlayScene(Scene):
 
     def _load_network(self) -> None:
         context = self.context
-        self._network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
-        if self._network.problem:
-            context.note(texts.NO_NETWORK.format(problem=self._network.problem))
+        self.network = networks.chosen(context.models_dir, context.user_dir, context.settings.model)
+        if self.network.problem:
+            context.note(texts.NO_NETWORK.format(problem=self.network.problem))
 
     def _new_seed(self) -> int:
         return int(self.context.rng.integers(2**31))
@@ -230,13 +230,13 @@ class PlayScene(Scene):
         if self.flight.hand_over():
             self._sound.play("to_network" if self.flight.hand is StickHolder.NETWORK else "to_human")
         elif self.flight.network is None and not self.flight.over:
-            problem = texts.NO_NETWORK.format(problem=self._network.problem)
+            problem = texts.NO_NETWORK.format(problem=self.network.problem)
             self.context.note(texts.FLOWN_ALONE if self.credit.alone else problem)
 
     def _name_what_lacks(self) -> None:
         """Tell the player why the dial has no effect, where it has none."""
         if self._settings.assist > 0 and self.flight.shares and self.flight.copilot is None:
-            network = self._network
+            network = self.network
             text = texts.DIAL_NEEDS if network.policy else texts.NO_NETWORK
             self.context.note(text.format(name=network.name, problem=network.problem))
 
@@ -244,19 +244,19 @@ class PlayScene(Scene):
         """Go to a new start after a landing (or leave a course with only one); after a crash, retry the same start."""
         if self.ending.card is None or not self.ending.card.good:
             self.retry()
-        elif self._challenge and self._challenge.fixed:
+        elif self.challenge and self.challenge.fixed:
             return Pop()
         else:
             self._begin_elsewhere()
         return None
 
     def _begin_elsewhere(self) -> None:
-        if self._challenge:
-            self._challenge.skip()
-            self._remember(self._challenge)
-            if self._challenge.through:
-                self._challenge = None
-        self._begin(self.flight.recording.seed if self._challenge and self._challenge.fixed else self._new_seed())
+        if self.challenge:
+            self.challenge.skip()
+            self._remember(self.challenge)
+            if self.challenge.through:
+                self.challenge = None
+        self._begin(self.flight.recording.seed if self.challenge and self.challenge.fixed else self._new_seed())
 
     def _remember(self, challenge: Challenge) -> None:
         """Save the pilot's progress in a course as soon as it is made."""
@@ -265,38 +265,38 @@ class PlayScene(Scene):
 
     def _leave_course(self) -> Transition:
         """Leave the course for free flights, from the pause menu."""
-        assert self._challenge is not None
-        self._challenge.leave()
-        self._remember(self._challenge)
-        self._challenge = None
+        assert self.challenge is not None
+        self.challenge.leave()
+        self._remember(self.challenge)
+        self.challenge = None
         self._begin(self._new_seed())
         return Pop()
 
     @property
     def _leaves(self) -> bool:
         """Whether Escape goes straight back: in a course that has not begun or is over, where nothing is lost."""
-        return self._challenge is not None and (self.waiting or self.flight.over)
+        return self.challenge is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
         self._away = 0
         return push("pause", self, retry=self.retry, more=self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self._network.name), self._open_networks)]
-        if self._challenge and self._challenge.next_hint:
+        words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self.network.name), self._open_networks)]
+        if self.challenge and self.challenge.next_hint:
             words.append((texts.TUTORIAL_LEAVE, self._leave_course))
-        return [*words, (texts.PAUSE_CHOICES if self._challenge is None else texts.PACE, self._choose)]
+        return [*words, (texts.PAUSE_CHOICES if self.challenge is None else texts.PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
         """Open the choices for the next flights; in a course, few can be changed."""
-        return push("choices", self, self._skill, begun=not self.waiting, challenge=self._challenge is not None)
+        return push("choices", self, self._skill, begun=not self.waiting, challenge=self.challenge is not None)
 
     def _open_networks(self) -> Transition:
-        return push("runs", choose=self._choose_network)
+        return push("runs", choose=self.choose_network)
 
-    def _choose_network(self, name: str) -> None:
+    def choose_network(self, name: str) -> None:
         """Change the network to hand over to, also during a flight."""
         self._settings.model = name
         self.context.apply_settings()
         self._load_network()
-        self.flown.change_network(self._network.policy)
+        self.flown.change_network(self.network.policy)

@@ -52,7 +52,12 @@ _VERB: Final = 20.0
 
 
 class ReplayScene(FormScene):
-    """Replay of a recorded flight."""
+    """Replay of a recorded flight.
+
+    Attributes:
+        export: the film that is being made of it; None while there is none.
+
+    """
 
     takes_tab = True
 
@@ -62,7 +67,7 @@ class ReplayScene(FormScene):
         self._pace = SlowMotion()
         self.playback = Playback(self._pace, SPEEDS, self._fly)
         self._warned = False
-        self._export: Export | None = None
+        self.export: Export | None = None
         self.flight_replay = FlightReplay(self.record)
         self.flight_replay.scout(1)
         self._scenery = Scenery(self.flight_replay.flight, context.settings.reduced_motion, _CLEAR)
@@ -77,7 +82,7 @@ class ReplayScene(FormScene):
 
     def close(self) -> None:
         """Cancel an unfinished film export, and tell the player."""
-        if self._export:
+        if self.export:
             self._stop_export()
 
     def actions(self) -> Table:
@@ -111,8 +116,8 @@ class ReplayScene(FormScene):
         """Advance by as many steps as the chosen speed makes due, and simulate a little further ahead."""
         self.flight_replay.scout(1 if self.flight_replay.touching else _SCOUT)
         self._reward_bar.reached = self.flight_replay.reached
-        if self._export:
-            self._follow_export(self._export)
+        if self.export:
+            self._follow_export(self.export)
         if self.flight_replay.complete and not self.flight_replay.faithful and not self._warned:
             self._warned = True
             self.context.note(texts.REPLAY_OTHER_RULES)
@@ -206,7 +211,7 @@ class ReplayScene(FormScene):
         """Ask for the film's format and start the export, or cancel the running one."""
         from game.scenes.dialog import QuestionDialog
 
-        if self._export is None:
+        if self.export is None:
             answers: list[tuple[str, Callable[[], None]]] = [
                 (suffix[1:].upper(), partial(self._begin_export, suffix))
                 for suffix, kind in KINDS.items() if not kind.missing
@@ -217,14 +222,14 @@ class ReplayScene(FormScene):
         return None
 
     def _stop_export(self) -> None:
-        assert self._export is not None
-        self._export.close()
+        assert self.export is not None
+        self.export.close()
         self._end_export(texts.EXPORT_STOPPED)
 
     def _begin_export(self, suffix: str) -> None:
         name = fitting(Path(self.record.entry.file).stem).strip(" .")[:LONGEST_NAME]  # which a file can say anything of
         path = free_path(exports_dir(), name or texts.REPLAY_TITLE, suffix)
-        self._export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
+        self.export = Export(ReplayScene, self.record, path, colour_safe=self.context.settings.colour_safe)
 
     def _follow_export(self, export: Export) -> None:
         """Show the progress of the export, or its result."""
@@ -236,7 +241,7 @@ class ReplayScene(FormScene):
             self._end_export(failed if export.problem else texts.EXPORT_DONE.format(path=export.path))
 
     def _end_export(self, note: str) -> None:
-        self._export = None
+        self.export = None
         self._export_word.label = texts.REPLAY_EXPORT
         self.context.note(note)
 

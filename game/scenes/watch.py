@@ -58,7 +58,14 @@ _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
 
 
 class WatchScene(FormScene):
-    """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line."""
+    """Watch scene: a swarm in the sky, one lander's decision in a panel, choices on the ground line.
+
+    Attributes:
+        swarm: the landers that fly.
+        network: the network that flies them, one of `policies`.
+        camera, stage, trails: what is drawn of them.
+
+    """
 
     def __init__(self, context: Context, count: int = 1, seed: int | None = None) -> None:
         super().__init__(context)
@@ -68,8 +75,8 @@ class WatchScene(FormScene):
         self.shown = 0
         self.problem = self._wanted = ""
         self._settings = context.settings
-        self._policies = networks.Policies(context.models_dir, context.user_dir)
-        names = self._policies.names
+        self.policies = networks.Policies(context.models_dir, context.user_dir)
+        names = self.policies.names
         wanted = names.index(context.settings.model) if context.settings.model in names else 0
         self._model_choice = self.form.add(self._network_row(wanted))
         self._count_choice = self._add_choice(
@@ -79,13 +86,13 @@ class WatchScene(FormScene):
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
         self._choose_network(wanted)
         if self.problem:
-            self._network = self._policies.first_fit()
+            self.network = self.policies.first_fit()
             self._begin()
 
     def enter(self) -> None:
         """Follow a change of the networks and of the settings."""
         self._look_again()
-        if self._stage.calm != self._settings.reduced_motion:
+        if self.stage.calm != self._settings.reduced_motion:
             self._set_up_camera()
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
@@ -118,7 +125,7 @@ class WatchScene(FormScene):
         for _ in range(self.playback.steps()):
             self._fly()
         if not self.playback.stopped:
-            self._heard.follow(self._stage.thrust[self.shown], self.shown)
+            self._heard.follow(self.stage.thrust[self.shown], self.shown)
         if not self._settings.reduced_motion:
             self._time += STEP
         return self.form.update()
@@ -126,17 +133,17 @@ class WatchScene(FormScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the swarm, the panel and the choices."""
         between = self.playback.between(alpha)
-        view = self._camera.view(canvas.scale, between)
+        view = self.camera.view(canvas.scale, between)
         size = canvas.surface.get_size()
-        landscape(size, self._settings.reduced_motion).draw(canvas, self._camera, self._time, between)
+        landscape(size, self._settings.reduced_motion).draw(canvas, self.camera, self._time, between)
         env, poses = self.swarm.env, self.swarm.poses.at(between)
         others = self._others()
-        self._stage.draw_fires(canvas, view, poses, others, self._size)  # the pad hides what reaches below it
+        self.stage.draw_fires(canvas, view, poses, others, self._size)  # the pad hides what reaches below it
         draw_pad(canvas, view, (float(env.pad[0, 0]), float(env.pad[0, 1])), float(env.pad_width[0]), self._time)
-        self._trails.draw(canvas, view, self.shown, _CLEAR.head)
-        self._stage.draw_swarm(canvas, view, poses, others, self._size)
+        self.trails.draw(canvas, view, self.shown, _CLEAR.head)
+        self.stage.draw_swarm(canvas, view, poses, others, self._size)
         self._draw_shown(canvas, view, poses[self.shown])
-        self._stage.draw_dust(canvas, view, between)
+        self.stage.draw_dust(canvas, view, between)
         draw_decision(canvas, self.decision)
         self._draw_words(canvas)
 
@@ -148,22 +155,22 @@ class WatchScene(FormScene):
         return self.swarm.decision.of(self.shown)
 
     def _begin(self) -> None:
-        assert self._network.policy is not None
+        assert self.network.policy is not None
         count = COUNTS[self._count]
-        self.swarm = Swarm(count, self._seed, self._network.policy)
-        self._stage = Stage(self.swarm.env, np.random.default_rng(self._seed))
-        self._stage.blue[:] = 1.0
+        self.swarm = Swarm(count, self._seed, self.network.policy)
+        self.stage = Stage(self.swarm.env, np.random.default_rng(self._seed))
+        self.stage.blue[:] = 1.0
         self._heard = FlightSound(self.context.sound, self.swarm.env, warns=False)
-        self._trails = Trails(count, keep=12 if count < _CROWD else 5)
+        self.trails = Trails(count, keep=12 if count < _CROWD else 5)
         self._set_up_camera()
         self._clock.begin()
         self.shown = min(self.shown, count - 1)
 
     def _set_up_camera(self) -> None:
         """Let the camera follow a single lander; with several, or reduced motion, it rests at the whole world."""
-        self._camera, self._stage.calm = Camera(), self._settings.reduced_motion
-        if self.swarm.env.num_envs == 1 and not self._stage.calm:
-            self._camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
+        self.camera, self.stage.calm = Camera(), self._settings.reduced_motion
+        if self.swarm.env.num_envs == 1 and not self.stage.calm:
+            self.camera.cut(framing.framed(self.swarm.env, clear=_CLEAR))
 
     def _begin_anew(self) -> None:
         self._seed = int(self.context.rng.integers(2**31))
@@ -172,10 +179,10 @@ class WatchScene(FormScene):
     def _fly(self) -> None:
         swarm = self.swarm
         ended = swarm.step()
-        self._stage.follow(np.ones(swarm.env.num_envs, bool), ended)
-        self._trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
+        self.stage.follow(np.ones(swarm.env.num_envs, bool), ended)
+        self.trails.follow(swarm.env.position, swarm.env.outcome, swarm.fresh, ended)
         if swarm.env.num_envs == 1 and not self._settings.reduced_motion:
-            framing.follow(self._camera, swarm.env, clear=_CLEAR)
+            framing.follow(self.camera, swarm.env, clear=_CLEAR)
 
     def _fly_to_the_next_decision(self) -> None:
         """Fly until the shown lander's next decision; the others fly on while it rests after a flight."""
@@ -197,7 +204,7 @@ class WatchScene(FormScene):
         """Show the decisions of the lander nearest to a point of the canvas, if one is close."""
         if COUNTS[self._count] == 1 or PANEL.collidepoint(point):
             return False
-        place = self._camera.view(1.0).metres(point)
+        place = self.camera.view(1.0).metres(point)
         distance = np.hypot(*(self.swarm.env.position - place).T)
         nearest = int(distance.argmin())
         if distance[nearest] > _CLICK_REACH:
@@ -209,7 +216,7 @@ class WatchScene(FormScene):
         return push("pause", self, self._begin_anew, texts.PAUSE_NEW_STARTS, self._pause_words)
 
     def _pause_words(self) -> list[tuple[str, OnPress]]:
-        name = brief(networks.word(self._wanted or self._network.name), _LONGEST_NAME)
+        name = brief(networks.word(self._wanted or self.network.name), _LONGEST_NAME)
         return [(texts.PAUSE_NETWORK.format(name=name), self._open_networks)]
 
     # Choices
@@ -226,7 +233,7 @@ class WatchScene(FormScene):
         return pygame.Rect(x, y + row * pitch, math.ceil(min(width, _WIDEST)), _ROW_HEIGHT)
 
     def _network_row(self, index: int) -> ChoiceOrList:
-        words = [brief(networks.word(name), _LONGEST_NAME) for name in self._policies.names]
+        words = [brief(networks.word(name), _LONGEST_NAME) for name in self.policies.names]
         box, everything = self._row_box(0, words), texts.WATCH_ALL.format(count=len(words))
         return ChoiceOrList(
             self.form.manager, box, texts.WATCH_MODEL, words, index, self._choose_network, self._open_networks,
@@ -243,23 +250,23 @@ class WatchScene(FormScene):
         """Apply the choice made in the list of networks, and reload networks added, removed or renamed meanwhile."""
         policies = networks.Policies(self.context.models_dir, self.context.user_dir)
         wanted, self._wanted = self._wanted or self._settings.model, ""
-        if policies.names == self._policies.names and wanted == self._network.name:
+        if policies.names == self.policies.names and wanted == self.network.name:
             return
-        self._policies = policies
-        index = next((policies.names.index(name) for name in (wanted, self._network.name) if name in policies.names), 0)
+        self.policies = policies
+        index = next((policies.names.index(name) for name in (wanted, self.network.name) if name in policies.names), 0)
         row = self._network_row(index)
         self.form.replace([self._model_choice], [row])
         self._model_choice = row
-        if policies.names[index] != self._network.name:
+        if policies.names[index] != self.network.name:
             self._choose_network(index)
 
     def _choose_network(self, index: int) -> None:
         """Fly the same starts with another network; report a damaged one, and keep the last good one flying."""
-        network = self._policies[self._policies.names[index]]
+        network = self.policies[self.policies.names[index]]
         self.problem = texts.WATCH_PROBLEM.format(name=network.name, problem=network.problem) if network.problem else ""
         if network.policy is None:
             return
-        self._network = network
+        self.network = network
         self._settings.model = network.name
         self._begin()
 
@@ -284,7 +291,7 @@ class WatchScene(FormScene):
             mark_lost(canvas, view, pose)
             return
         size = min(1.0, 1.5 * self._size)
-        self._stage.draw_lander(canvas, view, pose, self.shown, size)
+        self.stage.draw_lander(canvas, view, pose, self.shown, size)
         if COUNTS[self._count] > 1:
             x, y = view.points(pose[:2]).tolist()
             canvas.marker("triangle_down", (x, y - 46 * size - 10), 9, INK)
@@ -309,6 +316,6 @@ class WatchScene(FormScene):
         """What is said of who flies."""
         if self.playback.stopped:
             return texts.WATCH_STOPPED
-        if self._network.name == networks.SCRIPTED:
+        if self.network.name == networks.SCRIPTED:
             return texts.WATCH_SCRIPTED
-        return texts.WATCH_FLIES.format(name=brief(self._network.name, _LONGEST_NAME))
+        return texts.WATCH_FLIES.format(name=brief(self.network.name, _LONGEST_NAME))

@@ -32,13 +32,16 @@ class SceneManager:
         picture: returns the window's pixels as last drawn.
         scene_of: builds the scene of a route with the context.
 
+    Attributes:
+        stack: the scenes, the one that is seen last.
+
     """
 
     def __init__(
         self, context: Context, picture: Callable[[], pygame.Surface], scene_of: Callable[[Route, Context], Scene]
     ) -> None:
         self._context, self._picture, self._scene_of = context, picture, scene_of
-        self._stack: list[Scene] = []
+        self.stack: list[Scene] = []
         self._lingering: pygame.Surface | None = None
         self._fade = 0
         self._seen = False  # whether a frame has been drawn yet
@@ -47,12 +50,12 @@ class SceneManager:
     @property
     def top(self) -> Scene:
         """Scene on top of the stack, which is seen and heard."""
-        return self._stack[-1]
+        return self.stack[-1]
 
     @property
     def told(self) -> str:
         """Description of the stack, for the log."""
-        return " > ".join(type(scene).__name__ for scene in self._stack)
+        return " > ".join(type(scene).__name__ for scene in self.stack)
 
     def handle_event(self, event: pygame.event.Event) -> None:
         """Pass one event to the top scene."""
@@ -84,13 +87,13 @@ class SceneManager:
         match transition:
             case Push(scene):
                 scene = self._made(scene)
-                if self._stack:
+                if self.stack:
                     self.top.exit()
-                self._stack.append(scene)
+                self.stack.append(scene)
             case Replace(scene):
                 scene = self._made(scene)
                 self._leave(1)
-                self._stack.append(scene)
+                self.stack.append(scene)
             case Pop(levels):
                 self._pop(levels)
             case Quit():
@@ -99,7 +102,7 @@ class SceneManager:
     def reset(self, route: Route) -> None:
         """Replace the whole stack without calling `exit` of its scenes, whose state may be broken."""
         self._linger()
-        left, self._stack = self._stack, [self._made(route)]
+        left, self.stack = self.stack, [self._made(route)]
         _close(left)
 
     def _made(self, scene: Scene | Route) -> Scene:
@@ -107,8 +110,8 @@ class SceneManager:
 
     def close(self) -> None:
         """Leave and close every scene."""
-        if self._stack:
-            self._leave(len(self._stack))
+        if self.stack:
+            self._leave(len(self.stack))
 
     def _linger(self) -> None:
         """Keep the present picture, to fade it over the next scene."""
@@ -117,7 +120,7 @@ class SceneManager:
             self._lingering.set_alpha(round(255 * (self._fade / (_FADE_STEPS + 1)) ** 2))
 
     def _pop(self, levels: int) -> None:
-        if levels >= len(self._stack):
+        if levels >= len(self.stack):
             self.running = False  # `close` calls the top scene's `exit`
             return
         self._leave(levels)
@@ -129,11 +132,11 @@ class SceneManager:
         A scene and its widgets are reference cycles with many pictures. Collected only now and then, they took 250 MB
         in an hour; a collection here, between two frames, takes a few milliseconds.
         """
-        left = self._stack[-levels:]
+        left = self.stack[-levels:]
         try:
             self.top.exit()
         finally:
-            del self._stack[-levels:]
+            del self.stack[-levels:]
             _close(left)
         del left
         gc.collect()

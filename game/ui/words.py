@@ -20,11 +20,12 @@ class TextButtonRow:
     Attributes:
         pages: the numbers of the words on each page.
         lefts: the left end of each word, in points.
+        right: the right end of the row, in points.
 
     """
 
     def __init__(self, words: Sequence[str], left: float, right: float, size: float, gap: float = GAP) -> None:
-        self.words, self._size, self._gap, self._left, self._right = words, size, gap, left, right
+        self.words, self._size, self._gap, self._left, self.right = words, size, gap, left, right
         self._growth = 0.0
         self._lay_out()
 
@@ -35,7 +36,7 @@ class TextButtonRow:
         self._growth = typeface.growth()
         left, gap = self._left, self._gap
         widths = [typeface.width(word, self._size, "regular") for word in self.words]
-        room = self._right - left
+        room = self.right - left
         if sum(widths) + gap * (len(widths) - 1) > room + 1:
             room -= 2 * _ARROW
         self.pages = _pages(widths, room, gap)
@@ -50,7 +51,7 @@ class TextButtonRow:
     def at(self, x: float, chosen: int) -> int:
         """Return the number of the word at x on the chosen word's page, or of the word that an arrow there leads to."""
         page = self._page(chosen)
-        if page.stop < len(self.words) and x > self._right - _ARROW:
+        if page.stop < len(self.words) and x > self.right - _ARROW:
             return page.stop
         if page.start and self.lefts[page.start] - _ARROW <= x < self.lefts[page.start] - 4:
             return page.start - 1
@@ -76,7 +77,7 @@ class TextButtonRow:
         if page.start:
             canvas.text("‹", (self.lefts[page.start] - 16, baseline), size=size, colour=INK)
         if page.stop < len(self.words):
-            canvas.text("›", (self._right, baseline), size=size, colour=INK, align="right")
+            canvas.text("›", (self.right, baseline), size=size, colour=INK, align="right")
         for number in page:
             left, colour = self.lefts[number], ink if number == chosen else MUTE
             box = canvas.text(self.words[number], (left, baseline), size=size, colour=colour)

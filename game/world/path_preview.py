@@ -12,22 +12,28 @@ from game.world.paths import draw_dotted
 
 
 class PathPreview:
-    """Path preview of one flight; call `follow` once after every step, and while the craft waits."""
+    """Path preview of one flight; call `follow` once after every step, and while the craft waits.
+
+    Attributes:
+        drift: where the craft goes if nothing is done.
+        forecast: where the network would fly it; None without a network.
+
+    """
 
     def __init__(self, flight: Flight, network: Policy | None) -> None:
         self._flight = flight
-        self._drift = Drift(flight.env)
+        self.drift = Drift(flight.env)
         self._drifts = False
         self.ask(network)
 
     @property
     def asks(self) -> bool:
         """Whether a network's path is previewed too."""
-        return self._forecast is not None
+        return self.forecast is not None
 
     def ask(self, network: Policy | None) -> None:
         """Preview this network's path from here on; with None, only the path without input."""
-        self._forecast = Forecast(network, self._flight.env.ground) if network else None
+        self.forecast = Forecast(network, self._flight.env.ground) if network else None
 
     def follow(self, waiting: bool) -> None:
         """Extend both paths; the path without input stays the same while the craft hangs and waits."""
@@ -35,17 +41,17 @@ class PathPreview:
             return
         self._drifts = not self._drifts and not waiting  # every other step, so that no frame has all of both
         if self._drifts:
-            self._drift.follow()
-        if self._forecast:
-            self._forecast.follow(self._flight.env, 1 if self._drifts else 2)
+            self.drift.follow()
+        if self.forecast:
+            self.forecast.follow(self._flight.env, 1 if self._drifts else 2)
 
     def draw(self, canvas: Canvas, view: View, head: float) -> None:
         """Draw what is left of both paths, below the text in the uppermost `head` points."""
         if self._arrived:
             return
-        draw_dotted(canvas, view, self._drift.path, HUMAN, head=head)
-        if self._forecast:
-            draw_dotted(canvas, view, self._forecast.path, NET, head=head)
+        draw_dotted(canvas, view, self.drift.path, HUMAN, head=head)
+        if self.forecast:
+            draw_dotted(canvas, view, self.forecast.path, NET, head=head)
 
     @property
     def _arrived(self) -> bool:

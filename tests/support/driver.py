@@ -1,14 +1,19 @@
 """Plays the game in a test: real pygame events in, frames on."""
 
+import json
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import pygame
 
 from game.core.scene import Scene
+from game.core.settings import FILE_NAME
 from game.shell.app import App
 from game.ui.form import Form
+from game.ui.widgets import Choice
+
+Kind = TypeVar("Kind")
 
 
 class Driver:
@@ -107,6 +112,30 @@ class Driver:
         self.move(points)
         self.post(pygame.MOUSEBUTTONDOWN, pos=self.to_window(points), button=1)
         self.post(pygame.MOUSEBUTTONUP, pos=self.to_window(points), button=1)
+
+    def saved(self) -> dict[str, Any]:
+        """The settings on the disk, once all of them are written."""
+        self.app.settings_writer.wait()
+        values: dict[str, Any] = json.loads((self.app.context.user_dir / FILE_NAME).read_text())
+        return values
+
+    def widget(self, label: str) -> Any:
+        """The widget of that label on the screen."""
+        return next(widget for widget in self.form.widgets if widget.label == label)
+
+    def the(self, kind: type[Kind]) -> Kind:
+        """The only widget of its kind on the screen."""
+        [found] = [widget for widget in self.form.widgets if type(widget) is kind]
+        return found  # type: ignore[return-value]
+
+    def choice(self, option: str) -> Choice:
+        """The choice on the screen that offers an option."""
+        return next(each for each in self.form.widgets if isinstance(each, Choice) and option in each.options)
+
+    def press_on(self, label: str) -> None:
+        """Move the focus to the widget of that label, and press it."""
+        self.form.focus(self.widget(label))
+        self.key(pygame.K_RETURN)
 
     def hints(self) -> dict[str, tuple[float, float]]:
         """What the hints on the screen say, and where each can be clicked."""

@@ -150,7 +150,7 @@ class Monkey:
             self.hands.come_back()
             for _ in range(10):  # until it is drawn, the game remembers what was drawn before; a new size must settle
                 self.hands.pass_frame()
-            in_use = [*self._others, *self.app.scenes._stack]
+            in_use = [*self._others, *self.app.scenes.stack]
             stale = stale_scenes(in_use)
             self._forgotten = stale if self.hands.goes_on else []  # a game that was left draws no more
             self.close()
@@ -182,7 +182,7 @@ class Monkey:
     def _jump(self) -> str:
         """Go into a scene that is drawn by lot, whatever is on the screen; from deep down, back to the menu first."""
         scenes = self.app.scenes
-        if len(scenes._stack) >= _DEEPEST or self.rng.random() < 0.5:
+        if len(scenes.stack) >= _DEEPEST or self.rng.random() < 0.5:
             self.go_home()
         choices = {**makers(self.app.context), **dialogs(scenes.top)}
         name = list(choices)[self.rng.integers(len(choices))]
@@ -194,7 +194,7 @@ class Monkey:
 
     def go_home(self) -> None:
         """Leave all scenes but the first one."""
-        if (depth := len(self.app.scenes._stack)) > 1:
+        if (depth := len(self.app.scenes.stack)) > 1:
             self.app.scenes.apply(Pop(depth - 1))
 
     def _open(self) -> None:

@@ -217,7 +217,7 @@ def test_a_check_flight_has_no_dial_no_network_and_no_other_hands(open_game: Ope
     (context.user_dir / LOGBOOK).write_text(4 * (json.dumps(asdict(helped)) + "\n"))
     driver = fly(open_game, context, check_flights=True, assist=0.8, hands="noisy")
     start_at(driver, 0, 16, 0, 0, 0, 0)
-    play(driver)._choose_network("modern")  # in a pause
+    play(driver).choose_network("modern")  # in a pause
     driver.keys(pygame.K_TAB, pygame.K_PLUS)
     driver.frames(10)
     assert driver.app.context.settings.assist == pytest.approx(0.8)

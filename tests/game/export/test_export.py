@@ -161,7 +161,7 @@ def replay(open_game: Callable[..., Driver], record: Record, monkeypatch, tmp_pa
     driver = open_game(ReplayScene, record)
     scene = driver.top
     driver.frames(2)
-    driver.app.scenes.apply(scene._begin_or_stop_export())
+    driver.press_on(texts.REPLAY_EXPORT)
     return driver, scene
 
 
@@ -172,18 +172,18 @@ def _answers(driver: Driver) -> list[str]:
 def test_a_gif_works_as_installed_and_an_mp4_is_offered_only_where_it_can_be_made(
     replay: tuple[Driver, ReplayScene], monkeypatch
 ):
-    driver, scene = replay
+    driver, _ = replay
     project = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert any(need.startswith("pillow") for need in project["dependencies"])
     driver.key(pygame.K_ESCAPE)
     monkeypatch.setitem(KINDS, ".mp4", VideoKind("no_such_module", (1, 1), 1, False))
-    driver.app.scenes.apply(scene._begin_or_stop_export())
+    driver.press_on(texts.REPLAY_EXPORT)
     assert _answers(driver) == ["GIF", texts.EXPORT_CANCEL]
-    command = driver.top._more.partition("run: ")[2]
+    command = driver.top.more.partition("run: ")[2]
     assert command in Path("README.md").read_text(encoding="utf-8")
     driver.key(pygame.K_ESCAPE)
     monkeypatch.setitem(KINDS, ".mp4", VideoKind("json", (1, 1), 1, False))
-    driver.app.scenes.apply(scene._begin_or_stop_export())
+    driver.press_on(texts.REPLAY_EXPORT)
     assert _answers(driver) == ["GIF", "MP4", texts.EXPORT_CANCEL]
 
 
@@ -195,16 +195,19 @@ def test_who_does_not_want_a_film_after_all_gets_none(replay: tuple[Driver, Repl
     else:
         driver.click(driver.form.widgets[-1].box.center)
     assert driver.top is scene
-    assert scene._export is None
+    assert scene.export is None
 
 
 @pytest.mark.parametrize("file", ["a\0b.json", "\ud800.json", "...json", "x" * 250 + ".json", "C:\\con.json"])
-def test_a_name_that_no_system_takes_is_made_one(replay: tuple[Driver, ReplayScene], file: str, tmp_path: Path):
+def test_a_name_that_no_system_takes_is_made_one(
+    replay: tuple[Driver, ReplayScene], file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     driver, scene = replay
+    monkeypatch.setattr(module, "Export", Endless)
     scene.record = replace(scene.record, entry=replace(scene.record.entry, file=file))
     _choose_gif(driver)
     driver.frames(2)
-    path = scene._export.path
+    path = scene.export.path
     path.parent.mkdir(exist_ok=True)
     path.touch()
     assert path.parent == tmp_path / "pictures"
@@ -229,33 +232,35 @@ def test_a_replay_is_saved_while_it_goes_on_playing(replay: tuple[Driver, Replay
     at = scene.flight_replay.at
     driver.frames(5)
     assert scene.flight_replay.at > at
-    scene._export.close()  # a film of full size takes its time: the process itself is tested elsewhere
-    driver.wait(lambda: scene._export is None)
+    scene.export.close()  # a film of full size takes its time: the process itself is tested elsewhere
+    driver.wait(lambda: scene.export is None)
 
 
 @pytest.mark.parametrize("file", ["", "a flight.json"])
-def test_no_picture_takes_the_place_of_another(replay: tuple[Driver, ReplayScene], file: str, tmp_path: Path):
-    pytest.importorskip("PIL")
+def test_no_picture_takes_the_place_of_another(
+    replay: tuple[Driver, ReplayScene], file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     driver, scene = replay
+    monkeypatch.setattr(module, "Export", Endless)
     scene.record = replace(scene.record, entry=replace(scene.record.entry, file=file))
     folder, name = tmp_path / "pictures", Path(file).stem or "Replay"
     folder.mkdir()
     for taken in (f"{name}.gif", f"{name} 2.gif"):
         (folder / taken).write_text("another flight")
     _choose_gif(driver)
-    assert scene._export.path == folder / f"{name} 3.gif"
+    assert scene.export.path == folder / f"{name} 3.gif"
 
 
 def test_a_film_can_be_stopped_and_leaving_ends_its_process(replay: tuple[Driver, ReplayScene], tmp_path: Path):
     pytest.importorskip("PIL")
-    driver, scene = replay
+    driver, _ = replay
     for _ in range(2):
         _choose_gif(driver)
         driver.frames(3)
         assert multiprocessing.active_children()
-        scene._begin_or_stop_export()
+        driver.press_on(next(label for label in _answers(driver) if "%" in label))
         driver.wait(lambda: not multiprocessing.active_children())  # on a busy machine even the killed take a moment
-        driver.app.scenes.apply(scene._begin_or_stop_export())
+        driver.press_on(texts.REPLAY_EXPORT)
     _choose_gif(driver)
     driver.app.close()
     deadline = time.monotonic() + 20
@@ -269,7 +274,7 @@ def test_a_folder_that_cannot_be_had_is_told_of(replay: tuple[Driver, ReplayScen
     driver, scene = replay
     (tmp_path / "pictures").write_text("in the way")
     _choose_gif(driver)
-    driver.wait(lambda: scene._export is None)
+    driver.wait(lambda: scene.export is None)
     assert "could not be saved" in driver.said
     assert "File exists" in driver.said
     assert "Errno" not in driver.said
@@ -285,7 +290,8 @@ def test_who_leaves_a_replay_is_told_that_its_film_was_not_saved(
     driver.app.scenes.apply(Push(scene))
     driver.frames(2)
     monkeypatch.setattr(module, "Export", Endless)
-    scene._begin_export(".gif")
+    driver.press_on(texts.REPLAY_EXPORT)
+    _choose_gif(driver)
     driver.frames(2)
     told: list[str] = []
     monkeypatch.setattr(context, "note", told.append)
@@ -299,8 +305,8 @@ class Endless:
 
     share, over, problem = 0.0, False, ""
 
-    def __init__(self, *_: object, **__: object) -> None:
-        self.closed = False
+    def __init__(self, _scene: object, _record: Record, path: Path, **_: object) -> None:
+        self.path, self.closed = path, False
 
     def poll(self) -> None:
         """Go on."""

@@ -31,7 +31,7 @@ def saved(driver: Driver, name: str) -> dict:
 
 
 def said(driver: Driver) -> str:
-    return driver.top._said
+    return driver.top.said
 
 
 def test_a_key_is_changed_kept_and_named_at_once(table: Driver):

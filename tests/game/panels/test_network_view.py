@@ -10,8 +10,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.panels.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges
 from game.panels.network_view import NetworkView
-from tests.game.shell.test_draw import state_of
-from tests.support.written import words_written
+from tests.support.state import state_of
 
 BOX = (868, 420, 384, 180)
 LARGE = (90, 80, 1100, 560)

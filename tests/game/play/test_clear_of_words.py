@@ -54,7 +54,7 @@ def note(draw: Callable[..., None], places: list[tuple[float, float]], at: int) 
 
 def test_the_panel_gives_way_to_a_craft_that_the_camera_can_not_keep_clear(shared: Driver, monkeypatch):
     panels: list[bool] = []
-    copilot_panel = play(shared).flown.cockpit._copilot_panel
+    copilot_panel = play(shared).flown.cockpit.copilot_panel
     monkeypatch.setattr(copilot_panel, "draw", lambda *_: panels.append(True))
     place(shared, 0, 12, 0, 0, 0, 0)
     shared.frames(4)
@@ -72,7 +72,7 @@ def test_no_dotted_way_leads_through_what_is_said_before_a_flight(open_game: Ope
     driver.frames(40)
     scene = play(driver)
     x, y = scene.flight.env.position[0].tolist()
-    scene.flown.path_preview._drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
+    scene.flown.path_preview.drift.path = np.linspace((x, y), (x, y + 14), 20)  # straight up, through all words
     places = drawn(monkeypatch, "dot", "marker")
     scene.flown.path_preview.draw(
         driver.app.canvas, scene.flown.scenery.view(driver.app.canvas.scale), scene.flown.scenery.clear.head
@@ -132,10 +132,10 @@ def test_what_is_lost_in_a_swarm_lies_on_no_words_either(open_game: Open, monkey
             watch._fly()
     assert swarm.env.outcome[0] == Outcome.OUT_OF_BOUNDS
     crafts: list[object] = []
-    monkeypatch.setattr(watch._stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    monkeypatch.setattr(watch.stage, "draw_lander", lambda *args, **_: crafts.append(args))
     places = drawn(monkeypatch, "marker")
-    canvas, view = driver.app.canvas, watch._camera.view(driver.app.canvas.scale)
-    watch._trails.draw(canvas, view, 0, 80.0)
+    canvas, view = driver.app.canvas, watch.camera.view(driver.app.canvas.scale)
+    watch.trails.draw(canvas, view, 0, 80.0)
     watch._draw_shown(canvas, view, swarm.poses.at(1.0)[0])
     assert not crafts
     assert places

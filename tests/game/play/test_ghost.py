@@ -114,7 +114,7 @@ def test_the_ghost_waits_in_a_pause(duel):
 
 
 def ghost_below(driver: Driver) -> Ghost:
-    below = driver.app.scenes._stack[-2]
+    below = driver.app.scenes.stack[-2]
     assert isinstance(below, PlayScene)
     assert below.flown.ghost is not None
     return below.flown.ghost

@@ -43,7 +43,7 @@ class Reader:
 
     @property
     def challenge(self) -> Tutorial:
-        challenge = play(self.driver)._challenge
+        challenge = play(self.driver).challenge
         assert isinstance(challenge, Tutorial)
         return challenge
 
@@ -51,7 +51,7 @@ class Reader:
         """Let the game know which device is in use."""
         if self.device == "pad":
             self.driver.axis(pygame.CONTROLLER_AXIS_RIGHTY, 0)
-            self.driver.app.context.controls._used = 0
+            self.driver.app.context.controls.used_pad = 0
         elif self.device == "mouse":
             self.driver.move((640, 300))
             self.driver.move((644, 300))

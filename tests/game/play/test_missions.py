@@ -27,6 +27,7 @@ from game.scenes.missions import MissionsScene
 from game.scenes.play import PlayScene
 from game.scenes.replay import ReplayScene
 from game.ui.context import Context
+from game.ui.listing import Listing
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
 from tests.support.missions import fly
@@ -117,18 +118,24 @@ def test_a_mission_is_flown_again_from_its_file_as_it_was(context: Context, name
     assert flight_replay.complete
 
 
+def rows(driver: Driver) -> dict[str, tuple[str, ...]]:
+    """The list of missions, by name."""
+    listed = driver.the(Listing).rows
+    return {name: row for name, (title, _) in texts.MISSIONS.items() for row in listed if row[0].endswith(title)}
+
+
 def test_the_campaign_is_walked_through_by_keys_and_a_landing_is_remembered(open_game: Open):
     driver = open_game()
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
     assert driver.top_name == "MissionsScene"
     driver.keys(pygame.K_DOWN, pygame.K_RETURN)
-    assert play(driver)._challenge.name == "brake"
+    assert play(driver).challenge.name == "brake"
     assert play(driver).flown.ghost is not None
     land(driver)
     assert play(driver).ending.card.score == "gold"
     driver.key(pygame.K_RETURN)
     assert driver.top_name == "MissionsScene"
-    assert driver.top._best["brake"].medal == 3
+    assert rows(driver)["brake"][1] == texts.MEDALS[3]
     assert driver.top.chosen == "brake"
 
 
@@ -216,12 +223,14 @@ def test_beside_the_player_flies_what_lands_or_what_they_choose(open_game: Open)
     assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
     driver.keys(*[pygame.K_DOWN] * 10, pygame.K_RETURN)
-    assert play(driver)._challenge.name == "outage"
+    assert play(driver).challenge.name == "outage"
     assert isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
     driver.key(pygame.K_ESCAPE)
     driver.key(pygame.K_TAB)
     driver.key(pygame.K_LEFT)
-    assert driver.top._chosen_rival == "network"
+    driver.key(pygame.K_TAB)
+    driver.key(pygame.K_RETURN)
+    assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
 
 
 def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(open_game: Open, context: Context):
@@ -229,22 +238,27 @@ def test_the_best_flight_of_ones_own_can_be_raced_and_a_damaged_one_is_told_of(o
     driver.key(pygame.K_RETURN)
     land(driver)
     driver.key(pygame.K_RETURN)
-    assert driver.top._offered == ["network", "recorded", "own"]
-    driver.top._verbs[0].choose(2)
-    driver.top._list.press()
-    assert isinstance(driver.top._challenge()._rival, Record)
-    file = Records(context.user_dir).folder / driver.top._best["fall"].file
-    file.write_text("{")
-    said: list[str] = []
-    context.note = said.append
-    assert driver.top._challenge()._rival is None
-    assert "damaged" in said[0]
+    rivals = driver.choice(texts.MISSION_RIVALS["own"])
+    assert rivals.options == [texts.MISSION_RIVALS[name] for name in ("network", "recorded", "own")]
+    rivals.choose(2)
+    driver.key(pygame.K_RETURN)
+    (own,) = Records(context.user_dir).entries()
+    flown = Records(context.user_dir).read(own.file)
+    ghost = play(driver).flown.ghost
+    while not ghost.flight.over:
+        ghost.step()
+    assert ghost.flight.recording.actions[: len(flown.recording.actions)] == flown.recording.actions
+    driver.key(pygame.K_ESCAPE)
+    (Records(context.user_dir).folder / own.file).write_text("{")
+    driver.key(pygame.K_RETURN)
+    assert not isinstance(play(driver).flown.ghost.flight, ReplayedFlight)
+    assert "damaged" in driver.said
 
 
 def test_the_first_flight_can_be_flown_at_any_time(open_game: Open):
     driver = open_game(MissionsScene)
     driver.keys(pygame.K_UP, pygame.K_RETURN)
-    assert play(driver)._challenge.title == texts.TUTORIAL_TITLE
+    assert play(driver).challenge.title == texts.TUTORIAL_TITLE
 
 
 def test_no_medal_for_what_the_network_flew_or_for_a_crash(open_game: Open):
@@ -268,7 +282,7 @@ def test_who_begins_with_help_is_told_that_medals_are_for_ones_own_hand(
     monkeypatch.setattr(Canvas, "text", lambda _, string, *__, **___: written.add(string) or pygame.FRect())
     driver.frames(1)
     assert (texts.NOT_COUNTED["helped"] in written) is warned
-    assert (play(driver)._challenge.goal in written) is not warned
+    assert (play(driver).challenge.goal in written) is not warned
 
 
 def test_the_start_of_the_day_is_one_for_everybody(open_game: Open):

@@ -1,4 +1,3 @@
-import json
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -6,11 +5,9 @@ import pygame
 import pytest
 
 from ai.lander.environment import Outcome
-from ai.lander.missions import FIRST
 from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.core.scene import Push
-from game.core.settings import FILE_NAME
 from game.flight import networks
 from game.flight.flight import StickHolder
 from game.flight.logbook import Records
@@ -22,6 +19,7 @@ from game.scenes.missions import MissionsScene
 from game.scenes.play import PlayScene
 from game.scenes.settings import SettingsScene
 from game.ui.context import Context
+from game.ui.listing import Listing
 from tests.support.drawn import Drawn
 from tests.support.driver import Driver
 from tests.support.flights import play
@@ -36,14 +34,14 @@ pytestmark = pytest.mark.usefixtures("scripted_network")
 
 
 def tutorial(driver: Driver) -> Tutorial:
-    challenge = play(driver)._challenge
+    challenge = play(driver).challenge
     assert isinstance(challenge, Tutorial)
     return challenge
 
 
 def obey(scene: PlayScene, name: str) -> int:
     """The action that does what a lesson asks; nothing while a new flight waits for the keys to be let go."""
-    if scene.flown.moment(1.0).stuck:
+    if scene.waiting and scene.flown.moment(1.0).stuck:
         return 0
     fall = -scene.flight.env.velocity[0, 1]
     simple = {"fire": 3, "fall": 0, "brake": 3 * (fall > 0.7), "lean": 1, "hand_over": 0, "take_back": 0}
@@ -99,18 +97,18 @@ def test_the_very_first_flight_teaches_all_of_it_and_free_flights_follow(
     assert scene.ending.card.title == texts.TUTORIAL_DONE
     assert not Records(context.user_dir).entries()
     pupil.press("confirm")
-    assert play(driver)._challenge is None
+    assert play(driver).challenge is None
     assert play(driver).waiting
     driver.app.close()
-    assert saved(driver, context) == (True, True)
-    missions = open_game(MissionsScene).top
-    assert missions._row(FIRST.name)[1] == texts.TUTORIAL_FLOWN
+    assert saved(driver) == (True, True)
+    first, *_ = open_game(MissionsScene).the(Listing).rows
+    assert first[1] == texts.TUTORIAL_FLOWN
 
 
 def test_only_the_very_first_flight_teaches(open_game: Open):
     driver = open_game()
     driver.key(pygame.K_RETURN)
-    assert play(driver)._challenge is None
+    assert play(driver).challenge is None
 
 
 def test_a_crash_begins_the_lesson_again_hanging_in_the_sky(open_game: Open, context: Context):
@@ -182,7 +180,7 @@ def test_no_copilot_does_what_is_to_be_learnt(open_game: Open, context: Context)
     driver.frames(20)
     assert not play(driver).flight.shared
     assert play(driver).flight.env.velocity[0, 1] < -0.3
-    play(driver)._choose_network("modern")  # in a pause
+    play(driver).choose_network("modern")  # in a pause
     driver.frames(5)
     assert play(driver).flight.network is not None
     assert not play(driver).flight.shared
@@ -208,13 +206,12 @@ def test_each_lesson_can_be_skipped(open_game: Open, context: Context):
             continue  # who does not hand over has nothing to take back
         assert tutorial(driver).lesson.name == name
         driver.key(pygame.K_n)
-    assert play(driver)._challenge is None
-    assert saved(driver, context) == (True, False)  # left out, and not flown
+    assert play(driver).challenge is None
+    assert saved(driver) == (True, False)  # left out, and not flown
 
 
-def saved(driver: Driver, context: Context) -> tuple[bool, bool]:
-    driver.app.settings_writer.wait()
-    values = json.loads((context.user_dir / FILE_NAME).read_text())
+def saved(driver: Driver) -> tuple[bool, bool]:
+    values = driver.saved()
     return values["tutored"], values["first_flown"]
 
 
@@ -224,15 +221,15 @@ def test_it_is_offered_until_it_is_flown_or_left_out(open_game: Open, context: C
     assert driver.top_name == "MenuScene"
     driver.key(pygame.K_RETURN)
     assert tutorial(driver).lesson.name == "fire"
-    assert saved(driver, context) == (False, False)
+    assert saved(driver) == (False, False)
     driver.key(pygame.K_UP)
     driver.key(pygame.K_ESCAPE)
     assert driver.top_name == "PauseScene"
     word = next(word for word in driver.form.widgets if word.label == texts.TUTORIAL_LEAVE)
     driver.form.focus(word)
     driver.key(pygame.K_RETURN)
-    assert play(driver)._challenge is None
-    assert saved(driver, context) == (True, False)
+    assert play(driver).challenge is None
+    assert saved(driver) == (True, False)
 
 
 def test_without_a_network_nobody_is_asked_to_hand_over(open_game: Open, monkeypatch: pytest.MonkeyPatch):

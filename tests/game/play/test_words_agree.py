@@ -99,7 +99,7 @@ def test_header_panel_hints_card_and_logbook_say_the_same(
     reading.check(30)
     land(driver)
     page = reading.check(70)
-    challenge = play(driver)._challenge
+    challenge = play(driver).challenge
     if challenge and not challenge.kept:
         return
     entry = Records(context.user_dir).entries()[-1]
@@ -206,7 +206,7 @@ def test_where_nobody_may_help_nobody_does_and_it_is_said(open_game: Open, conte
     driver = reading.driver
     driver.key(pygame.K_TAB)
     assert driver.said == texts.FLOWN_ALONE
-    play(driver)._choose_network("stand-in")  # in a pause
+    play(driver).choose_network("stand-in")  # in a pause
     driver.keys(pygame.K_TAB, pygame.K_PLUS)
     assert play(driver).flight.hand is StickHolder.HUMAN
     assert reading.check(3).who == {"person"}
@@ -273,7 +273,7 @@ def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
     set_off(reading, way)
     end(reading.driver, outcome)
     if scene == "tutorial":  # which begins again, and says why
-        page, challenge = reading.page(), play(reading.driver)._challenge
+        page, challenge = reading.page(), play(reading.driver).challenge
         assert page.flew == {flew(play(reading.driver).flight.recording.hands)}
         assert challenge.why in page.words
         return

@@ -110,7 +110,7 @@ def test_the_key_the_button_and_the_click_run_the_same_action(
     driver.key(pygame.K_F1)
     recorder.take()
     for pad in (False, True):
-        controls._used = 0 if pad else None
+        controls.used_pad = 0 if pad else None
         told = {entry.hint: entry for entry in scene.actions() if isinstance(entry, Action) and entry.hint}
         for meaning, place in driver.hints().items():
             driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)

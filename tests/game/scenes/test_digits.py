@@ -35,7 +35,7 @@ def wait_for(driver: Driver, done: Callable[[], object]) -> None:
     while not done() and time.monotonic() - started < 120:
         driver.frames(1)
         time.sleep(0.005)
-    assert done(), scene(driver)._measuring.words(scene(driver)._live.switches)
+    assert done(), scene(driver).measuring.words(scene(driver).live.switches)
 
 
 @pytest.mark.parametrize(
@@ -137,9 +137,9 @@ def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing
     filters = {}
     for press in (lambda: drawing.key(pygame.K_RIGHT), lambda: drawing.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)):
         press()
-        filters[scene(drawing).chosen] = scene(drawing)._live.why.filters.shape
+        filters[scene(drawing).chosen] = scene(drawing).live.why.filters.shape
     assert filters == {"classic": (32, 28, 28), "modern": (32, 5, 5)}
-    tabs = scene(drawing)._tabs
+    tabs = drawing.choice("Classic")
     drawing.click((tabs.row.lefts[1] + 5, tabs.box.centery))
     assert scene(drawing).chosen == "classic"
 
@@ -147,7 +147,7 @@ def test_the_network_that_is_looked_into_is_chosen_by_mouse_keys_and_pad(drawing
 def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
     draw(drawing, strokes(2))
     drawing.frames(2)  # it is read in the frame after, and then explained
-    why, seen = scene(drawing)._live.why, scene(drawing).reading.stages.centred
+    why, seen = scene(drawing).live.why, scene(drawing).reading.stages.centred
     assert np.abs(why.saliency).max() == pytest.approx(1)
     assert np.abs(why.saliency[seen == 0]).max() == 0
     assert [layer.shape for layer in why.layers] == [(32, 12, 12), (64, 4, 4), (128,)]
@@ -155,7 +155,7 @@ def test_saliency_shows_what_ink_speaks_for_the_answer(drawing: Driver):
 
 def test_what_is_put_right_is_what_is_drawn_however_soon_that_is(drawing: Driver, monkeypatch):
     digits, given = scene(drawing), []
-    monkeypatch.setattr(digits._fixing, "begin", lambda _, image, *others: given.append((image, *others)))
+    monkeypatch.setattr(digits.fixing, "begin", lambda _, image, *others: given.append((image, *others)))
     draw(drawing, strokes(2))
     drawing.key(pygame.K_7)  # it has not been read yet
     [(image, digit, _)] = given
@@ -175,11 +175,11 @@ def test_a_step_that_is_switched_off_changes_what_is_seen_and_its_price_is_measu
     frames = drawing.frames(3)
     assert frames
     off = Switches(crop=False)
-    wait_for(drawing, lambda: off in digits._measuring.found)
+    wait_for(drawing, lambda: off in digits.measuring.found)
     drawing.click(crop.box.center)
-    wait_for(drawing, lambda: Switches() in digits._measuring.found)
+    wait_for(drawing, lambda: Switches() in digits.measuring.found)
     for name, more in (("modern", 0.2), ("classic", 0.3)):
-        assert digits._measuring.found[Switches()].read[name] > digits._measuring.found[off].read[name] + more
+        assert digits.measuring.found[Switches()].read[name] > digits.measuring.found[off].read[name] + more
     assert np.array_equal(digits.reading.stages.centred, before)
 
 
@@ -189,7 +189,7 @@ def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, con
     context.models_dir = tmp_path / "models"
     driver = open_game(DigitsScene)
     assert scene(driver).chosen == "classic"
-    assert "config.json" in scene(driver)._live.reader.problems["modern"]
+    assert "config.json" in scene(driver).live.reader.problems["modern"]
     driver.key(pygame.K_n)
     assert scene(driver).chosen == "classic"
     draw(driver, strokes(3))
@@ -203,7 +203,7 @@ def test_without_any_network_there_is_a_pad_and_a_message(open_game: Open, conte
     draw(driver, strokes(3))
     driver.keys(pygame.K_n, pygame.K_3)
     assert scene(driver).probabilities is None
-    assert set(scene(driver)._live.reader.problems) == {"modern", "classic"}
+    assert set(scene(driver).live.reader.problems) == {"modern", "classic"}
     assert driver.top_name == "DigitsScene"
 
 
@@ -223,10 +223,10 @@ def test_a_fix_is_learnt_in_the_background_shown_and_undone(drawing: Driver, con
     draw(drawing, strokes(1, 1))
     assert guess(drawing) == 1
     drawing.key(pygame.K_7)
-    assert digits._fixing.busy
-    wait_for(drawing, lambda: not digits._fixing.busy)
+    assert digits.fixing.busy
+    wait_for(drawing, lambda: not digits.fixing.busy)
     assert guess(drawing) == 7
-    assert digits._fixing.fixed.digit == 7
+    assert digits.fixing.fixed.digit == 7
     drawing.frames(2)
     assert (context.user_dir / "digits" / "modern").is_dir()
     word = next(widget for widget in digits.form.widgets if widget.label == "Undo the fix")

@@ -10,11 +10,13 @@ from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import MnistError
 from game.core import texts
 from game.core.assets import MODELS_DIR
+from game.digits.answer import DigitRow
 from game.digits.quiz_rules import ROUNDS
 from game.scenes import quiz
-from game.scenes.dream import DreamScene
+from game.scenes.dream import DreamScene, DreamTile
 from game.scenes.quiz import QuizScene
 from game.ui.widget import Widget
+from game.ui.widgets import Slider
 from tests.support.driver import Driver
 from tests.support.pen import SEVEN, stroke
 
@@ -24,10 +26,8 @@ def classifier():
     return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
 
 
-def classifier_image() -> np.ndarray:
-    image = np.zeros((28, 28), np.float32)
-    image[4:24, 13:15] = 1
-    return image
+def tiles(driver: Driver) -> list[DreamTile]:
+    return [each for each in driver.form.widgets if isinstance(each, DreamTile)]
 
 
 def told(monkeypatch, driver: Driver) -> list[str]:
@@ -53,9 +53,9 @@ def test_keys_mouse_and_pad_choose_a_digit(open_game: Callable[..., Driver], cla
     game = open_game(DreamScene, classifier, 3)
     game.key(pygame.K_7)
     assert game.top.digit == 7
-    game.click(game.top._tiles[2].box.center)
+    game.click(tiles(game)[2].box.center)
     assert game.top.digit == 2
-    game.click(game.top._rows[9].box.center)
+    game.click(next(row for row in game.form.widgets if isinstance(row, DigitRow) and row.digit == 9).box.center)
     assert game.top.digit == 9
     game.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
     assert game.top.digit == 0
@@ -68,12 +68,12 @@ def test_other_settings_begin_another_dream(open_game: Callable[..., Driver], cl
     drawing[5:23, 12:16] = 1
     game = open_game(DreamScene, classifier, 1, drawing)
     game.frames(30)
-    game.top.form.focus(game.top._slider)
+    game.form.focus(game.the(Slider))
     before = game.top.dreams[1]
     game.key(pygame.K_LEFT)
     assert game.top.dreams[1] is not before
     assert game.top.dreams[1].calm == pytest.approx(0.6)
-    game.top._set_start(1)
+    game.choice(texts.DREAM_STARTS[1]).choose(1)
     np.testing.assert_array_equal(game.top.dreams[1].image, drawing)
     game.frames(30)
     game.key(pygame.K_r)
@@ -86,7 +86,7 @@ def test_an_empty_drawing_is_no_beginning(open_game: Callable[..., Driver], clas
     game = open_game(DreamScene, classifier, 12, np.zeros((28, 28), np.float32))
     game.frames(3)
     assert game.top.digit == 0
-    assert game.top._drawing is None
+    assert not [each for each in game.form.widgets if getattr(each, "label", "") == texts.DREAM_START]
 
 
 # Quiz
@@ -119,13 +119,16 @@ def test_words_that_have_done_their_work_are_gone(open_game: Callable[..., Drive
     elements = scene.form.manager.get_sprite_group()
     for _ in range(3):
         for _ in range(10):
-            digit = scene.contest.round.digit
-            scene.contest.submit(classifier_image()) if scene.contest.round.kind == "draw" else scene._read(digit)
-            scene._lay()
+            current = scene.contest.round
+            if current.kind == "draw":
+                stroke(game, SEVEN[1:])
+                game.key(pygame.K_RETURN)
+            else:
+                game.key(pygame.K_0 + current.digit)
             assert {*scene.form.widgets} == {each for each in elements.sprites() if isinstance(each, Widget)}
-            scene._go()
+            game.key(pygame.K_RETURN)
         assert scene.contest.round is None
-        scene._go()
+        game.key(pygame.K_RETURN)
     assert len(elements.sprites()) < 15
 
 

@@ -225,7 +225,7 @@ def test_motion_can_be_reduced_in_the_midst_of_a_flight(game: Driver):
 
 def test_nothing_is_heard_of_a_craft_that_hangs_and_waits(game: Driver, monkeypatch: pytest.MonkeyPatch):
     heard: list[str] = []
-    monkeypatch.setattr(scene(game)._sound, "play", lambda key, *_: heard.append(key))
+    monkeypatch.setattr(game.app.context.sound, "play", lambda key, *_: heard.append(key))
     game.frames(200)
     assert scene(game).waiting
     assert heard == []

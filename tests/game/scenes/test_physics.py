@@ -8,6 +8,7 @@ import pygame
 import pytest
 
 from game.cli import add_commands
+from game.core import texts
 from game.drawing.tokens import HUMAN, NET
 from game.exhibits import EXHIBITS
 from game.exhibits.falls import Slopes
@@ -32,12 +33,12 @@ def scene(driver: Driver) -> PhysicsScene:
 
 
 def name(driver: Driver) -> str:
-    return scene(driver)._names[scene(driver)._chosen]
+    return scene(driver).chosen
 
 
 def seen(driver: Driver, body) -> tuple[float, float]:
     """Where a body is seen, in points."""
-    x, y = scene(driver)._view(1.0).points(body.position[0]).tolist()
+    x, y = scene(driver).view(1.0).points(body.position[0]).tolist()
     return x, y
 
 
@@ -60,7 +61,7 @@ def test_exhibits_are_chosen_by_keys_mouse_and_pad(gallery: Driver):
     assert name(gallery) == "spin"
     gallery.key(pygame.K_n)
     assert name(gallery) == "stack"
-    tabs = scene(gallery)._tabs
+    tabs = gallery.choice(texts.EXHIBITS["stack"][0])
     gallery.click((tabs.row.lefts[3] + 4, tabs.box.centery))
     assert name(gallery) == "bounce"
     gallery.button(pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
@@ -111,7 +112,7 @@ def test_what_cannot_move_and_what_is_a_widget_is_not_taken_hold_of(gallery: Dri
     gallery.keys(pygame.K_n, pygame.K_n)
     exhibit = scene(gallery).exhibit
     assert isinstance(exhibit, Slopes)
-    press(gallery, pygame.MOUSEBUTTONDOWN, tuple(scene(gallery)._view(1.0).points((-8.0, 2.0))))
+    press(gallery, pygame.MOUSEBUTTONDOWN, tuple(scene(gallery).view(1.0).points((-8.0, 2.0))))
     assert scene(gallery).grip is None
 
 

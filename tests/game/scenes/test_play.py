@@ -224,7 +224,7 @@ def test_a_missing_network_is_named_and_the_game_goes_on(open_game: Open, contex
     driver.frames(30)
     play = scene(driver)
     assert play.flight.hand is StickHolder.HUMAN
-    assert "missing" in play._network.problem
+    assert "missing" in play.network.problem
 
 
 def cut_short(path: Path) -> None:
@@ -250,8 +250,8 @@ def test_a_damaged_network_is_named_and_the_game_goes_on(
     driver.key(pygame.K_TAB)
     driver.frames(30)
     assert scene(driver).flight.hand is StickHolder.HUMAN
-    assert "weights" in scene(driver)._network.problem
-    begins = scene(driver)._network.problem[:18]  # a long one is shortened in its middle
+    assert "weights" in scene(driver).network.problem
+    begins = scene(driver).network.problem[:18]  # a long one is shortened in its middle
     assert begins in driver.said
 
 
@@ -315,7 +315,7 @@ def test_the_pause_changes_the_network_in_mid_flight(
     with_networks(context, tmp_path, "a", "b", "modern")
     driver = open_game(PlayScene, seed=4)
     play = scene(driver)
-    assert play._network.name == "modern"
+    assert play.network.name == "modern"
     driver.key(pygame.K_TAB)
     if hand is StickHolder.HUMAN:
         driver.key(pygame.K_TAB)
@@ -329,7 +329,7 @@ def test_the_pause_changes_the_network_in_mid_flight(
     assert scene(driver).flight is flight
     assert flight.hand is hand
     assert flight.network is not before
-    assert play._network.name == context.settings.model == "a"
+    assert play.network.name == context.settings.model == "a"
     driver.frames(20)
 
 
@@ -339,7 +339,7 @@ def test_a_network_that_breaks_on_the_way_gives_the_stick_back(open_game: Open, 
     driver = open_game(PlayScene, seed=4)
     driver.key(pygame.K_TAB)
     driver.frames(5)
-    scene(driver)._choose_network("hurt")
+    scene(driver).choose_network("hurt")
     driver.frames(5)
     assert scene(driver).flight.hand is StickHolder.HUMAN
     assert "No network" in driver.said
@@ -377,7 +377,7 @@ def test_the_networks_way_is_drawn_in_its_colour_if_there_is_one(open_game: Open
     flown_by(ScriptedPilot())
     driver = open_game(PlayScene, seed=4)
     driver.frames(200)
-    assert len(scene(driver).flown.path_preview._forecast.path) > 5
+    assert len(scene(driver).flown.path_preview.forecast.path) > 5
     flown_by(None)
     driver = open_game(PlayScene, seed=4)
     driver.frames(2)

@@ -24,7 +24,7 @@ from game.core import texts
 from game.core.scene import Push
 from game.core.worker import WorkerState
 from game.flight.demonstrations import FILE_NAME
-from game.panels.network_panel import NetworkPanel
+from game.panels.network_panel import SHOWN
 from game.panels.network_view import NetworkView
 from game.scenes.dialog import NameDialog, QuestionDialog
 from game.scenes.menu import MenuScene
@@ -33,12 +33,14 @@ from game.scenes.train import TrainScene
 from game.training.lander_run import LanderRun
 from game.training.library import Library
 from game.ui import focus
+from game.ui.entry import Entry
 from game.ui.widget import Widget
 from game.ui.widgets import Choice
 from tests.support import inline_worker
-from tests.support.chores import eager
 from tests.support.driver import Driver
 from tests.support.small import LANDERS as SMALL
+
+KNOB_PAGE = texts.KNOB_PAGES["learning"]  # one of the pages of knobs
 
 
 @pytest.fixture
@@ -58,8 +60,14 @@ def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
 
 
 def start(driver: Driver) -> None:
-    driver.key(pygame.K_RETURN)
+    driver.press_on(texts.TRAIN_START)
     driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
+
+
+def save_as(driver: Driver, name: str) -> None:
+    driver.press_on(texts.TRAIN_SAVE)
+    driver.the(Entry).text = name
+    driver.key(pygame.K_RETURN)
 
 
 def test_start_pause_step_and_go_on(beside: Driver) -> None:
@@ -98,8 +106,7 @@ def test_it_learns_as_it_would_without_a_window(beside: Driver) -> None:
 def test_a_run_is_named_saved_and_found(train: Driver, tmp_path: Path) -> None:
     start(train)
     scene = train.top
-    scene.form.focus(scene._save_word)
-    train.key(pygame.K_RETURN)
+    train.press_on(texts.TRAIN_SAVE)
     assert isinstance(train.top, NameDialog)
     train.key(pygame.K_RETURN)
     assert train.top is scene
@@ -154,13 +161,11 @@ def test_what_was_left_without_a_name_can_be_discarded(train: Driver, open_game:
 def test_a_saved_run_goes_on_in_the_scene_that_is_there(train: Driver) -> None:
     start(train)
     scene = train.top
-    scene._save_as("mine")
+    save_as(train, "mine")
     train.wait(scene.lander_run.library.runs)
-    train.app.scenes.apply(scene._open_runs())
+    train.press_on(texts.TRAIN_RUNS)
     train.frames(2)
-    verbs = train.top._verbs
-    train.top.form.focus(next(verb for verb in verbs if verb.label == texts.RUN_TRAIN))
-    train.key(pygame.K_RETURN)
+    train.press_on(texts.RUN_TRAIN)
     assert train.top is scene
     train.wait(lambda: scene.lander_run.swarm_state is not None)
     assert scene.lander_run.state is WorkerState.RUNNING
@@ -170,8 +175,8 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
     start(train)
     scene = train.top
     (scene.lander_run.library.folder / "mine").mkdir()
-    train.app.scenes.apply(scene._save())
-    train.top._entry.text = "mine"
+    train.press_on(texts.TRAIN_SAVE)
+    train.the(Entry).text = "mine"
     train.key(pygame.K_RETURN)
     assert isinstance(train.top, NameDialog)
     train.post(pygame.TEXTINPUT, text="M2")
@@ -183,9 +188,7 @@ def test_a_name_that_is_taken_is_told_and_can_be_changed(train: Driver) -> None:
 def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp_path: Path) -> None:
     scene, notes = train.top, list[str]()
     train.app.context.note = notes.append
-    (word,) = [widget for widget in scene.form.widgets if widget.label == texts.TRAIN_TEACH]
-    scene.form.focus(word)
-    train.key(pygame.K_RETURN)
+    train.press_on(texts.TRAIN_TEACH)
     assert scene.lander_run.state is None, "nothing to learn from, nothing begun"
     assert texts.TRAIN_NO_LESSONS in notes
     write(tmp_path / "user" / FILE_NAME, demonstrate(ScriptedPilot(), 2, seed=5, spawn="near"))
@@ -195,8 +198,7 @@ def test_a_run_is_begun_that_learns_from_the_players_landings(train: Driver, tmp
     assert scene.knobs.config.success_pass
     train.frames(1)
     assert texts.TRAIN_TAUGHT.format(count=2) in notes
-    scene.form.focus(scene._save_word)
-    train.key(pygame.K_RETURN)
+    train.press_on(texts.TRAIN_SAVE)
     train.key(pygame.K_RETURN)
     train.wait(scene.lander_run.library.runs)
     (run,) = scene.lander_run.library.runs()
@@ -232,31 +234,31 @@ def test_flying_against_a_checkpoint_and_back(train: Driver) -> None:
 def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
     start(train)
     scene = train.top
-    train.wait(lambda: scene.inside._network is not None)
+    train.wait(lambda: scene.lander_run.network_state is not None)
     train.click((1060, 530))
     assert scene.inside.large
-    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[1]  # for that is what the panel shows now
+    assert heading(train) == texts.TRAIN_INSIDE[1]  # for that is what the panel shows now
     train.click((150, 102))
-    assert scene.inside._view.show == "activations"
+    assert train.choice(texts.NET_SHOWS[1]).index == SHOWN.index("activations")
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
     assert not scene.inside.large
-    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
-    scene.form.focus(scene.inside._closer)
-    train.key(pygame.K_RETURN)
+    assert heading(train) == texts.TRAIN_INSIDE[0]
+    train.press_on(texts.TRAIN_CLOSER)
     assert scene.inside.large
     train.key(pygame.K_RETURN)
     assert not scene.inside.large
-    assert scene.form.focused is scene.inside._closer
+    assert scene.form.focused is train.widget(texts.TRAIN_CLOSER)
     train.key(pygame.K_RETURN)
     train.click((900, 441))  # the heading of the small network
     assert not scene.inside.large
-    assert shown_heading(scene.inside) == texts.TRAIN_INSIDE[0]
+    assert heading(train) == texts.TRAIN_INSIDE[0]
 
 
-def shown_heading(inside: NetworkPanel) -> str:
-    return str(inside._heading.options[inside._heading.index])
+def heading(driver: Driver) -> str:
+    choice = driver.choice(texts.TRAIN_INSIDE[0])
+    return choice.options[choice.index]
 
 
 PAD = {
@@ -273,8 +275,8 @@ KEYS = {
 def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
     scene = train.top
     form = scene.form
-    for page in range(len(scene.knobs._pages)):
-        scene.knobs._turn_page(page)
+    for page, word in enumerate(train.choice(KNOB_PAGE).options):
+        train.choice(KNOB_PAGE).choose(page)
         boxes = [widget.box for widget in form.widgets]
         reached, frontier = {0}, [0]
         while frontier:
@@ -286,7 +288,7 @@ def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
             reached |= fresh
             frontier += fresh
         missed = [widget.label or type(widget).__name__ for n, widget in enumerate(form.widgets) if n not in reached]
-        assert missed == [], scene.knobs._pages[page]
+        assert missed == [], word
 
 
 @pytest.mark.parametrize("device", ["keys", "pad"])
@@ -300,8 +302,8 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     press("confirm")
     train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
     press("right")
-    assert scene.form.focused is scene._step_word
-    scene.form.focus(scene._save_word)
+    assert scene.form.focused is train.widget(texts.TRAIN_STEP)
+    scene.form.focus(train.widget(texts.TRAIN_SAVE))
     press("confirm")
     assert isinstance(train.top, NameDialog)
     press("confirm")
@@ -311,8 +313,8 @@ def test_a_run_is_started_named_and_left_without_a_mouse(train: Driver, device: 
     assert not train.app.scenes.running, "the scene was left, and nothing was below it"
 
 
-def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("game.training.lander_run.live", eager)
+def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tmp_path: Path) -> None:
+    beside.unseen = True
     start(beside)
     scene = beside.top
     beside.wait(lambda: scene.lander_run.library.unsaved.is_dir() or scene.lander_run.state is WorkerState.FAILED, 60)
@@ -321,7 +323,7 @@ def test_a_dead_worker_is_told_and_its_run_can_still_be_saved(beside: Driver, tm
     beside.wait(lambda: scene.lander_run.state is WorkerState.FAILED)
     assert scene.lander_run.problem
     beside.frames(20)
-    scene._save_as("saved all the same")
+    save_as(beside, "saved all the same")
     (run,) = Library(tmp_path / "user").runs()
     assert (run.name, run.problem) == ("saved all the same", "")
 
@@ -340,7 +342,7 @@ def test_killed_again_and_again_it_goes_on_and_what_was_saved_loads(beside: Driv
     scene = beside.top
     for number in range(2):
         start(beside)
-        scene._save_as(f"run {number}")
+        save_as(beside, f"run {number}")
         time.sleep(0.05 * number)
         for child in active_children():
             child.kill()

@@ -1,6 +1,5 @@
 """Every screen can be walked, seen and left by a gamepad alone and by the keyboard alone: real events, no window."""
 
-import json
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -14,6 +13,7 @@ from game.flight.flight import StickHolder
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.ui.context import Context
+from game.ui.listing import Listing
 from game.ui.widget import Widget
 from tests.support.driver import Driver
 from tests.support.player import DEVICES, Player
@@ -91,16 +91,6 @@ def is_seen(player: Player, widget: Widget) -> bool:
     return len(form.widgets) == 1 or int((np.abs(pictures[0] - pictures[1]).max(axis=2) > 40).sum()) >= 12
 
 
-def wait_for_card(player: Player) -> None:
-    player.frames(90)
-
-
-def saved(player: Player) -> dict[str, object]:
-    player.app.settings_writer.wait()
-    settings: dict[str, object] = json.loads((player.app.context.user_dir / "settings.json").read_text())
-    return settings
-
-
 def test_a_mission_is_found_flown_and_left(open_screen):
     player = open_screen(SCREENS["MenuScene"])
     player.choose(texts.MENU["missions"][0])
@@ -112,10 +102,10 @@ def test_a_mission_is_found_flown_and_left(open_screen):
     player.press("confirm")
     player.fly()
     assert player.top.flight.outcome is Outcome.LANDED
-    wait_for_card(player)
+    player.skip(90)
     player.press("confirm")
     assert player.top_name == "MissionsScene"
-    assert player.top._row("fall")[1] in texts.MEDALS[1:]
+    assert player.the(Listing).rows[1][1] in texts.MEDALS[1:]
     player.press("back")
     assert player.top_name == "MenuScene"
 
@@ -157,13 +147,13 @@ def test_settings_are_changed_and_kept(open_screen):
     player = open_screen(SCREENS["MenuScene"])
     player.choose(texts.MENU["settings"][0])
     player.press("down", "down", "confirm")
-    assert saved(player)["colour_safe"] is True
+    assert player.saved()["colour_safe"] is True
     player.press("left")
-    assert saved(player)["colour_safe"] is False
+    assert player.saved()["colour_safe"] is False
     while player.form.focused.label != texts.SOUND_GROUPS["effects"]:
         player.press("down")
     player.press("left", "left")
-    assert saved(player)["effects_volume"] == pytest.approx(0.7)
+    assert player.saved()["effects_volume"] == pytest.approx(0.7)
     while player.form.focused.label != texts.BACK:
         player.press("down")
     player.press("right", "up", "confirm")
@@ -176,9 +166,9 @@ def test_settings_are_changed_and_kept(open_screen):
     player.press("confirm", "another")
     player.press("up")
     player.press("confirm", "another")  # the one above takes it away again
-    assert saved(player)[kind].keys() == {"next", "previous"}
+    assert player.saved()[kind].keys() == {"next", "previous"}
     player.choose(texts.BINDINGS_ALL)
-    assert saved(player)[kind] == {}
+    assert player.saved()[kind] == {}
     player.press("back", "back")
     assert player.top_name == "MenuScene"
 

@@ -30,29 +30,29 @@ class Probe(Scene):
         self.next = None
         self.fails_in = ""
 
-    def _fail(self, where: str) -> None:
+    def fail(self, where: str) -> None:
         if self.fails_in == where:
             raise ZeroDivisionError("a fault on purpose")
 
     def enter(self) -> None:
         self.entered += 1
-        self._fail("enter")
+        self.fail("enter")
 
     def exit(self) -> None:
         self.left += 1
-        self._fail("exit")
+        self.fail("exit")
 
     def handle_event(self, event: pygame.event.Event):
-        self._fail("handle_event")
+        self.fail("handle_event")
         self.events.append(event)
         return self.next
 
     def update(self):
-        self._fail("update")
+        self.fail("update")
         self.updates += 1
 
     def draw(self, canvas, alpha: float) -> None:
-        self._fail("draw")
+        self.fail("draw")
         self.draws += 1
         self.alphas.append(alpha)
 
@@ -183,7 +183,7 @@ def test_a_scene_that_fails_leaves_the_game_running(game: Driver, context: Conte
     broken.fails_in = where
 
     def make(_: Context) -> Probe:
-        broken._fail("__init__")
+        broken.fail("__init__")
         return broken
 
     game.app.show(make)
@@ -232,7 +232,8 @@ def test_a_scene_that_fails_to_leave_gives_back_what_it_holds(open_game, leave):
     game = open_game(held[0])
     game.app.show(lambda _: held[1])
     held[1].fails_in = "exit"
-    game.app._guarded(lambda: game.app.scenes.apply(leave))
+    held[1].next = leave
+    game.key(pygame.K_x)
     assert not game.app.scenes.running or game.top_name == "ErrorScene"
     game.app.close()
     assert held[1].closed == 1

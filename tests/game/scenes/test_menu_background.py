@@ -16,14 +16,14 @@ from game.ui.context import Context
 def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: str | None, tmp_path: Path) -> None:
     background = MenuBackground(replace(context, models_dir=tmp_path / folder) if folder else context)
     end = time.monotonic() + 20
-    while background._pilot is None:
+    while background.pilot is None:
         assert time.monotonic() < end
         time.sleep(0.01)
-    env, landings, highest = background._env, 0, 0.0
+    env, landings, highest = background.env, 0, 0.0
     for _ in range(2400):
-        over = background._over
+        over = background.over
         background.update()
-        landings += background._over and not over and env.outcome[0] == Outcome.LANDED
+        landings += background.over and not over and env.outcome[0] == Outcome.LANDED
         highest = max(highest, float(env.position[0, 1]))
         assert abs(env.position[0, 0]) < 8, "it stays in sight"
     assert landings >= 2
@@ -33,20 +33,20 @@ def test_it_takes_off_is_flown_back_and_begins_anew(context: Context, folder: st
 def test_it_stands_still_where_motion_is_reduced(context: Context) -> None:
     context.settings.reduced_motion = True
     background = MenuBackground(context)
-    pose = background._poses.at(1.0)
+    pose = background.poses.at(1.0)
     for _ in range(60):
         background.update()
-    assert np.array_equal(background._poses.at(1.0), pose)
+    assert np.array_equal(background.poses.at(1.0), pose)
 
 
 def test_it_stands_again_when_motion_is_reduced_in_its_midst(context: Context) -> None:
     background = MenuBackground(context)
-    pose = background._poses.at(1.0)
+    pose = background.poses.at(1.0)
     for _ in range(60):
         background.update()
-    assert not np.array_equal(background._poses.at(1.0), pose)
+    assert not np.array_equal(background.poses.at(1.0), pose)
     context.settings.reduced_motion = True
-    background.resume()
+    background.enter()
     background.update()
-    assert np.array_equal(background._poses.at(0.5), pose)
-    assert not background._stage.thrust.any()
+    assert np.array_equal(background.poses.at(0.5), pose)
+    assert not background.stage.thrust.any()

@@ -68,19 +68,19 @@ def test_a_stick_moves_it_as_far_as_it_is_pushed(open_game):
     player = Player(open_game(DigitsScene), "pad")
     player.frames(3)
     take_the_pen(player)
-    before = player.top._pen.place.x
+    before = player.the(VirtualPointer).place.x
     player.axis(pygame.CONTROLLER_AXIS_LEFTX, 32767)
     player.frames(10)
-    fast = player.top._pen.place.x - before
+    fast = player.the(VirtualPointer).place.x - before
     player.axis(pygame.CONTROLLER_AXIS_LEFTX, 16000)
-    before = player.top._pen.place.x
+    before = player.the(VirtualPointer).place.x
     player.frames(10)
-    assert 0.3 * fast < player.top._pen.place.x - before < 0.7 * fast
+    assert 0.3 * fast < player.the(VirtualPointer).place.x - before < 0.7 * fast
     player.axis(pygame.CONTROLLER_AXIS_LEFTX, 2000)
-    before = player.top._pen.place.x
+    before = player.the(VirtualPointer).place.x
     player.frames(10)
-    assert player.top._pen.place.x == before
-    assert player.form.focused is player.top._pen
+    assert player.the(VirtualPointer).place.x == before
+    assert player.form.focused is player.the(VirtualPointer)
 
 
 def test_a_lost_focus_lifts_the_pen(player: Player):
