@@ -11,6 +11,7 @@ from game.drawing.canvas import Canvas
 from game.panels.network_plan import Edge, NetworkPlan, steady_choice, strongest_edges
 from game.panels.network_view import NetworkView
 from tests.support.state import state_of
+from tests.support.written import words_written
 
 BOX = (868, 420, 384, 180)
 LARGE = (90, 80, 1100, 560)
