@@ -20,7 +20,7 @@ from game.core.settings import Settings
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, VIEW_SIZE
 from game.flight.credit import Credit
-from game.flight.demonstrations import keep_lesson
+from game.flight.demonstrations import add_demonstration
 from game.flight.flight import Flight
 from game.flight.handicap import OWN
 from game.flight.outcomes import OutcomeCard, outcome_card
@@ -75,13 +75,13 @@ class Cockpit:
         self.copilot_panel.follow(self._flight)
         self.credit.follow()
 
-    def keep_lesson(self, folder: Path, hands: str) -> str:
+    def add_demonstration(self, folder: Path, hands: str) -> str:
         """Save a finished flight as a demonstration, if wished and good enough; return a message for the player."""
         flight = self._flight
         if not (flight.outcome is Outcome.LANDED and self._settings.teach and hands == OWN):
             return ""
         try:
-            return texts.TAUGHT if keep_lesson(flight, folder) else ""
+            return texts.TAUGHT if add_demonstration(flight, folder) else ""
         except (OSError, ValueError) as error:
             return texts.NOT_TAUGHT.format(reason=error)
 

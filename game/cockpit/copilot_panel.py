@@ -71,7 +71,7 @@ class CopilotPanel:
         if decision is flight.alone:
             self.values, self._likely = QValues.of(flight.alone), []
             first, second = decision_words(flight.alone)
-            self.why, self._override = (texts.INSIGHT_ALONE, first, second), None
+            self.why, self._override = (texts.COPILOT_PANEL_ALONE, first, second), None
         elif flight.decision is not None:
             self._explain(flight.decision, int(flight.env.target[0]))
 
@@ -92,7 +92,7 @@ class CopilotPanel:
         pads = self._likely if len(self._likely) > 1 else []
         lower, left, top = PADS_HIGH if pads else 0, PANEL.left + _LEFT, PANEL.top
         canvas.panel((PANEL.left, top, PANEL.width, PANEL.height + lower))
-        canvas.text(texts.MIND_TITLE, (left, top + 34), room=_WIDTH)
+        canvas.text(texts.DECISION_TITLE, (left, top + 34), room=_WIDTH)
         if self.values is not None:
             draw_q_values(canvas, self.values, left, top + _VALUES, _WIDTH)
         canvas.line((left, top + _WHY), (left + _WIDTH, top + _WHY), LINE)
@@ -105,14 +105,14 @@ class CopilotPanel:
         """Draw whose action is flown; the latest override stays for a moment, marked as past."""
         title, *lines = self._override or self.why
         if self._override not in (None, self.why):
-            title = texts.INSIGHT_BEFORE.format(title=title)
+            title = texts.COPILOT_PANEL_BEFORE.format(title=title)
         canvas.text(title, (left, top), colour=NET if self._override else INK, room=_WIDTH)
         for number, line in enumerate(lines):
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 
     def _draw_pads(self, canvas: Canvas, pads: Sequence[float]) -> None:
         left, top, surest = PANEL.left + _LEFT, PANEL.top + _PADS, max(pads)
-        canvas.text(texts.INSIGHT_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
+        canvas.text(texts.COPILOT_PANEL_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
         for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
             y, likeliest = top + 22 * number, chance == surest
             canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)
@@ -141,8 +141,8 @@ def why(decision: SharedDecision, values: QValues) -> Why:
 
     source, asked = ActionSource(int(decision.source[0])), values.asked
     if asked is None:
-        return texts.INSIGHT_WHY[ActionSource.HANDS_OFF.name]
-    title, *lines = texts.INSIGHT_WHY[source.name]
+        return texts.COPILOT_PANEL_WHY[ActionSource.HANDS_OFF.name]
+    title, *lines = texts.COPILOT_PANEL_WHY[source.name]
     if not values.readable:
         return title, *texts.VALUES_DAMAGED
     name = texts.said(ACTION_NAMES[asked]).capitalize()
@@ -150,12 +150,12 @@ def why(decision: SharedDecision, values: QValues) -> Why:
         return title, *_guarded(decision, name)
     loss, allowed = values.loss(asked), values.allowed or 0.0
     if source is ActionSource.PILOT and loss == 0.0:
-        return title, texts.INSIGHT_SAME.format(asked=name), ""
+        return title, texts.COPILOT_PANEL_SAME.format(asked=name), ""
     if source is ActionSource.PILOT and loss > allowed * (1 + 1e-5):  # it is feasible for another pad
-        return title, texts.INSIGHT_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.INSIGHT_ANOTHER
+        return title, texts.COPILOT_PANEL_BELOW.format(asked=name, loss=f"{loss:.1f}"), texts.COPILOT_PANEL_ANOTHER
     less, most = _told_apart(loss, allowed)
     if source is ActionSource.COPILOT and values.loss(values.flown) > 0.0:  # not the best for the pad that is shown
-        lines[1] = texts.INSIGHT_EVERY_PAD
+        lines[1] = texts.COPILOT_PANEL_EVERY_PAD
     flown = texts.said(ACTION_NAMES[values.flown])
     first, second = (line.format(asked=name, loss=less, allowed=most, flown=flown) for line in lines)
     return title, first, second
@@ -167,13 +167,13 @@ def _guarded(decision: SharedDecision, name: str) -> tuple[str, str]:
 
     asked, best = int(decision.pilot[0]), int(decision.best[0])
     if asked == best:
-        return texts.INSIGHT_SAME.format(asked=name), ""
+        return texts.COPILOT_PANEL_SAME.format(asked=name), ""
     gain, margin = float(decision.gain[0]), guardian_margin(decision.assist)
     if gain <= 0.0:
-        return texts.INSIGHT_SAME_GOOD.format(asked=name), ""
+        return texts.COPILOT_PANEL_SAME_GOOD.format(asked=name), ""
     less, most = _told_apart(gain, margin)
-    first = texts.INSIGHT_WORSE.format(asked=name, loss=less, best=texts.said(ACTION_NAMES[best]))
-    return first, texts.INSIGHT_MARGIN[bool(gain > margin)].format(allowed=most)
+    first = texts.COPILOT_PANEL_WORSE.format(asked=name, loss=less, best=texts.said(ACTION_NAMES[best]))
+    return first, texts.COPILOT_PANEL_MARGIN[bool(gain > margin)].format(allowed=most)
 
 
 def _told_apart(one: float, other: float) -> tuple[str, str]:

@@ -29,7 +29,7 @@ def draw_decision(canvas: Canvas, decision: Decision) -> None:
     left, top, width = PANEL.left + _LEFT, PANEL.top, PANEL.width - 2 * _LEFT
     canvas.panel(PANEL, _COVER)
     values = QValues.of(decision)
-    canvas.text(texts.MIND_SCRIPTED_TITLE if values is None else texts.MIND_TITLE, (left, top + 34), room=width)
+    canvas.text(texts.DECISION_SCRIPTED_TITLE if values is None else texts.DECISION_TITLE, (left, top + 34), room=width)
     if values is None:
         draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
     else:
@@ -37,7 +37,7 @@ def draw_decision(canvas: Canvas, decision: Decision) -> None:
     for number, line in enumerate(decision_words(decision)):
         canvas.text(line, (left, top + _WORDS + 18 * number), size=SMALL, colour=MUTE if number else INK, room=width)
     canvas.line((left, top + _WORDS + 32), (left + width, top + _WORDS + 32), LINE)
-    canvas.text(texts.MIND_INPUTS, (left, top + _WORDS + 54), size=LABEL, colour=MUTE, weight="medium")
+    canvas.text(texts.DECISION_INPUTS, (left, top + _WORDS + 54), size=LABEL, colour=MUTE, weight="medium")
     _draw_inputs(canvas, decision.observation[0].tolist(), left, top + _INPUTS, width)
 
 

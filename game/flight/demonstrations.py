@@ -14,7 +14,7 @@ _LEAST_STEPS: Final = 60  # flown by hand to the end, to count as a takeover
 _LEAST_SCORE: Final = 60  # score before the pad's factor
 
 
-def keep_lesson(flight: Flight, folder: Path) -> bool:
+def add_demonstration(flight: Flight, folder: Path) -> bool:
     """Add a flight that is over to the player's demonstrations; false if it does not qualify.
 
     Raises OSError or ValueError if the file can't be read or written; it is then left unchanged.
@@ -35,7 +35,7 @@ def keep_lesson(flight: Flight, folder: Path) -> bool:
     return True
 
 
-def lessons(folder: Path) -> int:
+def count_demonstrations(folder: Path) -> int:
     """Return the number of the player's demonstrations; 0 if the file can't be read."""
     from ai.training.demonstrations import read
 

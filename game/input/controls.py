@@ -107,10 +107,10 @@ class Controls:
         self._pads: dict[int, _Pad] = {}
         self.used_pad: int | None = None
         self.mouse_in_use = self.listening = self.spelling = False
-        self.pad_name = ""
+        self.gamepad_name = ""
 
     @property
-    def pad_in_use(self) -> bool:
+    def gamepad_in_use(self) -> bool:
         """Whether a gamepad was used last, rather than the keyboard; then hints show its buttons."""
         return self.used_pad is not None
 
@@ -143,19 +143,19 @@ class Controls:
         While the mouse is in use, flight controls are shown as mouse buttons.
         """
         if isinstance(meaning, Held) and self.mouse_in_use:
-            return self.pad_sign(signs.MOUSE_LEFT if meaning is Held.MAIN else signs.MOUSE_RIGHT)
-        buttons = self.pad_signs(meaning) if self.pad_in_use else []
+            return self.gamepad_sign(signs.MOUSE_LEFT if meaning is Held.MAIN else signs.MOUSE_RIGHT)
+        buttons = self.gamepad_signs(meaning) if self.gamepad_in_use else []
         return next(iter(buttons or self.key_names(meaning)), texts.BINDINGS_NONE)
 
     @property
     def arrows(self) -> str:
         """Name of the keys that move the focus."""
-        return self.pad_sign(signs.CROSS) if self.pad_in_use else texts.ARROWS
+        return self.gamepad_sign(signs.CROSS) if self.gamepad_in_use else texts.ARROWS
 
     @property
     def arrows_aside(self) -> str:
         """Name of the keys that move a slider."""
-        return self.pad_sign(signs.CROSS) if self.pad_in_use else texts.ARROWS_ASIDE
+        return self.gamepad_sign(signs.CROSS) if self.gamepad_in_use else texts.ARROWS_ASIDE
 
     def key_names(self, meaning: Meaning) -> list[str]:
         """Return the name of every key of a meaning, as written on the keyboard."""
@@ -163,13 +163,13 @@ class Controls:
             meaning = Command.PAUSE
         return [key_name(code) for code in self.keys.codes(meaning)]
 
-    def pad_signs(self, meaning: Meaning) -> list[str]:
+    def gamepad_signs(self, meaning: Meaning) -> list[str]:
         """Return the signs of a meaning's buttons and sticks, for the gamepad in use or the one plugged in last."""
         stick = [_STICK_SIGNS[meaning]] if meaning in _STICK_SIGNS else []
         signs = dict.fromkeys([*stick, *self.buttons.codes(meaning)])
-        return [self.pad_sign(number) for number in signs]
+        return [self.gamepad_sign(number) for number in signs]
 
-    def pad_sign(self, number: int) -> str:
+    def gamepad_sign(self, number: int) -> str:
         """Return the sign of a button by its number, or one of the further signs of `game.input.signs`."""
         pads = [*self._pads.values()]
         pad = self._pads.get(-1 if self.used_pad is None else self.used_pad) or (pads[-1] if pads else _Pad())
@@ -241,15 +241,15 @@ class Controls:
     def _open(self, device_index: int) -> None:
         from pygame._sdl2 import controller
 
-        self.pad_name = ""
+        self.gamepad_name = ""
         try:
             device = controller.Controller(device_index)
             instance = device.as_joystick().get_instance_id()
         except pygame.error:
             return  # unplugged again before this event was processed
-        self.pad_name = device.name or ""
+        self.gamepad_name = device.name or ""
         pad = self._pads.setdefault(instance, _Pad())
-        pad.device, pad.family = device, signs.family_of(self.pad_name)
+        pad.device, pad.family = device, signs.family_of(self.gamepad_name)
 
     def _close(self, event: pygame.event.Event) -> None:
         self._pads.pop(event.instance_id, None)

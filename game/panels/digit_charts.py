@@ -25,7 +25,7 @@ class DigitCharts(Charts):
 
     def __init__(self) -> None:
         super().__init__([
-            Chart(_CHARTS[name], texts.PUPIL_CHARTS[name], read=form.format, empty=texts.PUPIL_CHARTS_SHOW[name])
+            Chart(_CHARTS[name], texts.DIGIT_RUN_CHARTS[name], read=form.format, empty=texts.DIGIT_RUN_CHARTS_SHOW[name])
             for name, form in (("loss", "{:.3g}"), ("accuracy", "{:.2f}"))
         ])  # fmt: skip
         self._told: tuple[object, ...] = ()
@@ -55,12 +55,12 @@ class DigitCharts(Charts):
 
 def draw_accuracy_legend(canvas: Canvas, curves: DigitCurves) -> None:
     """Draw which curve of accuracy is which."""
-    draw_legend(canvas, [Series((), (), texts.PUPIL_HELD_OUT), _batches(curves)], _LEGEND)
+    draw_legend(canvas, [Series((), (), texts.DIGIT_RUN_HELD_OUT), _batches(curves)], _LEGEND)
 
 
 def _turn_told(turn: DigitSettingChanged) -> str:
     if turn.name == REVERTED:
-        return texts.PUPIL_WENT_BACK.format(part=turn.after)
+        return texts.DIGIT_RUN_WENT_BACK.format(part=turn.after)
     return f"{label(turn.name)} {figure(turn.after)}"
 
 
@@ -68,4 +68,4 @@ def _batches(curves: DigitCurves) -> Series:
     """Return the curve of the training batches' accuracy."""
     colour, dash = _BATCHES
     return Series([point.seconds for point in curves.points], [100 * point.accuracy for point in curves.points],
-                  texts.PUPIL_BATCHES, colour, dash)  # fmt: skip
+                  texts.DIGIT_RUN_BATCHES, colour, dash)  # fmt: skip

@@ -61,7 +61,7 @@ class NetworkPainting:
         plan, centres, hovered = self.plan, self.centres, self.hovered
         if not plan or not centres:
             middle = (MARGIN + self.size[0] / 2, MARGIN + self.size[1] / 2)
-            signs.text(texts.NET_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.size[0])
+            signs.text(texts.NETWORK_VIEW_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.size[0])
             return light, signs
         yield
         drawn = 0.0
@@ -129,7 +129,7 @@ class NetworkPainting:
                 signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
         shown = len(column.units)
         if shown < column.total or not names:
-            words = (texts.NET_ALL if shown == column.total else texts.NET_SOME).format(shown=shown, count=column.total)
+            words = (texts.NETWORK_VIEW_ALL if shown == column.total else texts.NETWORK_VIEW_SOME).format(shown=shown, count=column.total)
             middle = (centres[0][0], self._last_line)
             signs.text(words, middle, size=LABEL - 1, colour=MUTE, align="centre")
 
@@ -138,7 +138,7 @@ class NetworkPainting:
         return MARGIN + self.size[1] - 3
 
     def _paint_legend(self, signs: Canvas) -> None:
-        y, (adds, takes) = self._last_line, texts.NET_LEGEND[self.show]
+        y, (adds, takes) = self._last_line, texts.NETWORK_VIEW_LEGEND[self.show]
         signs.pill((MARGIN, y - 5, 9, 2), ADDS)
         signs.text(adds, (MARGIN + 13, y), size=LABEL - 1, colour=MUTE)
         word = signs.text(takes, (MARGIN + self.size[0], y), size=LABEL - 1, colour=MUTE, align="right")

@@ -84,7 +84,7 @@ class NetworkPanel:
         index = SHOWN.index(self._view.show)
         if not large:
             return []
-        return [Choice(self._form.manager, box, "", texts.NET_SHOWS, index, self._show),
+        return [Choice(self._form.manager, box, "", texts.NETWORK_VIEW_SHOWS, index, self._show),
                 VirtualPointer(self._form.manager, _LARGE, self.follow)]  # fmt: skip
 
     def take(self, network_state: NetworkState, config: Config) -> None:
@@ -122,8 +122,8 @@ class NetworkPanel:
     def draw(self, canvas: Canvas) -> None:
         """Draw the panel's picture, and the large network with its title beside it."""
         if self.large:
-            canvas.text(texts.NET_TITLE, (_LEFT, 46), size=TITLE)
-            canvas.text(texts.NET_LINES[self._view.show], (_LEFT, 70), size=SMALL, colour=MUTE)
+            canvas.text(texts.NETWORK_VIEW_TITLE, (_LEFT, 46), size=TITLE)
+            canvas.text(texts.NETWORK_VIEW_LINES[self._view.show], (_LEFT, 70), size=SMALL, colour=MUTE)
         if self._shows_network:
             self._view.draw(canvas)
         if self.large or self._picture == _PAID:

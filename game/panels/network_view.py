@@ -121,7 +121,7 @@ class NetworkView:
         """Return the name of a unit, given its column and its place in it."""
         unit = int(self.columns[number].units[place])
         names = self._names(number)
-        return names[unit] if unit < len(names) else texts.NET_UNIT.format(layer=number, unit=unit + 1)
+        return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=number, unit=unit + 1)
 
     def _unit(self, number: int) -> float:
         """Return the divisor for a column's displayed values; outputs are shown in points of reward."""
@@ -254,9 +254,9 @@ class NetworkView:
     def _draw_tooltip(self, canvas: Canvas, number: int, place: int) -> None:
         column = self.columns[number]
         unit, last = self._unit(number), number == len(self.columns) - 1
-        words = texts.NET_POINTS if last and self.outputs else texts.NET_VALUE
+        words = texts.NETWORK_VIEW_POINTS if last and self.outputs else texts.NETWORK_VIEW_VALUE
         rows = [TooltipRow(words, plotting.compact(float(column.values[place]) / unit))]
         if column.bias is not None:
-            rows.append(TooltipRow(texts.NET_BIAS, plotting.compact(float(column.bias[place]) / unit)))
-        head = self.name(number, place) + (texts.NET_DAMAGED if column.damaged[place] else "")
+            rows.append(TooltipRow(texts.NETWORK_VIEW_BIAS, plotting.compact(float(column.bias[place]) / unit)))
+        head = self.name(number, place) + (texts.NETWORK_VIEW_DAMAGED if column.damaged[place] else "")
         draw_tooltip(canvas, self.centres[number][place], self.box, [head], rows)

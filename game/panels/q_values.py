@@ -98,7 +98,7 @@ def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:
         canvas.text(texts.said(name), (left, y), size=SMALL, colour=INK if here else MUTE, room=_NAME - 20)
         if here:
             canvas.marker("triangle", (left + _NAME - 8, y - 4), 6, NET)
-            canvas.text(texts.MIND_SCRIPTED_FLOWN, (left + _NAME, y), size=SMALL, colour=MUTE)
+            canvas.text(texts.DECISION_SCRIPTED_FLOWN, (left + _NAME, y), size=SMALL, colour=MUTE)
 
 
 def _draw_row(canvas: Canvas, values: QValues, action: int, left: float, y: float, width: float) -> None:

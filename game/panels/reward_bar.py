@@ -59,7 +59,7 @@ class RewardBar:
     A mark stands at the sum. Hovering a part explains it.
     """
 
-    def __init__(self, box: pygame.typing.RectLike, label: str = texts.STRIP_LABEL) -> None:
+    def __init__(self, box: pygame.typing.RectLike, label: str = texts.REWARD_BAR_LABEL) -> None:
         self.box = pygame.FRect(box)
         self.label = label
         self.names: tuple[str, ...] = ()
@@ -140,7 +140,7 @@ class RewardBar:
         self._paint_header(sheet, hovered)
         if not self._values.any():
             middle = (left + self.box.width / 2, top + 14)
-            sheet.text(texts.STRIP_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
+            sheet.text(texts.REWARD_BAR_EMPTY, middle, size=SMALL, colour=MUTE, align="centre", room=self.box.width)
             return
         sheet.line((left, top + _BAR_HEIGHT / 2), (right, top + _BAR_HEIGHT / 2), LINE)
         for piece in pieces:

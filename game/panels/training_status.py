@@ -34,14 +34,14 @@ def lander_status(lander_run: LanderRun) -> TrainingStatus:
 def digit_status(digit_run: DigitRun) -> TrainingStatus:
     """Return the epoch, the time and the speed, and the share of images that are read rightly."""
     curves, tested = digit_run.curves, digit_run.test is not None
-    line = texts.PUPIL_LOADING if digit_run.alive else texts.PUPIL_LINE
+    line = texts.DIGIT_RUN_LOADING if digit_run.alive else texts.DIGIT_RUN_LINE
     if curves.points:
         last = curves.points[-1]
-        line = texts.PUPIL_FIGURES.format(epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds,
+        line = texts.DIGIT_RUN_FIGURES.format(epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds,
                                           rate=last.images_per_second)  # fmt: skip
     if tested and digit_run.kept_epoch is not None:
         read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
-        line = texts.PUPIL_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
+        line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)
     part = digit_run.test if digit_run.test is not None else curves.scores[-1].accuracy if curves.scores else None
     figure = "" if part is None else f"{100 * part:.2f}"
-    return TrainingStatus(line, figure, texts.PUPIL_TESTED if tested else texts.PUPIL_READ)
+    return TrainingStatus(line, figure, texts.DIGIT_RUN_TESTED if tested else texts.DIGIT_RUN_READ)

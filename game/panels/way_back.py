@@ -27,9 +27,9 @@ class WayBack:
         wanted = run.alive and not run.stopping and run.curves.fallen is not None
         if wanted == bool(self._words):
             return
-        width = typeface.width(texts.PUPIL_GO_BACK, SMALL, "regular")
+        width = typeface.width(texts.DIGIT_RUN_GO_BACK, SMALL, "regular")
         box = (self._box.right - 14 - width, self._box.top + 2, width, 22)
-        words = [TextButton(self._form.manager, box, texts.PUPIL_GO_BACK, run.go_back, size=SMALL)] if wanted else []
+        words = [TextButton(self._form.manager, box, texts.DIGIT_RUN_GO_BACK, run.go_back, size=SMALL)] if wanted else []
         self._form.replace(self._words, words)
         self._words = words
 
@@ -37,4 +37,4 @@ class WayBack:
         """Draw the box and the sentence; the form draws the button."""
         if self._words and (fallen := self._digit_run.curves.fallen):
             best, now = (f"{100 * part:.1f}%" for part in fallen)
-            draw_hint(canvas, self._box, texts.HINT_TITLE, texts.PUPIL_FALLEN.format(best=best, now=now))
+            draw_hint(canvas, self._box, texts.HINT_TITLE, texts.DIGIT_RUN_FALLEN.format(best=best, now=now))

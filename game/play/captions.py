@@ -37,7 +37,7 @@ def draw_title(
 def _draw_free_title(canvas: Canvas, flight: Flight, network: Network, hands: str, notice: str) -> None:
     flown = texts.WITH_NETWORK.format(name=network.name) if flight.network else texts.ALONE
     if hands != OWN:
-        flown = texts.OTHER_HANDS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
+        flown = texts.HANDICAPS.format(hands=texts.CHOICES_HANDS_WORDS[hands])
     hud.draw_corner(canvas, texts.THREE_PADS if flight.recording.pads > 1 else texts.FREE_FLIGHT, flown, notice)
 
 

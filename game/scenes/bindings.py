@@ -82,7 +82,7 @@ class BindingCell(Widget):
 
     def _bind(self, code: int) -> None:
         """Bind a key, or say why it can't be bound, and wait for another."""
-        what = self._controls.pad_sign(code) if self._for_pads else key_name(code)
+        what = self._controls.gamepad_sign(code) if self._for_pads else key_name(code)
         if not self._bindings.may(self._meaning, code):
             self._on_change(texts.BINDINGS_FIXED.format(key=what))
             return
@@ -99,7 +99,7 @@ class BindingCell(Widget):
         return self._bindings is self._controls.buttons
 
     def _words(self, meaning: Meaning) -> list[str]:
-        return self._controls.pad_signs(meaning) if self._for_pads else self._controls.key_names(meaning)
+        return self._controls.gamepad_signs(meaning) if self._for_pads else self._controls.key_names(meaning)
 
     def ease(self, at_once: bool) -> None:
         """Stop waiting once the focus is elsewhere."""

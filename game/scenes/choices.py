@@ -14,7 +14,7 @@ from game.core.scene import Pop, Scene
 from game.core.settings import GRAVITY_SHARES, PACES
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, FIGURE, HUMAN, INK, LABEL, MARGIN, MUTE, SMALL, TITLE
-from game.flight.demonstrations import lessons
+from game.flight.demonstrations import count_demonstrations
 from game.flight.handicap import HANDS
 from game.flight.logbook import RECENT_OWN
 from game.flight.skill import Skill
@@ -46,7 +46,7 @@ class ChoicesScene(FormScene):
         super().__init__(context)
         self._skill, self._begun, self._challenge = skill, begun, challenge
         self._behind = BlurredPicture(below, dimmed=0.7)
-        self._taught = lessons(context.user_dir)
+        self._taught = count_demonstrations(context.user_dir)
         form = self.form
         self._rows: dict[Widget, Callable[[], str]] = {}
         if not self._challenge:

@@ -36,8 +36,8 @@ from game.ui.widgets import TextButton
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
-_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in texts.PUPIL_PRESETS}
-DIGITS: Final = RunKind(tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.PUPIL_PRESETS, "images")
+_OFFERED: Final = {name: preset for name, preset in DIGIT_PRESETS.items() if name in texts.DIGIT_RUN_PRESETS}
+DIGITS: Final = RunKind(tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.DIGIT_RUN_PRESETS, "images")
 _KNOBS: Final = pygame.Rect(868, 20, 384, 436)
 _MATRIX: Final = pygame.Rect(70, 372, 320, 320)
 _CELL: Final = pygame.Rect(440, 346, 372, 346)
@@ -131,7 +131,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
             return
         preset, seconds, part = self.digit_run.described()
         named = (preset, "") if preset in _OFFERED else DIGITS.nearest(self.digit_run.config)
-        name = self.digit_run.collection.free_name(texts.PUPIL_NAME.format(preset=DIGITS.word(named)))
+        name = self.digit_run.collection.free_name(texts.DIGIT_RUN_NAME.format(preset=DIGITS.word(named)))
 
         def keep() -> None:
             if problem := self.digit_run.save(name):
@@ -140,9 +140,9 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
                 self._start(config, seed)
 
         self._asked = True
-        words = texts.PUPIL_LEFT_YOUNG if part is None else texts.PUPIL_LEFT_FIGURES
+        words = texts.DIGIT_RUN_LEFT_YOUNG if part is None else texts.DIGIT_RUN_LEFT_FIGURES
         self._question = Push(QuestionDialog(self, texts.TRAIN_LEFT, words.format(part=part, seconds=seconds), [
-            (texts.PUPIL_LEFT_KEEP.format(name=name), keep),
+            (texts.DIGIT_RUN_LEFT_KEEP.format(name=name), keep),
             (texts.TRAIN_LEFT_DISCARD, lambda: self._start(config, seed)),
         ]))  # fmt: skip
 
@@ -159,14 +159,14 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
 
     def _save(self) -> Transition | None:
         if not (self.digit_run.kept or self.digit_run.alive):
-            self.context.note(texts.PUPIL_NOTHING)
+            self.context.note(texts.DIGIT_RUN_NOTHING)
             return None
-        return self._ask_name(texts.PUPIL_NAME.format(preset=self.knobs.name))
+        return self._ask_name(texts.DIGIT_RUN_NAME.format(preset=self.knobs.name))
 
     def _save_as(self, name: str) -> str:
         problem, alive = self.digit_run.save(name), self.digit_run.alive
         if not problem and not alive:
-            self.context.note(texts.PUPIL_SAVED.format(name=name))
+            self.context.note(texts.DIGIT_RUN_SAVED.format(name=name))
         return problem
 
     def _dream(self) -> Transition | None:
@@ -182,7 +182,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         from ai.digits.classifier import DigitClassifier
 
         if not self.digit_run.kept:
-            self.context.note(texts.PUPIL_NOTHING)
+            self.context.note(texts.DIGIT_RUN_NOTHING)
             return None
         try:
             return DigitClassifier.load(self.digit_run.unsaved)
@@ -221,15 +221,15 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
 
         self.start_word = add(PANEL_LEFT, 664, texts.TRAIN_START, self._toggle)
         self.save_word = add(PANEL_LEFT + 316, 664, texts.TRAIN_SAVE, self._save)
-        self.dream_word = add(PANEL_LEFT, 624, texts.PUPIL_DREAM, self._dream)
-        self.quiz_word = add(max(PANEL_LEFT + 120, self.dream_word.box.right + 18), 624, texts.PUPIL_QUIZ, self._quiz)
+        self.dream_word = add(PANEL_LEFT, 624, texts.DIGIT_RUN_DREAM, self._dream)
+        self.quiz_word = add(max(PANEL_LEFT + 120, self.dream_word.box.right + 18), 624, texts.DIGIT_RUN_QUIZ, self._quiz)
         self._name_words()
 
     def _name_words(self) -> None:
         digit_run = self.digit_run
-        stop = texts.PUPIL_GO_ON if digit_run.unfinished else ""
+        stop = texts.DIGIT_RUN_GO_ON if digit_run.unfinished else ""
         if digit_run.alive:
-            stop = texts.PUPIL_STOPPING if digit_run.stopping else texts.PUPIL_STOP
+            stop = texts.DIGIT_RUN_STOPPING if digit_run.stopping else texts.DIGIT_RUN_STOP
         old = self.stop_word
         if stop != (old.label if old else ""):
             box = (PANEL_LEFT + 80, 664, typeface.width(stop, TEXT, "regular"), 28)
@@ -241,5 +241,5 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         if self.digit_run.curves.points:
             draw_accuracy_legend(canvas, self.digit_run.curves)
         status = digit_status(self.digit_run)
-        draw_run_status(canvas, (LEFT, 46), texts.PUPIL_TITLE, *status, drop=72, room=DISPLAY_WIDTH - 2 * LEFT)
+        draw_run_status(canvas, (LEFT, 46), texts.DIGIT_RUN_TITLE, *status, drop=72, room=DISPLAY_WIDTH - 2 * LEFT)
         self.draw_hints(canvas)

@@ -136,7 +136,7 @@ class DigitsScene(FormScene):
             Action(Command.NEXT, lambda: self._turn(1), texts.DIGITS_HINT_NETWORK),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
             self.form.goes_back(texts.HINT_BACK),
-            *self._pad_actions,
+            *self._gamepad_actions,
             *(Action(key, self._clear) for key in (Command.RETRY, pygame.K_DELETE)),
             *(Action(key, partial(self._correct, digit)) for key, digit in _DIGITS.items()),
         ]
@@ -146,9 +146,9 @@ class DigitsScene(FormScene):
         return [HintRow(self.hints, (PAD.left, FOOT[1]))]
 
     @property
-    def _pad_actions(self) -> tuple[Action, Action]:
+    def _gamepad_actions(self) -> tuple[Action, Action]:
         """Undo and clear, which buttons below the pad do as well."""
-        return Action(pygame.K_z, self._undo, pad=Command.HANDOVER), Action(Command.CHOICES, self._clear)
+        return Action(pygame.K_z, self._undo, gamepad=Command.HANDOVER), Action(Command.CHOICES, self._clear)
 
     def update(self) -> Transition | None:
         """Read the drawing if it changed, and receive finished measurements."""
@@ -280,7 +280,7 @@ class DigitsScene(FormScene):
         from game.scenes.dialog import ListDialog
 
         damaged = self.live.reader.problems
-        rows = [(called(name), texts.SHELF_DAMAGED if name in damaged else network.said)
+        rows = [(called(name), texts.DIGIT_MODEL_DAMAGED if name in damaged else network.said)
                 for name, network in self.fixing.networks.items()]  # fmt: skip
         return Push(ListDialog(self, texts.DIGITS_PICK, rows, self._tabs.choose))
 
@@ -319,7 +319,7 @@ class DigitsScene(FormScene):
         for words in reversed(problems):
             most = _PROBLEM_LINES - round((y - _PROBLEMS) / 17)
             y = draw_wrapped(canvas, words, (LEFT, y), _TABS[2], colour=canvas.palette.warn, leading=17, most=most)
-        for action, widget in zip(self._pad_actions, self._under, strict=True):
+        for action, widget in zip(self._gamepad_actions, self._under, strict=True):
             left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
             canvas.text(action.key_word(self.context.controls), (left, widget.baseline), size=SMALL, weight="medium")
         self.draw_hints(canvas)

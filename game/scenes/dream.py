@@ -106,9 +106,9 @@ class DreamScene(FormScene):
     def actions(self) -> Table:
         """Choose a digit by its key, or the next one; restart; go back."""
         word = self.context.controls.word
-        by_pad = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}"
+        by_gamepad = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}"
         return [
-            Hint(by_pad if self.context.controls.pad_in_use else "0 – 9", texts.HINT_DIGIT),
+            Hint(by_gamepad if self.context.controls.gamepad_in_use else "0 – 9", texts.HINT_DIGIT),
             *digit_actions(self.choose),
             Action(Command.NEXT, lambda: self.choose((self.digit + 1) % _DIGITS)),
             Action(Command.PREVIOUS, lambda: self.choose((self.digit - 1) % _DIGITS)),

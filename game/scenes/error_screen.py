@@ -30,8 +30,8 @@ class ErrorScene(Scene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw what happened and what to do."""
         canvas.surface.fill(NIGHT0)
-        canvas.text(texts.FAULT_TITLE, (MARGIN, 296), size=TITLE, weight="light")
-        canvas.text(texts.FAULT_KEPT, (MARGIN, 336), colour=MUTE)
+        canvas.text(texts.ERROR_TITLE, (MARGIN, 296), size=TITLE, weight="light")
+        canvas.text(texts.ERROR_KEPT, (MARGIN, 336), colour=MUTE)
         canvas.text(self._reason[:140], (MARGIN, 368), colour=MUTE)
-        canvas.text(texts.FAULT_LOG.format(path=self._log), (MARGIN, 392), colour=MUTE)
-        canvas.text(texts.FAULT_BACK.format(key=self.context.controls.word(Command.CONFIRM)), (MARGIN, 440))
+        canvas.text(texts.ERROR_LOG.format(path=self._log), (MARGIN, 392), colour=MUTE)
+        canvas.text(texts.ERROR_BACK.format(key=self.context.controls.word(Command.CONFIRM)), (MARGIN, 440))

@@ -104,7 +104,7 @@ class QuizScene(FormScene):
         table = list(super().actions())
         if self._draws:
             return [
-                Action(pygame.K_z, self._undo, texts.DIGITS_UNDO.lower(), pad=Command.HANDOVER),
+                Action(pygame.K_z, self._undo, texts.DIGITS_UNDO.lower(), gamepad=Command.HANDOVER),
                 Action(Command.CHOICES, self._clear, texts.DIGITS_CLEAR.lower()),
                 *table,
                 *(Action(key, self._clear) for key in (Command.RETRY, pygame.K_DELETE)),
@@ -112,7 +112,7 @@ class QuizScene(FormScene):
         current = self.contest.round
         if current is None or current.answer is not None:
             return table
-        if not self.context.controls.pad_in_use:
+        if not self.context.controls.gamepad_in_use:
             table = [Hint("0 – 9", texts.HINT_CHOOSE), self.form.confirms(""), *table[1:]]
         return [*table, *digit_actions(self._read)]
 

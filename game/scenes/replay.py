@@ -88,10 +88,10 @@ class ReplayScene(FormScene):
     def actions(self) -> Table:
         """Stop, step and seek; take over; go back."""
         stop, step, *speeds = self.playback.actions(
-            texts.HINT_STEP, stop=self._stop_or_go, pad=Command.CONFIRM, resting=self.ended
+            texts.HINT_STEP, stop=self._stop_or_go, gamepad=Command.CONFIRM, resting=self.ended
         )
         on_strip = self.form.focused is self._reward_bar
-        if self.context.controls.pad_in_use and not on_strip:  # its A presses what is in focus
+        if self.context.controls.gamepad_in_use and not on_strip:  # its A presses what is in focus
             stop = self.form.confirms(texts.HINT_CHOOSE)
         table = [
             stop,
@@ -103,7 +103,7 @@ class ReplayScene(FormScene):
             Action(pygame.K_HOME, lambda: self.seek(0)),
             Action(pygame.K_END, lambda: self.seek(self.flight_replay.length)),
         ]
-        if on_strip or self.context.controls.pad_in_use:
+        if on_strip or self.context.controls.gamepad_in_use:
             table += [Action(Command.NEXT, lambda: self._wind(60)), Action(Command.PREVIOUS, lambda: self._wind(-60))]
         return table
 

@@ -176,7 +176,7 @@ class NetworksScene(ListScene[SavedRun]):
     def _begin_naming(self) -> None:
         run, context = self.chosen, self.context
         assert run is not None
-        text = suggestion(self._library, run) if context.controls.pad_in_use else run.name
+        text = suggestion(self._library, run) if context.controls.gamepad_in_use else run.name
         self._entry = Entry(
             self.form.manager, (_LEFT, 140, _WIDTH, 34), texts.RUN_NAME, text, self._rename,
             on_cancel=self._end_naming, limit=LONGEST_NAME, fits=fitting, size=TITLE,

@@ -143,7 +143,7 @@ class SettingsScene(FormScene):
             y += 36
             canvas.text(texts.BINDINGS[meaning.name], (_KEYS_LEFT, y), size=TEXT - 1, colour=INK)
             canvas.text(names(controls.key_names(meaning)), (_KEYS_LEFT + 192, y), size=TEXT - 1, colour=MUTE)
-            signs = names(controls.pad_signs(meaning)) or texts.BINDINGS_NONE
+            signs = names(controls.gamepad_signs(meaning)) or texts.BINDINGS_NONE
             canvas.text(signs, (pad_left, y), size=TEXT - 1, colour=MUTE, align="right")
 
 

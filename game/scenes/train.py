@@ -16,7 +16,7 @@ from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, VIEW_SIZE
-from game.flight.demonstrations import FILE_NAME, lessons
+from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.panels.advice import Advice
 from game.panels.knobs import KnobsPanel
@@ -155,7 +155,7 @@ class TrainScene(TrainingScene[LanderRun]):
     def _teach(self) -> None:
         """Add the player's landings to the run's training as demonstrations, or start a run with them."""
         folder = self.context.user_dir
-        if not lessons(folder):
+        if not count_demonstrations(folder):
             self.context.note(texts.TRAIN_NO_LESSONS)
             return
         if not self.lander_run.alive:
@@ -166,7 +166,7 @@ class TrainScene(TrainingScene[LanderRun]):
         if not self.lander_run.kept:
             self.context.note(texts.TRAIN_NOTHING)
             return None
-        name = texts.TRAIN_TAUGHT_NAME if self.lander_run.lessons else texts.TRAIN_NAME
+        name = texts.TRAIN_TAUGHT_NAME if self.lander_run.demonstrations else texts.TRAIN_NAME
         return self._ask_name(name.format(preset=self.knobs.name))
 
     def _save_as(self, name: str) -> str:

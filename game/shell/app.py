@@ -205,8 +205,8 @@ class App:
         controls = self.context.controls
         used_mouse = controls.mouse_in_use
         controls.process(event)
-        if event.type == pygame.CONTROLLERDEVICEADDED and controls.pad_name:
-            self.notes.show(texts.PAD_FOUND.format(name=controls.pad_name))
+        if event.type == pygame.CONTROLLERDEVICEADDED and controls.gamepad_name:
+            self.notes.show(texts.PAD_FOUND.format(name=controls.gamepad_name))
         elif translate(event) is Command.UNPLUGGED:
             self.notes.show(texts.PAD_LOST)
         if controls.mouse_in_use != used_mouse:

@@ -46,7 +46,7 @@ class SavedDigitModel:
             summary = read_summary(self.folder)
         except (OSError, ValueError):
             return ""
-        for part, words in ((summary.test, texts.SHELF_TESTED), (summary.held_out, texts.SHELF_HELD_OUT)):
+        for part, words in ((summary.test, texts.DIGIT_MODEL_TESTED), (summary.held_out, texts.DIGIT_MODEL_HELD_OUT)):
             if part is not None:
                 return words.format(part=part)
         return ""

@@ -185,7 +185,7 @@ class DigitRun(TrainingRun):
     def save(self, name: str) -> str:
         """Name the run; return why that failed, or "". Later notes come from `poll`."""
         if self.waiting:  # nothing has been saved yet
-            return texts.PUPIL_NOTHING
+            return texts.DIGIT_RUN_NOTHING
         try:
             if self.alive:
                 folder = self.collection.new_folder(name)
@@ -230,14 +230,14 @@ class DigitRun(TrainingRun):
             self._saving.remove(kept.folder)
         if kept.problem:
             return texts.TRAIN_NOT_SAVED.format(problem=kept.problem)
-        return "" if kept.folder == self.unsaved else texts.PUPIL_SAVED.format(name=kept.folder.name)
+        return "" if kept.folder == self.unsaved else texts.DIGIT_RUN_SAVED.format(name=kept.folder.name)
 
     def _name_ended(self) -> list[str]:
         """Name a run that ended before it received its name; return notes for the player."""
         notes = []
         while self._saving:
             name = self._saving.pop().name
-            notes.append(self.save(name) or texts.PUPIL_SAVED.format(name=name))
+            notes.append(self.save(name) or texts.DIGIT_RUN_SAVED.format(name=name))
         return notes
 
     def _put_aside(self) -> str:

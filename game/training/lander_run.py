@@ -93,7 +93,7 @@ class LanderRun(TrainingRun):
         return note
 
     @property
-    def lessons(self) -> int:
+    def demonstrations(self) -> int:
         """Number of demonstrations this run has learnt from."""
         return sum(
             each.after for each in self.history.setting_changes if each.name == TAUGHT and type(each.after) is int

@@ -23,20 +23,20 @@ class Action:
         key: the command whose keys and buttons run it, or the code of a key that cannot be bound.
         run: does it.
         hint: what it does, in a word or two; no hint is shown if empty.
-        pad: command whose buttons run it from a gamepad, in place of `key`.
+        gamepad: command whose buttons run it from a gamepad, in place of `key`.
 
     """
 
     key: Command | int
     run: Run
     hint: str = ""
-    pad: Command | None = None
+    gamepad: Command | None = None
 
     def answers(self, event: pygame.event.Event) -> bool:
         """Whether the event is a press of its key or button."""
         command = translate(event)
-        if self.pad is not None and event.type != pygame.KEYDOWN:
-            return command is self.pad
+        if self.gamepad is not None and event.type != pygame.KEYDOWN:
+            return command is self.gamepad
         if isinstance(self.key, Command):
             # In a menu the pause keys go back too.
             return command is self.key or (self.key is Command.BACK and command is Command.PAUSE)
@@ -44,8 +44,8 @@ class Action:
 
     def key_word(self, controls: Controls) -> str:
         """Return the name of its key, or the sign of its button while a gamepad is in use."""
-        if self.pad is not None and controls.pad_in_use:
-            return controls.word(self.pad)
+        if self.gamepad is not None and controls.gamepad_in_use:
+            return controls.word(self.gamepad)
         return controls.word(self.key) if isinstance(self.key, Command) else key_name(self.key)
 
     def told(self, controls: Controls) -> Hint:

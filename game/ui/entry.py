@@ -96,10 +96,10 @@ class Entry(Widget):
             self.typing = event.key not in (pygame.K_UP, pygame.K_DOWN, pygame.K_TAB)
             return self.typing
         else:
-            return self._take_pad(translate(event))
+            return self._take_gamepad(translate(event))
         return True
 
-    def _take_pad(self, command: Command | None) -> bool:
+    def _take_gamepad(self, command: Command | None) -> bool:
         match command:
             case Command.CONFIRM:
                 self.outcome = self.press()

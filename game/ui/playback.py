@@ -54,7 +54,7 @@ class Playback:
         step_hint: str,
         *,
         stop: Callable[[], None] | None = None,
-        pad: Command = Command.HANDOVER,
+        gamepad: Command = Command.HANDOVER,
         resting: bool = False,
     ) -> list[Action]:
         """Return the actions: stop or go, and step, with hints; slower and faster without.
@@ -62,13 +62,13 @@ class Playback:
         Args:
             step_hint: what a step is called.
             stop: stops or goes, where that takes more than `toggle`.
-            pad: command that stops or goes from a gamepad.
+            gamepad: command that stops or goes from a gamepad.
             resting: whether time stands still for another reason than being stopped.
 
         """
         go = texts.HINT_GO if self.stopped or resting else texts.HINT_STOP
         return [
-            Action(pygame.K_SPACE, stop or self.toggle, go, pad=pad),
+            Action(pygame.K_SPACE, stop or self.toggle, go, gamepad=gamepad),
             Action(Command.STEP, self.step, step_hint),
             Action(Command.SLOWER, lambda: self._shift(-1)),
             Action(Command.FASTER, lambda: self._shift(1)),

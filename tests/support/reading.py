@@ -36,7 +36,7 @@ class OnlyFlies:
 
 
 WHO = {texts.YOU_FLY: "person", texts.CHECK_FLIGHT: "person", texts.YOU_SHARE: "both", texts.NETWORK_FLIES: "network"}
-WHO |= {lines[0]: "network" if name == "ALONE" else "both" for name, lines in texts.INSIGHT_WHY.items()}
+WHO |= {lines[0]: "network" if name == "ALONE" else "both" for name, lines in texts.COPILOT_PANEL_WHY.items()}
 FLEW = {texts.YOU_FLEW: "you", texts.BOTH_FLEW: "both", texts.NETWORK_FLEW: "network"}
 COUNTS = [
     texts.CHECK_ALONE,

@@ -115,7 +115,7 @@ def test_an_override_is_lit_said_and_marked_and_hands_off_is_none(open_game: Ope
     assert cockpit.overrides.lamp(flight)[0] == "diamond"
     assert cockpit.overrides.times == len(cockpit.track.moments) == 1
     assert difference(RIGHT, MAIN) in words
-    assert texts.INSIGHT_WHY["COPILOT"][0] in words
+    assert texts.COPILOT_PANEL_WHY["COPILOT"][0] in words
 
 
 def test_without_assist_nothing_of_the_co_pilot_is_seen_or_felt(open_game: Open, context: Context, monkeypatch):
@@ -125,7 +125,7 @@ def test_without_assist_nothing_of_the_co_pilot_is_seen_or_felt(open_game: Open,
     driver.frames(20)
     assert set(play(driver).flight.recording.actions) == {COAST}
     assert play(driver).flight.share == 1.0
-    assert texts.MIND_TITLE not in words
+    assert texts.DECISION_TITLE not in words
     assert texts.YOU_FLY in words
 
 

@@ -82,11 +82,11 @@ def test_an_override_that_is_over_is_said_to_be_past(monkeypatch: pytest.MonkeyP
         copilot_panel.follow(flight)
         drawn.clear()
         copilot_panel.draw(canvas, 0.5)
-        return next(word for word in drawn.words for why in texts.INSIGHT_WHY.values() if word.startswith(why[0]))
+        return next(word for word in drawn.words for why in texts.COPILOT_PANEL_WHY.values() if word.startswith(why[0]))
 
-    copilot, yours = texts.INSIGHT_WHY["COPILOT"][0], texts.INSIGHT_WHY["PILOT"][0]
+    copilot, yours = texts.COPILOT_PANEL_WHY["COPILOT"][0], texts.COPILOT_PANEL_WHY["PILOT"][0]
     assert title(2) == copilot
-    assert title(1) == texts.INSIGHT_BEFORE.format(title=copilot)
+    assert title(1) == texts.COPILOT_PANEL_BEFORE.format(title=copilot)
     assert flight.recording.actions[-1] == 1
     assert [title(1) for _ in range(60)][-1] == yours
 

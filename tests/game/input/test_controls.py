@@ -95,7 +95,7 @@ def test_signs_go_with_the_pad_and_another_pads_release_does_not_matter():
     send(controls, pygame.CONTROLLERBUTTONDOWN, instance_id=4, button=pygame.CONTROLLER_BUTTON_A)
     assert SIGN.fullmatch(controls.word(Command.CONFIRM))
     event = send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=9)
-    assert controls.pad_in_use
+    assert controls.gamepad_in_use
     assert translate(event) is None
     event = send(controls, pygame.CONTROLLERDEVICEREMOVED, instance_id=4)
     assert translate(event) is Command.UNPLUGGED

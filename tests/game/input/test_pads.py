@@ -64,7 +64,7 @@ def test_a_pad_is_plugged_in_flown_with_and_pulled_out(game: Driver, pads: Virtu
         pads.push(pygame.CONTROLLER_AXIS_LEFTX, -30000)
         game.frames(2)
         assert controls.action == 4
-        assert controls.pad_in_use
+        assert controls.gamepad_in_use
         pads.pull_out_all()
         assert game.frames(2)
         assert controls.action == 0

@@ -311,4 +311,4 @@ def test_outputs_are_told_in_points_of_reward(monkeypatch: pytest.MonkeyPatch) -
     view.hover(view.centres[-1][0])
     written.clear()
     play(view, Canvas(pygame.Surface((1280, 720))))
-    assert texts.NET_POINTS in written
+    assert texts.NETWORK_VIEW_POINTS in written

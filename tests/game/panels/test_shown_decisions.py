@@ -177,7 +177,7 @@ def test_the_co_pilots_panel_draws_the_shared_decision_and_its_words_say_why(
 def read_why(why: tuple[str, str, str], *, overridden: bool) -> None:
     """The words agree with what was flown, and with each other."""
     title, *lines = why
-    assert not (overridden and title == texts.INSIGHT_WHY["PILOT"][0])
+    assert not (overridden and title == texts.COPILOT_PANEL_WHY["PILOT"][0])
     figures = [float(figure) for line in lines for figure in re.findall(r"\d+\.\d+", line)]
     if len(figures) == 2:
         below, allowed = figures

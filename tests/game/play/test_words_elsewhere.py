@@ -78,7 +78,7 @@ def check_watch(reading: Reading, flies: str, broken: bool) -> None:
     assert {texts.HINT_GO, texts.HINT_STOP} & words == {texts.HINT_GO if watch.playback.stopped else texts.HINT_STOP}
     assert set(map(landers, COUNTS)) & words == {landers(count)}
     weighs = flies == "weighs"
-    assert (texts.MIND_TITLE in words) == weighs == (texts.MIND_SCRIPTED_TITLE not in words)
+    assert (texts.DECISION_TITLE in words) == weighs == (texts.DECISION_SCRIPTED_TITLE not in words)
     assert (texts.Q_WEIGHS_NOTHING in words) == (not weighs)
     counted = texts.WATCH_COUNTS.format(landed=swarm.landed, lost=swarm.lost)
     assert (counted in words) == (swarm.landed + swarm.lost > 0)
@@ -93,7 +93,7 @@ def landers(count: int) -> str:
 STATES = [None, *WorkerState]
 LINES = {
     TrainScene: (texts.TRAIN_BEGINS, texts.TRAIN_LINE),
-    DigitTrainingScene: (texts.PUPIL_LOADING, texts.PUPIL_LINE),
+    DigitTrainingScene: (texts.DIGIT_RUN_LOADING, texts.DIGIT_RUN_LINE),
 }
 BUTTON = dict.fromkeys([WorkerState.RUNNING, WorkerState.STARTING], texts.TRAIN_PAUSE) | {
     WorkerState.PAUSED: texts.TRAIN_RESUME
@@ -119,7 +119,7 @@ def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game
         begins, invites = LINES[make]
         assert {begins, invites} & words == {begins if learner.alive else invites}, state
         if make is DigitTrainingScene:
-            assert (texts.PUPIL_STOP in words) == learner.alive, state
+            assert (texts.DIGIT_RUN_STOP in words) == learner.alive, state
     learner._worker = None
     assert driver.top is scene
 

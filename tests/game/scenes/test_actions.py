@@ -102,7 +102,7 @@ def test_the_key_the_button_and_the_click_run_the_same_action(
                 continue  # moves the focus
             driver.key(code)
             assert recorder.take() == [action.key], f"{pygame.key.name(code)} of {action}"
-        command = action.pad or (action.key if isinstance(action.key, Command) else None)
+        command = action.gamepad or (action.key if isinstance(action.key, Command) else None)
         for code in controls.buttons.codes(command) if command else ():
             if code < 32:  # the others are axes
                 driver.button(code)

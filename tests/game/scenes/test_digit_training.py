@@ -100,7 +100,7 @@ def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
     assert not scene.digit_run.problem
     assert 0 < scene.digit_run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
-    wait(beside, lambda: scene.stop_word and scene.stop_word.label == texts.PUPIL_GO_ON)
+    wait(beside, lambda: scene.stop_word and scene.stop_word.label == texts.DIGIT_RUN_GO_ON)
     stood = scene.digit_run.curves.points[-1].step
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
     beside.click(scene.stop_word.box.center)
@@ -117,7 +117,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     scene = train.top
     for word in (scene.save_word, scene.dream_word, scene.quiz_word):
         train.click(word.box.center)
-    assert notes == [texts.PUPIL_NOTHING] * 3
+    assert notes == [texts.DIGIT_RUN_NOTHING] * 3
     train.key(pygame.K_TAB)
     scene.form.focus(scene.start_word)
     train.key(pygame.K_RETURN)
@@ -126,7 +126,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     assert isinstance(train.top, NameDialog)
     train.key(pygame.K_RETURN)
     assert train.top is scene
-    kept = tmp_path / "user" / "digits" / "runs" / texts.PUPIL_NAME.format(preset="Classic")
+    kept = tmp_path / "user" / "digits" / "runs" / texts.DIGIT_RUN_NAME.format(preset="Classic")
     wait(train, lambda: (kept / "config.json").exists() and len(notes) == 4)
     assert kept.name in notes[-1]
     train.click(scene.stop_word.box.center)
@@ -138,7 +138,7 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     assert isinstance(train.top, QuizScene)
 
 
-@pytest.mark.parametrize("answer", [texts.PUPIL_LEFT_KEEP.format(name="Classic reader"), texts.TRAIN_LEFT_DISCARD, ""])
+@pytest.mark.parametrize("answer", [texts.DIGIT_RUN_LEFT_KEEP.format(name="Classic reader"), texts.TRAIN_LEFT_DISCARD, ""])
 def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path: Path, answer: str):
     scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
     save_digit_run(DigitTraining(SMALL, 3), runs / ".training")
@@ -225,7 +225,7 @@ def test_a_run_is_named_although_the_next_one_was_asked_for_at_once(beside: Driv
     assert digit_run.save("first") == ""
     digit_run.begin(SMALL, 4)
     assert digit_run.waiting
-    assert digit_run.save("second") == texts.PUPIL_NOTHING
+    assert digit_run.save("second") == texts.DIGIT_RUN_NOTHING
     wait(beside, lambda: digit_run.curves.points)
     assert json.loads((runs / "first" / "training.json").read_text())["seed"] == 3
     assert digit_run.seed == 4

@@ -239,7 +239,7 @@ def test_the_network_is_shown_large_by_mouse_and_keys(train: Driver) -> None:
     assert scene.inside.large
     assert heading(train) == texts.TRAIN_INSIDE[1]  # for that is what the panel shows now
     train.click((150, 102))
-    assert train.choice(texts.NET_SHOWS[1]).index == SHOWN.index("activations")
+    assert train.choice(texts.NETWORK_VIEW_SHOWS[1]).index == SHOWN.index("activations")
     train.frames(3)
     train.key(pygame.K_ESCAPE)
     assert train.top is scene
