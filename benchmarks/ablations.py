@@ -88,8 +88,10 @@ def main() -> None:
     parser.add_argument("--decisions", type=int, default=250_000)
     parser.add_argument("--only", nargs="+", choices=VARIANTS, default=list(VARIANTS))
     arguments = parser.parse_args()
-    print(f"Python {platform.python_version()}, NumPy {np.__version__}; {arguments.seeds} seeds,"
-          f" {arguments.decisions:,} decisions each, one thread\n")  # fmt: skip
+    print(
+        f"Python {platform.python_version()}, NumPy {np.__version__}; {arguments.seeds} seeds,"
+        f" {arguments.decisions:,} decisions each, one thread\n"
+    )
     print("| | 95 % after | 99 % after | mean of the curve | at the end | worst seed | CPU s |")
     print("|---|---|---|---|---|---|---|")
     for name in arguments.only:

@@ -84,8 +84,11 @@ def cases() -> Iterator[tuple[str, Case]]:
     yield "modern rates to 1 and back, late", Case("modern", {}, LATE, broken)
     for name in SABOTAGES:
         changed = sabotaged(PRESETS["modern"], name)
-        changes = {item.name: value for item in fields(Config)
-                   if (value := getattr(changed, item.name)) != getattr(PRESETS["modern"], item.name)}  # fmt: skip
+        changes = {
+            item.name: value
+            for item in fields(Config)
+            if (value := getattr(changed, item.name)) != getattr(PRESETS["modern"], item.name)
+        }
         late = name in ("short_sight", "rate_times_100", "no_shaping", "plain_steps")
         length = 2_000 if name == "one_lander" else LATE if late else SHORT["modern"]
         yield f"modern sabotage {name}", Case("modern", changes, length)
@@ -97,8 +100,10 @@ def cases() -> Iterator[tuple[str, Case]]:
                 if kind(value) != getattr(PRESETS[preset], name):
                     alone = name == "num_envs" and value == 1
                     more = {"replay_prune": 1} if name == "replay_size" else {}
-                    yield f"{preset} {name} {value:g}", Case(preset, {name: kind(value)} | more,
-                                                             2_000 if alone else short)  # fmt: skip
+                    yield (
+                        f"{preset} {name} {value:g}",
+                        Case(preset, {name: kind(value)} | more, 2_000 if alone else short),
+                    )
 
 
 def record(case: Case) -> tuple[np.ndarray, dict[str, Any]]:
@@ -172,8 +177,12 @@ def main() -> None:
         began = time.process_time()
         tables[name], described[name] = record(case)
         last = dict(zip(COLUMNS, tables[name][-1], strict=True)) if len(tables[name]) else {}
-        print(f"{name}: {time.process_time() - began:.1f} s,", {k: round(float(v), 3) for k, v in last.items()},
-              described[name]["problem"], flush=True)  # fmt: skip
+        print(
+            f"{name}: {time.process_time() - began:.1f} s,",
+            {k: round(float(v), 3) for k, v in last.items()},
+            described[name]["problem"],
+            flush=True,
+        )
         write(options.output, tables, described)
 
 

@@ -45,8 +45,11 @@ def main() -> None:
                 steps = step.step + 1
             seconds, sure = time.perf_counter() - began, float(classifier.predict(image)[0, digit])
             after = accuracy(classifier, images[held], labels[held])
-            print(f"{name:8} {digit:>3} {was:>9} {min(steps, 60):>6} {seconds:>8.2f} {sure:>9.0%} "
-                  f"{before:>17.2%} {after:>6.2%}", flush=True)  # fmt: skip
+            print(
+                f"{name:8} {digit:>3} {was:>9} {min(steps, 60):>6} {seconds:>8.2f} {sure:>9.0%} "
+                f"{before:>17.2%} {after:>6.2%}",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

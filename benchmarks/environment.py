@@ -107,8 +107,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=15)
     arguments = parser.parse_args()
-    rivals = {name: make for name, make, there in (
-        ("Gymnasium", gymnasiums, "Box2D"), ("EnvPool", envpools, "envpool")) if find_spec(there)}  # fmt: skip
+    rivals = {
+        name: make
+        for name, make, there in (("Gymnasium", gymnasiums, "Box2D"), ("EnvPool", envpools, "envpool"))
+        if find_spec(there)
+    }
     with_versions = [f"{name} {version(name.lower())}" for name in rivals]
     print(", ".join([f"Python {platform.python_version()}", f"NumPy {np.__version__}", *with_versions]), end="")
     print(f"; physics steps a second on one thread, medians of {arguments.rounds} turns\n")

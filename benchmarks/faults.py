@@ -42,8 +42,11 @@ def main() -> int:
             found = Counter(damaged(subject, arguments.count, arguments.seed, Path(folder)))
             kills = Counter(killed(subject, Path(folder)))
         faults += [f"{subject.name}: {outcome}" for outcome in {*found, *kills} - {"read", "refused", "old", "new"}]
-        print(f"{subject.name:15} {found['read']:6,} read {found['refused']:6,} refused; after a kill"
-              f" {kills['old']:4} old {kills['new']:4} new {time.monotonic() - began:6.0f} s", flush=True)  # fmt: skip
+        print(
+            f"{subject.name:15} {found['read']:6,} read {found['refused']:6,} refused; after a kill"
+            f" {kills['old']:4} old {kills['new']:4} new {time.monotonic() - began:6.0f} s",
+            flush=True,
+        )
     print(*faults, sep="\n", end="\n" * bool(faults))
     import resource  # which not every system has
 

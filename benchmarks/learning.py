@@ -145,9 +145,10 @@ def sb3_dqn(env: str, seed: int, **options: Any) -> Iterator[Checkpoint]:
         start = time.process_time()
         # Its schedule of random actions spans the steps it was tuned for, and stays at its end after them.
         model.learn(
-            max(1000, TUNED_STEPS - model.num_timesteps), reset_num_timesteps=model.num_timesteps == 0,
+            max(1000, TUNED_STEPS - model.num_timesteps),
+            reset_num_timesteps=model.num_timesteps == 0,
             callback=lambda *_, start=start: time.process_time() - start < 10.0,
-        )  # fmt: skip
+        )
         spent += time.process_time() - start
         yield spent, model.num_timesteps, Flyer(model), lambda: Flyer(deepcopy(model.policy))
 
@@ -184,8 +185,9 @@ def compare(arguments: argparse.Namespace, config: Config) -> None:
     limit = arguments.rival_seconds
     runs = [race(sb3_dqn(LANDER, seed, spawn=config.spawn), limit) for seed in range(arguments.rival_seeds)]
     other = row("stable-baselines3's DQN, tuned", runs, limit)
-    ratios = [f"over {limit / us:.0f}" if np.isinf(them) else f"{them / us:.0f}"
-              for us, them in zip(mine, other, strict=True)]  # fmt: skip
+    ratios = [
+        f"over {limit / us:.0f}" if np.isinf(them) else f"{them / us:.0f}" for us, them in zip(mine, other, strict=True)
+    ]
     print(f"| times as long | {' | '.join(ratios)} | |")
 
 

@@ -51,8 +51,9 @@ def measured(training: Iterator[Checkpoint], limit: float = np.inf) -> tuple[lis
     seconds = [np.inf] * len(RETURNS)
     scored = followed(training, lambda pilot: task.evaluate(pilot, VALIDATION_EPISODES, VALIDATION_SEED))
     for spent, decisions, pilot, best in scored:  # noqa: B007
-        seconds = [min(old, spent) if best.mean_return >= goal else old
-                   for old, goal in zip(seconds, RETURNS, strict=True)]  # fmt: skip
+        seconds = [
+            min(old, spent) if best.mean_return >= goal else old for old, goal in zip(seconds, RETURNS, strict=True)
+        ]
         if spent >= limit:
             break
     return seconds, spent, decisions, task.evaluate(pilot, TEST_EPISODES, TEST_SEED).mean_return
@@ -87,8 +88,10 @@ def main() -> None:
         print('\nto compare with stable-baselines3: pip install "tranquility[bench]"')
     elif arguments.rival_seeds > 0:
         limit = arguments.rival_seconds
-        row("stable-baselines3's DQN, tuned",
-            [measured(sb3_dqn(ENV, seed), limit) for seed in range(arguments.rival_seeds)])  # fmt: skip
+        row(
+            "stable-baselines3's DQN, tuned",
+            [measured(sb3_dqn(ENV, seed), limit) for seed in range(arguments.rival_seeds)],
+        )
 
 
 if __name__ == "__main__":

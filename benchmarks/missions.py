@@ -31,12 +31,16 @@ def main() -> None:
     for mission in MISSIONS.values():
         outcome, cause, fuel, seconds = fly(agent, mission, count)
         landed = outcome == Outcome.LANDED
-        how = [Cause(c).name if o == Outcome.CRASHED else Outcome(o).name
-               for o, c in zip(outcome[~landed], cause[~landed], strict=True)]  # fmt: skip
+        how = [
+            Cause(c).name if o == Outcome.CRASHED else Outcome(o).name
+            for o, c in zip(outcome[~landed], cause[~landed], strict=True)
+        ]
         worst = max(sorted(set(how)), key=how.count).lower() if how else "–"
         medal = mission.medal(float(fuel[0]), float(seconds[0])) if landed[0] else 0
-        print(f"| {mission.name} | {Outcome(outcome[0]).name.lower()} | {fuel[0]:.1f} s | {seconds[0]:.1f} s | {medal} "
-              f"| {landed.sum()} of {count} | {worst} |")  # fmt: skip
+        print(
+            f"| {mission.name} | {Outcome(outcome[0]).name.lower()} | {fuel[0]:.1f} s | {seconds[0]:.1f} s | {medal} "
+            f"| {landed.sum()} of {count} | {worst} |"
+        )
 
 
 if __name__ == "__main__":

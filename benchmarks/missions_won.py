@@ -94,8 +94,9 @@ def search(mission: Mission, generations: int, enough: float, steps: int, rng: n
         best = int(order[0])
         if env.outcome[best] == Outcome.LANDED and (found is None or cost[best] < found.cost):
             decisions = -(-int(env.steps[best]) // steps)
-            found = Found(float(cost[best]), float(env.fuel[best]), float(env.time[best]),
-                          actions[:decisions, best].tolist())  # fmt: skip
+            found = Found(
+                float(cost[best]), float(env.fuel[best]), float(env.time[best]), actions[:decisions, best].tolist()
+            )
         few = numbers[order[:BEST]]
         middle, spread = few.mean(axis=0), few.std(axis=0) + 0.02 * (HIGH - LOW)
     return found

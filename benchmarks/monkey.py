@@ -60,8 +60,11 @@ def main() -> int:
             problems += [f"left behind: {each}" for each in left]
             memory.append(resident())
             files.append(open_files())
-            print(f"{monkey.events:7d} events, {monkey.games:3d} games, {memory[-1]:4.0f} MB, {files[-1]} open files, "
-                  f"{len(monkey.faults.found)} faults, {len(left)} left behind", flush=True)  # fmt: skip
+            print(
+                f"{monkey.events:7d} events, {monkey.games:3d} games, {memory[-1]:4.0f} MB, {files[-1]} open files, "
+                f"{len(monkey.faults.found)} faults, {len(left)} left behind",
+                flush=True,
+            )
             for each in (*left, *monkey.faults.found[told:]):
                 print(f"\n{each}\n", flush=True)
             told = len(monkey.faults.found)

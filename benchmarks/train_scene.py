@@ -96,9 +96,11 @@ def main() -> int:
         took = min(reached, arguments.limit)
         seconds.append(reached)
         late.append(float(np.percentile(frames, 99)))
-        print(f"{seed:4d}{reached:10.1f} s{len(frames) / took:10.1f}{np.median(frames):8.2f}"
-              f"{late[-1]:8.2f}{max(frames):8.2f}{np.median(spent):10.2f}{np.percentile(spent, 99):8.2f}",
-              flush=True)  # fmt: skip
+        print(
+            f"{seed:4d}{reached:10.1f} s{len(frames) / took:10.1f}{np.median(frames):8.2f}"
+            f"{late[-1]:8.2f}{max(frames):8.2f}{np.median(spent):10.2f}{np.percentile(spent, 99):8.2f}",
+            flush=True,
+        )
     print(f"median: 95% after {statistics.median(seconds):.1f} s, p99 of a frame {statistics.median(late):.1f} ms")
     return int(statistics.median(seconds) >= 30.0 or statistics.median(late) >= 16.7)
 

@@ -103,8 +103,10 @@ def redrawn() -> None:
 
             still()
             anew = milliseconds(build, 1)  # for another size of the window too: font sizes are part of the theme
-            print(f"  {size[0]:>4}, {kind.__name__:<9} {milliseconds(still):8.2f} {milliseconds(changed, 3):18.2f}"
-                  f" {anew:22.2f} {anew:22.2f}")  # fmt: skip
+            print(
+                f"  {size[0]:>4}, {kind.__name__:<9} {milliseconds(still):8.2f} {milliseconds(changed, 3):18.2f}"
+                f" {anew:22.2f} {anew:22.2f}"
+            )
             for each in made:
                 each.kill()
         ours(window)
@@ -139,8 +141,10 @@ def ours(window: pygame.Surface) -> None:
 
         still()
         ticks = count(1)
-        print(f"  {window.width:>4}, {'ours':<9} {milliseconds(still):8.2f} {milliseconds(changed, 3):18.2f}"
-              f" {milliseconds(resized, 3):22.2f} {milliseconds(build, 1):22.2f}")  # fmt: skip
+        print(
+            f"  {window.width:>4}, {'ours':<9} {milliseconds(still):8.2f} {milliseconds(changed, 3):18.2f}"
+            f" {milliseconds(resized, 3):22.2f} {milliseconds(build, 1):22.2f}"
+        )
 
 
 def ink(surface: pygame.Surface) -> npt.NDArray[np.float64]:

@@ -39,8 +39,13 @@ class Manifold:
     @classmethod
     def empty(cls, count: int) -> Manifold:
         """Return the manifold of `count` pairs that do not touch."""
-        return cls(np.zeros((count, 2)), np.zeros((count, 2, 2)), np.zeros((count, 2)),
-                   np.zeros((count, 2), dtype=bool), np.zeros((count, 2), dtype=np.intp))  # fmt: skip
+        return cls(
+            np.zeros((count, 2)),
+            np.zeros((count, 2, 2)),
+            np.zeros((count, 2)),
+            np.zeros((count, 2), dtype=bool),
+            np.zeros((count, 2), dtype=np.intp),
+        )
 
     def rows(self, rows: Ints) -> Manifold:
         """Return the manifold of these pairs alone."""
@@ -68,8 +73,13 @@ def collide(a: Shape, pose_a: Array, b: Shape, pose_b: Array, margin: float = 0.
     poses = (np.atleast_2d(np.asarray(pose, dtype=float)) for pose in (pose_a, pose_b))
     pose_a, pose_b = np.broadcast_arrays(*poses)
     if isinstance(a, Circle) and isinstance(b, Circle):
-        return collide_circles(_centre(a, pose_a), np.full(len(pose_a), a.radius),
-                               _centre(b, pose_b), np.full(len(pose_b), b.radius), margin)  # fmt: skip
+        return collide_circles(
+            _centre(a, pose_a),
+            np.full(len(pose_a), a.radius),
+            _centre(b, pose_b),
+            np.full(len(pose_b), b.radius),
+            margin,
+        )
     if isinstance(a, Polygon) and isinstance(b, Circle):
         return collide_polygon_circle(_place(a, pose_a), _centre(b, pose_b), np.full(len(pose_b), b.radius), margin)
     if isinstance(a, Circle) and isinstance(b, Polygon):

@@ -136,10 +136,15 @@ class _Rows:
     def part(self, span: slice) -> _Rows:
         """Only the manifolds of `span`."""
         return _Rows(
-            self.index[span], self.jacobian[:, span], self.response[:, span], self.mass[:, span],
-            self.coupling[span], self.rub_coupling[:, span],
-            self.inverse[:, span], self.cross_inverse[span],
-        )  # fmt: skip
+            self.index[span],
+            self.jacobian[:, span],
+            self.response[:, span],
+            self.mass[:, span],
+            self.coupling[span],
+            self.rub_coupling[:, span],
+            self.inverse[:, span],
+            self.cross_inverse[span],
+        )
 
     def speeds(self, velocity: Array) -> Array:
         """Speed along each row, (3, m), given all velocities laid flat."""

@@ -21,13 +21,20 @@ DATA = Path(__file__).parent / "data" / "before_renames"
 EXPECTED = json.loads((DATA / "expected.json").read_text(encoding="utf-8"))
 OBSERVATIONS = np.array(EXPECTED["observations"], np.float32)
 RENAMED = {
-    "horizon": "schedule_decisions", "updates": "gradient_steps", "target_rate": "tau",
-    "target_every": "target_update_interval", "warm_up": "learning_starts", "care": "final_touchdown_limits",
+    "horizon": "schedule_decisions",
+    "updates": "gradient_steps",
+    "target_rate": "tau",
+    "target_every": "target_update_interval",
+    "warm_up": "learning_starts",
+    "care": "final_touchdown_limits",
     "weights": "reward_weights",
-}  # fmt: skip
+}
 RENAMED_DIGITS = {
-    "warm_up": "warm_up_epochs", "smoothing": "label_smoothing", "averaging": "ema_decay", "original": "unaugmented",
-}  # fmt: skip
+    "warm_up": "warm_up_epochs",
+    "smoothing": "label_smoothing",
+    "averaging": "ema_decay",
+    "original": "unaugmented",
+}
 
 
 def assert_same_settings(config, expected, renamed):
@@ -83,9 +90,13 @@ def test_a_run_of_then_goes_on_and_is_saved_under_the_names_of_now(tmp_path):
     assert not saved.keys() & RENAMED.keys()
     marks = [mark.name for mark in History.read(tmp_path / "kept").setting_changes]
     assert marks == [
-        "gradient_steps", "target_update_interval", "tau", "reward_weights.time", "gradient_steps",
+        "gradient_steps",
+        "target_update_interval",
+        "tau",
         "reward_weights.time",
-    ]  # fmt: skip
+        "gradient_steps",
+        "reward_weights.time",
+    ]
 
 
 def test_a_digit_run_resumes_with_the_same_settings_and_network():

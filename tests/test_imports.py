@@ -14,9 +14,10 @@ STDLIB = set(sys.stdlib_module_names)
 PYGAME = {"pygame", "pygame_gui"}
 # What a single module may import besides, and only when it is used.
 LATE = {
-    "ai.cli.training_run": {"tqdm"}, "ai.cli.copilot": {"tqdm"},
+    "ai.cli.training_run": {"tqdm"},
+    "ai.cli.copilot": {"tqdm"},
     "ai.training.gym_task": {"gymnasium"},
-}  # fmt: skip
+}
 # What is there for the users of an extra alone.
 EXTRA = {"ai.gym.lander": {"gymnasium"}}
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.

@@ -127,9 +127,13 @@ class DeepQAgent:
     def store(self, observation: Floats, actions: Ints, result: StepResult, success: Bools | None = None) -> None:
         """Store the result of `actions` (n,) at `observation` (n, features); `success` (n,) marks good endings."""
         transitions, slots = self._n_step.add(
-            observation, actions, result.reward * np.float32(self.config.reward_scale),
-            result.observation, result.terminated, result.ended,
-        )  # fmt: skip
+            observation,
+            actions,
+            result.reward * np.float32(self.config.reward_scale),
+            result.observation,
+            result.terminated,
+            result.ended,
+        )
         self.decisions += len(actions)
         if self.normalizer:
             self.normalizer.update(observation)

@@ -48,9 +48,13 @@ class NStep:
         order = np.argsort(-self._ages[row, slot], kind="stable")
         row, slot = row[order], slot[order]
         cells = MemoryCell(
-            self._states[row, slot], next_state[slot], self._actions[row, slot], self._returns[row, slot],
-            terminal[slot], self._ages[row, slot].copy(),
-        )  # fmt: skip
+            self._states[row, slot],
+            next_state[slot],
+            self._actions[row, slot],
+            self._returns[row, slot],
+            terminal[slot],
+            self._ages[row, slot].copy(),
+        )
         return cells, slot
 
     def _start(self, state: Floats) -> None:

@@ -43,9 +43,13 @@ class ReplayBuffer:
         self.capacity, self.prune = capacity, prune
         # One record for each transition: drawing one from a memory larger than the cache waits for it once.
         fields = [
-            ("state", np.float32, num_features), ("next_state", np.float32, num_features), ("action", np.int32),
-            ("reward", np.float32), ("terminal", bool), ("steps", np.int32),
-        ]  # fmt: skip
+            ("state", np.float32, num_features),
+            ("next_state", np.float32, num_features),
+            ("action", np.int32),
+            ("reward", np.float32),
+            ("terminal", bool),
+            ("steps", np.int32),
+        ]
         self.records = np.zeros(capacity, np.dtype(fields, align=True))
         self.cells = _fields(self.records)
         self.start = 0  # where the oldest lies
@@ -61,8 +65,12 @@ class ReplayBuffer:
         count = len(cells.action)
         self.added += count
         if count > self.capacity:
-            cells = MemoryCell(*(np.broadcast_to(part, (count,))[-self.capacity:] if np.ndim(part) == 0
-                                 else part[-self.capacity:] for part in cells))  # fmt: skip
+            cells = MemoryCell(
+                *(
+                    np.broadcast_to(part, (count,))[-self.capacity :] if np.ndim(part) == 0 else part[-self.capacity :]
+                    for part in cells
+                )
+            )
             count = self.capacity
         if self.size + count > self.capacity:
             self._drop(min(self.size, max(self.prune, self.size + count - self.capacity)))

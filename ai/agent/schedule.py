@@ -18,11 +18,16 @@ if TYPE_CHECKING:
 
 # Settings that define schedules, each with the one that acts in its place once it has no effect.
 _SCHEDULED: Final = {
-    "learning_rate": "final_learning_rate", "final_learning_rate": "learning_rate",
-    "schedule_decisions": "final_learning_rate", "final_touchdown_limits": "schedule_decisions",
-    "epsilon_start": "epsilon_end", "epsilon_end": "epsilon_start", "epsilon_decay": "epsilon_end",
-    "epsilon_decisions": "epsilon_end", "epsilon_spread": "num_envs",
-}  # fmt: skip
+    "learning_rate": "final_learning_rate",
+    "final_learning_rate": "learning_rate",
+    "schedule_decisions": "final_learning_rate",
+    "final_touchdown_limits": "schedule_decisions",
+    "epsilon_start": "epsilon_end",
+    "epsilon_end": "epsilon_start",
+    "epsilon_decay": "epsilon_end",
+    "epsilon_decisions": "epsilon_end",
+    "epsilon_spread": "num_envs",
+}
 
 
 @dataclass(frozen=True)

@@ -59,9 +59,14 @@ def save_agent(agent: SavedAgent, folder: str | Path) -> None:
 def write_agent(agent: SavedAgent, folder: Path) -> None:
     """Write an agent's files into a new folder; `save_agent` does so safely. Raises OSError."""
     described = {
-        "format": FORMAT, "version": VERSION, "features": agent.num_features, "actions": agent.num_actions,
-        "decisions": agent.decisions, "train_count": agent.train_count, "config": agent.config.to_json(),
-    }  # fmt: skip
+        "format": FORMAT,
+        "version": VERSION,
+        "features": agent.num_features,
+        "actions": agent.num_actions,
+        "decisions": agent.decisions,
+        "train_count": agent.train_count,
+        "config": agent.config.to_json(),
+    }
     if agent.normalizer:
         described["scale"] = agent.normalizer.to_json()
     folder.mkdir(parents=True, exist_ok=True)

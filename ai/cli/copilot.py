@@ -22,8 +22,12 @@ def add_commands(commands: Any) -> None:
     table.add_argument("--model", type=folder, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
     table.add_argument("--episodes", type=int, default=1000, help="flights for each row (default: 1000)")
     table.add_argument("--seed", type=int, default=0)
-    table.add_argument("--good", choices=("network", "scripted"), default="network",
-                       help="whom the imperfect pilots are made of (default: the same network)")  # fmt: skip
+    table.add_argument(
+        "--good",
+        choices=("network", "scripted"),
+        default="network",
+        help="whom the imperfect pilots are made of (default: the same network)",
+    )
     table.add_argument("--json", action="store_true", help="print one JSON object")
     table.set_defaults(run=_table)
 
@@ -63,11 +67,15 @@ def _table(arguments: argparse.Namespace) -> int:
 
 
 def _show(title: str, rows: list[AssistedFlights], own: bool = False) -> None:
-    print(f"\n{title}\n{'pilot':10}{'help':25}{'success':>8}{'crash':>8}{'gone':>8}{'time out':>9}{'return':>8}"
-          f"{'overridden':>12}{'own pad':>9}"[: None if own else -9])  # fmt: skip
+    print(
+        f"\n{title}\n{'pilot':10}{'help':25}{'success':>8}{'crash':>8}{'gone':>8}{'time out':>9}{'return':>8}"
+        f"{'overridden':>12}{'own pad':>9}"[: None if own else -9]
+    )
     for row in rows:
         help_ = row.mode if row.assist == 0.0 else f"{row.mode} {row.assist:.1f}"
-        line = (f"{row.pilot:10}{help_:25}{row.success:8.1%}{row.crash:8.1%}{row.out_of_bounds:8.1%}"
-                f"{row.time_out:9.1%}{row.mean_return:8.1f}{row.overridden:12.1%}")  # fmt: skip
+        line = (
+            f"{row.pilot:10}{help_:25}{row.success:8.1%}{row.crash:8.1%}{row.out_of_bounds:8.1%}"
+            f"{row.time_out:9.1%}{row.mean_return:8.1f}{row.overridden:12.1%}"
+        )
         print(line + (f"{row.own_pad:9.1%}" if own else ""))
     sys.stdout.flush()

@@ -24,13 +24,19 @@ if TYPE_CHECKING:
 def add_commands(commands: Any) -> None:
     """Add `train-digits` and `evaluate-digits` to a parser's sub-commands."""
     teach = commands.add_parser("train-digits", help="teach a network to read handwritten digits")
-    teach.add_argument("--preset", help="modern, classic, or as-described, the recipe of one epoch that the classic"
-                       " one grew from (default: modern)")  # fmt: skip
+    teach.add_argument(
+        "--preset",
+        help="modern, classic, or as-described, the recipe of one epoch that the classic"
+        " one grew from (default: modern)",
+    )
     add_run_options(teach, "dropout=0.5")
     teach.add_argument("--epochs", type=int, help="how often every image is seen (default: as the preset says)")
-    teach.add_argument("--seconds", type=float,
-                       help="stop when the whole run, resumed or not, has trained for so many seconds, even if there"
-                            " are epochs to come")  # fmt: skip
+    teach.add_argument(
+        "--seconds",
+        type=float,
+        help="stop when the whole run, resumed or not, has trained for so many seconds, even if there"
+        " are epochs to come",
+    )
     teach.set_defaults(run=_train)
 
     evaluate = commands.add_parser("evaluate-digits", help="measure how well a network reads MNIST's test images")
@@ -101,9 +107,11 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     right, shown = table.diagonal(), table.sum(axis=1)
     if arguments.json:
         measured = {
-            "accuracy": int(right.sum()) / len(labels), "images": len(labels),
-            "by_digit": (right / shown).tolist(), "confusion": table.tolist(),
-        }  # fmt: skip
+            "accuracy": int(right.sum()) / len(labels),
+            "images": len(labels),
+            "by_digit": (right / shown).tolist(),
+            "confusion": table.tolist(),
+        }
         print(json.dumps(measured))
         return 0
     print(f"read right  {right.sum() / len(labels):.2%} of {len(labels):,}")

@@ -27,14 +27,19 @@ DECISIONS: Final = (1, 10**12)
 def add_commands(commands: Any) -> None:
     """Add `train` and `evaluate` to a parser's sub-commands."""
     teach = commands.add_parser("train", help="teach a network to land, or to master another environment")
-    teach.add_argument("--env", metavar="NAME",
-                       help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)")  # fmt: skip
+    teach.add_argument(
+        "--env", metavar="NAME", help="an environment of Gymnasium, such as CartPole-v1 (default: our own lander)"
+    )
     teach.add_argument("--preset", help="modern or classic (default: modern; for --env, settings of its own)")
-    teach.add_argument("--seconds", type=float,
-                       help="stop when the whole run, resumed or not, has trained for so many seconds")  # fmt: skip
-    teach.add_argument("--decisions", type=int,
-                       help="stop when the whole run, resumed or not, has taken so many decisions; begun anew with"
-                            " the same seed, it gives the same network")  # fmt: skip
+    teach.add_argument(
+        "--seconds", type=float, help="stop when the whole run, resumed or not, has trained for so many seconds"
+    )
+    teach.add_argument(
+        "--decisions",
+        type=int,
+        help="stop when the whole run, resumed or not, has taken so many decisions; begun anew with"
+        " the same seed, it gives the same network",
+    )
     add_run_options(teach, "n_step=5")
     teach.add_argument("--validation", type=int, metavar="N", help="episodes that choose the best network")
     teach.set_defaults(run=_train)

@@ -83,9 +83,13 @@ class RunCommand(Generic[Run]):
 def add_run_options(train: argparse.ArgumentParser, example: str) -> None:
     """Add the options that every training command has; `example` is a change of a setting."""
     train.add_argument("--output", type=folder, metavar="DIR", help="where to keep the network")
-    train.add_argument("--resume", type=folder, metavar="DIR",
-                       help="go on with what an earlier run kept there, by its settings; --set and --preset may"
-                            " change those that can change while a run goes on")  # fmt: skip
+    train.add_argument(
+        "--resume",
+        type=folder,
+        metavar="DIR",
+        help="go on with what an earlier run kept there, by its settings; --set and --preset may"
+        " change those that can change while a run goes on",
+    )
     train.add_argument("--seed", type=int, help="what all chance follows from (default: 0)")
     train.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
                        help=f"change a setting of the preset, such as --set {example}")  # fmt: skip

@@ -63,14 +63,24 @@ class Decision:
             return both
 
         values = None if self.values is None or newer.values is None else put(self.values, newer.values)
-        return replace(newer, observation=put(self.observation, newer.observation), values=values,
-                       action=put(self.action, newer.action), best=put(self.best, newer.best))  # fmt: skip
+        return replace(
+            newer,
+            observation=put(self.observation, newer.observation),
+            values=values,
+            action=put(self.action, newer.action),
+            best=put(self.best, newer.best),
+        )
 
     def of(self, slot: int) -> Decision:
         """Return a copy of the decision for one of the landers, with n = 1."""
         values = None if self.values is None else self.values[[slot]]
-        return replace(self, observation=self.observation[[slot]], values=values,
-                       action=self.action[[slot]], best=self.best[[slot]])  # fmt: skip
+        return replace(
+            self,
+            observation=self.observation[[slot]],
+            values=values,
+            action=self.action[[slot]],
+            best=self.best[[slot]],
+        )
 
 
 def decide(

@@ -162,8 +162,9 @@ class CoPilot:
         assist = np.where(pilot == COAST, 1.0, self.assist)
         weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
         best, feasible = weigh(meant, pilot, assist)
-        candidates = np.stack([pilot, pilot - pilot % _STEERS + best % _STEERS,
-                               best - best % _STEERS + pilot % _STEERS, best])  # fmt: skip
+        candidates = np.stack(
+            [pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best]
+        )
         rows = np.arange(slots)
         source = feasible[rows, candidates].argmax(axis=0)
         action = candidates[source, rows]

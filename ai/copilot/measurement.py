@@ -33,12 +33,16 @@ OPEN: Final = "guardian, all pads open"  # the same rule, with nothing read into
 
 Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
 ONE_PAD: Final[tuple[Help, ...]] = (
-    (ALONE, 0.0), *((Mode.TOLERANCE, assist) for assist in (0.2, 0.4, 0.6, 0.8, 1.0)),
+    (ALONE, 0.0),
+    *((Mode.TOLERANCE, assist) for assist in (0.2, 0.4, 0.6, 0.8, 1.0)),
     *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6)),
-)  # fmt: skip
+)
 THREE_PADS: Final[tuple[Help, ...]] = (
-    (ALONE, 0.0), (Mode.TOLERANCE, 0.4), *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6, 0.8)), (OPEN, 0.4),
-)  # fmt: skip
+    (ALONE, 0.0),
+    (Mode.TOLERANCE, 0.4),
+    *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6, 0.8)),
+    (OPEN, 0.4),
+)
 
 
 @dataclass(frozen=True)
@@ -155,6 +159,8 @@ def _fly(env: LanderEnv, assisted: Sequence[AssistedPilot]) -> tuple[Doubles, Do
 
 def _mean(rows: Sequence[AssistedFlights]) -> AssistedFlights:
     """Return the mean of rows of as many flights each."""
-    figures = {figure.name: float(np.mean([getattr(row, figure.name) for row in rows]))
-               for figure in fields(AssistedFlights)[4:]}  # fmt: skip
+    figures = {
+        figure.name: float(np.mean([getattr(row, figure.name) for row in rows]))
+        for figure in fields(AssistedFlights)[4:]
+    }
     return replace(rows[0], episodes=sum(row.episodes for row in rows), **figures)  # type: ignore[arg-type]

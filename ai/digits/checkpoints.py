@@ -64,9 +64,13 @@ def save_digit_run(training: DigitTraining, folder: str | Path, final: bool = Fa
     best = training.best_classifier()
     described = {
         **nearest_preset(training.config.to_json(), {name: preset.to_json() for name, preset in DIGIT_PRESETS.items()}),
-        "seed": training.seed, "step": training.step, "epochs": training.step // training.steps_per_epoch,
-        "seconds": round(training.seconds, 3), "held_out": training.best, "history": training.history,
-    }  # fmt: skip
+        "seed": training.seed,
+        "step": training.step,
+        "epochs": training.step // training.steps_per_epoch,
+        "seconds": round(training.seconds, 3),
+        "held_out": training.best,
+        "history": training.history,
+    }
     if final:
         described["test"] = accuracy(best, *load_part(TEST))
     with atomic_folder(folder, KIND) as temporary:

@@ -164,8 +164,9 @@ class _HeldOut:
         np.add.at(table, (labels, read), 1)
         kinds = labels * DIGITS + read
         wrong = np.flatnonzero(labels != read)
-        chosen = np.sort(np.concatenate([wrong[:0], *(wrong[kinds[wrong] == kind][:EXAMPLES]
-                                                      for kind in np.unique(kinds[wrong]))]))  # fmt: skip
+        chosen = np.sort(
+            np.concatenate([wrong[:0], *(wrong[kinds[wrong] == kind][:EXAMPLES] for kind in np.unique(kinds[wrong]))])
+        )
         images = (self._images[chosen] * 255).astype(np.uint8)
         accuracy = float(table.trace() / len(labels))
         return HeldOutScore(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)

@@ -74,9 +74,12 @@ def _draw_short(canvas: Canvas, starts: Points, ends: Points, widths: Points) ->
     pixels = np.arange(side, dtype=np.float32) + 0.5
     (across, down), (dx, dy) = (starts - corners).astype(np.float32).T, (ends - starts).astype(np.float32).T
     covers = _cover(
-        pixels[:columns] - across[:, None, None], pixels[:rows, None] - down[:, None, None],
-        dx[:, None, None], dy[:, None, None], widths.astype(np.float32)[:, None, None],
-    )  # fmt: skip
+        pixels[:columns] - across[:, None, None],
+        pixels[:rows, None] - down[:, None, None],
+        dx[:, None, None],
+        dy[:, None, None],
+        widths.astype(np.float32)[:, None, None],
+    )
     for (left, top), cover in zip(corners.astype(int).tolist(), covers, strict=True):
         part = canvas[top : top + rows, left : left + columns]
         np.maximum(part, cover, out=part)

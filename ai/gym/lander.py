@@ -63,9 +63,13 @@ class GymLanders(VectorEnv[Floats, Ints, Any]):
     """
 
     def __init__(
-        self, num_envs: int = 1, spawn: str = "random", frame_skip: int = 4,
-        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP, render_mode: None = None,
-    ) -> None:  # fmt: skip
+        self,
+        num_envs: int = 1,
+        spawn: str = "random",
+        frame_skip: int = 4,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        render_mode: None = None,
+    ) -> None:
         self.num_envs, self.render_mode = num_envs, render_mode
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
@@ -125,6 +129,8 @@ def _marked(values: dict[str, Any], mask: Bools) -> dict[str, Any]:
 
 if LANDER_ID not in gymnasium.registry:
     gymnasium.register(
-        LANDER_ID, entry_point="ai.gym.lander:GymLander", vector_entry_point="ai.gym.lander:GymLanders",
+        LANDER_ID,
+        entry_point="ai.gym.lander:GymLander",
+        vector_entry_point="ai.gym.lander:GymLanders",
         reward_threshold=170.0,
-    )  # fmt: skip
+    )

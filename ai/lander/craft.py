@@ -43,10 +43,15 @@ class Craft:
         self.lander = self.world.add(
             [Polygon(HULL), Polygon.box(*FOOT_SIZE, (-foot_x, foot_y)), Polygon.box(*FOOT_SIZE, (foot_x, foot_y))],
             (0.0, params.pad_top + params.stand),
-            mass=params.mass, inertia=params.inertia, centre_of_mass=(0.0, 0.0),
-            linear_drag=params.linear_drag, quadratic_drag=params.quadratic_drag,
-            angular_drag=params.angular_drag, angular_quadratic_drag=params.angular_quadratic_drag, **surface,
-        )  # fmt: skip
+            mass=params.mass,
+            inertia=params.inertia,
+            centre_of_mass=(0.0, 0.0),
+            linear_drag=params.linear_drag,
+            quadratic_drag=params.quadratic_drag,
+            angular_drag=params.angular_drag,
+            angular_quadratic_drag=params.angular_quadratic_drag,
+            **surface,
+        )
         pads = self.ground.build(self.world, **surface)
         self._pad_bodies = slice(pads[0].index, pads[-1].index + 1)
 

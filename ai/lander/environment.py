@@ -130,8 +130,9 @@ class LanderEnv(Craft):
 
     def place(self, mask: Bools, start: Doubles) -> None:
         """Begin a flight in the slots of `mask` at rows x, y, vx, vy, angle, spin of `start`, in the world's frame."""
-        self.lander.set(position=start[:, :2], velocity=start[:, 2:4], angle=start[:, 4],
-                        angular_velocity=start[:, 5], mask=mask)  # fmt: skip
+        self.lander.set(
+            position=start[:, :2], velocity=start[:, 2:4], angle=start[:, 4], angular_velocity=start[:, 5], mask=mask
+        )
         for name in _COUNTERS:
             getattr(self, name)[mask] = 0
         self.outcome[mask] = Outcome.FLYING
@@ -154,12 +155,16 @@ class LanderEnv(Craft):
         ended = flying & (self.outcome != Outcome.FLYING)
         flown = self.steps - flown
         change = SituationChange(
-            before, self.situation(), flown=flown, fired=flown * (self.actions > 0), tilted=tilted,
+            before,
+            self.situation(),
+            flown=flown,
+            fired=flown * (self.actions > 0),
+            tilted=tilted,
             switched=flying * engines_switched(held, self.actions),
             feet_down=np.minimum(self._feet_steps, FEET_STEPS_PAID) - np.minimum(feet, FEET_STEPS_PAID),
             landed=ended & (self.outcome == Outcome.LANDED),
             lost=ended & ((self.outcome == Outcome.CRASHED) | (self.outcome == Outcome.OUT_OF_BOUNDS)),
-        )  # fmt: skip
+        )
         components = {name: part(change, self.weights).astype(np.float32) for name, part in REWARDS.items()}
         return StepResult(
             observation=self.observe(),

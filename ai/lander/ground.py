@@ -140,8 +140,12 @@ def _knoll(pad: Pad, base: float) -> Hill:
     """Return the knoll that lifts a pad off the plain: flat under it, with flanks on both sides."""
     top = pad.top - _LIP
     foot = _SLOPE * (top - base)
-    return ((pad.left - _RIM - foot, base), (pad.left - _RIM, top), (pad.right + _RIM, top),
-            (pad.right + _RIM + foot, base))  # fmt: skip
+    return (
+        (pad.left - _RIM - foot, base),
+        (pad.left - _RIM, top),
+        (pad.right + _RIM, top),
+        (pad.right + _RIM + foot, base),
+    )
 
 
 def _hill(crest: float, share: float, pads: Sequence[Pad], rng: np.random.Generator) -> Hill | None:

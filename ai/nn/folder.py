@@ -174,8 +174,11 @@ def _swap(new: Path, target: Path) -> None:
 
 def moved_aside(target: Path) -> list[Path]:
     """Return the folders that were moved aside for a target and not deleted yet."""
-    return [path for path in target.parent.glob(f".{_literal(target.name)}*{OLD}")
-            if aside_for(path) == target.name and path.is_dir() and not path.is_symlink()]  # fmt: skip
+    return [
+        path
+        for path in target.parent.glob(f".{_literal(target.name)}*{OLD}")
+        if aside_for(path) == target.name and path.is_dir() and not path.is_symlink()
+    ]
 
 
 def _literal(name: str) -> str:

@@ -88,11 +88,15 @@ def snapshot(training: Training, history: History | None = None) -> Snapshot:
     described = {
         "env": config.env,
         **nearest_preset(config.to_json(), {name: preset.to_json() for name, preset in presets.items()}),
-        "seed": training.seed, "decisions": agent.decisions, "updates": agent.train_count,
-        "episodes": training.episodes, "landings": training.env.landings,
-        "seconds": round(training.seconds, 3), "best": training.best.to_json() if training.best else None,
+        "seed": training.seed,
+        "decisions": agent.decisions,
+        "updates": agent.train_count,
+        "episodes": training.episodes,
+        "landings": training.env.landings,
+        "seconds": round(training.seconds, 3),
+        "best": training.best.to_json() if training.best else None,
         "flights": training.statistics.to_json(),
-    }  # fmt: skip
+    }
     return Snapshot(
         described, training.best_agent(), training.last_agent(), None if history is None else history.copy()
     )

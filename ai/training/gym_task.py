@@ -64,9 +64,13 @@ class GymEnv:
     """Vectorised environment (`ai.common.environment.Env`) of several Gymnasium ones, stepped one by one."""
 
     def __init__(
-        self, make: Callable[[], gymnasium.Env[Any, Any]], num_envs: int, rng: np.random.Generator,
-        threshold: float | None = None, frame_skip: int = 1,
-    ) -> None:  # fmt: skip
+        self,
+        make: Callable[[], gymnasium.Env[Any, Any]],
+        num_envs: int,
+        rng: np.random.Generator,
+        threshold: float | None = None,
+        frame_skip: int = 1,
+    ) -> None:
         self.num_envs, self.threshold, self.frame_skip = num_envs, threshold, frame_skip
         self.landings, self.stage = 0, 0
         self._envs = [make() for _ in range(num_envs)]
@@ -172,8 +176,9 @@ class GymTask:
             actions = np.where(going_on, pilot.act(observation, held=actions), actions)
             observation = env.step(actions).observation
         success = None if self.threshold is None else float((env.outcome == SUCCESS).mean())
-        return GymScore(episodes, success, float(env.returns.mean()), float(env.returns.std()),
-                        float(env.lengths.mean()))  # fmt: skip
+        return GymScore(
+            episodes, success, float(env.returns.mean()), float(env.returns.std()), float(env.lengths.mean())
+        )
 
     def read_score(self, values: dict[str, Any]) -> GymScore:
         """Read what `GymScore.to_json` gave; raises ValueError for anything else."""

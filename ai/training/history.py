@@ -255,9 +255,12 @@ class History:
         }  # fmt: skip
         values = [checkpoint.values for checkpoint in self.checkpoints]
         np.savez(
-            folder / HISTORY_FILE, allow_pickle=False, described=np.array(json.dumps(described)), points=self.points,
+            folder / HISTORY_FILE,
+            allow_pickle=False,
+            described=np.array(json.dumps(described)),
+            points=self.points,
             values=np.array(values, dtype=np.float32) if values else np.empty((0, 0), dtype=np.float32),
-        )  # fmt: skip
+        )
 
     @classmethod
     def read(cls, folder: str | Path) -> History:
@@ -303,9 +306,12 @@ def _expect(name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
     fits = {
         "described": shape == () and dtype.kind == "U" and dtype.itemsize <= 4 * _MOST_TEXT,
         "points": len(shape) == 2 and shape[0] <= CAPACITY and 0 <= shape[1] <= _MOST_COLUMNS and dtype == np.float64,
-        "values": len(shape) == 2 and 0 <= shape[0] <= MOST_CHECKPOINTS and shape[1] >= 0
-        and shape[0] * shape[1] <= _MOST_VALUES and dtype == np.float32,
-    }  # fmt: skip
+        "values": len(shape) == 2
+        and 0 <= shape[0] <= MOST_CHECKPOINTS
+        and shape[1] >= 0
+        and shape[0] * shape[1] <= _MOST_VALUES
+        and dtype == np.float32,
+    }
     if not fits.get(name):
         raise ValueError(f"{name} is not what a history has: {array_said(shape, dtype)}")
 

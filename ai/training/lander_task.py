@@ -93,12 +93,16 @@ def trial(
     share = {outcome: float((env.outcome == outcome).mean()) for outcome in Outcome}
     landed = env.outcome == Outcome.LANDED
     return Evaluation(
-        episodes, share[Outcome.LANDED], share[Outcome.CRASHED], share[Outcome.OUT_OF_BOUNDS],
-        share[Outcome.TIMED_OUT], float(returns.mean()),
+        episodes,
+        share[Outcome.LANDED],
+        share[Outcome.CRASHED],
+        share[Outcome.OUT_OF_BOUNDS],
+        share[Outcome.TIMED_OUT],
+        float(returns.mean()),
         float(env.time[landed].mean()) if landed.any() else None,
         float(env.fuel[landed].mean()) if landed.any() else None,
         switches / float(env.time.sum()),
-    )  # fmt: skip
+    )
 
 
 class LanderTask:

@@ -92,9 +92,14 @@ class Training:
     def _new_agent(self, config: Config, rng: np.random.Generator | None = None, **parts: Any) -> DeepQAgent:
         task = self.task
         return DeepQAgent(
-            task.num_features, task.num_actions, config, rng,
-            symmetry=task.symmetry, action_chances=task.action_chances, **parts,
-        )  # fmt: skip
+            task.num_features,
+            task.num_actions,
+            config,
+            rng,
+            symmetry=task.symmetry,
+            action_chances=task.action_chances,
+            **parts,
+        )
 
     @property
     def epsilon(self) -> float:

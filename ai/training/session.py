@@ -186,16 +186,22 @@ class _LiveRun:
     def _swarm_state_of(self, outcome: Ints) -> SwarmState:
         env, training = self.env, self.training
         return SwarmState(
-            env.position.astype(np.float32), env.angle.astype(np.float32), env.actions.astype(np.int8),
-            outcome.astype(np.int8), training.statistics.earned.astype(np.float32), training.agent.decisions,
-        )  # fmt: skip
+            env.position.astype(np.float32),
+            env.angle.astype(np.float32),
+            env.actions.astype(np.int8),
+            outcome.astype(np.int8),
+            training.statistics.earned.astype(np.float32),
+            training.agent.decisions,
+        )
 
     def _network_state(self) -> NetworkState:
         agent = self.training.agent
         return NetworkState(
-            agent.online.values.copy(), agent.online.gradients.copy(), self.training.observation[CAREFUL].copy(),
+            agent.online.values.copy(),
+            agent.online.gradients.copy(),
+            self.training.observation[CAREFUL].copy(),
             agent.decisions,
-        )  # fmt: skip
+        )
 
     def _state_messages(self) -> tuple[NetworkState, InForce]:
         """Return what is sent a few times a second, and whenever a command has changed it."""

@@ -51,8 +51,9 @@ class _Trial:
         assert training.validation_episodes is not None
         self.agent = training.last_agent()
         self.score: Evaluation | None = None
-        self._flights = trial(self.agent, training.validation_episodes, VALIDATION_SEED, "random",
-                              training.config.frame_skip)  # fmt: skip
+        self._flights = trial(
+            self.agent, training.validation_episodes, VALIDATION_SEED, "random", training.config.frame_skip
+        )
 
     def go_on(self, decisions: int | None = None) -> bool:
         """Take so many decisions, or all that are left; return whether the trial is done."""

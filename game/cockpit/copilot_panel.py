@@ -131,8 +131,13 @@ def shared_values(decision: SharedDecision, pad: int) -> QValues:
         allowed = guardian_margin(decision.assist) if decision.points.shape[1] == 1 else None
     elif asked != COAST:
         allowed = (1.0 - decision.assist) * float(np.ptp(points))
-    return QValues(tuple(points.tolist()), int(decision.action[0]), None if asked == COAST else asked,
-                   tuple(feasible.tolist()), allowed)  # fmt: skip
+    return QValues(
+        tuple(points.tolist()),
+        int(decision.action[0]),
+        None if asked == COAST else asked,
+        tuple(feasible.tolist()),
+        allowed,
+    )
 
 
 def why(decision: SharedDecision, values: QValues) -> Why:

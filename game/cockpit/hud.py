@@ -247,8 +247,13 @@ def draw_card(
         top += _RIVAL_ROWS
     draw_share(canvas, left, top + 188, width, card.human)
     if card.stepped_in:
-        words = canvas.text(texts.SHARE_MOMENTS.format(times=card.stepped_in), (left + width / 2 + 8, top + 188),
-                            size=SMALL, colour=MUTE, align="centre")  # fmt: skip
+        words = canvas.text(
+            texts.SHARE_MOMENTS.format(times=card.stepped_in),
+            (left + width / 2 + 8, top + 188),
+            size=SMALL,
+            colour=MUTE,
+            align="centre",
+        )
         canvas.marker("diamond", (words.left - 10, top + 184), 8, NET)
     canvas.line((left, top + 218), (left + width, top + 218), LINE)
 

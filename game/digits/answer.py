@@ -96,9 +96,11 @@ def _draw_chosen(canvas: Canvas, reading: Reading, name: str) -> None:
     if verdict is Verdict.UNSURE:
         canvas.text("?", (LEFT - 4, _BASELINE), size=_SIZES[0], weight="extralight", colour=MUTE)
         little = reading.stages.centred.sum() < LEAST_INK
-        words = texts.DIGITS_TOO_LITTLE if little else texts.DIGITS_EITHER.format(
-            digit=first, percent=share, other=second, other_percent=second_share
-        )  # fmt: skip
+        words = (
+            texts.DIGITS_TOO_LITTLE
+            if little
+            else texts.DIGITS_EITHER.format(digit=first, percent=share, other=second, other_percent=second_share)
+        )
         _draw_verdict(canvas, "triangle", texts.DIGITS_UNSURE, canvas.palette.warn)
         canvas.text(words, (LEFT, 228), size=SMALL, colour=MUTE)
         return

@@ -86,8 +86,9 @@ class FixRunner:
             else:
                 self.step = told
         if done or self._worker.state in (WorkerState.ENDED, WorkerState.FAILED):
-            self.problem = self._worker.problem or (texts.FIX_NOT_KEPT.format(problem=done.problem)
-                                                    if done and done.problem else "")  # fmt: skip
+            self.problem = self._worker.problem or (
+                texts.FIX_NOT_KEPT.format(problem=done.problem) if done and done.problem else ""
+            )
             self._let_go(0.0)  # it has said all it had to say: the window goes on
         return done
 

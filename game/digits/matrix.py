@@ -85,10 +85,20 @@ class ConfusionMatrix(Widget):
         for digit in range(_DIGITS):
             at = (digit + 0.5) * pitch
             row, column = self.cell
-            canvas.text(str(digit), (self.box.left - 12, self.box.top + at + 4), size=SMALL, align="centre",
-                        colour=INK if digit == row else MUTE)  # fmt: skip
-            canvas.text(str(digit), (self.box.left + at, self.box.top - 7), size=SMALL, align="centre",
-                        colour=INK if digit == column else MUTE)  # fmt: skip
+            canvas.text(
+                str(digit),
+                (self.box.left - 12, self.box.top + at + 4),
+                size=SMALL,
+                align="centre",
+                colour=INK if digit == row else MUTE,
+            )
+            canvas.text(
+                str(digit),
+                (self.box.left + at, self.box.top - 7),
+                size=SMALL,
+                align="centre",
+                colour=INK if digit == column else MUTE,
+            )
         if self.confusion is not None:
             left, top = (self.box.left + self.cell[1] * pitch, self.box.top + self.cell[0] * pitch)
             canvas.outline((left, top, pitch, pitch), 4, INK, 1.5, 0.5 + 0.5 * self.warmth)
@@ -109,8 +119,13 @@ class ConfusionMatrix(Widget):
                 share = table[row, row] / max(table[row].sum(), 1)
                 shade = tuple(round(a + (b - a) * 0.45 * share) for a, b in zip(NIGHT0, NET, strict=True))
                 sheet.fill(area, shade)
-                sheet.text(f"{100 * share:.0f}" if share < 0.995 else f"{100 * share:.4g}"[:4],
-                           (middle, bottom - pitch / 2 + 4), size=LABEL, align="centre", tabular=True)  # fmt: skip
+                sheet.text(
+                    f"{100 * share:.0f}" if share < 0.995 else f"{100 * share:.4g}"[:4],
+                    (middle, bottom - pitch / 2 + 4),
+                    size=LABEL,
+                    align="centre",
+                    tabular=True,
+                )
             elif (row, column) in first:
                 image = self.confusion.images[first[row, column]] / np.float32(255)
                 sheet.surface.blit(picture(image, area.size), area)

@@ -168,6 +168,9 @@ def _layers(classifier: DigitClassifier, outputs: list[Numbers]) -> list[Numbers
     """Return the outputs of the activation layers, feature maps channel by channel, each layer in -1 to 1."""
     from ai.nn import ActivationLayer
 
-    values = [out[0] for layer, out in zip(classifier.network.layers, outputs, strict=True)
-              if isinstance(layer, ActivationLayer) and out.shape[-1] > len("0123456789")]  # fmt: skip
+    values = [
+        out[0]
+        for layer, out in zip(classifier.network.layers, outputs, strict=True)
+        if isinstance(layer, ActivationLayer) and out.shape[-1] > len("0123456789")
+    ]
     return [_normalised(value.transpose(2, 0, 1) if value.ndim == 3 else value) for value in values]

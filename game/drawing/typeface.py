@@ -127,9 +127,13 @@ def _write(string: str, pixels: float, weight: Weight, colour: Colour) -> pygame
     for number, part in enumerate(SIGN.split(string)):
         if number % 2:
             draw_sign(
-                surface, part, (x, font.get_ascent()), pixels * factor, colour,
+                surface,
+                part,
+                (x, font.get_ascent()),
+                pixels * factor,
+                colour,
                 lambda letters, size: _font(size / factor, "semibold").render(letters, True, colour),
-            )  # fmt: skip
+            )
             x += sign_width(part, pixels) * factor
         elif part:
             surface.blit(font.render(part, True, colour), (round(x), 0))

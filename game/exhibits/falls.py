@@ -173,9 +173,13 @@ class DragRace(Exhibit):
         for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
             image = "disc" if not linear + quadratic else "bright-disc" if linear else "ember-disc"
             disc = self.add(
-                Circle(_DISC * math.sqrt(mass)), (self._lane(number), self.top), image,
-                mass=mass, linear_drag=linear, quadratic_drag=quadratic,
-            )  # fmt: skip
+                Circle(_DISC * math.sqrt(mass)),
+                (self._lane(number), self.top),
+                image,
+                mass=mass,
+                linear_drag=linear,
+                quadratic_drag=quadratic,
+            )
             self.discs.append(disc)
         self.landed = False
         self.speed = 0.0

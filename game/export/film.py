@@ -86,9 +86,12 @@ def film(
 
 
 def frames(
-    make: Callable[[Context, Record], Filmed], record: Record, kind: VideoKind, steps: Iterable[int],
+    make: Callable[[Context, Record], Filmed],
+    record: Record,
+    kind: VideoKind,
+    steps: Iterable[int],
     colour_safe: bool = False,
-) -> Iterator[Frame]:  # fmt: skip
+) -> Iterator[Frame]:
     """Yield the frames at these rising update numbers of a replay; one update is one step, up to the flight's end."""
     _need_no_screen()
     settings = Settings(reduced_motion=kind.still, colour_safe=colour_safe)

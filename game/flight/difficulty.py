@@ -40,6 +40,8 @@ class Difficulty:
         """Differences in the next step; after the flight, the last step's gravity and the slowest pace."""
         over, recording = self._flight.over, self._flight.recording
         gravity = self._settings.gravity if self._free and not over else recording.gravity_at(len(recording.actions))
-        shares = ((texts.PRACTICE_GRAVITY, gravity),
-                  (texts.PRACTICE_PACE, self.slowest if over else self._settings.pace))  # fmt: skip
+        shares = (
+            (texts.PRACTICE_GRAVITY, gravity),
+            (texts.PRACTICE_PACE, self.slowest if over else self._settings.pace),
+        )
         return [text.format(percent=round(100 * share)) for text, share in shares if share != 1]

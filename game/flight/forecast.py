@@ -106,9 +106,11 @@ def drift(env: LanderEnv) -> Iterator[Doubles]:
     """Yield a lander's future positions without thrust, (2,) every 1/6 s, down to the plain."""
     world, body, span = env.world, env.lander.index, _STRIDE * DT
     state = replace(
-        world.state, velocity=world.state.velocity[:1].copy(), force=np.zeros_like(world.state.force[:1]),
+        world.state,
+        velocity=world.state.velocity[:1].copy(),
+        force=np.zeros_like(world.state.force[:1]),
         active=world.state.active[:1].copy(),
-    )  # fmt: skip
+    )
     velocity, place = state.velocity[0, body, :2], env.position[0].copy()
     time, lowest = float(env.time[0]), env.ground.base + PARAMS.stand
     yield place.copy()

@@ -94,10 +94,15 @@ def load(name: str, folder: Path) -> Network:
         _log.exception("reading %s", folder)
         return Network(name, problem=brief(f"{type(error).__name__}: {error}"))
     if (agent.num_features, agent.num_actions) != (NUM_FEATURES, NUM_ACTIONS):
-        return Network(name, problem=texts.NETWORK_ELSEWHERE.format(
-            features=agent.num_features, actions=agent.num_actions,
-            lander_features=NUM_FEATURES, lander_actions=NUM_ACTIONS,
-        ))  # fmt: skip
+        return Network(
+            name,
+            problem=texts.NETWORK_ELSEWHERE.format(
+                features=agent.num_features,
+                actions=agent.num_actions,
+                lander_features=NUM_FEATURES,
+                lander_actions=NUM_ACTIONS,
+            ),
+        )
     return Network(name, agent)
 
 

@@ -64,8 +64,10 @@ def _where_left(env: LanderEnv, slot: int) -> str:
 
 def flight_figures(env: LanderEnv, slot: int = 0) -> tuple[tuple[str, str, str], ...]:
     """Return the figures of a flight that has ended: label, value, unit."""
-    figures = [(texts.TIME, f"{tenths(float(env.time[slot])):.1f}", "s"),
-               (texts.FUEL, f"{tenths(float(env.fuel[slot])):.1f}", "s")]  # fmt: skip
+    figures = [
+        (texts.TIME, f"{tenths(float(env.time[slot])):.1f}", "s"),
+        (texts.FUEL, f"{tenths(float(env.fuel[slot])):.1f}", "s"),
+    ]
     if env.outcome[slot] in (Outcome.LANDED, Outcome.CRASHED):
         figures.append((texts.TOUCHDOWN, f"{float(env.impact[slot, 0]):.1f}", "m/s"))
     away = abs(float(env.position[slot, 0] - env.pad[slot, 0]))

@@ -95,11 +95,14 @@ class Advice:
         box = self._box
         words = [
             TextButton(
-                self._form.manager, (box.right - _WORD * (len(wanted) - number), box.top + 2, _WORD - 14, 22), label,
-                press, size=SMALL,
+                self._form.manager,
+                (box.right - _WORD * (len(wanted) - number), box.top + 2, _WORD - 14, 22),
+                label,
+                press,
+                size=SMALL,
             )
             for number, (label, press) in enumerate(wanted)
-        ]  # fmt: skip
+        ]
         self._form.replace(self._words, words)
         self._words = words
 

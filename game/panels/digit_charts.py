@@ -24,10 +24,11 @@ class DigitCharts(Charts):
     """Two charts over one axis."""
 
     def __init__(self) -> None:
-        super().__init__([
-            Chart(_CHARTS[name], texts.DIGIT_RUN_CHARTS[name], read=form.format, empty=texts.DIGIT_RUN_CHARTS_SHOW[name])
-            for name, form in (("loss", "{:.3g}"), ("accuracy", "{:.2f}"))
-        ])  # fmt: skip
+        titles, empty = texts.DIGIT_RUN_CHARTS, texts.DIGIT_RUN_CHARTS_SHOW
+        forms = {"loss": "{:.3g}", "accuracy": "{:.2f}"}
+        super().__init__(
+            [Chart(_CHARTS[name], titles[name], read=forms[name].format, empty=empty[name]) for name in forms]
+        )
         self._told: tuple[object, ...] = ()
 
     def look(self, curves: DigitCurves, earlier: list[EarlierRun[DigitCurves]]) -> None:
@@ -67,5 +68,10 @@ def _turn_told(turn: DigitSettingChanged) -> str:
 def _batches(curves: DigitCurves) -> Series:
     """Return the curve of the training batches' accuracy."""
     colour, dash = _BATCHES
-    return Series([point.seconds for point in curves.points], [100 * point.accuracy for point in curves.points],
-                  texts.DIGIT_RUN_BATCHES, colour, dash)  # fmt: skip
+    return Series(
+        [point.seconds for point in curves.points],
+        [100 * point.accuracy for point in curves.points],
+        texts.DIGIT_RUN_BATCHES,
+        colour,
+        dash,
+    )

@@ -121,9 +121,14 @@ class Knob(Widget):
     def write(self, canvas: Canvas, written: str) -> None:
         """Write a figure at the right end."""
         canvas.text(
-            written, (self.box.right, self.box.centery + 4.5),
-            size=SMALL, colour=self.colour, align="right", tabular=True, room=_TRACK[1] - 8,
-        )  # fmt: skip
+            written,
+            (self.box.right, self.box.centery + 4.5),
+            size=SMALL,
+            colour=self.colour,
+            align="right",
+            tabular=True,
+            room=_TRACK[1] - 8,
+        )
 
 
 class SliderKnob(Knob):
@@ -223,8 +228,9 @@ class SwitchKnob(Knob):
         if not self.live:
             canvas.dot((left + 7 + 12 * slid, middle), 2.6, mix(FAINT, self.colour, slid))
         state = texts.KNOB_SWITCH[bool(self.value)]
-        canvas.text(state, (self.box.right, middle + 4.5), size=SMALL, align="right",
-                    colour=self.colour if self.value else MUTE)  # fmt: skip
+        canvas.text(
+            state, (self.box.right, middle + 4.5), size=SMALL, align="right", colour=self.colour if self.value else MUTE
+        )
 
 
 class WordsKnob(Knob):
@@ -258,9 +264,14 @@ class WordsKnob(Knob):
         super().paint(canvas)
         ink = self.colour if self.live or self.waits or self.idle else INK
         self.row.paint(
-            canvas, self.box.centery + 4.5, self.values.index(self.value),
-            ink=ink, line=self.colour, drop=5.5, thickness=2.0 if self.live else 1.0,
-        )  # fmt: skip
+            canvas,
+            self.box.centery + 4.5,
+            self.values.index(self.value),
+            ink=ink,
+            line=self.colour,
+            drop=5.5,
+            thickness=2.0 if self.live else 1.0,
+        )
 
 
 @lru_cache(maxsize=1024)
@@ -278,5 +289,6 @@ def draw_row(canvas: Canvas, widget: Widget, *, changed: bool, dim: bool = False
     if changed:
         canvas.dot((box.left + 5, box.centery), 2.5, HUMAN)
     colour = mix(_DIM if dim else mix(MUTE, INK, 0.7), INK, widget.warmth)
-    canvas.text(widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour,
-                room=_TRACK[0] - MARGIN - 6)  # fmt: skip
+    canvas.text(
+        widget.label, (box.left + MARGIN, box.centery + 4.5), size=SMALL, colour=colour, room=_TRACK[0] - MARGIN - 6
+    )

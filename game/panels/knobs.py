@@ -161,9 +161,12 @@ class KnobsPanel:
             if isinstance(widget, Knob):
                 name, read = widget.description.name, widget.description.read
                 widget.display(
-                    read(run_settings.draft), read(run_settings.home), waits=name in waiting,
-                    now=run_settings.now(name), idle=run_settings.idle(name),
-                )  # fmt: skip
+                    read(run_settings.draft),
+                    read(run_settings.home),
+                    waits=name in waiting,
+                    now=run_settings.now(name),
+                    idle=run_settings.idle(name),
+                )
             elif isinstance(widget, SeedKnob):
                 widget.display(run_settings.draft_seed, waits=SEED in waiting)
 

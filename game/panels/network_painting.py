@@ -129,7 +129,9 @@ class NetworkPainting:
                 signs.text(figure, (x, y + 15), size=size, colour=INK, align=align, tabular=True)
         shown = len(column.units)
         if shown < column.total or not names:
-            words = (texts.NETWORK_VIEW_ALL if shown == column.total else texts.NETWORK_VIEW_SOME).format(shown=shown, count=column.total)
+            words = (texts.NETWORK_VIEW_ALL if shown == column.total else texts.NETWORK_VIEW_SOME).format(
+                shown=shown, count=column.total
+            )
             middle = (centres[0][0], self._last_line)
             signs.text(words, middle, size=LABEL - 1, colour=MUTE, align="centre")
 

@@ -84,8 +84,10 @@ class NetworkPanel:
         index = SHOWN.index(self._view.show)
         if not large:
             return []
-        return [Choice(self._form.manager, box, "", texts.NETWORK_VIEW_SHOWS, index, self._show),
-                VirtualPointer(self._form.manager, _LARGE, self.follow)]  # fmt: skip
+        return [
+            Choice(self._form.manager, box, "", texts.NETWORK_VIEW_SHOWS, index, self._show),
+            VirtualPointer(self._form.manager, _LARGE, self.follow),
+        ]
 
     def take(self, network_state: NetworkState, config: Config) -> None:
         """Show the network that a run reports."""

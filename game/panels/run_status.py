@@ -34,8 +34,9 @@ def draw_run_status(
     canvas.text(line, (left, top + 22), size=SMALL, colour=MUTE, tabular=True, room=room)
     if figure:
         colour = rate_colour(canvas.palette, float(figure))
-        end = canvas.text(figure, (left - 1, top + drop), size=FIGURE, weight="light", tabular=True,
-                          colour=colour).right  # fmt: skip
+        end = canvas.text(
+            figure, (left - 1, top + drop), size=FIGURE, weight="light", tabular=True, colour=colour
+        ).right
         canvas.text(words, (end + 8, top + drop), size=SMALL, colour=MUTE)
 
 

@@ -42,8 +42,11 @@ class Timeline(Widget):
         self.length = max(1, len(actions))
         self.at = self.reached = 0
         self._hands = runs([_COLOURS[hand] for hand in hands])
-        lit = ([action >= 3 for action in actions], [action % 3 == 1 for action in actions],
-               [action % 3 == 2 for action in actions])  # fmt: skip
+        lit = (
+            [action >= 3 for action in actions],
+            [action % 3 == 1 for action in actions],
+            [action % 3 == 2 for action in actions],
+        )
         self._lanes = [[(start, stop, _LIT) for start, stop, on in runs(lane) if on] for lane in lit]
 
     def press(self) -> Transition | None:

@@ -137,8 +137,9 @@ class TrainingCharts:
             self.choose(place, self._history.checkpoints)
 
         found: list[Widget] = [
-            VirtualPointer(manager, self.charts.box, self.charts.follow), Scrubber(manager, self.charts, scrub, duel)
-        ]  # fmt: skip
+            VirtualPointer(manager, self.charts.box, self.charts.follow),
+            Scrubber(manager, self.charts, scrub, duel),
+        ]
         if compared:
             axes = Choice(manager, _AXES, "", texts.TRAIN_AXES, self.axis, self.measure_by, size=SMALL, gap=14)
             found.append(axes)

@@ -37,8 +37,9 @@ def digit_status(digit_run: DigitRun) -> TrainingStatus:
     line = texts.DIGIT_RUN_LOADING if digit_run.alive else texts.DIGIT_RUN_LINE
     if curves.points:
         last = curves.points[-1]
-        line = texts.DIGIT_RUN_FIGURES.format(epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds,
-                                          rate=last.images_per_second)  # fmt: skip
+        line = texts.DIGIT_RUN_FIGURES.format(
+            epoch=last.epoch, epochs=digit_run.config.epochs, seconds=last.seconds, rate=last.images_per_second
+        )
     if tested and digit_run.kept_epoch is not None:
         read = f"{100 * curves.scores[-1].accuracy:.2f}%" if curves.scores else "–"
         line = texts.DIGIT_RUN_KEPT_BEST.format(epoch=digit_run.kept_epoch, last=read)

@@ -29,7 +29,9 @@ class WayBack:
             return
         width = typeface.width(texts.DIGIT_RUN_GO_BACK, SMALL, "regular")
         box = (self._box.right - 14 - width, self._box.top + 2, width, 22)
-        words = [TextButton(self._form.manager, box, texts.DIGIT_RUN_GO_BACK, run.go_back, size=SMALL)] if wanted else []
+        words = (
+            [TextButton(self._form.manager, box, texts.DIGIT_RUN_GO_BACK, run.go_back, size=SMALL)] if wanted else []
+        )
         self._form.replace(self._words, words)
         self._words = words
 

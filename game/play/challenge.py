@@ -222,8 +222,11 @@ class FlownMission(Challenge):
         if medal == 3:
             return texts.MEDAL_GOLD
         fuel, seconds = self.mission.too_much(medal + 1, float(flight.env.fuel[0]), float(flight.env.time[0]))
-        words = [text.format(much) for much, text in
-                 ((fuel, texts.MEDAL_LESS_FUEL), (seconds, texts.MEDAL_LESS_TIME)) if much > 0]  # fmt: skip
+        words = [
+            text.format(much)
+            for much, text in ((fuel, texts.MEDAL_LESS_FUEL), (seconds, texts.MEDAL_LESS_TIME))
+            if much > 0
+        ]
         return texts.MEDAL_NEXT.format(medal=texts.MEDALS[medal + 1].capitalize(), less=texts.AND.join(words))
 
 

@@ -157,7 +157,11 @@ class FlownFlight:
     def write_down(self, records: Records, skill: Skill, network: Network) -> None:
         """Record the finished flight, save it as a demonstration if wished, and report failures to the player."""
         context, credit, challenge = self._context, self.credit, self.challenge
-        told = "" if challenge or credit.bar == "practice" else self.cockpit.add_demonstration(context.user_dir, self.hands)
+        told = (
+            ""
+            if challenge or credit.bar == "practice"
+            else self.cockpit.add_demonstration(context.user_dir, self.hands)
+        )
         entry = records.keep(
             self.flight,
             time.time(),

@@ -111,8 +111,12 @@ def _phantom(pixels_per_metre: float, degrees: int, halves: tuple[int, int], wre
     grown = cover.copy()
     for _ in range(max(1, round(pixels_per_metre / 24))):
         inner = grown.copy()
-        for to, of in ((np.s_[1:], np.s_[:-1]), (np.s_[:-1], np.s_[1:]), (np.s_[:, 1:], np.s_[:, :-1]),
-                       (np.s_[:, :-1], np.s_[:, 1:])):  # fmt: skip
+        for to, of in (
+            (np.s_[1:], np.s_[:-1]),
+            (np.s_[:-1], np.s_[1:]),
+            (np.s_[:, 1:], np.s_[:, :-1]),
+            (np.s_[:, :-1], np.s_[:, 1:]),
+        ):
             np.maximum(grown[to], inner[of], out=grown[to])
     rim = (grown - cover).astype(np.float32) / 255  # never negative, as the dilated mask contains the mask
     colour = pygame.surfarray.pixels3d(phantom)

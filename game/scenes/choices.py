@@ -69,22 +69,38 @@ class ChoicesScene(FormScene):
         settings = self.context.settings
         word = self.context.controls.word
         keys = {"less": word(Command.SLOWER), "more": word(Command.FASTER)}
-        self._add_slider("assist", (0.0, 1.0), texts.CHOICES_ASSIST,
-                         lambda: texts.CHOICES_ASSIST_HELP[settings.assist > 0].format(**keys))  # fmt: skip
-        self._choice(texts.CHOICES_MODE, texts.CHOICES_MODES, _index(MODES, settings.copilot),
-                     lambda index: self._changes("copilot")(MODES[index]),
-                     lambda: texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)])  # fmt: skip
+        self._add_slider(
+            "assist",
+            (0.0, 1.0),
+            texts.CHOICES_ASSIST,
+            lambda: texts.CHOICES_ASSIST_HELP[settings.assist > 0].format(**keys),
+        )
+        self._choice(
+            texts.CHOICES_MODE,
+            texts.CHOICES_MODES,
+            _index(MODES, settings.copilot),
+            lambda index: self._changes("copilot")(MODES[index]),
+            lambda: texts.CHOICES_MODES_HELP[_index(MODES, settings.copilot)],
+        )
 
     def _add_starts(self) -> None:
         """Add the rows for the next flight's pads and for the handicap on its keys."""
         settings, hands = self.context.settings, list(HANDS)
-        self._choice(texts.CHOICES_PADS, texts.CHOICES_PADS_WORDS, int(settings.three_pads),
-                     lambda index: self._changes("three_pads")(bool(index)),
-                     lambda: texts.CHOICES_PADS_HELP[settings.three_pads])  # fmt: skip
+        self._choice(
+            texts.CHOICES_PADS,
+            texts.CHOICES_PADS_WORDS,
+            int(settings.three_pads),
+            lambda index: self._changes("three_pads")(bool(index)),
+            lambda: texts.CHOICES_PADS_HELP[settings.three_pads],
+        )
         words = [texts.CHOICES_HANDS_WORDS[name] for name in hands]
-        self._choice(texts.CHOICES_HANDS, words, _index(hands, settings.hands),
-                     lambda index: self._changes("hands")(hands[index]),
-                     lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""))  # fmt: skip
+        self._choice(
+            texts.CHOICES_HANDS,
+            words,
+            _index(hands, settings.hands),
+            lambda index: self._changes("hands")(hands[index]),
+            lambda: texts.CHOICES_HANDS_HELP.get(settings.hands, ""),
+        )
 
     def actions(self) -> Table:
         """Change a choice, or go back; the key that opened this scene closes it too."""
@@ -153,9 +169,9 @@ class ChoicesScene(FormScene):
         if own:
             figure = canvas.text(str(sum(own)), (left, y), size=FIGURE, weight="light", colour=HUMAN)
             canvas.text(texts.SKILL_FIGURE.format(count=len(own)), (figure.right + 10, y), size=SMALL, colour=MUTE)
-        for row, (value, words) in enumerate((
-            (self._skill.best, texts.SKILL_BEST), (self._taught, texts.SKILL_TAUGHT)
-        )):  # fmt: skip
+        for row, (value, words) in enumerate(
+            ((self._skill.best, texts.SKILL_BEST), (self._taught, texts.SKILL_TAUGHT))
+        ):
             if value:
                 figure = canvas.text(str(value), (left, y + 44 + 36 * row), size=TITLE, weight="light", colour=INK)
                 canvas.text(words, (figure.right + 10, y + 44 + 36 * row), size=SMALL, colour=MUTE)

@@ -222,7 +222,9 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self.start_word = add(PANEL_LEFT, 664, texts.TRAIN_START, self._toggle)
         self.save_word = add(PANEL_LEFT + 316, 664, texts.TRAIN_SAVE, self._save)
         self.dream_word = add(PANEL_LEFT, 624, texts.DIGIT_RUN_DREAM, self._dream)
-        self.quiz_word = add(max(PANEL_LEFT + 120, self.dream_word.box.right + 18), 624, texts.DIGIT_RUN_QUIZ, self._quiz)
+        self.quiz_word = add(
+            max(PANEL_LEFT + 120, self.dream_word.box.right + 18), 624, texts.DIGIT_RUN_QUIZ, self._quiz
+        )
         self._name_words()
 
     def _name_words(self) -> None:

@@ -232,8 +232,10 @@ class DigitsScene(FormScene):
             for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)))
         ]
         elsewhere = (
-            (texts.DIGITS_QUIZ, self._quiz), (texts.DIGITS_TRAIN, self._train), (texts.DIGITS_DREAM, self._dream),
-        )  # fmt: skip
+            (texts.DIGITS_QUIZ, self._quiz),
+            (texts.DIGITS_TRAIN, self._train),
+            (texts.DIGITS_DREAM, self._dream),
+        )
         widths = [typeface.width(word, TEXT, "medium") for word, _ in elsewhere]
         left = PAD.right - sum(widths) - _GAP * (len(widths) - 1)
         for (word, press), width in zip(elsewhere, widths, strict=True):
@@ -280,8 +282,10 @@ class DigitsScene(FormScene):
         from game.scenes.dialog import ListDialog
 
         damaged = self.live.reader.problems
-        rows = [(called(name), texts.DIGIT_MODEL_DAMAGED if name in damaged else network.said)
-                for name, network in self.fixing.networks.items()]  # fmt: skip
+        rows = [
+            (called(name), texts.DIGIT_MODEL_DAMAGED if name in damaged else network.said)
+            for name, network in self.fixing.networks.items()
+        ]
         return Push(ListDialog(self, texts.DIGITS_PICK, rows, self._tabs.choose))
 
     def _quiz(self) -> Transition | None:
@@ -313,8 +317,10 @@ class DigitsScene(FormScene):
         measured = self.measuring.words(self.live.switches)
         place, width = (EXPLANATION_LEFT, 184), _RIGHT - EXPLANATION_LEFT
         draw_wrapped(canvas, measured, place, width, size=LABEL, colour=MUTE, leading=15)
-        problems = [texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
-                    for name, problem in self.live.reader.problems.items()]  # fmt: skip
+        problems = [
+            texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
+            for name, problem in self.live.reader.problems.items()
+        ]
         y: float = _PROBLEMS
         for words in reversed(problems):
             most = _PROBLEM_LINES - round((y - _PROBLEMS) / 17)

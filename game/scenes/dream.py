@@ -63,8 +63,13 @@ class DreamTile(Widget):
         pygame.draw.rect(canvas.surface, NET if self.chosen else LINE, area, max(1, canvas.px(1)))
         if self.ringed and self.warmth > 0.02:
             canvas.outline(box.inflate(8, 8), 6, INK, 1, 0.6 * self.warmth)
-        canvas.text(self.label, (box.centerx, box.bottom + 16), size=SMALL, align="centre",
-                    colour=INK if self.chosen else self.tint())  # fmt: skip
+        canvas.text(
+            self.label,
+            (box.centerx, box.bottom + 16),
+            size=SMALL,
+            align="centre",
+            colour=INK if self.chosen else self.tint(),
+        )
 
 
 class DreamScene(FormScene):

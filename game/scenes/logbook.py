@@ -118,8 +118,13 @@ class LogbookScene(ListScene[Entry]):
     def _make_verbs(self) -> list[Widget]:
         self._why_gone = self._records.why_gone(self.chosen) if self.chosen else ""
         if self._replayable:
-            return self._buttons([(texts.LOGBOOK_WATCH, self._watch), (texts.LOGBOOK_RACE, self._race),
-                                  (texts.LOGBOOK_THROW_AWAY, self._throw_away)])  # fmt: skip
+            return self._buttons(
+                [
+                    (texts.LOGBOOK_WATCH, self._watch),
+                    (texts.LOGBOOK_RACE, self._race),
+                    (texts.LOGBOOK_THROW_AWAY, self._throw_away),
+                ]
+            )
         if self.chosen and self.chosen.file in self._thrown:
             return self._buttons([(texts.LOGBOOK_BRING_BACK, self._bring_back)])
         return []
@@ -177,9 +182,12 @@ class LogbookScene(ListScene[Entry]):
 def _draw_totals(canvas: Canvas, sums: Totals) -> None:
     percent = f"{100 * sums.landings / sums.flights:.0f}" if sums.flights else "–"
     figures = (
-        (f"{sums.flights}", ""), (f"{sums.landings}", f"{percent} %"), (f"{sums.seconds / 60:.0f}", "min"),
-        (f"{sums.fuel:.0f}", "s"), (f"{sums.streak}", ""),
-    )  # fmt: skip
+        (f"{sums.flights}", ""),
+        (f"{sums.landings}", f"{percent} %"),
+        (f"{sums.seconds / 60:.0f}", "min"),
+        (f"{sums.fuel:.0f}", "s"),
+        (f"{sums.streak}", ""),
+    )
     y, pitch = _TOTALS
     for number, (label, (figure, unit)) in enumerate(zip(texts.LOGBOOK_TOTALS, figures, strict=True)):
         x = MARGIN + number * pitch

@@ -233,12 +233,19 @@ class QuizScene(FormScene):
         read = {"read": numeral[best], "percent": share, "digit": numeral[current.digit]}
         whose, colour = (NET, canvas.palette.good) if current.right else (MUTE, canvas.palette.warn)
         shown = str(current.answer)
-        canvas.text(shown, (LEFT - 6, 262), size=124, weight="extralight",
-                    colour=(whose if draws else HUMAN) if current.right else MUTE)  # fmt: skip
+        canvas.text(
+            shown,
+            (LEFT - 6, 262),
+            size=124,
+            weight="extralight",
+            colour=(whose if draws else HUMAN) if current.right else MUTE,
+        )
         words = {
-            (True, True): texts.QUIZ_NET_RIGHT, (True, False): texts.QUIZ_NET_WRONG,
-            (False, True): texts.QUIZ_YOU_RIGHT, (False, False): texts.QUIZ_YOU_WRONG,
-        }[draws, current.right].format(**read)  # fmt: skip
+            (True, True): texts.QUIZ_NET_RIGHT,
+            (True, False): texts.QUIZ_NET_WRONG,
+            (False, True): texts.QUIZ_YOU_RIGHT,
+            (False, False): texts.QUIZ_YOU_WRONG,
+        }[draws, current.right].format(**read)
         canvas.marker("check" if current.right else "cross", (LEFT + 5, _VERDICT - 5), 10, colour)
         canvas.text(words, (LEFT + 18, _VERDICT), size=TEXT, colour=colour, tabular=True)
         if not draws:
@@ -246,8 +253,12 @@ class QuizScene(FormScene):
 
     def _draw_end(self, canvas: Canvas) -> None:
         (you, asked), (net, drawn) = self.contest.score("read"), self.contest.score("draw")
-        canvas.text(texts.QUIZ_OVER[self.contest.lead], (LEFT, _QUESTION), size=TITLE,
-                    colour={1: HUMAN, 0: INK, -1: NET}[self.contest.lead])  # fmt: skip
+        canvas.text(
+            texts.QUIZ_OVER[self.contest.lead],
+            (LEFT, _QUESTION),
+            size=TITLE,
+            colour={1: HUMAN, 0: INK, -1: NET}[self.contest.lead],
+        )
         told = texts.QUIZ_OVER_LINE.format(you=you, asked=asked, net=net, drawn=drawn)
         draw_wrapped(canvas, told, (LEFT, _QUESTION + 28), _COLUMN, colour=MUTE, leading=18)
 
@@ -255,8 +266,9 @@ class QuizScene(FormScene):
         sides: tuple[tuple[int, int], ...] = (self.contest.score("read"), self.contest.score("draw"))
         for (right, count), x, name, colour in zip(sides, _SCORES, texts.QUIZ_SIDES, (HUMAN, NET), strict=True):
             canvas.text(name.upper(), (x, 92), size=LABEL, colour=MUTE, weight="medium")
-            figure = canvas.text(str(right), (x - 2, 146), size=FIGURE * 1.6, weight="light", colour=colour,
-                                 tabular=True)  # fmt: skip
+            figure = canvas.text(
+                str(right), (x - 2, 146), size=FIGURE * 1.6, weight="light", colour=colour, tabular=True
+            )
             if count:
                 words = texts.QUIZ_OF.format(count=count)
                 canvas.text(words, (figure.right + 8, 146), size=SMALL, colour=MUTE, tabular=True)
@@ -276,6 +288,11 @@ def _draw_tile(canvas: Canvas, each: QuizRound, place: tuple[float, float], *, c
         canvas.surface.blit(picture(each.image, area.size), area)
         sign, colour = ("check", canvas.palette.good) if each.right else ("cross", canvas.palette.warn)
         canvas.marker(sign, (place[0] + 6, place[1] + _TILE + 13), 9, colour)  # type: ignore[arg-type]
-        canvas.text(str(each.answer), (place[0] + 17, place[1] + _TILE + 17), size=SMALL, tabular=True,
-                    colour=NET if each.kind == "draw" else HUMAN)  # fmt: skip
+        canvas.text(
+            str(each.answer),
+            (place[0] + 17, place[1] + _TILE + 17),
+            size=SMALL,
+            tabular=True,
+            colour=NET if each.kind == "draw" else HUMAN,
+        )
     pygame.draw.rect(canvas.surface, edge, area, max(1, canvas.px(1)))

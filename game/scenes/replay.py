@@ -178,16 +178,20 @@ class ReplayScene(FormScene):
 
     def _build(self) -> None:
         manager, recording = self.form.manager, self.record.recording
-        self._reward_bar = self.form.add(Timeline(
-            manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
-        ))  # fmt: skip
+        self._reward_bar = self.form.add(
+            Timeline(
+                manager, _STRIP, texts.REPLAY_LANES, recording.actions, recording.hands, self.seek, self._stop_or_go
+            )
+        )
         width = LABEL_WIDTH + sum(typeface.width(word, SMALL, "regular") + GAP for word in self.playback.words)
         box = (MARGIN, _VERBS, round(width), _VERB)
         self.form.add(self.playback.row(manager, box))
         rows: list[tuple[str, OnPress]] = [
-            (texts.REPLAY_TAKE_OVER, self._take_over), (texts.LOGBOOK_RACE, self._race),
-            (texts.REPLAY_EXPORT, self._begin_or_stop_export), (texts.BACK, Pop),
-        ]  # fmt: skip
+            (texts.REPLAY_TAKE_OVER, self._take_over),
+            (texts.LOGBOOK_RACE, self._race),
+            (texts.REPLAY_EXPORT, self._begin_or_stop_export),
+            (texts.BACK, Pop),
+        ]
         x = VIEW_SIZE[0] - MARGIN - sum(typeface.width(word, SMALL, "regular") + 28 for word, _ in rows) + 28
         words = []
         for word, press in rows:
@@ -214,8 +218,9 @@ class ReplayScene(FormScene):
         if self.export is None:
             answers: list[tuple[str, Callable[[], None]]] = [
                 (suffix[1:].upper(), partial(self._begin_export, suffix))
-                for suffix, kind in KINDS.items() if not kind.missing
-            ]  # fmt: skip
+                for suffix, kind in KINDS.items()
+                if not kind.missing
+            ]
             more = texts.EXPORT_GIF_ONLY if KINDS[".mp4"].missing else texts.EXPORT_MORE
             return Push(QuestionDialog(self, texts.EXPORT_AS, more, [*answers, (texts.EXPORT_CANCEL, lambda: None)]))
         self._stop_export()
@@ -265,8 +270,11 @@ class ReplayScene(FormScene):
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.when))
         mission = texts.MISSIONS.get(self.record.recording.mission)
         title = texts.REPLAY_MISSION.format(mission=mission[0]) if mission else texts.REPLAY_TITLE
-        hud.draw_corner(canvas, title, texts.REPLAY_LINE.format(
-            end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when))  # fmt: skip
+        hud.draw_corner(
+            canvas,
+            title,
+            texts.REPLAY_LINE.format(end=texts.OUTCOMES[entry.outcome][0], seconds=entry.seconds, when=when),
+        )
         flight = self.flight_replay.flight
         seconds = f"{self.flight_replay.at * STEP:.2f}"
         middle = VIEW_SIZE[0] / 2

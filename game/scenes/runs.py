@@ -109,8 +109,9 @@ class NetworksScene(ListScene[SavedRun]):
         """Return the entry of a name, if it is being typed, and buttons for what can be done with the chosen run."""
         if self._entry:
             words: list[tuple[str, OnPress]] = [
-                (texts.RUN_KEEP_NAME, self._entry_done), (texts.RUN_LEAVE_NAME, self._end_naming)
-            ]  # fmt: skip
+                (texts.RUN_KEEP_NAME, self._entry_done),
+                (texts.RUN_LEAVE_NAME, self._end_naming),
+            ]
             return [self._entry, *self._buttons(words)]
         rows: list[tuple[str, OnPress]] = []
         if run := self.chosen:
@@ -121,8 +122,11 @@ class NetworksScene(ListScene[SavedRun]):
             if run.resumable and not self._choose:
                 rows.append((texts.RUN_TRAIN, lambda: self._train(run.folder)))
             if self._is_own:
-                rows += [(texts.RUN_RENAME, self._begin_naming), (texts.RUN_EXPORT, self._export),
-                         (texts.RUN_DELETE, self._delete)]  # fmt: skip
+                rows += [
+                    (texts.RUN_RENAME, self._begin_naming),
+                    (texts.RUN_EXPORT, self._export),
+                    (texts.RUN_DELETE, self._delete),
+                ]
         return self._buttons(rows)
 
     def _below_list(self) -> list[Widget]:

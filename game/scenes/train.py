@@ -254,8 +254,12 @@ class TrainScene(TrainingScene[LanderRun]):
         """Add the widgets of the large network, or of the swarm and the charts."""
         beside = self.inside.place(large)
         if not beside:
-            words = ((texts.TRAIN_RUNS, self._open_runs), (texts.TRAIN_DUEL, self._duel),
-                     (texts.TRAIN_COMPARE, self._compare), (texts.TRAIN_TEACH, self._teach))  # fmt: skip
+            words = (
+                (texts.TRAIN_RUNS, self._open_runs),
+                (texts.TRAIN_DUEL, self._duel),
+                (texts.TRAIN_COMPARE, self._compare),
+                (texts.TRAIN_TEACH, self._teach),
+            )
             beside = [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]

@@ -76,9 +76,7 @@ class ListScene(FormScene, ABC, Generic[Item]):
             manager, layout.box, [], on_choose=lambda _: self._choose_row(), on_press=lambda _: self._press_row(),
             empty=empty, columns=layout.columns, pitch=layout.pitch, size=layout.size,
         ))  # fmt: skip
-        self._back_button = TextButton(
-            manager, (MARGIN, layout.foot, 72, VERB_LINE), texts.BACK, on_back, size=_VERB
-        )  # fmt: skip
+        self._back_button = TextButton(manager, (MARGIN, layout.foot, 72, VERB_LINE), texts.BACK, on_back, size=_VERB)
         self.items: list[Item] = []
         self._verbs: list[Widget] = []
         self._beside: list[Widget] = []  # the verbs, and what is below the list
@@ -154,11 +152,9 @@ class ListScene(FormScene, ABC, Generic[Item]):
         """Return a column of buttons for the chosen item, given their labels and actions."""
         left, top = self._layout.verbs
         return [
-            TextButton(
-                self.form.manager, (left, top + number * VERB_LINE, 220, VERB_LINE), label, press, size=_VERB
-            )
+            TextButton(self.form.manager, (left, top + number * VERB_LINE, 220, VERB_LINE), label, press, size=_VERB)
             for number, (label, press) in enumerate(rows)
-        ]  # fmt: skip
+        ]
 
     def _report(self, note: str) -> None:
         """Tell the player what has been done to an item, and show the list as it is now."""

@@ -52,8 +52,9 @@ class TextButton(Widget):
     def paint(self, canvas: Canvas) -> None:
         """Draw the word, and the growing line under it."""
         left, baseline = self.box.left, self.baseline
-        box = canvas.text(self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint(),
-                          room=self.box.width)  # fmt: skip
+        box = canvas.text(
+            self.label, (left, baseline), size=self._size, weight=self._weight, colour=self.tint(), room=self.box.width
+        )
         length = box.width * self.warmth
         if length > 1:
             y = baseline + 0.42 * self._size
@@ -181,9 +182,14 @@ class Slider(Widget):
         handle = (left + self.fraction * (right - left), middle)
         canvas.dot(handle, 5 + self.warmth, INK)
         canvas.text(
-            self._figure(self.value), (box.right, baseline),
-            size=SMALL + 1, colour=self._colour, align="right", tabular=True, room=box.right - right - 10,
-        )  # fmt: skip
+            self._figure(self.value),
+            (box.right, baseline),
+            size=SMALL + 1,
+            colour=self._colour,
+            align="right",
+            tabular=True,
+            room=box.right - right - 10,
+        )
 
 
 class Choice(Widget):

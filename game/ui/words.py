@@ -40,9 +40,11 @@ class TextButtonRow:
         if sum(widths) + gap * (len(widths) - 1) > room + 1:
             room -= 2 * _ARROW
         self.pages = _pages(widths, room, gap)
-        self.lefts = [left + (_ARROW if page.start else 0) + place for page in self.pages for place in accumulate(
-            (widths[number] + gap for number in page[:-1]), initial=0.0
-        )]  # fmt: skip
+        self.lefts = [
+            left + (_ARROW if page.start else 0) + place
+            for page in self.pages
+            for place in accumulate((widths[number] + gap for number in page[:-1]), initial=0.0)
+        ]
 
     def _page(self, chosen: int) -> range:
         self._lay_out()

@@ -90,7 +90,9 @@ def _paint(
     heart = np.exp(-((offset / 0.48) ** 2)) * (1 - inside) ** 1.5 * diamonds
     body = np.exp(-((offset / 0.82) ** 4)) * (1 - inside) ** 0.8
     edge = np.exp(-((offset / 1.12) ** 2)) * (1 - inside) ** 1.1
-    glow = [share[..., None] * np.array(c, np.float32) for share, c in
-            ((0.75 * heart, kind.heart), (0.62 * body, kind.body), (0.42 * edge, kind.edge))]  # fmt: skip
+    glow = [
+        share[..., None] * np.array(c, np.float32)
+        for share, c in ((0.75 * heart, kind.heart), (0.62 * body, kind.body), (0.42 * edge, kind.edge))
+    ]
     picture = (glow[0] + glow[1] + glow[2]) * (open_end * (0.55 + 0.45 * strength))[..., None]
     return light(picture), (-math.floor(left), -math.floor(above))

@@ -86,9 +86,12 @@ def _legs() -> list[Facet]:
         Facet(((0.60, 0.02), (x, y + rise)), _SILVER, (0.75, 0.3, 0.6), 0.066),
         Facet(((0.60, 0.02), (x - 0.115, y + 0.35)), _GOLD, (0.7, 0.3, 0.6), 0.085),
         Facet(dish, _STEEL, (0.0, 0.35, 0.9)),
-        Facet(((x - half, y - 0.012), (x - 0.09, y + rise), (x + 0.09, y + rise), (x + half, y - 0.012)),
-              _SILVER, (0.15, 0.8, 0.55)),
-    )  # fmt: skip
+        Facet(
+            ((x - half, y - 0.012), (x - 0.09, y + rise), (x + 0.09, y + rise), (x + half, y - 0.012)),
+            _SILVER,
+            (0.15, 0.8, 0.55),
+        ),
+    )
 
 
 def _engine() -> list[Facet]:
@@ -244,8 +247,12 @@ def _paint(pixels_per_metre: float, degrees: int, halves: tuple[int, int], image
 def _strut(sheet: pygame.Surface, colour: Colour, start: Corner, end: Corner, width: float) -> None:
     along = math.hypot(end[0] - start[0], end[1] - start[1]) or 1.0
     x, y = (end[1] - start[1]) / along * width / 2, (start[0] - end[0]) / along * width / 2
-    corners = [(start[0] + x, start[1] + y), (end[0] + x, end[1] + y), (end[0] - x, end[1] - y),
-               (start[0] - x, start[1] - y)]  # fmt: skip
+    corners = [
+        (start[0] + x, start[1] + y),
+        (end[0] + x, end[1] + y),
+        (end[0] - x, end[1] - y),
+        (start[0] - x, start[1] - y),
+    ]
     pygame.draw.polygon(sheet, colour, corners)
 
 

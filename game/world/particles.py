@@ -35,8 +35,10 @@ class ParticleKind(IntEnum):
 
 DUST: Final[Colour] = (150, 140, 150)  # of the moon
 _GLOWS: Final[dict[int, Colour]] = {
-    ParticleKind.SPARK: (255, 176, 90), ParticleKind.AMBER: (255, 150, 70), ParticleKind.BLUE: (96, 160, 255),
-}  # fmt: skip
+    ParticleKind.SPARK: (255, 176, 90),
+    ParticleKind.AMBER: (255, 150, 70),
+    ParticleKind.BLUE: (96, 160, 255),
+}
 _SHARDS: Final[tuple[Colour, ...]] = ((214, 158, 74), (190, 198, 214), (92, 98, 118), (168, 112, 48))
 # By kind:
 _GROWTH: Final = np.array([0.34, 0.0, 0.0, 0.0, 0.30, 0.30])  # metres a second
@@ -153,8 +155,13 @@ class Particles:
             speed = self._rng.uniform(*fast, number) * (0.4 + 0.6 * strength)
             rise = speed * steep * self._rng.uniform(0.2, 1.0, number)
             place = np.stack([start, self._relief.height(start) + 0.05], 1)
-            self.add(kind, place, np.stack([side * speed, rise], 1), self._rng.uniform(*life, number),
-                      self._rng.uniform(*size, number))  # fmt: skip
+            self.add(
+                kind,
+                place,
+                np.stack([side * speed, rise], 1),
+                self._rng.uniform(*life, number),
+                self._rng.uniform(*size, number),
+            )
 
     def settle(self, foot: tuple[float, float], strength: float) -> None:
         """Raise a foot's dust, and sparks where it comes down hard; `strength` 0 to 1."""

@@ -147,8 +147,12 @@ def test_a_reset_leaves_no_residue():
     start = {name: getattr(fresh.state, name).copy() for name in STATE}
     advance(used, 100)
     for body in used.bodies:
-        body.set(position=start["pose"][:, body.index, :2], angle=start["pose"][:, body.index, 2],
-                 velocity=(0, 0), angular_velocity=0.0)  # fmt: skip
+        body.set(
+            position=start["pose"][:, body.index, :2],
+            angle=start["pose"][:, body.index, 2],
+            velocity=(0, 0),
+            angular_velocity=0.0,
+        )
     for _ in range(100):
         used.step()
         fresh.step()

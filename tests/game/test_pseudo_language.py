@@ -29,9 +29,13 @@ def walk(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, str]]:
     pseudo.make(folder)
     done = subprocess.run(
         [sys.executable, "-m", "tests.support.pseudo_walk", str(folder)],
-        cwd=ROOT, env=os.environ | {"LANGUAGE": pseudo.CODE, "LANG": "en_US.UTF-8", "OMP_NUM_THREADS": "1"},
-        capture_output=True, text=True, check=False, timeout=300,
-    )  # fmt: skip
+        cwd=ROOT,
+        env=os.environ | {"LANGUAGE": pseudo.CODE, "LANG": "en_US.UTF-8", "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
     assert done.returncode == 0, done.stderr
     walked: dict[str, dict[str, str]] = json.loads(done.stdout)
     return walked
@@ -64,12 +68,15 @@ def test_the_language_is_a_third_longer_and_keeps_what_is_filled_in():
     assert all(1.2 < each < 1.4 for each in longer)
 
 
-@pytest.mark.parametrize(("box", "how"), [
-    ((1200, 100, 90, 12), "leaves the view"),
-    ((95, 100, 90, 12), "leaves its panel"),
-    ((20, 102, 60, 12), "meets Other"),
-    ((600, 300, 80, 12), "is wider than its room of 60 points"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("box", "how"),
+    [
+        ((1200, 100, 90, 12), "leaves the view"),
+        ((95, 100, 90, 12), "leaves its panel"),
+        ((20, 102, 60, 12), "meets Other"),
+        ((600, 300, 80, 12), "is wider than its room of 60 points"),
+    ],
+)
 def test_texts_that_do_not_fit_are_found(box: tuple[int, ...], how: str):
     page = Page(
         [

@@ -22,9 +22,14 @@ class Drawn:
         self.markers: list[tuple[str, float, float]] = []
         self.lines: list[tuple[Any, Any]] = []
         record: dict[str, Callable[..., Any]] = {
-            "text": self._text, "bar": self._bar, "marker": self._marker, "line": self._line,
-            "panel": lambda *_, **__: None, "pill": lambda *_, **__: None, "dot": lambda *_, **__: None,
-        }  # fmt: skip
+            "text": self._text,
+            "bar": self._bar,
+            "marker": self._marker,
+            "line": self._line,
+            "panel": lambda *_, **__: None,
+            "pill": lambda *_, **__: None,
+            "dot": lambda *_, **__: None,
+        }
         for name, take in record.items():
             monkeypatch.setattr(Canvas, name, take)
 

@@ -268,8 +268,12 @@ class Hands:
     def damage(self) -> str:
         """Spoil a file of the player's or a shipped network."""
         context = self.app.context
-        files = [path for folder in (context.user_dir, context.models_dir) for path in sorted(folder.rglob("*"))
-                 if path.is_file() and path.suffix != ".log"]  # fmt: skip
+        files = [
+            path
+            for folder in (context.user_dir, context.models_dir)
+            for path in sorted(folder.rglob("*"))
+            if path.is_file() and path.suffix != ".log"
+        ]
         self.posted += 1
         return f"{self._spoil(files[self.rng.integers(len(files))])}" if files else "nothing to damage"
 

@@ -17,11 +17,13 @@ from game.core import catalogue
 
 CODE = "xx"
 # Letters of which Manrope has pictures, as wide as those they stand for.
-_LETTERS = dict(zip(
-    string.ascii_letters,
-    "áъčđéгĝħíĵķĺмňóрøřšťúνŵхýžÁБČĐÉГĜĦÍĴĶĹМŇÓРØŘŠŤÚΛŴХÝŽ",
-    strict=True,
-))  # fmt: skip
+_LETTERS = dict(
+    zip(
+        string.ascii_letters,
+        "áъčđéгĝħíĵķĺмňóрøřšťúνŵхýžÁБČĐÉГĜĦÍĴĶĹМŇÓРØŘŠŤÚΛŴХÝŽ",
+        strict=True,
+    )
+)
 _FIELD = re.compile(r"(\{[^}]*\})")
 
 

@@ -65,8 +65,11 @@ class Page:
         self.who = {WHO[part] for part in parts if part in WHO}
         self.flew = {FLEW[part] for part in parts if part in FLEW}
         self.counts = {counts for part in parts for says, counts in SAYS if says.match(part)}
-        self.shares = [int(found[2]) * (1 if found[1] == "you" else -1)
-                       for part in parts if (found := re.fullmatch(r"(you|network) (\d+) %", part))]  # fmt: skip
+        self.shares = [
+            int(found[2]) * (1 if found[1] == "you" else -1)
+            for part in parts
+            if (found := re.fullmatch(r"(you|network) (\d+) %", part))
+        ]
 
 
 class Reading:

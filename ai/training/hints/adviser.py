@@ -77,9 +77,10 @@ class Adviser:
         if self.shown is not None and now - self._shown_since < STAY:
             return self.shown
         ripe = [
-            rule for name, rule in holding.items()
+            rule
+            for name, rule in holding.items()
             if now - self._since[name] >= HOLD and now >= self._rests.get(name, 0.0)
-        ]  # fmt: skip
+        ]
         self._show(ripe[0] if ripe else None, run)
         return self.shown
 
@@ -91,9 +92,10 @@ class Adviser:
             self._shown_since = self._now
         idle_now = idle(run.config, *(int(run.last(name, 1)) for name in ("decisions", "episodes")))
         remedy = {
-            name: value for name, value in rule.remedy(run).items()
+            name: value
+            for name, value in rule.remedy(run).items()
             if value != attrgetter(name)(run.config) and name not in idle_now
-        }  # fmt: skip
+        }
         self.shown = Hint(rule.name, remedy, rule.back_to(run))
 
     def apply(self, *, went_back: bool = False) -> Mapping[str, Any]:

@@ -218,8 +218,12 @@ def _longer(run: RecentCurves) -> Mapping[str, Any]:
 
 # The most severe first.
 RULES: Final = (
-    HintRule("rate_too_high", lambda run: rate_too_high(run.config, int(run.last("decisions", 1))), _sane_rates,
-         _before_damage),
+    HintRule(
+        "rate_too_high",
+        lambda run: rate_too_high(run.config, int(run.last("decisions", 1))),
+        _sane_rates,
+        _before_damage,
+    ),
     HintRule("damaged", _damaged, back_to=_before_damage),
     HintRule("loss_explodes", _loss_explodes, _slower(10)),
     HintRule("q_runs_away", _q_runs_away, _calm_q),
@@ -235,4 +239,4 @@ RULES: Final = (
     HintRule("random", lambda run: run.is_late() and run.last("epsilon") > 0.3, _less_random),
     HintRule("clipped", _clipped, _longer),
     HintRule("plateau", _plateau, _for_plateau),
-)  # fmt: skip
+)

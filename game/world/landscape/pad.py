@@ -85,8 +85,13 @@ def _dashes(quad: object, inset: float, colour: Colour) -> None:
     count = 10
     for number in range(count):
         middle = (number + 0.5) / count * 2 * inset - inset
-        quad(mix(NIGHT1, colour, 0.55), (middle - 0.14, -0.185), (middle + 0.14, -0.185), (middle + 0.14, -0.245),
-             (middle - 0.14, -0.245))  # fmt: skip
+        quad(
+            mix(NIGHT1, colour, 0.55),
+            (middle - 0.14, -0.185),
+            (middle + 0.14, -0.185),
+            (middle + 0.14, -0.245),
+            (middle - 0.14, -0.245),
+        )
 
 
 @lru_cache(maxsize=8)

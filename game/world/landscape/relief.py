@@ -34,10 +34,13 @@ class Relief:
         """Return the edges of the pad under x, or None where there is none."""
         shift = float(self._env.pad_shift[0])
         return next(
-            ((pad.left + shift, pad.right + shift) for pad in self._env.ground.pads
-             if pad.left <= x - shift <= pad.right),
+            (
+                (pad.left + shift, pad.right + shift)
+                for pad in self._env.ground.pads
+                if pad.left <= x - shift <= pad.right
+            ),
             None,
-        )  # fmt: skip
+        )
 
 
 @lru_cache(maxsize=8)

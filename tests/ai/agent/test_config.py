@@ -74,10 +74,20 @@ def test_a_setting_out_of_range_is_named(changes, message):
 
 def test_numbers_of_numpy_are_plain_numbers():
     weights = RewardWeights(time=np.float32(-0.5), switch=np.int64(0))
-    given = {"num_envs": np.int64(8), "learning_rate": np.float32(0.5), "double": np.False_,
-             "hidden": (np.int32(16), 8), "reward_weights": weights}  # fmt: skip
-    plain = {"num_envs": 8, "learning_rate": 0.5, "double": False, "hidden": (16, 8),
-             "reward_weights": RewardWeights(time=-0.5, switch=0)}  # fmt: skip
+    given = {
+        "num_envs": np.int64(8),
+        "learning_rate": np.float32(0.5),
+        "double": np.False_,
+        "hidden": (np.int32(16), 8),
+        "reward_weights": weights,
+    }
+    plain = {
+        "num_envs": 8,
+        "learning_rate": 0.5,
+        "double": False,
+        "hidden": (16, 8),
+        "reward_weights": RewardWeights(time=-0.5, switch=0),
+    }
     config = Config().changed(**given)
     assert config == Config().changed(**plain)
     assert Config.from_json(json.loads(json.dumps(config.to_json()))) == config

@@ -192,10 +192,14 @@ def test_what_can_change_in_a_run_is_changed_when_it_is_resumed_and_the_rest_is_
     before = {file: file.read_bytes() for file in run.rglob("*") if file.is_file()}
     resume = ["train", "--resume", str(run), "--decisions", "160"]
     for changes, named in (
-        (["--set", "hidden=[9]"], "hidden"), (["--set", "n_step=3", "--set", "gradient_steps=2"], "n_step"),
-        (["--seed", "4"], "seed"), (["--preset", "classic"], "optimizer"), (["--env", "CartPole-v1"], "env"),
-        (["--decisions", "80"], "whole run"), (["--set", "gradient_steps=0"], "gradient_steps lies"),
-    ):  # fmt: skip
+        (["--set", "hidden=[9]"], "hidden"),
+        (["--set", "n_step=3", "--set", "gradient_steps=2"], "n_step"),
+        (["--seed", "4"], "seed"),
+        (["--preset", "classic"], "optimizer"),
+        (["--env", "CartPole-v1"], "env"),
+        (["--decisions", "80"], "whole run"),
+        (["--set", "gradient_steps=0"], "gradient_steps lies"),
+    ):
         assert main([*resume, *changes]) == 1
         told = capsys.readouterr().err
         assert named in told

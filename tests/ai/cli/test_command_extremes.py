@@ -170,14 +170,18 @@ WRONG_OF = [
     *(("lander", name, value) for name in ("seed", "episodes", "landings") for value in WRONG),
     *(("lander", "seconds", value) for value in WRONG if value != 1.5),
     *(("lander", "best", value) for value in WRONG if value is not None),
-    *(("lander", f"best.{name}", value) for name in ("success", "mean_return") for value in WRONG
-      if not isinstance(value, int | float) or not abs(value) < 10),
+    *(
+        ("lander", f"best.{name}", value)
+        for name in ("success", "mean_return")
+        for value in WRONG
+        if not isinstance(value, int | float) or not abs(value) < 10
+    ),
     *(("digits", name, value) for name in ("seed", "step", "preset") for value in WRONG),
     *(("digits", "seconds", value) for value in WRONG if value != 1.5),
     *(("digits", "held_out", value) for value in WRONG if value not in (None, -1, 1.5)),
     *(("digits", "history", value) for value in WRONG if value not in ([], {})),
     *(("digits", "changes", value) for value in WRONG if value not in ([], {})),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("kind", "name", "value"), WRONG_OF, ids=lambda value: ascii(str(value)[:12])[1:-1])
@@ -268,8 +272,12 @@ def test_a_terminal_that_knows_few_letters_ends_no_command(encoding, tmp_path, m
 def test_a_process_with_such_a_terminal_is_refused_in_a_sentence_too(encoding, tmp_path):
     process = subprocess.run(
         [sys.executable, str(ROOT / "main.py"), "evaluate", "--model", "m\N{EN DASH}n"],
-        cwd=tmp_path, capture_output=True, env=os.environ | {"PYTHONIOENCODING": encoding}, timeout=120, check=False,
-    )  # fmt: skip
+        cwd=tmp_path,
+        capture_output=True,
+        env=os.environ | {"PYTHONIOENCODING": encoding},
+        timeout=120,
+        check=False,
+    )
     assert process.returncode == 1
     assert b"no readable model in m?n" in process.stderr
     assert b"Traceback" not in process.stderr

@@ -44,9 +44,12 @@ def test_train_resume_evaluate(tmp_path, capsys):
     assert main(["train-digits", *small, "--epochs", "3", "--seconds", "0.001", "--output", run]) == 0
     assert run in capsys.readouterr().out
     for changes, named in (
-        (["--epochs", "4"], "epochs"), (["--seed", "1"], "seed"), (["--set", "hidden=[9]"], "hidden"),
-        (["--preset", "modern"], "convolutions"), (["--seconds", "0.001"], "whole run"),
-    ):  # fmt: skip
+        (["--epochs", "4"], "epochs"),
+        (["--seed", "1"], "seed"),
+        (["--set", "hidden=[9]"], "hidden"),
+        (["--preset", "modern"], "convolutions"),
+        (["--seconds", "0.001"], "whole run"),
+    ):
         assert main(["train-digits", "--resume", run, *changes]) == 1
         assert named in capsys.readouterr().err
     assert main(["train-digits", "--resume", run, "--epochs", "3", "--seed", "0", "--set", "label_smoothing=0.1"]) == 0

@@ -135,8 +135,10 @@ def test_hands_off_flies_to_the_likeliest_pad_or_to_the_nearest():
 def test_the_margin_of_the_guardian_falls_with_assist():
     rng = np.random.default_rng(3)
     values, pilot = rng.normal(scale=0.1, size=(1000, 6)), rng.integers(1, 6, 1000)
-    shares = [CoPilot(valuer(values), assist, "guardian").share(seen(1000), pilot)[1].mean()
-              for assist in (0.0, 0.2, 0.5, 0.8, 1.0)]  # fmt: skip
+    shares = [
+        CoPilot(valuer(values), assist, "guardian").share(seen(1000), pilot)[1].mean()
+        for assist in (0.0, 0.2, 0.5, 0.8, 1.0)
+    ]
     assert shares == sorted(shares)
     assert shares[0] == 0.0
     assert shares[-1] > 0.8

@@ -29,9 +29,14 @@ def few(monkeypatch):
 def test_the_co_pilot_helps_on_one_pad(agent, few):
     rows = list(one_pad(agent, agent, 40))
     assert [(row.pilot, row.mode) for row in rows] == [
-        ("laggy", "alone"), ("laggy", "tolerance"), ("laggy", "guardian"),
-        ("none", "alone"), ("none", "tolerance"), ("none", "guardian"), ("co-pilot", "alone"),
-    ]  # fmt: skip
+        ("laggy", "alone"),
+        ("laggy", "tolerance"),
+        ("laggy", "guardian"),
+        ("none", "alone"),
+        ("none", "tolerance"),
+        ("none", "guardian"),
+        ("co-pilot", "alone"),
+    ]
     for row in rows:
         assert row.success + row.crash + row.out_of_bounds + row.time_out == pytest.approx(1.0)
         assert row.own_pad == row.success

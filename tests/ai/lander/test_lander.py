@@ -263,8 +263,13 @@ def test_spawns_lie_where_they_should():
 def test_the_curriculum_follows_landings():
     curriculum = Curriculum()
     assert [curriculum.spawn(n) for n in (0, 99, 100, 200, 299, 300)] == [
-        "fixed", "fixed", "higher", "highest", "highest", "random",
-    ]  # fmt: skip
+        "fixed",
+        "fixed",
+        "higher",
+        "highest",
+        "highest",
+        "random",
+    ]
     env = LanderEnv(1, 0, curriculum)
     env.reset()
     assert env.position[0].tolist() == [0.0, 8.0]

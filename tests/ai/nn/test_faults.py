@@ -279,9 +279,11 @@ def test_a_history_is_checked_entry_by_entry(run):
     with np.load(run / "history.npz") as arrays:
         kept = dict(arrays)
     said = json.loads(str(kept["described"]))
-    for wrong in ({"validations": [{"decisions": 1, "success": "x", "mean_return": 0, "best": True}]},
-                  {"alterations": [{"decisions": "1", "name": "x", "before": 0, "after": 0}]},
-                  {"stride": 10**400}):  # fmt: skip
+    for wrong in (
+        {"validations": [{"decisions": 1, "success": "x", "mean_return": 0, "best": True}]},
+        {"alterations": [{"decisions": "1", "name": "x", "before": 0, "after": 0}]},
+        {"stride": 10**400},
+    ):
         np.savez(run / "history.npz", **kept | {"described": np.array(json.dumps(said | wrong))})
         with pytest.raises(ModelFormatError, match=r"history\.npz"):
             History.read(run)
@@ -418,8 +420,9 @@ def test_the_second_training_of_a_folder_is_told(tmp_path, capsys):
     command = ["train", "--decisions", "9", "--set", "num_envs=2", "--output", str(tmp_path / "run")]
     with take_folder(tmp_path / "run"):
         holder = "from ai.nn.lock import take_folder; import sys; take_folder(sys.argv[1])"
-        other = subprocess.run([sys.executable, "-c", holder, str(tmp_path / "run")], cwd=ROOT, capture_output=True,
-                               text=True, check=False)  # fmt: skip
+        other = subprocess.run(
+            [sys.executable, "-c", holder, str(tmp_path / "run")], cwd=ROOT, capture_output=True, text=True, check=False
+        )
         assert "BlockingIOError" in other.stderr
         assert main(command) == 1
         assert "another training" in capsys.readouterr().err

@@ -73,8 +73,12 @@ def test_one_message_names_everything_that_is_wrong_and_is_short_all_the_same():
     with pytest.raises(SchemaError) as caught:
         read_as(Cart, {"wheels": [{"radius": -1, "spokes": 0}, 5], "locked": "y" * 1000})
     assert [problem.partition(":")[0] for problem in caught.value.problems] == [
-        "name is missing", "wheels[0].radius", "wheels[0].spokes", "wheels[1]", "locked",
-    ]  # fmt: skip
+        "name is missing",
+        "wheels[0].radius",
+        "wheels[0].spokes",
+        "wheels[1]",
+        "locked",
+    ]
     assert len(str(caught.value)) < 300
     with pytest.raises(SchemaError, match="; and more") as caught:
         read_as(Cart, WHOLE | {"wheels": ["x"] * 500})

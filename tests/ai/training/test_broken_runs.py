@@ -139,8 +139,9 @@ def test_a_rate_that_is_too_high_is_named_and_nothing_else_is_blamed(name: str):
     check_remedies(name, said)
 
 
-@pytest.mark.parametrize("name", ["modern rates to 1 and back", "modern rates to 1 and back, late",
-                                  "classic rates to 1 and back"])  # fmt: skip
+@pytest.mark.parametrize(
+    "name", ["modern rates to 1 and back", "modern rates to 1 and back, late", "classic rates to 1 and back"]
+)
 def test_while_it_is_broken_the_rate_is_named_and_after_the_mend_the_damage_with_the_way_back(name: str):
     run, said = recordings()[1][name], watch(name)
     broken, mended = run.turns[0][0], run.turns[-1][0]

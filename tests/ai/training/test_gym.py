@@ -33,9 +33,14 @@ def test_a_running_scale_is_the_scale_of_all_it_saw():
     assert np.array_equal(copy(seen), scaled)
 
 
-@pytest.mark.parametrize("arguments", [["train", "--env", "CartPole-v1", "--output", "run", "--seconds", "1"],
-                                       ["train", "--resume", "run", "--seconds", "1"],
-                                       ["evaluate", "--model", "run"]])  # fmt: skip
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["train", "--env", "CartPole-v1", "--output", "run", "--seconds", "1"],
+        ["train", "--resume", "run", "--seconds", "1"],
+        ["evaluate", "--model", "run"],
+    ],
+)
 def test_without_the_extra_one_line_names_the_command(arguments, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     if "--env" not in arguments:
@@ -172,8 +177,9 @@ class TestOurLanderForOthers:
     def test_many_are_exactly_many_singles(self, gymnasium, mode):
         mode = gymnasium.vector.AutoresetMode(mode)
         ours = gymnasium.make_vec(LANDER, 4, spawn="near", autoreset_mode=mode)
-        theirs = gymnasium.make_vec(LANDER, 4, vectorization_mode="sync", spawn="near",
-                                    vector_kwargs={"autoreset_mode": mode})  # fmt: skip
+        theirs = gymnasium.make_vec(
+            LANDER, 4, vectorization_mode="sync", spawn="near", vector_kwargs={"autoreset_mode": mode}
+        )
         assert ours.metadata["autoreset_mode"] is mode
         rng = np.random.default_rng(0)
         assert_same(ours.reset(seed=7), theirs.reset(seed=7))

@@ -28,9 +28,11 @@ def history(curve: Curve, points: int = 400, decisions: float = 400_000, seconds
     made = History()
     for number in range(1, points + 1):
         share = number / points
-        made.append(replace(
-            curve(share), seconds=share * seconds, decisions=share * decisions, episodes=share * decisions / 150
-        ))  # fmt: skip
+        made.append(
+            replace(
+                curve(share), seconds=share * seconds, decisions=share * decisions, episodes=share * decisions / 150
+            )
+        )
     return made
 
 
@@ -118,7 +120,7 @@ def test_dead_units_are_counted_where_units_can_die():
         (points(loss=NAN, mean_q=NAN), MODERN),  # not known, as when a run goes on
         (later(0.95, success=0.3), MODERN),  # a bad hundred flights
     ],
-)  # fmt: skip
+)
 def test_rules_hold_their_peace(curve: Curve, config: Config):
     assert holding(curve, config) == set()
 

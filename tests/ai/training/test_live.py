@@ -441,8 +441,10 @@ def test_a_knob_that_is_dragged_leaves_one_mark_with_its_last_value(begin):
     told_in(run, 1)
     turn("discount", 0.85)
     assert [(each.name, each.before, each.after) for each in history.setting_changes] == [
-        ("discount", TINY.discount, 0.9), ("learning_rate", TINY.learning_rate, 0.1), ("discount", 0.9, 0.85),
-    ]  # fmt: skip
+        ("discount", TINY.discount, 0.9),
+        ("learning_rate", TINY.learning_rate, 0.1),
+        ("discount", 0.9, 0.85),
+    ]
     clock.now += 5.0
     turn("discount", 0.8)  # it rests: nothing was learnt with the value before
     turn("discount", 0.9)  # and back to where it was

@@ -31,8 +31,10 @@ def test_schedules():
     assert geometric(1.0, 0.05, 0.5, 10) == 0.05
 
 
-@pytest.mark.parametrize("changes", [{}, {"spawn": "curriculum", "num_envs": 1, "epsilon_decay": 0.9,
-                                          "epsilon_decisions": 0, "success_pass": True}])  # fmt: skip
+@pytest.mark.parametrize(
+    "changes",
+    [{}, {"spawn": "curriculum", "num_envs": 1, "epsilon_decay": 0.9, "epsilon_decisions": 0, "success_pass": True}],
+)
 def test_the_same_seed_and_configuration_give_the_same_network(changes):
     first, _ = advanced(SMALL.changed(**changes), 60)
     second, _ = advanced(SMALL.changed(**changes), 60)
@@ -110,9 +112,14 @@ def test_a_run_is_kept_and_gone_on_with(tmp_path):
     assert described["decisions"] == 240
     assert described["preset"] == "modern"
     assert described["changes"] == {
-        "hidden": [16], "batch_size": 16, "gradient_steps": 1, "learning_starts": 32, "replay_size": 2000,
-        "num_envs": 8, "spawn": "near",
-    }  # fmt: skip
+        "hidden": [16],
+        "batch_size": 16,
+        "gradient_steps": 1,
+        "learning_starts": 32,
+        "replay_size": 2000,
+        "num_envs": 8,
+        "spawn": "near",
+    }
     assert described["evaluation"]["episodes"] == 1000
     resumed = resume_run(tmp_path / "run")
     assert np.array_equal(resumed.agent.online.values, training.agent.online.values)

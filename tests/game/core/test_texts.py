@@ -134,13 +134,16 @@ def test_a_language_matches_the_english(path: Path):
     assert not list(faults(translated, translations.template(path.stem)))
 
 
-@pytest.mark.parametrize(("told", "fault"), [
-    ({"SCREENSHOT_SAVED": "Bild gespeichert: {pfad}"}, "braces"),
-    ({"SCREENSHOT_SAVED": "Bild gespeichert"}, "braces"),
-    ({"WATCH_LANDERS": ("eine Fähre",)}, "plural forms"),
-    ({"WATCH_LANDERS": ("eine Fähre", "")}, "plural forms"),
-    ({"WATCH_LANDERS": ("eine Fähre", "{count} Fähren"), "SCREENSHOT_SAVED": "Bild: {path}"}, ""),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("told", "fault"),
+    [
+        ({"SCREENSHOT_SAVED": "Bild gespeichert: {pfad}"}, "braces"),
+        ({"SCREENSHOT_SAVED": "Bild gespeichert"}, "braces"),
+        ({"WATCH_LANDERS": ("eine Fähre",)}, "plural forms"),
+        ({"WATCH_LANDERS": ("eine Fähre", "")}, "plural forms"),
+        ({"WATCH_LANDERS": ("eine Fähre", "{count} Fähren"), "SCREENSHOT_SAVED": "Bild: {path}"}, ""),
+    ],
+)
 def test_faults_of_a_language_are_found(told: dict[str, str | tuple[str, ...]], fault: str):
     template, german = english(), Catalog(locale="de")
     for message in template:
@@ -234,8 +237,9 @@ def test_a_text_is_found_by_name_key_and_place():
     assert texts.OUTCOMES["CRASHED"] == ("Crashed", "")  # as long as the others of its group
     assert texts.PAD_NAMES[3].startswith("narrow")
     assert [texts.RUN_SETTINGS.format(preset="Modern", count=count) for count in (1, 2)] == [
-        "Modern, 1 setting changed", "Modern, 2 settings changed",
-    ]  # fmt: skip
+        "Modern, 1 setting changed",
+        "Modern, 2 settings changed",
+    ]
 
 
 def test_a_language_is_begun_and_brought_up_to_date(tmp_path: Path):

@@ -48,13 +48,16 @@ def test_nothing_meets_or_leaves_at_the_largest(open_game, context: Context, wri
     assert not large
 
 
-@pytest.mark.parametrize(("name", "settings", "happens"), [
-    ("Play", {}, crashed),
-    ("mission", {}, crashed),
-    ("Play", {"assist": 0.6, "three_pads": True}, shared),
-    ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
-    ("swarm", {}, lambda driver: driver.skip(400)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "settings", "happens"),
+    [
+        ("Play", {}, crashed),
+        ("mission", {}, crashed),
+        ("Play", {"assist": 0.6, "three_pads": True}, shared),
+        ("Play", {"gravity": 0.8, "pace": 0.7, "hands": "laggy"}, shared),
+        ("swarm", {}, lambda driver: driver.skip(400)),
+    ],
+)
 def test_nor_in_the_midst_of_things(open_game, context: Context, written: Written, name: str, settings, happens):
     settle(context, text_size="largest", **settings)
     driver = opened(open_game, name)

@@ -254,8 +254,10 @@ def test_why_a_flight_is_gone_is_told_as_it_is(kept: Records, monkeypatch: pytes
 def test_best_are_landings_by_hand_by_points_and_in_missions_by_fuel():
     lines = [entry(score=score, file=f"{score}.json") for score in (40, 20, 90, 10, 30, 50)]
     lines += [entry(score=99, alone=False, file="helped"), entry("CRASHED", score=99, file="crash"), entry(score=99)]
-    lines += [entry(fuel=fuel, score=round(10 * fuel), medal=medal, course="wind", file=f"w{fuel}")
-              for fuel, medal in ((8.0, 1), (6.0, 3), (5.0, 1), (7.0, 3))]  # fmt: skip
+    lines += [
+        entry(fuel=fuel, score=round(10 * fuel), medal=medal, course="wind", file=f"w{fuel}")
+        for fuel, medal in ((8.0, 1), (6.0, 3), (5.0, 1), (7.0, 3))
+    ]
     lines += [entry(fuel=7.0, pads=3, file="p")]
     wanted = ["90.json", "50.json", "40.json", "30.json", "20.json", "p", "w6.0", "w7.0", "w5.0", "w8.0"]
     assert [line.file for line in best(lines)] == wanted

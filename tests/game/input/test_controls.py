@@ -248,8 +248,12 @@ def test_damaged_bindings_are_passed_over(damaged):
 
 def test_what_cannot_be_written_is_a_number():
     assert [key_name(code) for code in (0xE9, 0x85, 0xD800, 0xE3FF, 0x110000)] == [
-        "\xc9", "#133", "#55296", "#58367", "#1114112"
-    ]  # fmt: skip
+        "\xc9",
+        "#133",
+        "#55296",
+        "#58367",
+        "#1114112",
+    ]
 
 
 def test_triggers_are_buttons_like_others():
@@ -265,8 +269,13 @@ def test_triggers_are_buttons_like_others():
     assert controls.action == 0
     controls.buttons.bind(Command.RETRY, 33)
     assert [translate(pull(value)) for value in (9000, 30000, 7000, 9000, 0, 9000)] == [
-        Command.RETRY, None, None, None, None, Command.RETRY,
-    ]  # fmt: skip
+        Command.RETRY,
+        None,
+        None,
+        None,
+        None,
+        Command.RETRY,
+    ]
     assert controls.action == 0
 
 

@@ -70,8 +70,11 @@ def test_a_remedy_is_applied_and_undone_the_way_back_too(context: Context, colla
         growing.append(checkpoint)
     for row in collapsed.points:
         values = row.tolist()
-        growing.append(replace(HEALTHY, seconds=values[0], decisions=values[1], episodes=values[2],
-                               success=values[3], landed=values[3]))  # fmt: skip
+        growing.append(
+            replace(
+                HEALTHY, seconds=values[0], decisions=values[1], episodes=values[2], success=values[3], landed=values[3]
+            )
+        )
         advice.follow(growing, MODERN)
     assert advice.adviser.shown is not None
     assert advice.adviser.shown.name == "collapsed"

@@ -34,9 +34,13 @@ class Panel(FormPage):
         self.retries = 0
         heard = self.heard
         self.knobs = KnobsPanel(
-            self.form, self.box, PRESETS["modern"], 0,
-            lambda name, value: heard.append((name, value)), lambda *anew: heard.append(anew),
-        )  # fmt: skip
+            self.form,
+            self.box,
+            PRESETS["modern"],
+            0,
+            lambda name, value: heard.append((name, value)),
+            lambda *anew: heard.append(anew),
+        )
         self.other = self.form.add(TextButton(self.form.manager, (64, 600, 80, 24), "Other", lambda: None))
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:

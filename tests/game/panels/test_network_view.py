@@ -232,10 +232,15 @@ def test_pulses_travel_backwards_and_stand_still_with_reduced_motion(canvas: Can
 @pytest.mark.parametrize(
     "options",
     [
-        {"hidden": (1,)}, {"hidden": (1024, 3)}, {"hidden": (16, 16, 16, 16, 16)}, {"dueling": True},
-        {"layer_normalisation": False, "activation": "tanh"}, {"activation": "leaky_relu"}, {"activation": "sigmoid"},
+        {"hidden": (1,)},
+        {"hidden": (1024, 3)},
+        {"hidden": (16, 16, 16, 16, 16)},
+        {"dueling": True},
+        {"layer_normalisation": False, "activation": "tanh"},
+        {"activation": "leaky_relu"},
+        {"activation": "sigmoid"},
     ],
-)  # fmt: skip
+)
 @pytest.mark.parametrize("box", [BOX, LARGE, (10, 10, 60, 40)])
 def test_any_network_is_drawn_in_any_box(
     canvas: Canvas, options: dict[str, object], box: tuple[int, int, int, int]

@@ -266,9 +266,14 @@ MEDALS_AND_POINTS = [pattern(text) for text in (*texts.MEDALS, texts.SCORE, text
      for number, outcome in enumerate(LOST)],
 )  # fmt: skip
 def test_a_flight_that_is_no_landing_is_told_of_alike_everywhere(
-    open_game: Open, context: Context, monkeypatch: pytest.MonkeyPatch,
-    scene: str, settings: dict, way: str, outcome: Outcome,
-):  # fmt: skip
+    open_game: Open,
+    context: Context,
+    monkeypatch: pytest.MonkeyPatch,
+    scene: str,
+    settings: dict,
+    way: str,
+    outcome: Outcome,
+):
     reading = begin(open_game, context, monkeypatch, scene, settings)
     set_off(reading, way)
     end(reading.driver, outcome)

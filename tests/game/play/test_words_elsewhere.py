@@ -110,8 +110,9 @@ def test_a_run_that_goes_on_rests_ended_or_failed_is_offered_what_fits(open_game
     for state in (*STATES, *reversed(STATES)):
         told[0] = state
         quiet = {name: lambda *_: None for name in ("pause", "resume", "stop", "close", "step", "send", "set_pace")}
-        learner._worker = state and SimpleNamespace(state=state, problem="the disk is full", gone=True,
-                                                    poll=list, **quiet)  # fmt: skip
+        learner._worker = state and SimpleNamespace(
+            state=state, problem="the disk is full", gone=True, poll=list, **quiet
+        )
         words = set(reading.page(12).words)
         offered = {texts.TRAIN_START, texts.TRAIN_PAUSE, texts.TRAIN_RESUME} & words
         assert offered == {BUTTON.get(state, texts.TRAIN_START)}, state

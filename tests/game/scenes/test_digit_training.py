@@ -138,7 +138,9 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     assert isinstance(train.top, QuizScene)
 
 
-@pytest.mark.parametrize("answer", [texts.DIGIT_RUN_LEFT_KEEP.format(name="Classic reader"), texts.TRAIN_LEFT_DISCARD, ""])
+@pytest.mark.parametrize(
+    "answer", [texts.DIGIT_RUN_LEFT_KEEP.format(name="Classic reader"), texts.TRAIN_LEFT_DISCARD, ""]
+)
 def test_a_nameless_run_is_asked_about_before_a_new_one(train: Driver, tmp_path: Path, answer: str):
     scene, runs = train.top, tmp_path / "user" / "digits" / "runs"
     save_digit_run(DigitTraining(SMALL, 3), runs / ".training")

@@ -71,8 +71,11 @@ def test_sentences_name_the_players_own_keys_too(open_game, context: Context):
 
 def test_a_hint_is_clicked_where_it_is_written_whether_or_not_it_is_drawn():
     canvas, done = Canvas(pygame.Surface(VIEW_SIZE)), []
-    hints = [Hint("R", "again", lambda: done.append("again")), Hint("Space", "stop", lambda: done.append("stop")),
-             Hint("wheel", "turn")]  # fmt: skip
+    hints = [
+        Hint("R", "again", lambda: done.append("again")),
+        Hint("Space", "stop", lambda: done.append("stop")),
+        Hint("wheel", "turn"),
+    ]
     row = HintRow(hints, (100, 100))
     again, stop, turn = row.boxes(canvas)
     assert again.right <= stop.left + 12

@@ -23,12 +23,22 @@ from tests.support.driver import Driver
 
 Open = Callable[..., Driver]
 DESCRIBED = {
-    "env": "lander", "preset": "modern", "changes": {"care": 0.8}, "seed": 3, "decisions": 5000, "seconds": 61.5,
+    "env": "lander",
+    "preset": "modern",
+    "changes": {"care": 0.8},
+    "seed": 3,
+    "decisions": 5000,
+    "seconds": 61.5,
     "best": {"success": 0.75},
-}  # fmt: skip
+}
 UP, DOWN, LEFT, RIGHT, ENTER, ESCAPE = (
-    pygame.K_UP, pygame.K_DOWN, pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RETURN, pygame.K_ESCAPE,
-)  # fmt: skip
+    pygame.K_UP,
+    pygame.K_DOWN,
+    pygame.K_LEFT,
+    pygame.K_RIGHT,
+    pygame.K_RETURN,
+    pygame.K_ESCAPE,
+)
 
 
 @pytest.fixture
