@@ -178,10 +178,10 @@ def test_a_list_opens_to_choose_from(many: Driver, context: Context, way: str):
             many.keys(pygame.K_ESCAPE, pygame.K_DOWN, pygame.K_DOWN, pygame.K_RETURN)
     runs = many.top
     assert isinstance(runs, NetworksScene)
-    assert runs.shown is not None
-    assert runs.shown.name == "run 03"
+    assert runs.chosen is not None
+    assert runs.chosen.name == "run 03"
     many.keys(pygame.K_HOME, pygame.K_RETURN)
-    name = runs.runs[0].name
+    name = runs.items[0].name
     if way == "pause":
         many.key(pygame.K_ESCAPE)
     assert scene(many).network.name == context.settings.model == name

@@ -66,7 +66,7 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
     disc = scene.exhibit.turning[0]
 
     def seen() -> tuple[float, float]:
-        x, y = scene._view(1.0).points(disc.position[0]).tolist()
+        x, y = scene.view(1.0).points(disc.position[0]).tolist()
         return x, y
 
     bring(player, seen())
@@ -90,7 +90,7 @@ def test_a_body_is_gripped_lifted_and_let_go(take: Take):
 def test_who_looks_elsewhere_lets_go(take: Take):
     player = take(PhysicsScene, "spin")
     scene = player.top
-    bring(player, tuple(scene._view(1.0).points(scene.exhibit.turning[0].position[0]).tolist()))
+    bring(player, tuple(scene.view(1.0).points(scene.exhibit.turning[0].position[0]).tolist()))
     player.hold("confirm", down=True)
     player.hold("left", down=True)
     pygame.event.post(pygame.Event(pygame.WINDOWFOCUSLOST))
