@@ -110,10 +110,13 @@ def rows() -> dict[str, Row]:
         **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         "physics, contacts": Row(heap, (pygame.K_c,)),
-        **{name.lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN)) for name in sorted(others)},
+        **{
+            name.removesuffix("Scene").lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN))
+            for name in sorted(others)
+        },
         "menu": Row(MenuScene),
-        "trainscene": Row(of_tour("TrainScene"), (pygame.K_RETURN,)),
-        "digittrainingscene": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
+        "train": Row(of_tour("TrainScene"), (pygame.K_RETURN,)),
+        "digittraining": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
     }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import time
 import unicodedata
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +18,7 @@ from ai.nn.folder import NEW, STALE, aside_for, moved_aside, recover_folder
 from ai.nn.lock import Lock, lock_of, take
 from game.core import texts
 from game.core.copying import copy_folder
+from game.core.folders import claims, there
 from game.core.names import (
     LONGEST_NAME,
     LibraryError,
@@ -31,43 +32,11 @@ from game.core.names import (
 )
 from game.core.trash import Trash
 
-__all__ = [
-    "LONGEST_NAME", "Collection", "ItemKind", "LibraryError", "claims", "exports_dir", "fitting", "free_path",
-    "is_valid_name", "leads_nowhere", "there",
-]  # fmt: skip
-
 Item = TypeVar("Item")
 
 UNSAVED: Final = ".training"  # folder of a run that has no name yet
 _MOST_DELETED: Final = 8  # items that can be restored
 _GAMES: Final = 16  # games that may train at the same time
-
-
-def claims(folder: Path, parts: Iterable[str]) -> bool:
-    """Whether a folder looks like an item of the collection: it has one of the parts, or it cannot be read.
-
-    A folder that cannot be read, such as a broken link, counts too, so that it is listed with its problem.
-    """
-    if folder.name.startswith("."):
-        return False
-    try:
-        return any(there(folder / part) for part in parts) or leads_nowhere(folder)
-    except OSError:
-        return True
-
-
-def there(path: Path) -> bool:
-    """Whether a path exists; raises OSError where that is unknown, for which `Path.exists` returns False."""
-    try:
-        path.stat()
-    except (FileNotFoundError, NotADirectoryError, ValueError):
-        return False
-    return True
-
-
-def leads_nowhere(path: Path) -> bool:
-    """Whether a path is a broken link; raises OSError for a link to itself."""
-    return path.is_symlink() and not there(path)
 
 
 def exports_dir() -> Path:

@@ -12,7 +12,7 @@ from ai.common.environment import Floats, Ints
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn.files import brief
 from game.core import texts
-from game.core.collection import claims
+from game.core.folders import claims
 
 DEFAULT: Final = "modern"
 SCRIPTED: Final = "scripted"

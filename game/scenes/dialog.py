@@ -8,7 +8,7 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.collection import LONGEST_NAME, fitting
+from game.core.names import LONGEST_NAME, fitting
 from game.core.scene import Pop, Scene, Transition
 from game.drawing import typeface
 from game.drawing.canvas import Canvas

@@ -15,7 +15,8 @@ from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
 from game.core import texts
 from game.core.clock import STEP
-from game.core.collection import LONGEST_NAME, exports_dir, fitting, free_path
+from game.core.collection import exports_dir
+from game.core.names import LONGEST_NAME, fitting, free_path
 from game.core.pace import SlowMotion
 from game.core.scene import Pop, Push, Transition, push
 from game.drawing import typeface

@@ -9,7 +9,7 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.collection import LONGEST_NAME, LibraryError, fitting
+from game.core.names import LONGEST_NAME, LibraryError, fitting
 from game.core.scene import Pop, Transition, push
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MARGIN, TITLE, VIEW_SIZE

@@ -11,7 +11,7 @@ import pygame
 from ai.agent.config import PRESETS, Config
 from ai.training.checkpoints import agent_of
 from game.core import texts
-from game.core.collection import LibraryError
+from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas

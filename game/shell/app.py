@@ -240,7 +240,7 @@ class App:
 
     def _save_screenshot(self) -> None:
         """Save a screenshot, whole or not at all."""
-        from game.core.collection import free_path
+        from game.core.names import free_path
 
         path = free_path(self.context.user_dir / "screenshots", f"{datetime.now():%Y-%m-%d %H.%M.%S.%f}", ".png")
         try:

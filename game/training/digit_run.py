@@ -25,7 +25,7 @@ from ai.nn.folder import CONFIG
 from ai.training.history import REVERTED, TURNING_SECONDS
 from ai.training.messages import Refused, Save
 from game.core import texts
-from game.core.collection import LONGEST_NAME, LibraryError
+from game.core.names import LONGEST_NAME, LibraryError
 from game.core.worker import Worker
 from game.training.digit_models import PATIENCE, DigitModels
 from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside

@@ -22,7 +22,7 @@ from ai.training.session import (
     live,
 )
 from game.core import texts
-from game.core.collection import LibraryError
+from game.core.names import LibraryError
 from game.core.worker import Worker
 from game.training.library import Library
 from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside

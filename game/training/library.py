@@ -13,8 +13,9 @@ from ai.nn.files import brief, inside, read_json
 from ai.nn.schema import Share, Within, read_as
 from ai.training.checkpoints import TRAINING_FILE
 from game.core import texts
-from game.core.collection import LONGEST_NAME, Collection, ItemKind, leads_nowhere, there
-from game.core.names import reason
+from game.core.collection import Collection, ItemKind
+from game.core.folders import leads_nowhere, there
+from game.core.names import LONGEST_NAME, reason
 from game.flight.networks import PARTS, PLAYERS
 
 _CLAIMS: Final = (*PARTS, TRAINING_FILE)  # a folder with any of these is a run, complete or not

@@ -15,7 +15,7 @@ import game.scenes
 from ai.digits.classifier import DigitClassifier
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
-from game.core.collection import name_problem
+from game.core.names import name_problem
 from game.core.scene import Scene
 from game.exhibits import EXHIBITS
 from game.flight.flight import Flight

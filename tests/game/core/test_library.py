@@ -15,7 +15,8 @@ from ai.training.checkpoints import resume_run, save_run
 from ai.training.loop import Training
 from game.core import collection as module
 from game.core import copying, texts
-from game.core.collection import LONGEST_NAME, UNSAVED, LibraryError, is_valid_name
+from game.core.collection import UNSAVED
+from game.core.names import LONGEST_NAME, LibraryError, is_valid_name
 from game.flight import networks
 from game.panels.run_page import row
 from game.training.library import Library, read_run

@@ -3,7 +3,7 @@ from collections.abc import Callable
 import pygame
 import pytest
 
-from game.core.collection import fitting
+from game.core.names import fitting
 from game.core.scene import Transition
 from game.input.bindings import Command
 from game.ui import text_line
