@@ -1,1 +1,4 @@
-"""The commands that need no window. Nothing heavy is imported until one runs."""
+"""The commands that need no window. Nothing heavy is imported until one runs.
+
+No other package of `ai` imports it.
+"""

@@ -1,1 +1,4 @@
-"""Shared parts of agents, environments and digit networks: environment protocol, decisions, settings."""
+"""Shared parts of agents, environments and digit networks: environment protocol, decisions, settings.
+
+Every other package of `ai` may import it.
+"""

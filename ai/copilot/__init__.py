@@ -1,4 +1,7 @@
-"""Co-pilot that shares control with a pilot, inference of the pad the pilot means, measurement of the help."""
+"""Co-pilot that shares control with a pilot, inference of the pad the pilot means, measurement of the help.
+
+May be imported by `digits`, `gym` and `cli`.
+"""
 
 from ai.copilot.copilot import ActionSource, CoPilot, Mode, SharedDecision
 

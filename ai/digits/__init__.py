@@ -1,4 +1,7 @@
-"""Handwritten digit recognition: classifier, MNIST, preprocessing and training."""
+"""Handwritten digit recognition: classifier, MNIST, preprocessing and training.
+
+May be imported by `gym` and `cli`.
+"""
 
 from ai.digits.classifier import DigitClassifier
 from ai.digits.mnist import MnistError, load_mnist

@@ -1,1 +1,4 @@
-"""The lander as an environment of Gymnasium. Needs the extra `gym`."""
+"""The lander as an environment of Gymnasium. Needs the extra `gym`.
+
+May be imported by `cli`.
+"""

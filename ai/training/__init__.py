@@ -1,1 +1,4 @@
-"""Training runs: the loop, what is measured and kept of it, and a session that can be watched and steered."""
+"""Training runs: the loop, what is measured and kept of it, and a session that can be watched and steered.
+
+May be imported by `copilot`, `digits`, `gym` and `cli`.
+"""

@@ -1,1 +1,4 @@
-"""Cockpit: read-outs and cards over a flight, and the display of shared control with the co-pilot."""
+"""Cockpit: read-outs and cards over a flight, and the display of shared control with the co-pilot.
+
+May be imported by `exhibits`, `digits`, `play`, `export`, `shell` and `scenes`.
+"""

@@ -1,1 +1,4 @@
-"""Handwritten digits: the drawing pad, the networks' readings of it, and their explanation."""
+"""Handwritten digits: the drawing pad, the networks' readings of it, and their explanation.
+
+May be imported by `play`, `export`, `shell` and `scenes`.
+"""

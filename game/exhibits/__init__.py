@@ -1,4 +1,7 @@
-"""Exhibits of the physics gallery: small worlds, each showing one law of the engine."""
+"""Exhibits of the physics gallery: small worlds, each showing one law of the engine.
+
+May be imported by `digits`, `play`, `export`, `shell` and `scenes`.
+"""
 
 from __future__ import annotations
 

@@ -1,1 +1,4 @@
-"""Export of replays as GIF or MP4."""
+"""Export of replays as GIF or MP4.
+
+May be imported by `shell` and `scenes`.
+"""

@@ -1,1 +1,4 @@
-"""Input devices: keyboard, gamepads and mouse, mapped to held flight controls and to commands."""
+"""Input devices: keyboard, gamepads and mouse, mapped to held flight controls and to commands.
+
+Every package of `game` but `core` may import it.
+"""

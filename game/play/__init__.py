@@ -1,1 +1,4 @@
-"""Challenges, races and the tutorial, with the ghosts, captions and outcome cards of flights."""
+"""Challenges, races and the tutorial, with the ghosts, captions and outcome cards of flights.
+
+May be imported by `export`, `shell` and `scenes`.
+"""

@@ -1,1 +1,4 @@
-"""Application shell: the window, the main loop and the scene stack."""
+"""Application shell: the window, the main loop and the scene stack.
+
+May be imported by `scenes`.
+"""

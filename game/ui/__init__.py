@@ -1,1 +1,4 @@
-"""Widgets, their focus and their forms, for mouse, keyboard and gamepad alike."""
+"""Widgets, their focus and their forms, for mouse, keyboard and gamepad alike.
+
+Every package of `game` but `core`, `input`, `audio` and `drawing` may import it.
+"""

@@ -1,1 +1,4 @@
-"""The moon and what flies above it, in metres: drawn in code, at the window's own resolution."""
+"""The moon and what flies above it, in metres: drawn in code, at the window's own resolution.
+
+May be imported by `panels`, `cockpit`, `exhibits`, `digits`, `play`, `export`, `shell` and `scenes`.
+"""
