@@ -32,8 +32,9 @@ from ai.agent.network import build_network
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn.inspection import NetworkHealth
 from ai.training.history import Point
+from ai.training.messages import ChangeSetting, NetworkState
 from ai.training.sabotage import SABOTAGES, sabotaged
-from ai.training.session import ChangeSetting, NetworkState, live
+from ai.training.session import live
 
 COLUMNS: Final = (
     "seconds", "decisions", "episodes", "success", "mean_return", "loss", "mean_q", "epsilon", "stage",

@@ -12,8 +12,9 @@ from ai.agent.config import Config
 from ai.digits.checkpoints import resume_digit_run
 from ai.digits.config import DigitConfig
 from ai.training.checkpoints import resume_run
-from ai.training.history import History
-from ai.training.session import ChangeSetting, SettingChange, live
+from ai.training.history import History, SettingChange
+from ai.training.messages import ChangeSetting
+from ai.training.session import live
 from game.flight import flight_file
 from game.flight.replay import FlightReplay
 

@@ -21,6 +21,7 @@ from ai.nn.budget import WIDEST
 from ai.nn.files import brief, count_of, inside, read_arrays, read_json
 from ai.nn.folder import NETWORK, FolderKind
 from ai.nn.optimizers import Optimizer
+from ai.nn.schema import check_header
 
 FORMAT: Final = "tranquility agent"
 VERSION: Final = 1
@@ -114,17 +115,11 @@ def read_agent(folder: str | Path, *, env: str | None = None) -> SavedAgent:
 def _read_description(folder: Path) -> dict[str, Any]:
     """Read the file of settings and counts; raises ModelFormatError unless it is of this format and version."""
     try:
-        described = read_json(inside(folder, AGENT_FILE))
+        return check_header(read_json(inside(folder, AGENT_FILE)), FORMAT, (VERSION,))
     except OSError as error:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: {error.strerror or error}"]) from error
     except ValueError as error:
         raise ModelFormatError(folder, [f"{AGENT_FILE}: {error}"]) from error
-    if not isinstance(described, dict) or described.get("format") != FORMAT:
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: this is no {FORMAT}"])
-    if described.get("version") != VERSION:
-        said = brief(repr(described.get("version")), 40)
-        raise ModelFormatError(folder, [f"{AGENT_FILE}: version {said}, not {VERSION}"])
-    return described
 
 
 def _check_env(env: str, named: str | None) -> None:

@@ -39,16 +39,10 @@ from ai.training.messages import (
     RestoreCheckpoint,
     RunStarted,
     Save,
-    Saved,
     SwarmState,
     problem_of,
 )
 from ai.training.validation_flights import ValidationFlights
-
-__all__ = [
-    "CAREFUL", "REVERTED", "TAUGHT", "AddDemonstrations", "ChangeSetting", "NetworkState", "Refused",
-    "RestoreCheckpoint", "RunStarted", "Save", "Saved", "SwarmState", "live",
-]  # fmt: skip
 
 POINT_DECISIONS: Final = 256  # at least so many between two points
 NETWORK_SECONDS: Final = 0.25
@@ -251,7 +245,7 @@ class _LiveRun:
     def _teach(self, command: AddDemonstrations) -> None:
         agent = self.training.agent
         try:
-            new = [lesson for lesson in read(command.path) if lesson not in self._learned_from]
+            new = [each for each in read(command.path) if each not in self._learned_from]
             used = teach(agent, new)
         except (OSError, ValueError) as error:
             self._messages.append(Refused(command, problem_of(error)))

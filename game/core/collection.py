@@ -18,7 +18,7 @@ from ai.nn.folder import NEW, STALE, aside_for, moved_aside, recover_folder
 from ai.nn.lock import Lock, lock_of, take
 from game.core import texts
 from game.core.copying import copy_folder
-from game.core.folders import claims, there
+from game.core.folders import looks_like_item, there
 from game.core.names import (
     LONGEST_NAME,
     LibraryError,
@@ -26,9 +26,9 @@ from game.core.names import (
     free_path,
     holder,
     is_valid_name,
+    library_errors,
     name_problem,
     reason,
-    told,
 )
 from game.core.trash import Trash
 
@@ -87,7 +87,7 @@ class Collection(Generic[Item]):
                 with suppress(OSError):  # a problem with one item does not affect the others
                     self._recover(path)
             found = sorted(self.folder.iterdir(), key=lambda path: path.name.casefold())
-            return [self.kind.read(path, path.name) for path in found if claims(path, self.kind.parts)]
+            return [self.kind.read(path, path.name) for path in found if looks_like_item(path, self.kind.parts)]
         except FileNotFoundError:
             return []
         except OSError as error:
@@ -126,7 +126,7 @@ class Collection(Generic[Item]):
         target = self.folder / unicodedata.normalize("NFC", new)
         if not (is_valid_name(new) and holder(self.folder, new) == old):  # a change of case alone is no clash
             target = self.new_folder(new)
-        with told(texts.LIBRARY_NOT_RENAMED, old):
+        with library_errors(texts.LIBRARY_NOT_RENAMED, old):
             source.rename(target)
         return target
 
@@ -137,7 +137,7 @@ class Collection(Generic[Item]):
         """
         source = self.existing(name)
         folder = folder or exports_dir()
-        with told(texts.LIBRARY_NOT_EXPORTED, name):
+        with library_errors(texts.LIBRARY_NOT_EXPORTED, name):
             folder.mkdir(parents=True, exist_ok=True)
             target = free_path(folder, name)
             copy_folder(source, target)
@@ -148,7 +148,7 @@ class Collection(Generic[Item]):
 
         A file of the item may be given in place of its folder.
         """
-        with told(texts.LIBRARY_NOT_IMPORTED, brief(path.name, LONGEST_NAME)):
+        with library_errors(texts.LIBRARY_NOT_IMPORTED, brief(path.name, LONGEST_NAME)):
             source = path if path.is_dir() else path.parent
             if not any(there(source / part) for part in self.kind.parts):
                 raise LibraryError(texts.LIBRARY_NO_RUN.format(name=source.name))
@@ -219,7 +219,7 @@ class Collection(Generic[Item]):
     def keep_rescued(self, name: str) -> Item:
         """Give the item without a name this one; return it."""
         target = self.new_folder(name)
-        with told(texts.LIBRARY_NOT_KEPT, name):
+        with library_errors(texts.LIBRARY_NOT_KEPT, name):
             self.unsaved.rename(target)
         return self.kind.read(target, target.name)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 
-def claims(folder: Path, parts: Iterable[str]) -> bool:
+def looks_like_item(folder: Path, parts: Iterable[str]) -> bool:
     """Whether a folder looks like an item of the collection: it has one of the parts, or it cannot be read.
 
     A folder that cannot be read, such as a broken link, counts too, so that it is listed with its problem.

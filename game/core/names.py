@@ -62,7 +62,7 @@ def free_path(folder: Path, name: str, suffix: str = "") -> Path:
 
 
 @contextmanager
-def told(sentence: str, name: str) -> Iterator[None]:
+def library_errors(sentence: str, name: str) -> Iterator[None]:
     """Turn an OSError into a LibraryError with a sentence for the player; a context manager."""
     try:
         yield

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from game.core import texts
-from game.core.names import LibraryError, holder, told
+from game.core.names import LibraryError, holder, library_errors
 
 TRASH: Final = ".trash"
 _STAMP: Final = re.compile(r"[0-9]{1,30} ")  # prefix of the name of a deleted file or folder
@@ -31,7 +31,7 @@ class Trash:
     def add(self, path: Path, name: str) -> None:
         """Delete a file or folder so that it can be restored by that name; very old ones are erased for good."""
         trash = self.folder / TRASH
-        with told(texts.NOT_DELETED, name):
+        with library_errors(texts.NOT_DELETED, name):
             trash.mkdir(exist_ok=True)
             latest = max((_stamp(each) for each in self._deleted()), default=0)
             path.rename(trash / f"{max(time.time_ns(), latest + 1)} {name}")  # a clock can be set back
@@ -51,12 +51,12 @@ class Trash:
             raise LibraryError(texts.GONE.format(name=name))
         if holder(self.folder, name):
             raise LibraryError(texts.NAME_TAKEN.format(name=name))
-        with told(texts.LIBRARY_NOT_RESTORED, name):
+        with library_errors(texts.LIBRARY_NOT_RESTORED, name):
             return found[-1].rename(self.folder / name)
 
     def restore_last(self, name: str) -> Path:
         """Restore what was deleted last, under a free name; return its path."""
-        with told(texts.LIBRARY_NOT_RESTORED, name):
+        with library_errors(texts.LIBRARY_NOT_RESTORED, name):
             return self._deleted()[-1].rename(self.folder / name)
 
     def _deleted(self) -> list[Path]:

@@ -14,7 +14,7 @@ from ai.digits.preprocessing import Image
 from ai.nn.folder import CONFIG
 from game.core import texts
 from game.core.worker import Worker, WorkerState
-from game.training.digit_models import PATIENCE, shelf
+from game.training.digit_models import PATIENCE, models_by_name
 
 _UNDONE: Final = ".undone"  # suffix of an undone fix's folder until it is removed
 
@@ -50,7 +50,7 @@ class FixRunner:
 
     def refresh(self) -> None:
         """Reread the list of networks."""
-        self.networks = shelf(*self._folders)
+        self.networks = models_by_name(*self._folders)
 
     def folder(self, name: str) -> Path:
         """Return the folder of the named network with all its fixes."""

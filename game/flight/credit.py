@@ -49,7 +49,7 @@ class Credit:
     Args:
         flight: the flight.
         difficulty: its changes of gravity and pace.
-        course: its challenge; None for a free flight.
+        challenge: the challenge it belongs to; None for a free flight.
         hands: handicap of its keys, a name of `game.flight.handicap.HANDS`.
         check: whether it is a check flight.
 

@@ -12,7 +12,7 @@ from ai.common.environment import Floats, Ints
 from ai.lander.environment import NUM_ACTIONS, NUM_FEATURES
 from ai.nn.files import brief
 from game.core import texts
-from game.core.folders import claims
+from game.core.folders import looks_like_item
 
 DEFAULT: Final = "modern"
 SCRIPTED: Final = "scripted"
@@ -69,7 +69,7 @@ def folders(models_dir: Path, user_dir: Path) -> dict[str, Path]:
     found: dict[str, Path] = {}
     for parent in (models_dir / "lander", user_dir / PLAYERS):
         try:
-            inside = sorted(path for path in parent.iterdir() if claims(path, PARTS))
+            inside = sorted(path for path in parent.iterdir() if looks_like_item(path, PARTS))
         except OSError:
             continue
         # The default network comes first, not in alphabetical order.

@@ -13,7 +13,7 @@ from game.drawing.tokens import FIGURE, INK, MUTE, SMALL, TITLE, Colour, Palette
 _LEADING: Final = 17.0
 
 
-def start_word(state: WorkerState | None) -> str:
+def start_label(state: WorkerState | None) -> str:
     """Return the label of the button that starts, pauses and resumes a run."""
     if state in (WorkerState.RUNNING, WorkerState.STARTING):
         return texts.TRAIN_PAUSE

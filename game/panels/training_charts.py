@@ -11,8 +11,8 @@ import pygame
 
 from ai.common.decision import in_points
 from ai.common.environment import Doubles
-from ai.training.history import Checkpoint, History, SettingChange
-from ai.training.session import REVERTED, TAUGHT
+from ai.training.history import REVERTED, Checkpoint, History, SettingChange
+from ai.training.session import TAUGHT
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
 from game.charts.scrubber import Scrubber

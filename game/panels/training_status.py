@@ -22,7 +22,7 @@ class TrainingStatus(NamedTuple):
 def lander_status(lander_run: LanderRun) -> TrainingStatus:
     """Return the landers, the time and the decisions so far, and the share that lands."""
     history, swarm_state = lander_run.history, lander_run.swarm_state
-    if not len(history) or swarm_state is None:
+    if swarm_state is None or not lander_run.measured:
         return TrainingStatus(texts.TRAIN_BEGINS if lander_run.alive else texts.TRAIN_LINE, "", texts.TRAIN_LANDED)
     line = texts.TRAIN_FIGURES.format(
         landers=len(swarm_state.outcome), seconds=history.points[-1][0], count=int(swarm_state.decisions)

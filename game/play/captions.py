@@ -26,7 +26,7 @@ BELOW_OPENING: Final = ClearArea(head=196.0)  # keeps the waiting craft clear of
 def draw_title(
     canvas: Canvas, flight: Flight, challenge: Challenge | None, network: Network, hands: str, notice: str
 ) -> None:
-    """Draw the title of a course or of a free flight, and the reason if the flight will not count."""
+    """Draw the title of a challenge or of a free flight, and the reason if the flight will not count."""
     if challenge:
         hud.draw_corner(canvas, challenge.title, challenge.line, notice or challenge.goal)
     else:
@@ -57,7 +57,7 @@ def flight_actions(
     Args:
         runs: what each command does.
         flight: the flight.
-        challenge: its course, if any.
+        challenge: the challenge it belongs to, if any.
         leaves: whether Escape goes straight back.
 
     """

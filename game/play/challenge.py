@@ -26,7 +26,7 @@ _AFTER_OUTAGE: Final = 2.0  # seconds after an engine failure in which the speed
 
 @dataclass(frozen=True)
 class DrawnFlight:
-    """Context in which a course draws over the world.
+    """Context in which a challenge draws over the world.
 
     Attributes:
         alpha: fraction of the current step that has passed, 0 to 1.
@@ -45,7 +45,7 @@ class DrawnFlight:
 
 
 class Challenge:
-    """A course: a start and a goal, independent of the player's choices for free flights.
+    """Challenge: a start and a goal, independent of the player's choices for free flights.
 
     Attributes:
         name: name of a mission in the logbook; empty for other courses.
@@ -54,10 +54,10 @@ class Challenge:
         bar: key in `texts.NOT_COUNTED` of why its flights do not count as the player's own; empty if they may.
         alone: whether the network may neither help nor take over.
         next_hint: hint of the key for what comes next; empty where it does nothing.
-        title, line: name of the course, for the corner.
+        title, line: name of the challenge, for the corner.
         goal: goal of the flight, for the corner as well.
         opening: text while the craft hangs and waits; empty to leave the middle free.
-        through: whether the course is finished and free flights follow.
+        through: whether the challenge is finished and free flights follow.
 
     """
 
@@ -79,7 +79,7 @@ class Challenge:
         return None
 
     def card(self, card: OutcomeCard, flight: Flight, credit: Credit) -> OutcomeCard:  # noqa: ARG002
-        """Return the outcome card of a finished flight, with what this course adds to it."""
+        """Return the outcome card of a finished flight, with what this challenge adds to it."""
         return card
 
     def follow(self, flight: Flight) -> str:  # noqa: ARG002
@@ -96,17 +96,17 @@ class Challenge:
         return True
 
     def skip(self) -> None:
-        """Skip to the next part of the course, if there is one."""
+        """Skip to the next part of the challenge, if there is one."""
 
     def leave(self) -> None:
-        """Leave the course for free flights."""
+        """Leave the challenge for free flights."""
 
     def remember(self, settings: Settings) -> bool:  # noqa: ARG002
         """Store the pilot's progress in the settings; return whether there was any to store."""
         return False
 
     def draw(self, canvas: Canvas, view: View, flight: Flight, scene: DrawnFlight) -> None:
-        """Draw the course's own text and marks over the world."""
+        """Draw the challenge's own text and marks over the world."""
 
     def medal(self, flight: Flight) -> int:  # noqa: ARG002
         """Return the medal of a finished flight if it counts: 3 for gold, 2 silver, 1 bronze, 0 none."""

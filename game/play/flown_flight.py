@@ -34,7 +34,7 @@ class FlownFlight:
         context: the shared services.
         seed: seed of the start.
         policy: the network to hand over to, if there is one; unused where the player must fly alone.
-        challenge: the course; None for a free flight.
+        challenge: its start and rules; None for a free flight.
         pads: number of landing pads of a free flight.
         hands: handicap of a free flight, a name of `game.flight.handicap.HANDS`.
         check: whether it is a check flight.
@@ -179,7 +179,7 @@ class FlownFlight:
     # The picture
 
     def moment(self, alpha: float) -> DrawnFlight:
-        """Return the moment that a course draws over, once the fraction `alpha` of a step has passed."""
+        """Return the moment that a challenge draws over, once the fraction `alpha` of a step has passed."""
         controls, clear = self._context.controls, self.cockpit.clear
         return DrawnFlight(alpha, controls, clear, self.waiting, self.waiting and self._held_before)
 

@@ -18,7 +18,7 @@ def race(record: Record) -> FlownMission | Race:
 
 
 def fly_on(record: Record, flight_replay: FlightReplay) -> ContinuedFlight:
-    """Return a course that flies on from a replay's current moment, beside the recorded flight as a ghost."""
+    """Return a challenge that flies on from a replay's current moment, beside the recorded flight as a ghost."""
     return ContinuedFlight(flight_replay, _name(record))
 
 

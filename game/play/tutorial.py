@@ -1,8 +1,8 @@
 """Tutorial, the first flight: one lesson at a time, written beside the craft, each complete once the player does it.
 
-It is flown like any other course and never blocks the player: a lesson can be skipped, and the tutorial left. After a
-crash the lesson restarts with the craft hanging in the sky, and the reason is shown. Whenever the craft waits, the line
-beside it names the key that it waits for.
+It is flown like any other challenge and never blocks the player: a lesson can be skipped, and the tutorial left. After
+a crash the lesson restarts with the craft hanging in the sky, and the reason is shown. Whenever the craft waits, the
+line beside it names the key that it waits for.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ LESSONS: Final = (
 
 
 class Tutorial(Challenge):
-    """Tutorial course: the first flight.
+    """Tutorial: the first flight.
 
     Attributes:
         lesson: the current lesson.

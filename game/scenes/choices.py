@@ -39,7 +39,7 @@ _CHART: Final = pygame.Rect(800, 152, 372, 176)
 class ChoicesScene(FormScene):
     """Choices scene over a flight. Each choice is saved the moment it is made; Escape or Fly goes back.
 
-    A course fixes most options, so it offers fewer choices.
+    A challenge fixes most options, so it offers fewer choices.
     """
 
     def __init__(self, context: Context, below: Scene, skill: Skill, *, begun: bool, challenge: bool = False) -> None:

@@ -52,7 +52,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
     def __init__(self, context: Context) -> None:
         self._frame = 0
         self._asked = False
-        self.stop_word: TextButton | None = None
+        self.stop_button: TextButton | None = None
         self._in_force_told: tuple[float, DigitConfig, InForce] | None = None
         self.digit_run = DigitRun(runs_dir(context.user_dir))
         super().__init__(context, self.digit_run, self.digit_run.collection, ((PANEL_LEFT, _SAID), 4))
@@ -68,7 +68,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         )
         self.matrix = self.form.add(ConfusionMatrix(self.form.manager, _MATRIX))
         self._way_back = WayBack(self.form, _HINT, self.digit_run)
-        self.form.focus(self.start_word)
+        self.form.focus(self.start_button)
 
     def enter(self) -> None:
         """Resume the run."""
@@ -219,11 +219,11 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
             width = typeface.width(label, TEXT, "regular")
             return self.form.add(TextButton(self.form.manager, (x, y, width, 28), label, press))
 
-        self.start_word = add(PANEL_LEFT, 664, texts.TRAIN_START, self._toggle)
-        self.save_word = add(PANEL_LEFT + 316, 664, texts.TRAIN_SAVE, self._save)
-        self.dream_word = add(PANEL_LEFT, 624, texts.DIGIT_RUN_DREAM, self._dream)
-        self.quiz_word = add(
-            max(PANEL_LEFT + 120, self.dream_word.box.right + 18), 624, texts.DIGIT_RUN_QUIZ, self._quiz
+        self.start_button = add(PANEL_LEFT, 664, texts.TRAIN_START, self._toggle)
+        self.save_button = add(PANEL_LEFT + 316, 664, texts.TRAIN_SAVE, self._save)
+        self.dream_button = add(PANEL_LEFT, 624, texts.DIGIT_RUN_DREAM, self._dream)
+        self.quiz_button = add(
+            max(PANEL_LEFT + 120, self.dream_button.box.right + 18), 624, texts.DIGIT_RUN_QUIZ, self._quiz
         )
         self._name_words()
 
@@ -232,12 +232,12 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         stop = texts.DIGIT_RUN_GO_ON if digit_run.unfinished else ""
         if digit_run.alive:
             stop = texts.DIGIT_RUN_STOPPING if digit_run.stopping else texts.DIGIT_RUN_STOP
-        old = self.stop_word
+        old = self.stop_button
         if stop != (old.label if old else ""):
             box = (PANEL_LEFT + 80, 664, typeface.width(stop, TEXT, "regular"), 28)
-            self.stop_word = TextButton(self.form.manager, box, stop, self._stop_or_go_on) if stop else None
-            before = [self.start_word, *([old] if old else [])]
-            self.form.replace(before, [self.start_word, *([self.stop_word] if self.stop_word else [])])
+            self.stop_button = TextButton(self.form.manager, box, stop, self._stop_or_go_on) if stop else None
+            before = [self.start_button, *([old] if old else [])]
+            self.form.replace(before, [self.start_button, *([self.stop_button] if self.stop_button else [])])
 
     def _draw_title(self, canvas: Canvas) -> None:
         if self.digit_run.curves.points:

@@ -68,7 +68,7 @@ class DigitsScene(FormScene):
         super().__init__(context)
         self.pad = DrawingPad(PAD)
         self.live = LiveReading(self.pad, chosen, self._show_bars)
-        self._sight = ExplanationView()
+        self._explanation = ExplanationView()
         self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
@@ -165,7 +165,7 @@ class DigitsScene(FormScene):
         if self.chosen in self.reading.probabilities:
             draw_answer(canvas, self.reading, self.chosen)
         steps = list(asdict(self.live.switches).values())
-        self._sight.draw(canvas, self.reading, self.chosen, self.live.why, steps)
+        self._explanation.draw(canvas, self.reading, self.chosen, self.live.why, steps)
         self.form.draw(canvas)
         self._draw_words(canvas)
 

@@ -206,7 +206,7 @@ def entry_row(entry: Entry) -> Row:
 
 
 def _challenge(entry: Entry) -> str:
-    """Return the name of the course that a flight was flown on."""
+    """Return the name of the challenge that a flight belongs to."""
     if entry.course == "daily":
         return texts.DAILY
     return texts.MISSIONS[entry.course][0] if entry.course in texts.MISSIONS else texts.COURSE_FREE.get(entry.pads, "")

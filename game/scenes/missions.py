@@ -196,7 +196,7 @@ def _network_words(name: str) -> str:
 
 
 def _best_by_course(entries: list[Entry]) -> dict[str, Entry]:
-    """Return the player's best unaided landing in each named course, under the current rules."""
+    """Return the player's best unaided landing in each named challenge, under the current rules."""
     own = (entry for entry in entries if entry.course and entry.alone)
     landings = [entry for entry in own if entry.landed and not entry.outdated]
     return {entry.course: entry for entry in sorted(landings, key=rank, reverse=True)}

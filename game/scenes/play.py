@@ -17,7 +17,7 @@ from game.flight.logbook import Records
 from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.input.mouse import MouseStick
-from game.play import captions as flight_words
+from game.play import captions
 from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
 from game.play.flown_flight import FlownFlight
@@ -33,8 +33,8 @@ _AWAY_STEPS: Final = 10
 class PlayScene(Scene):
     """One flight after another. `seed` fixes the first; further seeds come from the context's random generator.
 
-    A `rival` flies the same starts beside the player, as a ghost named `rival_name`. A `course` other than a duel sets
-    its own starts and rules.
+    A `rival` flies the same starts beside the player, as a ghost named `rival_name`. A `challenge` has
+    starts and rules of its own.
 
     Attributes:
         flown: the flight on the screen, with all that belongs to it.
@@ -102,7 +102,7 @@ class PlayScene(Scene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints of the flight, and those of the card."""
-        rows = [flight_words.flight_row(hints_of(self._flight_actions(), self._controls))]
+        rows = [captions.flight_row(hints_of(self._flight_actions(), self._controls))]
         if self.ending.card and self.ending.shown > 0:
             hints = hints_of(self._card_actions(), self._controls)
             rows.append(self.ending.hint_row(hints, self.flown.ghost, self._settings.show_hints))
@@ -120,11 +120,11 @@ class PlayScene(Scene):
         }
 
     def _flight_actions(self) -> list[Action]:
-        return flight_words.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
+        return captions.flight_actions(self._runs, self.flight, self.challenge, leaves=self._leaves)
 
     def _card_actions(self) -> list[Action]:
         card = self.ending.card
-        return flight_words.card_actions(self._go_on, self._runs, self.challenge, good=card.good) if card else []
+        return captions.card_actions(self._go_on, self._runs, self.challenge, good=card.good) if card else []
 
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
@@ -186,7 +186,7 @@ class PlayScene(Scene):
         self.flown = FlownFlight(self.context, seed, self.network.policy, pads=pads, hands=hands, check=check)
 
     def _follow_flight(self) -> None:
-        """Save what a step has brought the player in a course; after the end, go on to the card or the next try."""
+        """Save what a step has brought the player in a challenge; after the end, go on to the card or the next try."""
         challenge, ending = self.challenge, self.ending
         if challenge:
             self._remember(challenge)
@@ -241,7 +241,7 @@ class PlayScene(Scene):
             self.context.note(text.format(name=network.name, problem=network.problem))
 
     def _go_on(self) -> Transition | None:
-        """Go to a new start after a landing (or leave a course with only one); after a crash, retry the same start."""
+        """After a landing, go to a new start, or leave a challenge with only one; after a crash, retry."""
         if self.ending.card is None or not self.ending.card.good:
             self.retry()
         elif self.challenge and self.challenge.fixed:
@@ -259,12 +259,12 @@ class PlayScene(Scene):
         self._begin(self.flight.recording.seed if self.challenge and self.challenge.fixed else self._new_seed())
 
     def _remember(self, challenge: Challenge) -> None:
-        """Save the pilot's progress in a course as soon as it is made."""
+        """Save the pilot's progress in a challenge as soon as it is made."""
         if challenge.remember(self._settings):
             self.context.apply_settings()
 
-    def _leave_course(self) -> Transition:
-        """Leave the course for free flights, from the pause menu."""
+    def _leave_challenge(self) -> Transition:
+        """Leave the challenge for free flights, from the pause menu."""
         assert self.challenge is not None
         self.challenge.leave()
         self._remember(self.challenge)
@@ -274,7 +274,7 @@ class PlayScene(Scene):
 
     @property
     def _leaves(self) -> bool:
-        """Whether Escape goes straight back: in a course that has not begun or is over, where nothing is lost."""
+        """Whether Escape goes straight back: in a challenge that has not begun or is over, where nothing is lost."""
         return self.challenge is not None and (self.waiting or self.flight.over)
 
     def _pause(self) -> Transition:
@@ -284,11 +284,11 @@ class PlayScene(Scene):
     def _pause_words(self) -> list[tuple[str, OnPress]]:
         words: list[tuple[str, OnPress]] = [(texts.PAUSE_NETWORK.format(name=self.network.name), self._open_networks)]
         if self.challenge and self.challenge.next_hint:
-            words.append((texts.TUTORIAL_LEAVE, self._leave_course))
+            words.append((texts.TUTORIAL_LEAVE, self._leave_challenge))
         return [*words, (texts.PAUSE_CHOICES if self.challenge is None else texts.PACE, self._choose)]
 
     def _choose(self) -> Transition | None:
-        """Open the choices for the next flights; in a course, few can be changed."""
+        """Open the choices for the next flights; in a challenge, few can be changed."""
         return push("choices", self, self._skill, begun=not self.waiting, challenge=self.challenge is not None)
 
     def _open_networks(self) -> Transition:

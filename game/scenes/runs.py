@@ -219,7 +219,7 @@ class NetworksScene(ListScene[SavedRun]):
     def _export(self) -> None:
         run = self.chosen
         assert run is not None
-        self._attempt(lambda: texts.RUN_EXPORTED.format(path=self._library.export(run.name)))
+        self.context.note(_result(lambda: texts.RUN_EXPORTED.format(path=self._library.export(run.name))))
 
     def _delete(self) -> None:
         run = self.chosen
@@ -229,9 +229,7 @@ class NetworksScene(ListScene[SavedRun]):
             self._library.delete(run.name)
             return texts.RUN_DELETED.format(name=run.name)
 
-        self._attempt(delete)
-        self._reload()
-        self.form.focus(self._list)
+        self._report(_result(delete))
 
     def _restore(self) -> None:
         def restore() -> str:
@@ -239,7 +237,7 @@ class NetworksScene(ListScene[SavedRun]):
             self._reload(run)
             return texts.RUN_RESTORED.format(name=run.name) if run else ""
 
-        self._attempt(restore)
+        self.context.note(_result(restore))
         self.form.focus(self._list)
 
     def _import(self, path: Path) -> None:
@@ -248,20 +246,21 @@ class NetworksScene(ListScene[SavedRun]):
             self._reload(run)
             return texts.RUN_IMPORTED.format(name=run.name)
 
-        self._attempt(copy)
-
-    def _attempt(self, deed: Callable[[], str]) -> None:
-        """Perform an operation on the library, and report its result."""
-        try:
-            self.context.note(deed())
-        except LibraryError as error:
-            self.context.note(str(error))
+        self.context.note(_result(copy))
 
     def _draw_chosen(self, canvas: Canvas) -> None:
         """Draw the chosen run's name and figures."""
         if run := self.chosen:
             flies = self._names.get(run.folder) == (self.context.settings.model or networks.DEFAULT)
             draw_run(canvas, run, _LEFT, _WIDTH, own=self._is_own, named=not self._entry, flies=flies)
+
+
+def _result(deed: Callable[[], str]) -> str:
+    """Perform an operation on the library; return what it says of its success, or why it failed."""
+    try:
+        return deed()
+    except LibraryError as error:
+        return str(error)
 
 
 def _train_on(folder: Path) -> Transition:

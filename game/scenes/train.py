@@ -239,13 +239,13 @@ class TrainScene(TrainingScene[LanderRun]):
 
     def _add_controls(self) -> None:
         left, top = _CONTROLS.topleft
-        self.start_word = self.form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
-        self._step_word = self.form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
+        self.start_button = self.form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
+        self.form.add(self._word(left + 84, top, 36, texts.TRAIN_STEP, self.lander_run.step))
         self._pace_choice = self.form.add(Choice(
             self.form.manager, (left + 144, top, 148, 28), "", texts.TRAIN_PACES, len(PACES) - 1,
             self.lander_run.set_pace, gap=14,
         ))  # fmt: skip
-        self._save_word = self.form.add(self._word(left + 316, top, 68, texts.TRAIN_SAVE, self._save))
+        self.form.add(self._word(left + 316, top, 68, texts.TRAIN_SAVE, self._save))
 
     def _word(self, x: float, y: float, width: float, label: str, press: OnPress) -> TextButton:
         return TextButton(self.form.manager, (x, y, width, 28), label, press)
@@ -296,9 +296,9 @@ class TrainScene(TrainingScene[LanderRun]):
         self._advice.draw(canvas)
 
     def _draw_title(self, canvas: Canvas) -> None:
-        status, run = lander_status(self.lander_run), self.lander_run
-        figured = bool(len(run.history)) and run.swarm_state is not None
-        for box in ((*_TITLE.topleft, _TITLE.width, _TITLE.height if figured else 66), _WORDS):  # landers fly behind
+        height = _TITLE.height if self.lander_run.measured else 66
+        for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
             canvas.panel(box, _COVER)
+        status = lander_status(self.lander_run)
         draw_run_status(canvas, (LEFT, 46), texts.TRAIN_TITLE, *status, drop=76, room=_TITLE.width - 32)
         self.draw_hints(canvas)

@@ -12,7 +12,7 @@ from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import PANEL, VIEW_SIZE
 from game.input.controls import Command
 from game.panels.knobs import KnobsPanel
-from game.panels.run_status import draw_problem, start_word
+from game.panels.run_status import draw_problem, start_label
 from game.scenes.dialog import NameDialog
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -45,12 +45,12 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
 
     Attributes:
         knobs: the panel of knobs; made by `_build`.
-        start_word: the button that starts, pauses and resumes; made by `_build`.
+        start_button: the button that starts, pauses and resumes; made by `_build`.
 
     """
 
     knobs: KnobsPanel
-    start_word: TextButton
+    start_button: TextButton
 
     def __init__(
         self, context: Context, run: Run, collection: Library | DigitModels, problem_at: tuple[Point, int]
@@ -137,7 +137,7 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
             self._alive = run.alive
             self._clear_advice()
             self.knobs.set_running(self._alive)
-        self.start_word.label = start_word(run.state)
+        self.start_button.label = start_label(run.state)
 
     def _clear_advice(self) -> None:
         """Drop a hint on the run before."""

@@ -82,7 +82,7 @@ class App:
         self._look()
         context.sound.follow(context.settings)
         context.controls.follow(context.settings)
-        self._start_pads()
+        self._start_gamepads()
         self.scenes = SceneManager(context, lambda: self.canvas.surface, scene_of)
         self.show(first or Route("menu"))
         self._last = now()
@@ -132,7 +132,7 @@ class App:
 
     # The window
 
-    def _start_pads(self) -> None:
+    def _start_gamepads(self) -> None:
         from pygame._sdl2 import controller
 
         try:

@@ -68,7 +68,7 @@ def runs_dir(user_dir: Path) -> Path:
     return user_dir / FOLDER / RUNS
 
 
-def shelf(models_dir: Path, user_dir: Path) -> dict[str, SavedDigitModel]:
+def models_by_name(models_dir: Path, user_dir: Path) -> dict[str, SavedDigitModel]:
     """Return all digit networks by name, damaged ones too; the player's own come last.
 
     A player's network with the name of a shipped one gets a distinct name, and is not left out.

@@ -9,8 +9,7 @@ from ai.agent.config import Config
 from ai.agent.schedule import InForce
 from ai.nn import ModelFormatError
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
-from ai.training.session import (
-    TAUGHT,
+from ai.training.messages import (
     AddDemonstrations,
     NetworkState,
     Refused,
@@ -19,8 +18,8 @@ from ai.training.session import (
     Save,
     Saved,
     SwarmState,
-    live,
 )
+from ai.training.session import TAUGHT, live
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import Worker
@@ -91,6 +90,11 @@ class LanderRun(TrainingRun):
         self._worker = Worker(live, config, seed, keep=self.library.unsaved, resume=resume)
         self._worker.set_pace(PACES[self.pace])
         return note
+
+    @property
+    def measured(self) -> bool:
+        """Whether there are figures to show: a point of the history, and a state of the swarm."""
+        return len(self.history) > 0 and self.swarm_state is not None
 
     @property
     def demonstrations(self) -> int:

@@ -10,7 +10,8 @@ import pygame
 
 from ai.common.environment import Bools, Doubles
 from ai.lander.environment import PARAMS, Outcome
-from ai.training.session import CAREFUL, SwarmState
+from ai.training.messages import SwarmState
+from ai.training.session import CAREFUL
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour

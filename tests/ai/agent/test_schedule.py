@@ -9,7 +9,8 @@ from ai.agent.config import PRESETS, Config
 from ai.agent.schedule import InForce, idle, in_force
 from ai.digits.config import DIGIT_PRESETS
 from ai.training.loop import Training
-from ai.training.session import ChangeSetting, SwarmState, live
+from ai.training.messages import ChangeSetting, SwarmState
+from ai.training.session import live
 
 TINY = Config(
     hidden=(8,), num_envs=16, learning_starts=32, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near",

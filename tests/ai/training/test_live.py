@@ -14,12 +14,10 @@ from ai.lander.rewards import RewardWeights
 from ai.nn import ModelFormatError
 from ai.training import autosave
 from ai.training.checkpoints import agent_of, resume_run
-from ai.training.history import PARTS, Checkpoint, History, Point, SettingChange, Validation
+from ai.training.history import PARTS, REVERTED, Checkpoint, History, Point, SettingChange, Validation
 from ai.training.lander_task import LanderTask
 from ai.training.loop import Training
-from ai.training.session import (
-    CAREFUL,
-    REVERTED,
+from ai.training.messages import (
     ChangeSetting,
     NetworkState,
     Refused,
@@ -28,8 +26,8 @@ from ai.training.session import (
     Save,
     Saved,
     SwarmState,
-    live,
 )
+from ai.training.session import CAREFUL, live
 
 TINY = Config(
     hidden=(8,), num_envs=32, learning_starts=64, batch_size=16, gradient_steps=1, replay_size=2000, spawn="near"

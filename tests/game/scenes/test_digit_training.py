@@ -94,16 +94,16 @@ def test_start_pause_stop_and_go_on(beside: Driver, tmp_path: Path):
     beside.key(pygame.K_RETURN)
     wait(beside, lambda: scene.digit_run.state is WorkerState.PAUSED)
     beside.frames(5)
-    beside.click(scene.stop_word.box.center)
+    beside.click(scene.stop_button.box.center)
     wait(beside, lambda: not scene.digit_run.alive)
     assert scene.digit_run.state is WorkerState.ENDED
     assert not scene.digit_run.problem
     assert 0 < scene.digit_run.test < 1, "what was stopped is measured"
     assert DigitClassifier.load(tmp_path / "user" / "digits" / "runs" / ".training").predict(np.zeros((1, 28, 28))).size
-    wait(beside, lambda: scene.stop_word and scene.stop_word.label == texts.DIGIT_RUN_GO_ON)
+    wait(beside, lambda: scene.stop_button and scene.stop_button.label == texts.DIGIT_RUN_GO_ON)
     stood = scene.digit_run.curves.points[-1].step
     scene.knobs.set_config(DIGIT_PRESETS["modern"], 0)
-    beside.click(scene.stop_word.box.center)
+    beside.click(scene.stop_button.box.center)
     wait(beside, lambda: scene.digit_run.curves.points)
     assert scene.digit_run.curves.points[0].step > stood - 1
     assert scene.knobs.config == SMALL, "it goes on with its own settings"
@@ -115,26 +115,26 @@ def test_a_run_is_named_dreams_and_is_quizzed(train: Driver, tmp_path: Path, mon
     notes: list[str] = []
     monkeypatch.setattr(train.top.context, "note", notes.append)
     scene = train.top
-    for word in (scene.save_word, scene.dream_word, scene.quiz_word):
+    for word in (scene.save_button, scene.dream_button, scene.quiz_button):
         train.click(word.box.center)
     assert notes == [texts.DIGIT_RUN_NOTHING] * 3
     train.key(pygame.K_TAB)
-    scene.form.focus(scene.start_word)
+    scene.form.focus(scene.start_button)
     train.key(pygame.K_RETURN)
     wait(train, lambda: scene.digit_run.curves.points)
-    train.click(scene.save_word.box.center)
+    train.click(scene.save_button.box.center)
     assert isinstance(train.top, NameDialog)
     train.key(pygame.K_RETURN)
     assert train.top is scene
     kept = tmp_path / "user" / "digits" / "runs" / texts.DIGIT_RUN_NAME.format(preset="Classic")
     wait(train, lambda: (kept / "config.json").exists() and len(notes) == 4)
     assert kept.name in notes[-1]
-    train.click(scene.stop_word.box.center)
+    train.click(scene.stop_button.box.center)
     wait(train, lambda: not scene.digit_run.alive and scene.digit_run.kept)
-    train.click(scene.dream_word.box.center)
+    train.click(scene.dream_button.box.center)
     assert isinstance(train.top, DreamScene)
     train.key(pygame.K_ESCAPE)
-    train.click(scene.quiz_word.box.center)
+    train.click(scene.quiz_button.box.center)
     assert isinstance(train.top, QuizScene)
 
 

@@ -13,7 +13,7 @@ from game.core.assets import MODELS_DIR
 from game.digits.reader import Reader
 from game.scenes.dialog import ListDialog
 from game.scenes.digits import DigitsScene
-from game.training.digit_models import called, runs_dir, shelf
+from game.training.digit_models import called, models_by_name, runs_dir
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.pen import draw, guess, strokes
@@ -42,7 +42,7 @@ def test_names_are_those_of_folders_and_none_hides_another(context: Context):
     for name in ("zero", "Modern", ".training"):
         save(context, name)
     (runs_dir(context.user_dir) / "notes").mkdir()
-    found = shelf(MODELS_DIR, context.user_dir)
+    found = models_by_name(MODELS_DIR, context.user_dir)
     assert list(found) == ["modern", "classic", "Modern (yours)", "zero"]
     assert [called(name) for name in found] == ["Modern", "Classic", "Modern (yours)", "zero"]
     assert found["modern"].said == "reads 99.65% of the test images"
@@ -99,9 +99,9 @@ def test_a_damaged_one_is_named_and_stepped_over(open_game: Callable[..., Driver
 
 def test_fixes_of_a_network_of_ones_own_lie_with_it(context: Context):
     folder = save(context, "mine")
-    mine = shelf(MODELS_DIR, context.user_dir)["mine"]
+    mine = models_by_name(MODELS_DIR, context.user_dir)["mine"]
     fix = mine.fixes / "0001"
     DigitClassifier.load(folder).save(fix)
     assert mine.versions() == [fix, folder]
     folder.rename(folder.with_name("ours"))
-    assert shelf(MODELS_DIR, context.user_dir)["ours"].fixed()
+    assert models_by_name(MODELS_DIR, context.user_dir)["ours"].fixed()
