@@ -28,6 +28,7 @@ _HIGH: Final = 7.5  # metres up to which it burns in an ascent, to coast from th
 _LEANS: Final = (0.30, -0.16, 0.08, -0.24, 0.18)  # radians, one for each ascent
 _SLACK: Final = 0.04  # tolerance of an ascent's angle, in radians
 _LEFT, _RIGHT, _MAIN = 1, 2, 3
+LOADER: Final = "network of the menu"  # name of the thread that loads it
 
 
 class MenuBackground:
@@ -53,7 +54,8 @@ class MenuBackground:
         self.poses: Poses
         self.stage: Stage
         self._begin()
-        Thread(target=self._load_network, daemon=True).start()  # the first ascent needs none
+        # The first ascent needs none.
+        Thread(target=self._load_network, name=LOADER, daemon=True).start()
 
     def enter(self) -> None:
         """Follow a change of the settings."""

@@ -1,10 +1,12 @@
 """Drawing changes nothing but pixels: no scene, no widget and no session is another after it than before."""
 
+import threading
 from collections.abc import Callable
 
 import pygame
 import pytest
 
+from game.scenes.menu_background import LOADER
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, opened, settle
@@ -14,6 +16,9 @@ from tests.support.tour import stock
 
 def changed(driver: Driver) -> set[str]:
     """Draw twice, and return what is not as it was."""
+    for thread in threading.enumerate():
+        if thread.name == LOADER:
+            thread.join()  # what it loads comes at any moment, and is none of the drawing's doing
     ways = set()
     scenes = driver.app.scenes
     for alpha in (0.0, 0.5):
