@@ -28,7 +28,7 @@ _HIGH: Final = 7.5  # metres up to which it burns in an ascent, to coast from th
 _LEANS: Final = (0.30, -0.16, 0.08, -0.24, 0.18)  # radians, one for each ascent
 _SLACK: Final = 0.04  # tolerance of an ascent's angle, in radians
 _LEFT, _RIGHT, _MAIN = 1, 2, 3
-LOADER: Final = "network of the menu"  # name of the thread that loads it
+LOADER: Final = "menu-network"  # name of the thread that loads it
 
 
 class MenuBackground:
