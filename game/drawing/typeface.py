@@ -1,4 +1,4 @@
-"""Text rendering in Manrope at any size, with a cache of rendered strings.
+"""Text rendering in Manrope at any size, and of code in Fira Code, with a cache of rendered strings.
 
 Text is drawn large and scaled down, so sizes need not be whole pixels and letters keep their spacing;
 hinted small sizes do neither. Signs of buttons are characters as well: see `game.drawing.glyphs`.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from functools import lru_cache
+from importlib.resources import files
 from typing import Final, Literal
 
 import numpy as np
@@ -17,7 +18,7 @@ from font_manrope import font_files
 from game.drawing.glyphs import SIGN, draw_sign, sign_width
 from game.drawing.tokens import GROWS, Colour
 
-Weight = Literal["extralight", "light", "regular", "medium", "semibold"]
+Weight = Literal["extralight", "light", "regular", "medium", "semibold", "code"]
 
 _FILES: Final[dict[Weight, str]] = {
     "extralight": "ManropeExtraLight",
@@ -26,6 +27,7 @@ _FILES: Final[dict[Weight, str]] = {
     "medium": "ManropeMedium",
     "semibold": "ManropeSemiBold",
 }
+_CODE: Final = "data/FiraCode-Regular.ttf"  # in pygame_gui: all letters of it are equally wide
 _LONGEST: Final = 1000  # characters of a text; no line on any screen has more
 # Width in pixels of a text before it is scaled down; a full line of the largest screen takes half. From some 100,000
 # on, SDL's scaling writes past the end of its memory.
@@ -46,7 +48,8 @@ def _oversampling(pixels: float) -> int:
 
 @lru_cache(maxsize=64)
 def _font(pixels: float, weight: Weight) -> pygame.font.Font:
-    return pygame.font.Font(font_files[_FILES[weight]], max(1, round(pixels * _oversampling(pixels))))
+    file = font_files[_FILES[weight]] if weight != "code" else str(files("pygame_gui") / _CODE)
+    return pygame.font.Font(file, max(1, round(pixels * _oversampling(pixels))))
 
 
 def grow(factor: float) -> None:

@@ -1,0 +1,84 @@
+"""Listing of our own code: the lines of a function, the one that runs now lit, with a case's numbers beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+import pygame
+
+from game.core.source import Source
+from game.drawing import typeface
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, Colour
+
+_LEADING: Final = 16.0
+_NUMBER: Final = 34.0  # room for the line's number
+_INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
+_BETWEEN: Final = 12.0  # points between code and notes
+
+
+def draw_listing(
+    canvas: Canvas,
+    box: pygame.typing.RectLike,
+    source: Source,
+    current: int | None = None,
+    notes: Mapping[int, str] | None = None,
+    *,
+    notes_width: float = 0.0,
+) -> None:
+    """Draw the source in a box, in points; `current` is the number of the lit line, which is kept in sight.
+
+    `notes` are short words beside lines, by their numbers: shapes and numbers of the case at hand. They are drawn on
+    the right, in `notes_width` points.
+    """
+    area, notes = pygame.FRect(box), notes or {}
+    letter = typeface.digit_width(typeface.grown(LABEL), "code")
+    room = int((area.width - _NUMBER - (notes_width + _BETWEEN if notes_width else 0.0)) // letter)
+    leading = _LEADING * typeface.grown(LABEL) / LABEL
+    canvas.text(source.path, (area.left, area.top + leading * 0.8), size=LABEL, colour=MUTE)
+    top = area.top + leading * 1.4
+    rows = [row for number, line in source.lines for row in _broken(number, line, max(room, 20))]
+    most = int((area.bottom - top) // leading)
+    for place, (number, text, begins) in enumerate(_around(rows, current, most)):
+        y = top + (place + 0.8) * leading
+        lit = number == current
+        if lit:
+            canvas.fill(canvas.rect(area.left, y - 0.76 * leading, area.width, leading), LINE)
+            canvas.fill(canvas.rect(area.left, y - 0.76 * leading, 2, leading), NET)
+        if begins:
+            canvas.text(str(number), (area.left + _NUMBER - 8, y), size=LABEL, weight="code",
+                        colour=NET if lit else FAINT, align="right")  # fmt: skip
+            if note := notes.get(number):
+                canvas.text(note, (area.right - notes_width, y), size=LABEL, colour=NET if lit else MUTE, tabular=True)
+        for part, colour, column in _coloured(text, lit):
+            place_of = (area.left + _NUMBER + column * letter, y)
+            canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)
+
+
+def _broken(number: int, line: str, room: int) -> Iterator[tuple[int, str, bool]]:
+    """Yield the rows of a line of code: its number, a text no longer than `room`, and whether it is the first."""
+    indent = len(line) - len(line.lstrip())
+    begins = True
+    while len(line) > room:
+        cut = line.rfind(" ", indent + _INDENT + 1, room)
+        cut = cut if cut > 0 else room
+        yield number, line[:cut], begins
+        line, begins = " " * (indent + _INDENT) + line[cut:].lstrip(), False
+    yield number, line, begins
+
+
+def _around(rows: list[tuple[int, str, bool]], current: int | None, most: int) -> list[tuple[int, str, bool]]:
+    """Return as many rows as there is room for, the current line in the middle where possible."""
+    at = next((place for place, row in enumerate(rows) if row[0] == current), 0)
+    first = max(0, min(at - most // 2, len(rows) - most))
+    return rows[first : first + most]
+
+
+def _coloured(text: str, lit: bool) -> Iterator[tuple[str, Colour, int]]:
+    """Yield the parts of a row: its text, colour and column; comments are muted."""
+    code, mark, comment = text.partition("# ")
+    if code.strip():
+        yield code.strip(), INK if lit else (190, 198, 214), len(code) - len(code.lstrip())
+    if mark:
+        yield mark + comment, MUTE, len(code)
