@@ -11,7 +11,6 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import PRESETS
 from ai.agent.lesson import Before, explain, functions
 from ai.agent.replay import MemoryCell, ReplayBuffer
-from ai.lander.rewards import RewardWeights
 from ai.training.lander_task import LANDER_SYMMETRY
 from ai.training.loop import Training
 
@@ -157,9 +156,3 @@ def test_a_network_that_is_too_large_is_refused(case):
     agent, before, cell, *_ = case
     with pytest.raises(ValueError, match="too large"):
         explain(replace(before, online=np.zeros(600_000, np.float32)), cell, agent)
-
-
-def test_reward_weights_do_not_matter_to_what_is_recorded():
-    assert (
-        functions(replace(SMALL["modern"], reward_weights=RewardWeights())).keys() == functions(SMALL["modern"]).keys()
-    )
