@@ -80,6 +80,7 @@ class Exhibit:
 
     """
 
+    name: ClassVar[str]
     quantities: ClassVar[tuple[Quantity, ...]]
     patience: ClassVar[int]
     points: ClassVar[int] = 9

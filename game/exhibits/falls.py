@@ -23,6 +23,7 @@ _WALL: Final = 0.1  # a face whose normal points up by less is a wall
 class Slopes(Exhibit):
     """Five boxes on one slope: those slide whose coefficient of friction is less than tan θ."""
 
+    name = "slopes"
     quantities = (Quantity("degrees", (5.0, 36.0), 30.0, 1.0), Quantity("friction", (0.0, 1.0), 0.5, 0.05))
     patience = 40
     width = 32.0
@@ -109,6 +110,7 @@ class Slopes(Exhibit):
 class Bounce(Exhibit):
     """Five balls dropped from one height h: each bounces back to e² h."""
 
+    name = "bounce"
     quantities = (Quantity("restitution", (0.1, 1.0), 0.75, 0.05), Quantity("drop", (1.0, 6.5), 6.0, 0.5))
     patience = 420
     tolerance = 0.03
@@ -190,6 +192,7 @@ class Bounce(Exhibit):
 class DragRace(Exhibit):
     """Discs fall side by side without drag, with linear and with quadratic drag: each has its own terminal speed."""
 
+    name = "drag"
     quantities = (Quantity("linear_drag", (0.5, 2.0), 1.0, 0.1), Quantity("mass", (0.5, 2.0), 1.0, 0.1))
     patience = 1200
     tolerance = 0.02
@@ -211,11 +214,6 @@ class DragRace(Exhibit):
             share = (low + high) / 2
             low, high = (share, high) if share < 1 and -share - math.log1p(-share) < far else (low, share)
         return low * gravity / ease
-
-    @classmethod
-    def limit(cls, gravity: float, values: Mapping[str, float]) -> float:
-        """Return the terminal speed, in m/s, which `law` comes near but does not exceed."""
-        return values["mass"] * gravity / values["linear_drag"]
 
     def build(self) -> None:
         """Place the discs in a row."""

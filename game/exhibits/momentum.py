@@ -22,6 +22,7 @@ class Impacts(Exhibit):
     one problem with many answers, and the solver's would spread the motion over the row.
     """
 
+    name = "impacts"
     quantities = (Quantity("restitution", (0.75, 1.0), 1.0, 0.05), Quantity("striker", (0.5, 4.0), 1.0, 0.25))
     patience = 240
     radius = 0.45
@@ -97,6 +98,7 @@ class Impacts(Exhibit):
 class Spin(Exhibit):
     """Conservation of angular momentum, without gravity; an off-centre impulse both moves and turns a bar."""
 
+    name = "spin"
     quantities = (Quantity("reach", (0.0, 1.4), 1.2, 0.1), Quantity("impulse", (0.1, 1.0), 0.4, 0.05))
     patience = 32
     weightless = True

@@ -19,6 +19,7 @@ _SQUARE: Final = 0.1  # tolerance of a box in a column: radians, and shares of a
 class Stack(Exhibit):
     """Three columns and a pyramid: the lowest contact carries every box above it. A ball to throw at them."""
 
+    name = "stack"
     quantities = (Quantity("boxes", (2.0, 12.0), 10.0, 1.0), Quantity("iterations", (1.0, 20.0), 10.0, 1.0))
     patience = _SETTLED + _TIMED
     box = 0.8
@@ -90,10 +91,10 @@ class Stack(Exhibit):
 class Heap(Exhibit):
     """A hundred boxes and discs fall: impacts and friction turn their energy into heat."""
 
+    name = "heap"
     quantities = (Quantity("count", (10.0, 100.0), 100.0, 5.0), Quantity("rubbing", (0.1, 1.0), 0.5, 0.1))
     patience = 480
     points = 5
-    tolerance = 0.02
     columns = 14
 
     @classmethod
