@@ -47,7 +47,7 @@ _ROOM: Final = (16.0, 152.0, VIEW_SIZE[0] - 32.0, 444.0)
 _COLUMNS: Final = (758.0, 880.0, 1002.0, 1124.0)
 _REACH: Final = 8.0  # points by which the mouse may miss a body
 _HINTS: Final = 960.0
-_SCALE: Final = (400.0, 702.0)  # left end of the forces' legend, on its baseline
+_SCALE: Final = (330.0, 702.0)  # left end of the forces' legend, on its baseline
 _SMOOTHING: Final = 0.05
 
 
@@ -256,9 +256,9 @@ class PhysicsScene(FormScene):
             x, y, _ = _ROWS
             for part, left in ((texts.PHYSICS_GRAVITY, x), (texts.PHYSICS_WEIGHTLESS, x + LABEL_WIDTH)):
                 canvas.text(part, (left, y + _ROW_HEIGHT // 2 + 0.36 * SMALL), size=SMALL, colour=MUTE)
+        hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
         if self.contacts_drawn:
             draw_force_scale(canvas, _SCALE, self._weight, _COLUMNS[0] - _SCALE[0] - 16)
-        hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
         self.bench.draw(canvas)
         self.form.draw(canvas)
         self.draw_hints(canvas)
