@@ -58,20 +58,31 @@ class Axis:
 
 
 class Call:
-    """One recorded call of a function: the last value of each local variable, and the line that set it."""
+    """One recorded call of a function.
+
+    Attributes:
+        first: its arguments.
+        values: last value of each local variable, by name.
+        lines: number of the line that set it.
+        ran: numbers of all lines that ran.
+        last: number of the line that ran last.
+
+    """
 
     def __init__(self, event: Event) -> None:
         self.function = event.function
         self.first = event.values
         self.values: dict[str, Any] = {}
         self.lines: dict[str, int] = {}
-        self.last = event.number
+        self.ran: set[int] = set()
+        self.last = 0
         self.add(event)
 
     def add(self, event: Event) -> None:
         """Take in the next event of the call."""
         self.values |= event.values
         self.lines |= dict.fromkeys(event.values, event.number)
+        self.ran.add(event.number)
         self.last = event.number
 
 
