@@ -112,6 +112,7 @@ class Rows:
 
     @classmethod
     def build(cls, state: BodyState, params: BodyParams, contacts: Contacts) -> Rows:
+        """Return the rows of these contacts, before any has been solved."""
         slots = contacts.world[:, None] * state.pose.shape[1] + contacts.body
         index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6)
         jacobian = _jacobian(state.pose.reshape(-1, 3)[slots, :2], contacts.manifold)

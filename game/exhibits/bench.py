@@ -45,9 +45,7 @@ class Bench:
 
     """
 
-    def __init__(
-        self, form: Form, rebuild: Callable[[], None], open_step: OnPress, now: Callable[[], float]
-    ) -> None:
+    def __init__(self, form: Form, rebuild: Callable[[], None], open_step: OnPress, now: Callable[[], float]) -> None:
         self._form, self._rebuild, self._open_step, self._now = form, rebuild, open_step, now
         self.values: dict[str, dict[str, float]] = {}
         self.results = Results()

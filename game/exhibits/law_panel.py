@@ -124,4 +124,3 @@ class LawPanel:
             if share > _SEEN and self._why:
                 told.append((self._why, MUTE))
         return told
-

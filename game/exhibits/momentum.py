@@ -23,7 +23,7 @@ class Impacts(Exhibit):
     """
 
     name = "impacts"
-    quantities = (Quantity("restitution", (0.75, 1.0), 1.0, 0.05), Quantity("striker", (0.5, 4.0), 1.0, 0.25))
+    quantities = (Quantity("restitution", (0.8, 1.0), 1.0, 0.05), Quantity("striker", (0.25, 1.25), 1.0, 0.25))
     patience = 240
     radius = 0.45
     gap = 0.01
@@ -36,7 +36,8 @@ class Impacts(Exhibit):
         """Return the speed that one striker gives to the last disc of its row, in m/s.
 
         An impact of masses M and m gives the struck disc (1 + e) M / (M + m) times the speed of the striking one; it
-        is handed on by one impact for each further disc of the row.
+        is handed on by one impact for each further disc of the row. Less restitution or a heavier striker would bring
+        further impacts before the first has passed through, which this law does not count; the limits exclude them.
         """
         handed = (1 + values["restitution"]) / 2
         return cls.pace * 2 * values["striker"] / (values["striker"] + 1) * handed**cls.row

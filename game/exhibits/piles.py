@@ -22,6 +22,7 @@ class Stack(Exhibit):
     name = "stack"
     quantities = (Quantity("boxes", (2.0, 12.0), 10.0, 1.0), Quantity("iterations", (1.0, 20.0), 10.0, 1.0))
     patience = _SETTLED + _TIMED
+    tolerance = 0.07  # with a single iteration and a high column; 0.001 with 6 or more
     box = 0.8
     base = 8
 

@@ -19,9 +19,7 @@ _TOP, _PITCH, _HEIGHT = 78.0, 24.0, 20.0
 _LABEL_WIDTH, _FIGURE_WIDTH = 142.0, 76.0
 
 
-def quantity_sliders(
-    manager: PointsManager, exhibit: Exhibit, on_change: Callable[[str, float], None]
-) -> list[Slider]:
+def quantity_sliders(manager: PointsManager, exhibit: Exhibit, on_change: Callable[[str, float], None]) -> list[Slider]:
     """Return a slider for each quantity; `on_change` gets its name and its new value."""
     sliders = []
     for row, quantity in enumerate(exhibit.quantities):

@@ -76,10 +76,12 @@ def _meeting(record: StepRecord, pair: Pair) -> Iterator[Piece]:
     if pair.contact is not None:
         call = record.call(NARROW[pair.circles])
         notes = _notes(NARROW[pair.circles], call, pair.number)
-        yield Piece("contact", NARROW[pair.circles], call.lines["depth" if "depth" in call.lines else "gap"], notes, pair)
+        yield Piece(
+            "contact", NARROW[pair.circles], call.lines["depth" if "depth" in call.lines else "gap"], notes, pair
+        )
 
 
-def _pushes(kind: str, impulses: list[Impulse], touching: dict[int | None, Pair]) -> Iterator[Piece]:
+def _pushes(kind: str, impulses: list[Impulse], touching: dict[int, Pair]) -> Iterator[Piece]:
     for impulse in impulses:
         if pair := touching.get(impulse.contact):
             notes = _notes(Rows.relax, impulse.call, impulse.column)

@@ -11,7 +11,7 @@ import pygame
 from engine.vector import Array, right_of
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import FAINT, INK, LINE, MARGIN, MUTE, NET, SMALL, VIEW_SIZE, Colour
+from game.drawing.tokens import INK, LINE, MARGIN, MUTE, NET, SMALL, VIEW_SIZE, Colour
 from game.exhibits.step_pieces import Piece, written
 from game.exhibits.step_record import Axis, Pair, StepRecord
 from game.world.bodies import Outlines
@@ -24,7 +24,7 @@ _LARGE: Final = 60.0  # metres: a box beyond that is the floor's or a wall's
 _ARROW: Final = 84.0  # points of the longest arrow
 _NORMAL: Final = 46.0  # points of a normal
 _HEAD: Final = 6.0
-_FAR: Final = 0.6  # share of the stage's width within which a body is drawn
+_INSIDE: Final = 44.0  # points from a contact to the letter of a body that cannot move
 
 
 class StepView:
@@ -97,7 +97,7 @@ class StepView:
     def _draw_axes(self, canvas: Canvas, view: View, pair: Pair) -> None:
         for number, axis in enumerate(pair.axes):
             if number != pair.chosen:
-                _arrow(canvas, *self._reach(view, axis), FAINT if axis.first else MUTE)
+                _arrow(canvas, *self._reach(view, axis), MUTE)
         chosen = pair.axes[pair.chosen]
         start, end = self._reach(view, chosen)
         _arrow(canvas, start, end, NET, 2)
@@ -123,17 +123,31 @@ class StepView:
             canvas.text(str(number + 1), (x + 8, y + 15), size=SMALL, colour=NET)
 
     def _draw_letters(self, canvas: Canvas, view: View, pair: Pair, poses: Array) -> None:
-        for letter, body in zip("AB", pair.bodies, strict=True):
+        axis = pair.axes[pair.chosen]
+        to_b = axis.direction if axis.first else -axis.direction
+        for letter, body, way in zip("AB", pair.bodies, (-to_b, to_b), strict=True):
             x, y = view.points(poses[body, :2]).tolist()
-            x = min(max(x, STAGE.left + 20), STAGE.right - 20)
-            y = min(max(y, STAGE.top + 20), STAGE.bottom - 12)
+            if not self._record.exhibit.world.params.dynamic[body]:  # its middle may be far away
+                (x, y), (right, up) = view.points(self._middle(pair)).tolist(), way.tolist()
+                x, y = x + _INSIDE * right, y - _INSIDE * up
             canvas.text(letter, (x - 14, y + 5), size=SMALL + 2, colour=INK, weight="medium", align="centre")
 
+    def _middle(self, pair: Pair) -> Array:
+        """Return the middle of the points of contact, or of the face nearest to the other shape."""
+        contacts = self._record.contacts
+        if contacts is None or pair.contact is None:
+            return pair.axes[pair.chosen].start
+        manifold, row = contacts.manifold, pair.contact
+        middle: Array = manifold.points[row][manifold.valid[row]].mean(axis=0)
+        return middle
+
     def _draw_impulse(self, canvas: Canvas, view: View, piece: Piece) -> list[tuple[Colour, float, str]]:
-        """Draw the accumulated impulses on B, on one scale for all iterations of this contact."""
-        contacts, impulse = self._record.contacts, piece.impulse
+        """Draw the accumulated impulses on B, or on A if B cannot move; all iterations of a contact have one scale."""
+        contacts, impulse, pair = self._record.contacts, piece.impulse, piece.pair
         assert contacts is not None
         assert impulse is not None
+        assert pair is not None
+        on_b = bool(self._record.exhibit.world.params.dynamic[pair.bodies[1]])
         runs = self._record.impulses if piece.kind == "impulses" else self._record.overlaps
         most = max((float(np.abs(each.after).max()) for each in runs if each.contact == impulse.contact), default=0.0)
         if most < 1e-9:
@@ -141,16 +155,15 @@ class StepView:
         size, length = _scale(most)
         manifold, row = contacts.manifold, impulse.contact
         normal, along = manifold.normal[row], right_of(manifold.normal[row])
-        first, second, rub = (impulse.after * length / size).tolist()
+        first, second, rub = (impulse.after * (length / size if on_b else -length / size)).tolist()
         valid = manifold.valid[row]
         for number, reach in ((0, first), (1, second)):
             if valid[number]:
                 _arrow_from(canvas, view, manifold.points[row, number], normal * reach, NET)
         if piece.kind == "impulses":
-            middle = manifold.points[row][valid].mean(axis=0)
-            _arrow_from(canvas, view, middle, along * rub, NET)
+            _arrow_from(canvas, view, self._middle(pair), along * rub, NET)
         words = texts.STEP_SCALE["impulse" if piece.kind == "impulses" else "push"]
-        return [(NET, length, words.format(size=written(size)))]
+        return [(NET, length, words.format(size=written(size), body="B" if on_b else "A"))]
 
     def _motion(self, piece: Piece, pair: Pair) -> tuple[Array, Array] | None:
         """Return the velocities (2, 3) of A and B before and after a piece that changes them."""

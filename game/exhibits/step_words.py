@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
@@ -12,7 +13,8 @@ from game.core import texts
 from game.exhibits.step_pieces import Piece, written
 from game.exhibits.step_record import Pair, StepRecord
 
-_MM = 1e3
+_MM: Final = 1e3
+_CLOSE: Final = 0.1  # metres below which a length is told in millimetres
 Rows = list[tuple[str, bool]]  # a row's words, and whether it is lit
 
 
@@ -20,6 +22,8 @@ def sentence(record: StepRecord, piece: Piece) -> str:
     """Return what happens in a piece."""
     if piece.kind == "boxes" and not record.pairs:
         return texts.STEP_NOTHING
+    if piece.kind == "axes" and piece.pair and piece.pair.contact is None:
+        return texts.STEP_APART
     impulse = piece.impulse
     runs = record.overlaps if piece.kind == "overlap" else record.impulses
     figures = {
@@ -58,8 +62,14 @@ def _axes(pair: Pair) -> Iterator[tuple[str, bool]]:
     for number, axis in enumerate(pair.axes):
         words = texts.STEP_ROWS["axis_A" if axis.first else "axis_B"]
         kind = "overlap" if axis.gap <= 0 else "touch" if axis.gap <= MARGIN else "gap"
-        gap = texts.STEP_ROWS[kind].format(size=_MM * abs(axis.gap))
+        gap = texts.STEP_ROWS[kind].format(size=_length(abs(axis.gap)))
         yield words.format(count=number + 1, gap=gap), number == pair.chosen
+
+
+def _length(metres: float) -> str:
+    if metres < _CLOSE:
+        return texts.STEP_ROWS["millimetres"].format(size=_MM * metres)
+    return texts.STEP_ROWS["metres"].format(size=metres)
 
 
 def _points(record: StepRecord, pair: Pair) -> Iterator[tuple[str, bool]]:

@@ -7,28 +7,30 @@ from typing import Final
 import pygame
 
 from game.core import texts
-from game.core.scene import Transition
 from game.core.source import source_of
+from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
-from game.drawing.tokens import INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE
+from game.drawing.tokens import INK, LABEL, MARGIN, MUTE, SMALL, TEXT, VIEW_SIZE
 from game.exhibits import Exhibit
 from game.exhibits.step_pieces import Piece, pieces_of
 from game.exhibits.step_record import Pair, StepRecord
-from game.exhibits.step_view import STAGE, StepView
+from game.exhibits.step_view import StepView
 from game.exhibits.step_words import rows, sentence
 from game.input.controls import Command
 from game.panels.code_listing import draw_listing
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FormScene
+from game.ui.hints import HintRow
 from game.ui.playback import LABEL_WIDTH
 from game.ui.widgets import Choice, Slider
 from game.world.grip import Grip
 
 _LISTING: Final = (690.0, 148.0, VIEW_SIZE[0] - 690.0 - 40, 300.0)
-_NOTES: Final = 176.0
+_HINTS: Final = 620.0
+_NOTES: Final = 164.0  # at the normal size of text
 _ROWS: Final = 478.0  # baseline of the first row of figures
 _LEADING: Final = 18.0
 _TABS: Final = (MARGIN, 50.0, 860.0, 24.0)
@@ -55,7 +57,9 @@ class PhysicsStepScene(FormScene):
         if self.record.pairs:
             words = texts.STEP_FOLLOWED
             box = pygame.Rect(_FOLLOW)
-            follow = Choice(manager, box, texts.STEP_FOLLOW, words, 0, self._follow, label_width=LABEL_WIDTH, size=SMALL)
+            follow = Choice(
+                manager, box, texts.STEP_FOLLOW, words, 0, self._follow, label_width=LABEL_WIDTH, size=SMALL
+            )
             self.form.add(follow)
         self.form.focus(self._slider)
 
@@ -132,27 +136,32 @@ class PhysicsStepScene(FormScene):
             self.form.goes_back(texts.HINT_BACK),
         ]
 
-    def update(self) -> Transition | None:
-        """Animate the widgets."""
-        return self.form.update()
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints in the upper right corner."""
+        return [HintRow(self.hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True, room=_HINTS)]
 
     # The picture
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
+    def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the piece, the code that computed it, and its figures."""
         piece = self.piece
         self._sky.draw(canvas)
         canvas.text(texts.STEP_TITLE, (MARGIN, 38), size=SMALL, colour=MUTE)
         self._view.draw(canvas, piece, piece.pair or self.pair)
-        draw_wrapped(canvas, sentence(self.record, piece), (MARGIN, 108), VIEW_SIZE[0] - 2 * MARGIN, size=TEXT, leading=20)
+        draw_wrapped(
+            canvas, sentence(self.record, piece), (MARGIN, 108), VIEW_SIZE[0] - 2 * MARGIN, size=TEXT, leading=20
+        )
         source = source_of(piece.function)
         if source:
-            draw_listing(canvas, _LISTING, source, piece.line, piece.notes, notes_width=_NOTES if piece.notes else 0.0)
+            width = _NOTES * typeface.grown(LABEL) / LABEL
+            draw_listing(canvas, _LISTING, source, piece.line, piece.notes, notes_width=width if piece.notes else 0.0)
         else:
             canvas.text(texts.STEP_NO_SOURCE, (_LISTING[0], _LISTING[1] + 14), size=SMALL, colour=MUTE)
         y = _ROWS
         for words, lit in rows(self.record, piece):
-            canvas.text(words, (_LISTING[0], y), size=SMALL, colour=INK if lit else MUTE, tabular=True, room=_LISTING[2])
+            canvas.text(
+                words, (_LISTING[0], y), size=SMALL, colour=INK if lit else MUTE, tabular=True, room=_LISTING[2]
+            )
             y += _LEADING
         self.form.draw(canvas)
         self.draw_hints(canvas)
