@@ -122,12 +122,12 @@ class Bench:
             words = texts.LAW_CANCEL if self.measuring else texts.LAW_MEASURE
             left, top = self.panel.foot
             box = pygame.Rect(left, top, BOX.width - 56, _HEIGHT)
-            new = [TextButton(self._form.manager, box, words, self._measure, size=SMALL, colour=HUMAN)]
+            new = [TextButton(self._form.manager, box, words, self.measure, size=SMALL, colour=HUMAN)]
         if [each.label for each in new] != [each.label for each in self._panel_widgets]:
             self._form.replace([*self._buttons, *self._panel_widgets], [*self._buttons, *new])
             self._panel_widgets = new
 
-    def _measure(self) -> Transition | None:
+    def measure(self) -> Transition | None:
         """Begin to measure the whole range, or stop that."""
         assert self._exhibit
         self.measuring = None if self.measuring else RangeMeasurement(self._exhibit, self._name, self.results)
