@@ -15,6 +15,7 @@ ROUTES: Final = {
     "watch": "watch.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
     "digits": "digits.DigitsScene", "digit_training": "digit_training.DigitTrainingScene",
     "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
+    "physics_step": "physics_step.PhysicsStepScene",
     "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "settings.SettingsScene",
     "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "pause": "pause.PauseScene",
     "error_screen": "error_screen.ErrorScene",

@@ -9,6 +9,7 @@ from ai.digits.classifier import DigitClassifier
 from ai.lander.missions import MISSIONS
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
+from game.exhibits import EXHIBITS, Exhibit
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
 from game.play.challenge import FlownMission
@@ -23,6 +24,7 @@ from game.scenes.menu import MenuScene
 from game.scenes.missions import MissionsScene
 from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
+from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
 from game.scenes.quiz import QuizScene
 from game.scenes.replay import ReplayScene
@@ -46,6 +48,7 @@ SCREENS: dict[str, Make] = {
     "DreamScene": lambda context: DreamScene(context, reader()),
     "QuizScene": lambda context: QuizScene(context, reader()),
     "PhysicsScene": PhysicsScene,
+    "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
@@ -69,6 +72,14 @@ OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
 def reader() -> DigitClassifier:
     """A network that reads digits."""
     return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
+
+
+def fallen(steps: int = 100) -> Exhibit:
+    """An exhibit in which much touches and overlaps."""
+    heap = EXHIBITS["heap"](9.81, {"count": 40.0})
+    for _ in range(steps):
+        heap.step()
+    return heap
 
 
 def flown(context: Context) -> Record:

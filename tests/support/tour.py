@@ -25,6 +25,7 @@ from game.play.race import race
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.dream import DreamScene
 from game.scenes.physics import PhysicsScene
+from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
 from game.scenes.quiz import QuizScene
 from game.scenes.replay import ReplayScene
@@ -85,6 +86,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         **plain,
         "WatchScene": lambda: WatchScene(context, int(rng.choice(COUNTS))),
         "PhysicsScene": lambda: PhysicsScene(context, str(rng.choice(list(EXHIBITS)))),
+        "PhysicsStepScene": lambda: PhysicsStepScene(context, EXHIBITS[str(rng.choice(list(EXHIBITS)))](9.81)),
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1))),
         "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
