@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final, Literal
 
 import numpy as np
@@ -71,7 +70,7 @@ class Stage:
     outputs: Array
     order: npt.NDArray[np.intp]
 
-    @cached_property
+    @property
     def kind(self) -> Kind:
         """Kind of layer; "other" for those that cannot be written out as sums."""
         return _KINDS.get(type(self.layer), "other")
@@ -114,8 +113,17 @@ class Stage:
                 return 0, 0, height, width
         return max(top, 0), max(left, 0), min(bottom, height), min(right, width)
 
+    def strongest_input(self, place: Place) -> Place:
+        """Return the input that has the largest product in a unit's sum; of a pooling, the maximum."""
+        unit = self.unit(place)
+        row, column, channel = map(int, np.unravel_index(int(unit.products.argmax()), unit.products.shape))
+        height, width = self.inputs.shape[:2]
+        row, column = unit.corner[0] + row, unit.corner[1] + column
+        last = channel if unit.weights is not None else place[2]
+        return min(max(row, 0), height - 1), min(max(column, 0), width - 1), last
+
     def strongest_reader(self, place: Place) -> Place | None:
-        """Return the unit of this stage in whose sum one of its inputs has the largest product, plus or minus.
+        """Return the unit of this stage in whose sum one of its inputs has the largest product.
 
         None if no unit reads that input, or the layer cannot be written out.
         """
@@ -128,7 +136,7 @@ class Stage:
                 return found if found[0] < self.outputs.shape[0] and found[1] < self.outputs.shape[1] else None
             case FullyConnectedLayer(weights=weights) if self.kind == "connected":
                 weights = weights[self.order[place]]
-                return 0, 0, int(np.abs(self.inputs[place] * weights).argmax())
+                return 0, 0, int((self.inputs[place] * weights).argmax())
             case ConvolutionLayer() as layer if self.kind == "convolution":
                 return self._strongest_window(layer, place)
         return None
@@ -144,7 +152,7 @@ class Stage:
                 left, beside = divmod(column + layer.padding - across, layer.stride)
                 if below or beside or not (0 <= top < height and 0 <= left < width):
                     continue
-                products = np.abs(self.inputs[place] * layer.kernels[across, down, channel])
+                products = self.inputs[place] * layer.kernels[across, down, channel]
                 found = int(products.argmax())
                 if best is None or products[found] > best[0]:
                     best = float(products[found]), (top, left, found)

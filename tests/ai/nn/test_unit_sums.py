@@ -142,7 +142,23 @@ def test_the_strongest_reader_has_the_largest_product(case):
                 unit = stage.unit(each)
                 inside = place[0] - unit.corner[0], place[1] - unit.corner[1], place[2]
                 if all(0 <= at < size for at, size in zip(inside, unit.patch.shape, strict=True)):
-                    shares[each] = abs(float(unit.products[inside]))
+                    shares[each] = float(unit.products[inside])
             assert (reader is None) == (not shares)
             if shares:
                 assert shares[reader] == max(shares.values())
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_strongest_input_has_the_largest_product(case):
+    network, example = CASES[case]()
+    rng = np.random.default_rng(7)
+    for stage in stages(network, example):
+        for place in places(stage, rng, 20) if stage.kind != "other" else ():
+            found, unit = stage.strongest_input(place), stage.unit(place)
+            if stage.kind == "pooling":
+                assert stage.inputs[found] == unit.output
+            elif stage.kind == "activation":
+                assert found == place
+            else:
+                inside = found[0] - unit.corner[0], found[1] - unit.corner[1], found[2]
+                assert unit.products[inside] == unit.products.max() or 0 > min(inside) or unit.products.max() == 0
