@@ -136,7 +136,7 @@ class DigitsScene(FormScene):
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
             self.form.goes_back(texts.HINT_BACK),
             *self._gamepad_actions,
-            *(Action(key, self._clear) for key in (Command.RETRY, pygame.K_DELETE)),
+            *(Action(key, self.pad.clear) for key in (Command.RETRY, pygame.K_DELETE)),
             *(Action(key, partial(self._correct, digit)) for key, digit in _DIGITS.items()),
         ]
 
@@ -147,7 +147,7 @@ class DigitsScene(FormScene):
     @property
     def _gamepad_actions(self) -> tuple[Action, Action]:
         """Undo and clear, which buttons below the pad do as well."""
-        return Action(pygame.K_z, self._undo, gamepad=Command.HANDOVER), Action(Command.CHOICES, self._clear)
+        return Action(pygame.K_z, self._undo, gamepad=Command.HANDOVER), Action(Command.CHOICES, self.pad.clear)
 
     def update(self) -> Transition | None:
         """Read the drawing if it changed, and receive finished measurements."""
@@ -233,7 +233,7 @@ class DigitsScene(FormScene):
 
     def _add_words(self) -> None:
         manager, add = self.form.manager, self.form.add
-        below = (texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)
+        below = (texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self.pad.clear)
         self._under = add_below(self.form, below, PAD.left, _BELOW)
         above = (
             (texts.DIGITS_QUIZ, self._quiz),
@@ -250,8 +250,7 @@ class DigitsScene(FormScene):
         ]
 
     def _make_tabs(self) -> Choice:
-        names = list(self.fixing.networks)
-        return network_tabs(self.form.manager, names, self.chosen, self._choose, self._pick)
+        return network_tabs(self.form.manager, list(self.fixing.networks), self.chosen, self._choose, self._pick)
 
     def _choose(self, index: int) -> None:
         """Choose another network; if it can't be loaded, say so and keep the last one."""
@@ -309,9 +308,6 @@ class DigitsScene(FormScene):
 
     def _undo(self) -> None:
         self.pad.undo()
-
-    def _clear(self) -> None:
-        self.pad.clear()
 
     def _draw_words(self, canvas: Canvas) -> None:
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:

@@ -161,4 +161,4 @@ def test_the_strongest_input_has_the_largest_product(case):
                 assert found == place
             else:
                 inside = found[0] - unit.corner[0], found[1] - unit.corner[1], found[2]
-                assert unit.products[inside] == unit.products.max() or 0 > min(inside) or unit.products.max() == 0
+                assert unit.products[inside] == unit.products.max() or min(inside) < 0 or unit.products.max() == 0
