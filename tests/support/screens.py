@@ -3,9 +3,11 @@
 import time
 from collections.abc import Callable
 
+import numpy as np
 import pygame
 
 from ai.digits.classifier import DigitClassifier
+from ai.digits.preprocessing import Image, preprocess_strokes
 from ai.lander.missions import MISSIONS
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
@@ -16,6 +18,7 @@ from game.play.challenge import FlownMission
 from game.scenes.bindings import BindingsScene
 from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
+from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.dream import DreamScene
@@ -32,6 +35,7 @@ from game.scenes.runs import NetworksScene
 from game.scenes.settings import SettingsScene
 from game.scenes.train import TrainScene
 from game.scenes.watch import WatchScene
+from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
@@ -45,6 +49,8 @@ SCREENS: dict[str, Make] = {
     "TrainScene": TrainScene,
     "DigitsScene": DigitsScene,
     "DigitTrainingScene": DigitTrainingScene,
+    "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
+    "WhyNotScene": lambda context: WhyNotScene(context, reader(), seven()),
     "DreamScene": lambda context: DreamScene(context, reader()),
     "QuizScene": lambda context: QuizScene(context, reader()),
     "PhysicsScene": PhysicsScene,
@@ -80,6 +86,11 @@ def fallen(steps: int = 100) -> Exhibit:
     for _ in range(steps):
         heap.step()
     return heap
+
+
+def seven() -> Image:
+    """A seven as networks read it."""
+    return preprocess_strokes([np.array([(0.2, 0.2), (0.8, 0.2), (0.4, 0.9)]) * 500])
 
 
 def flown(context: Context) -> Record:
