@@ -221,9 +221,9 @@ class LanderEnv(Craft):
         """Return what lander `slot` would observe at other places (m, 2) in the air, moving as it does now: (m, 9)."""
         at = np.full(len(places), slot)
         offset = places - (self.pad[at] + np.array([0.0, self.params.stand]))
-        turned = (part[at] for part in self._turned())
+        sin, cos, spin = (part[at] for part in self._turned())
         nothing = np.zeros((len(places), 2), dtype=bool)
-        return sensed(offset, self._relative_velocity()[at], *turned, nothing, pads=len(self.ground.pads))
+        return sensed(offset, self._relative_velocity()[at], sin, cos, spin, nothing, pads=len(self.ground.pads))
 
     def _turned(self) -> tuple[Doubles, Doubles, Doubles]:
         """Return sine and cosine of every lander's angle, and its turning in rad/s, (n,) each."""
