@@ -55,6 +55,10 @@ class Touched(Protocol):
     def hand_view(self) -> View:
         """Return the view, in points."""
 
+    @property
+    def can_untouch(self) -> bool:
+        """Whether there is a touch to undo."""
+
     def take_hold(self) -> None:
         """Stop, so that it can be touched."""
 
@@ -85,7 +89,7 @@ class Hand(Widget):
         super().__init__(manager, box, texts.TOUCH_LANDER)
         self._lander, self._clear, self._size = lander, clear, size
         self.part, self.dragging = PLACE, False
-        self._grip = np.zeros(2)  # metres from the mouse to the lander
+        self._grip: Point = (0.0, 0.0)  # from the mouse to what it holds, in points
         self._arrows: dict[int, Command] = {}
         self._stick = [0.0, 0.0]
 
@@ -122,9 +126,10 @@ class Hand(Widget):
         """Return the part that the mouse would take at a point, if any."""
         if not self._lander.at_hand:
             return None
-        for part, place in ((SPEED, self.arrow[1]), (TILT, self.tilt_knob)):
-            if math.dist(point, place) <= _REACH:
-                return part
+        if math.dist(point, self.tilt_knob) <= _REACH:
+            return TILT
+        if _distance(point, *self.arrow) <= _REACH:
+            return SPEED
         return PLACE if math.dist(point, self.middle) <= self.radius else None
 
     # What it does
@@ -141,8 +146,8 @@ class Hand(Widget):
             if part is None:
                 return False
             self.part, self.dragging = part, True
-            place = self._lander.hand_view().metres(event.pos)
-            self._grip = self._lander.env.position[self._lander.shown] - place
+            held = {PLACE: self.middle, TILT: self.tilt_knob, SPEED: self.arrow[1]}[part]
+            self._grip = held[0] - event.pos[0], held[1] - event.pos[1]
             return True
         if event.type == pygame.MOUSEBUTTONUP and event.button == 1 and self.dragging:
             self.dragging = False
@@ -154,10 +159,10 @@ class Hand(Widget):
         return False
 
     def _drag_to(self, point: Point) -> None:
-        (x, y), view = self.middle, self._lander.hand_view()
-        right, down = point[0] - x, point[1] - y
+        (x, y), held = self.middle, (point[0] + self._grip[0], point[1] + self._grip[1])
+        right, down = held[0] - x, held[1] - y
         if self.part == PLACE:
-            self._put(place=view.metres(point) + self._grip)
+            self._put(place=self._lander.hand_view().metres(held))
         elif self.part == TILT:
             self._put(angle=math.atan2(-right, -down))
         else:
@@ -200,12 +205,13 @@ class Hand(Widget):
             back, turns = controls.word(Command.RETRY), " ".join(map(controls.word, _SHOULDERS))
         else:
             back, turns = "Z", "Q E"
+        undo = [Hint(back, texts.HINT_UNTOUCH, self._lander.untouch)] if self._lander.can_untouch else []
         return [
             Hint(controls.arrows, texts.TOUCH_PARTS[self.part]),
-            Hint(controls.word(Command.CONFIRM), texts.TOUCH_PARTS[(self.part + 1) % 3], self._next_part),
+            Hint(controls.word(Command.CONFIRM), texts.TOUCH_NEXT, self._next_part),
             Hint(turns, texts.TOUCH_PARTS[TILT]),
-            Hint(back, texts.HINT_UNTOUCH, self._lander.untouch),
-            Hint(controls.word(Command.BACK), texts.POINTER_LEAVE, self._let_go),
+            *undo,
+            Hint(controls.word(Command.BACK), texts.TOUCH_LEAVE, self._let_go),
         ]
 
     def take(self, event: pygame.event.Event) -> bool:
@@ -279,6 +285,9 @@ class Hand(Widget):
     # The picture
 
     def paint(self, canvas: Canvas) -> None:
+        """Draw nothing: the scene draws the hand before its panel."""
+
+    def draw(self, canvas: Canvas) -> None:
         """Draw the ring, the dot and the arrow while the lander can be touched; or the focus around it."""
         if not self._lander.at_hand:
             if self.ringed and self.warmth > 0.02:
@@ -326,3 +335,10 @@ class Hand(Widget):
         speed = float(np.hypot(*self._lander.env.velocity[self._lander.shown]))
         place = (tip[0] + 14 * float(way[0]) + 6, tip[1] + 14 * float(way[1]) + 4)
         canvas.text(texts.TOUCH_SPEED.format(speed=speed), place, size=SMALL, colour=HUMAN, tabular=True)
+
+
+def _distance(point: Point, start: Point, end: Point) -> float:
+    """Return the distance of a point from a line between two others."""
+    a, b, p = (np.array(each, float) for each in (start, end, point))
+    along = np.clip(np.dot(p - a, b - a) / max(float(np.dot(b - a, b - a)), 1e-6), 0.0, 1.0)
+    return math.dist(p, a + along * (b - a))

@@ -20,7 +20,7 @@ from game.flight.swarm import REST_STEPS, Swarm
 from game.ui.context import Context
 from game.ui.playback import Playback
 from game.world import framing
-from game.world.camera import Camera, ClearArea, View
+from game.world.camera import Camera, CameraTarget, ClearArea, View
 from game.world.landscape.backdrop import landscape
 from game.world.landscape.pad import draw_pad
 from game.world.paths import Trails
@@ -31,6 +31,7 @@ from game.world.stage import Stage
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
 SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smaller, to be seen through
 _CLEAR: Final = ClearArea(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
+_WHOLE_SKY: Final = CameraTarget.around(-15.5, 15.5, 17.0, ClearArea(right=PANEL.left))  # beside the panel, for a map
 _CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
 _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen
@@ -84,9 +85,11 @@ class Watched:
         return min(1.0, 1.5 * SIZES[self.env.num_envs])
 
     def set_up_camera(self) -> None:
-        """Let the camera follow a single lander; with several, a map or reduced motion, it shows the whole world."""
+        """Let the camera follow a single lander; with several, a map or reduced motion it rests."""
         self.camera, self.stage.calm = Camera(), self._context.settings.reduced_motion
-        if self._follows:
+        if self.policy_map.kind != OFF:
+            self.camera.cut(_WHOLE_SKY)
+        elif self._follows:
             self.camera.cut(framing.framed(self.env, clear=_CLEAR))
 
     @property

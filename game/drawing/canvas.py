@@ -101,9 +101,9 @@ class Canvas:
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
 
-    def lay(self, sheet: Canvas, x: float, y: float, flags: int = 0) -> None:
-        """Copy a sheet onto the canvas, with its top left corner at (x, y) in points; `flags` are pygame's."""
-        self.cover(self.surface.blit(sheet.surface, (self.px(x), self.px(y)), special_flags=flags))
+    def lay(self, sheet: Canvas, x: float, y: float) -> None:
+        """Copy a sheet onto the canvas, with its top left corner at (x, y) in points."""
+        self.cover(self.surface.blit(sheet.surface, (self.px(x), self.px(y))))
 
     def cover(self, area: pygame.Rect) -> None:
         """Note an area in pixels that holds something to read, for stars and notes to avoid."""

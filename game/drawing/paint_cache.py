@@ -21,17 +21,9 @@ class PaintCache:
         self._painted: dict[Hashable, Canvas] = {}
 
     def draw(
-        self,
-        canvas: Canvas,
-        box: pygame.typing.RectLike,
-        shows: Hashable,
-        paint: Callable[[Canvas], None],
-        flags: int = 0,
+        self, canvas: Canvas, box: pygame.typing.RectLike, shows: Hashable, paint: Callable[[Canvas], None]
     ) -> None:
-        """Draw a picture with its origin at the corner of `box`; call `paint` only for a new `shows`, its contents.
-
-        `flags` are pygame's for how it is blended.
-        """
+        """Draw a picture with its origin at the corner of `box`; call `paint` only for a new `shows`, its contents."""
         x, y, width, height = pygame.FRect(box)
         key = (canvas.size, canvas.palette, typeface.growth(), width, height, shows)
         painted = self._painted.get(key)
@@ -40,4 +32,4 @@ class PaintCache:
             paint(painted)
             if len(self._painted) > self._most:
                 del self._painted[next(iter(self._painted))]
-        canvas.lay(painted, x, y, flags)
+        canvas.lay(painted, x, y)

@@ -22,6 +22,8 @@ _REST: Final = 24  # updates for which the mouse rests before a tooltip is shown
 _AGAIN: Final = 6  # and before the next one
 _WIDTH: Final = 250.0  # points of a line
 _WITHIN: Final = pygame.Rect(8, 8, VIEW_SIZE[0] - 16, VIEW_SIZE[1] - 16)
+_HEAD, _FOOT = 72.0, 600.0  # rows of points above and below which an area stands at the head or foot
+_ASIDE: Final = 12.0
 _BEFORE: Final = frozenset({Command.LEFT, Command.UP, Command.PREVIOUS})
 _AFTER: Final = frozenset({Command.RIGHT, Command.DOWN, Command.NEXT, Command.HELP})
 _LEAVE: Final = frozenset({Command.BACK, Command.PAUSE, Command.UNPLUGGED})
@@ -73,20 +75,30 @@ class Explained:
         if self.stepping and areas:
             area = areas[self._number % len(areas)]
             canvas.outline(area.box.inflate(8, 6), 6, INK, 1, 0.8)
-            _draw(canvas, area, (area.box.right, area.box.centery))
+            _draw(canvas, area)
         elif self._ready and canvas.pointer is not None:
             under = [area for area in areas if area.box.collidepoint(canvas.pointer)]
             if under:
                 smallest = min(under, key=lambda area: area.box.width * area.box.height)
-                _draw(canvas, smallest, canvas.pointer)
+                _draw(canvas, smallest)
 
     def _begin(self) -> None:
         self.stepping, self._number = True, 0
 
 
-def _draw(canvas: Canvas, area: Explanation, place: Point) -> None:
+def _draw(canvas: Canvas, area: Explanation) -> None:
+    """Draw the tooltip beside its area, or below it at the head of the screen and above it at the foot."""
     what = wrapped(canvas, area.what, LABEL, _WIDTH)
     now = wrapped(canvas, area.now(), LABEL, _WIDTH)
     rows = [TooltipRow(line, "") for line in now if line]
+    box, within = area.box, pygame.FRect(_WITHIN)
+    place: Point = (box.right, box.centery)
+    if box.bottom < _HEAD:
+        within.height -= box.bottom + 6 - within.top
+        within.bottom, place = _WITHIN.bottom, (box.left - _ASIDE, 0)
+    elif box.top > _FOOT:
+        within.height, place = box.top - 6 - within.top, (box.left - _ASIDE, VIEW_SIZE[1])
+    elif box.right + _WIDTH + 40 > within.right:
+        within.width, place = box.left - 6 - within.left, (box.left, box.centery)
     with canvas.unnoted():
-        draw_tooltip(canvas, place, _WITHIN, what, rows)
+        draw_tooltip(canvas, place, within, what, rows)

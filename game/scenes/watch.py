@@ -39,7 +39,7 @@ from game.world.camera import Camera
 from game.world.policy_map import ACTION
 
 COUNTS: Final = tuple(SIZES)
-_ROW: Final = (MARGIN, 630.0, 22.0)  # left and top of the first row of choices, and how far to the next
+_ROW: Final = (MARGIN, 624.0, 22.0)  # left and top of the first row of choices, and how far to the next
 _ROW_HEIGHT: Final = 17.0
 _WIDEST: Final = 452.0  # of a row: the pad begins there
 _LONGEST_NAME: Final = 24
@@ -112,7 +112,7 @@ class WatchScene(FormScene):
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Explain, touch or pick a lander, or pass the event to the actions and the choices."""
-        if self.explained.handle_event(event) or self.hand.mouse(event):
+        if self.explained.handle_event(event) or (not self._on_panel(event) and self.hand.mouse(event)):
             return None
         if event.type == pygame.MOUSEWHEEL:
             self.hand.turn(event.y)
@@ -145,7 +145,8 @@ class WatchScene(FormScene):
         """Return the hints in two rows: what can be done with the lander, on the right of who flies; and the rest."""
         room = VIEW_SIZE[0] / 2 - 36 - canvas.text_width(self._said, size=TEXT) / 2 - 40
         hints = self.hints
-        first = 5 if self.hand.typing else 3 + (self.world.can_untouch and not self.context.controls.gamepad_in_use)
+        undo = self.world.can_untouch and not (self.context.controls.gamepad_in_use or self.hand.typing)
+        first = 4 if undo else 3
         right = VIEW_SIZE[0] - 36
         return [
             HintRow(row, (right, y), from_right=True, room=room)
@@ -162,6 +163,7 @@ class WatchScene(FormScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the swarm, the panel and the choices."""
         self.world.draw(canvas, self.playback.between(alpha))
+        self.hand.draw(canvas)
         draw_decision(canvas, self.decision)
         self._draw_words(canvas)
         self.explained.draw(canvas)
@@ -178,6 +180,10 @@ class WatchScene(FormScene):
 
     def _turn(self, direction: int) -> None:
         self.world.shown = (self.shown + direction) % COUNTS[self._count]
+
+    def _on_panel(self, event: pygame.event.Event) -> bool:
+        """Whether an event presses the mouse on the panel, which hides what lies under it."""
+        return event.type == pygame.MOUSEBUTTONDOWN and PANEL.collidepoint(event.pos)
 
     def _pick(self, point: tuple[float, float]) -> bool:
         """Show the decisions of the lander nearest to a point of the canvas, if one is close."""

@@ -15,12 +15,12 @@ import pygame
 
 from ai.common.decision import Decision
 from ai.common.environment import Doubles, Floats
-from ai.lander.environment import LanderEnv
+from ai.lander.environment import LIMITS, LanderEnv
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import Colour
 from game.flight.networks import Policy, decide, work_of
-from game.world.camera import GROUND_LINE, WORLD_WIDTH, View
+from game.world.camera import GROUND_LINE, View
 
 OFF, ACTION, SCORE = range(3)
 # Of the six actions, in their order: a hue says which jet fires, and a light one that the main engine burns as well.
@@ -32,9 +32,11 @@ COLOURS: Final[tuple[Colour, ...]] = (
 _SCORES: Final = np.array(
     [(26, 22, 92), (44, 72, 140), (44, 122, 140), (90, 168, 118), (196, 196, 90), (255, 226, 140)]
 )
-_STRENGTH: Final = 0.42  # light that the map adds to the sky
-_TOP: Final = 19.0  # metres; above it stand words
-_FADE: Final = 3.0  # metres over which it fades out below its top
+_COVER: Final = 0.5  # opacity of the map over the sky
+_HALF: Final = LIMITS.half_width  # metres to either side
+_TOP: Final = 20.0  # metres; above it stand words
+_FADE, _FADE_LOW = 2.5, 0.5  # metres over which it fades out at its top and sides, and at the ground
+_FINER: Final = 3  # by how much a map of actions is drawn finer than it was computed
 _GRIDS: Final = ((65, 29), (33, 15), (17, 8))  # places across and up: the coarser, the larger the network
 _PIECE: Final = 4_700_000  # multiplications in one update: about a third of a millisecond
 _LONGEST: Final = 120  # updates that one whole map should take at most; a coarser grid is used where it would not
@@ -107,14 +109,14 @@ class PolicyMap:
             self._finish()
 
     def draw(self, canvas: Canvas, view: View) -> None:
-        """Add the map's light to the sky."""
+        """Draw the map over the sky."""
         if self.kind == OFF or self.cells is None:
             return
         (left, top), (right, bottom) = view.points(self.cells.places[[0, -1], [0, -1]]).tolist()
         with canvas.unnoted():  # stars shine through it
             shows = self.cells, self.kind, self.scale
             box = (left, top, right - left, bottom - top)
-            self._picture.draw(canvas, box, shows, self._paint, flags=pygame.BLEND_RGB_ADD)
+            self._picture.draw(canvas, box, shows, self._paint)
 
     def _begin(self, env: LanderEnv, slot: int, work: int) -> None:
         """Begin a new map, unless nothing has changed since the last."""
@@ -141,33 +143,52 @@ class PolicyMap:
         self.cells, self._observations = PolicyCells(self._places, whole), None
         scores = self.cells.scores
         if scores is not None and np.isfinite(scores).any():
-            low, high = np.percentile(scores[np.isfinite(scores)], (2, 98))
+            low, high = np.percentile(scores[np.isfinite(scores)], (10, 98))
             before = self.scale or (low, high)
             low, high = min(low, before[0]), max(high, before[1])  # a scale that shrank would change all colours
             self.scale = float(_STEP * np.floor(low / _STEP)), float(_STEP * np.ceil(high / _STEP))
 
     def _paint(self, sheet: Canvas) -> None:
         """Paint the map on a sheet whose corners are the outermost places; at half resolution, since it is soft."""
-        small = pygame.surfarray.make_surface(self._image().swapaxes(0, 1))
-        half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
-        sheet.surface.blit(pygame.transform.scale(pygame.transform.smoothscale(small, half), sheet.size), (0, 0))
-
-    def _image(self) -> npt.NDArray[np.uint8]:
-        """Return the colour of every place, (rows, columns, 3)."""
         assert self.cells is not None
-        if self.kind == SCORE and (scores := self.cells.scores) is not None and self.scale is not None:
+        colours = self._colours(self.cells)
+        up, across = colours.shape[:2]
+        x, y = np.linspace(-_HALF, _HALF, across), np.linspace(_TOP, GROUND_LINE, up)
+        fade = np.minimum((_TOP - y) / _FADE, (y - GROUND_LINE) / _FADE_LOW).clip(0, 1)[:, None]
+        fade = fade * ((_HALF - np.abs(x)) / _FADE).clip(0, 1)
+        small = pygame.Surface((across, up), pygame.SRCALPHA)
+        pygame.surfarray.pixels3d(small)[:] = np.round(colours).astype(np.uint8).swapaxes(0, 1)
+        pygame.surfarray.pixels_alpha(small)[:] = np.round(255 * _COVER * fade).astype(np.uint8).T
+        half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
+        sheet.surface = pygame.transform.scale(pygame.transform.smoothscale(small, half), sheet.size)
+
+    def _colours(self, cells: PolicyCells) -> Doubles:
+        """Return the colour of every place, (rows, columns, 3); of actions finer, with borders between them."""
+        shape, decision = cells.places.shape[:2], cells.decision
+        if self.kind == SCORE and (scores := cells.scores) is not None and self.scale is not None:
             low, high = self.scale
-            colours = score_colours((np.nan_to_num(scores, nan=low) - low) / max(high - low, 1e-6))
-        else:
-            colours = np.array(COLOURS, float)[self.cells.decision.action].reshape(*self.cells.places.shape[:2], 3)
-        fade = np.clip((_TOP - self.cells.places[..., 1]) / _FADE, 0.0, 1.0)
-        return np.round(_STRENGTH * fade[..., None] * colours).astype(np.uint8)
+            return score_colours((np.nan_to_num(scores, nan=low) - low) / max(high - low, 1e-6))
+        weights = (
+            np.eye(len(COLOURS), dtype=np.float32)[decision.action] if decision.values is None else decision.values
+        )
+        fine = _between(_between(weights.reshape(*shape, -1)).swapaxes(0, 1)).swapaxes(0, 1)
+        colours: Doubles = np.array(COLOURS, float)[fine.argmax(axis=-1)]
+        return colours
+
+
+def _between(values: Floats) -> Floats:
+    """Return values (n, ...) with `_FINER` - 1 more between each two neighbours, on a straight line between them."""
+    count = (len(values) - 1) * _FINER + 1
+    place = np.arange(count) / np.float32(_FINER)
+    left = np.minimum(place.astype(int), len(values) - 2)
+    share = (place - left).astype(np.float32).reshape(-1, *[1] * (values.ndim - 1))
+    finer: Floats = values[left] + share * (values[left + 1] - values[left])
+    return finer
 
 
 def grid_places(across: int, up: int) -> Doubles:
     """Return a grid of places over the sky in metres, (up, across, 2), the highest first."""
-    half = WORLD_WIDTH / 2
-    places = np.meshgrid(np.linspace(-half, half, across), np.linspace(_TOP, GROUND_LINE, up))
+    places = np.meshgrid(np.linspace(-_HALF, _HALF, across), np.linspace(_TOP, GROUND_LINE, up))
     return np.stack(places, axis=-1)
 
 
