@@ -15,10 +15,10 @@ from game.drawing.tokens import INK, LABEL, MARGIN, MUTE, SMALL
 from game.panels.q_values import signed
 from game.world.policy_map import ACTION, COLOURS, OFF, PolicyMap, score_colours
 
-_LEFT, _TOP, _ROW = float(MARGIN), 178.0, 17.0
+_LEFT, _TOP, _ROW = float(MARGIN), 226.0, 17.0
 _SWATCH: Final = (14.0, 8.0)
 _BAR: Final = (150.0, 6.0)
-_ROOM: Final = 190.0
+_ROOM: Final = 230.0
 _BARS: Final = PaintCache(1)
 
 

@@ -16,7 +16,7 @@ import pygame
 from ai.common.environment import Doubles
 from ai.lander.environment import LanderEnv
 from game.core import texts
-from game.drawing.canvas import Canvas, Point
+from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.tokens import HUMAN, NIGHT0, SMALL
 from game.input.controls import Command, Controls, translate
 from game.ui.hints import Hint
@@ -333,8 +333,9 @@ class Hand(Widget):
             end = np.array(tip) - 9 * way + side * 5 * aside
             canvas.line(tip, (float(end[0]), float(end[1])), HUMAN, 2.0 if lit else 1.5)
         speed = float(np.hypot(*self._lander.env.velocity[self._lander.shown]))
-        place = (tip[0] + 14 * float(way[0]) + 6, tip[1] + 14 * float(way[1]) + 4)
-        canvas.text(texts.TOUCH_SPEED.format(speed=speed), place, size=SMALL, colour=HUMAN, tabular=True)
+        place = (tip[0] + 10 * float(way[0]), tip[1] + 16 * float(way[1]) + 4)
+        align: Align = "centre" if abs(way[0]) < 0.4 else "left" if way[0] > 0 else "right"
+        canvas.text(texts.TOUCH_SPEED.format(speed=speed), place, size=SMALL, colour=HUMAN, align=align, tabular=True)
 
 
 def _distance(point: Point, start: Point, end: Point) -> float:

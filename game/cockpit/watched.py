@@ -31,7 +31,7 @@ from game.world.stage import Stage
 SPEEDS: Final = (0.25, 0.5, 1.0, 2.0, 4.0)
 SIZES: Final = {1: 1.0, 16: 0.66, 64: 0.46, 256: 0.36}  # a crowd is drawn smaller, to be seen through
 _CLEAR: Final = ClearArea(left=340.0, right=PANEL.left - 16.0)  # beside the choices and the panel
-_WHOLE_SKY: Final = CameraTarget.around(-15.5, 15.5, 17.0, ClearArea(right=PANEL.left))  # beside the panel, for a map
+_WHOLE_SKY: Final = CameraTarget.around(-17.0, 17.0, 17.0, ClearArea(right=PANEL.left))  # beside the panel, for a map
 _CROWD: Final = 64  # landers from which on a trail more only adds to the tangle
 _CLICK_REACH: Final = 1.6  # metres
 _WRECK_STEPS: Final = 8  # steps a wreck of a swarm stays to be seen

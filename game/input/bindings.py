@@ -33,7 +33,6 @@ class Command(Enum):
     PREVIOUS = auto()
     CHOICES = auto()
     MODE = auto()
-    HELP = auto()
     FULLSCREEN = auto()
     SCREENSHOT = auto()
     UNPLUGGED = auto()  # not a press: the gamepad in use was unplugged
@@ -92,7 +91,6 @@ KEYS: Final[Table] = {
     Command.STEP: (pygame.K_PERIOD,),
     Command.NEXT: (pygame.K_n, pygame.K_PAGEDOWN),
     Command.PREVIOUS: (pygame.K_b, pygame.K_PAGEUP),
-    Command.HELP: (pygame.K_F1,),
     Command.FULLSCREEN: (pygame.K_F11,),
     Command.SCREENSHOT: (pygame.K_F12,),
 }
@@ -110,7 +108,6 @@ BUTTONS: Final[Table] = {
     Command.STEP: (pygame.CONTROLLER_BUTTON_RIGHTSTICK,),
     Command.NEXT: (pygame.CONTROLLER_BUTTON_RIGHTSHOULDER,),
     Command.PREVIOUS: (pygame.CONTROLLER_BUTTON_LEFTSHOULDER,),
-    Command.HELP: (TRIGGER_LEFT,),
     Command.FULLSCREEN: (),
     Command.SCREENSHOT: (),
 }

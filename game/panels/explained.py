@@ -1,7 +1,7 @@
 """Explanations: every word and bar says what it is, its unit, and what it means now.
 
 Whoever draws something notes its area with `Canvas.explain`. The mouse, at rest over an area, shows a tooltip; by keys
-and gamepad, the help command goes from one area to the next.
+and gamepad, F1 or the gamepad's Back button explains one area after the other.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _WITHIN: Final = pygame.Rect(8, 8, VIEW_SIZE[0] - 16, VIEW_SIZE[1] - 16)
 _HEAD, _FOOT = 72.0, 600.0  # rows of points above and below which an area stands at the head or foot
 _ASIDE: Final = 12.0
 _BEFORE: Final = frozenset({Command.LEFT, Command.UP, Command.PREVIOUS})
-_AFTER: Final = frozenset({Command.RIGHT, Command.DOWN, Command.NEXT, Command.HELP})
+_AFTER: Final = frozenset({Command.RIGHT, Command.DOWN, Command.NEXT})
 _LEAVE: Final = frozenset({Command.BACK, Command.PAUSE, Command.UNPLUGGED})
 _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN)
 
@@ -44,8 +44,8 @@ class Explained:
         self._ready = False  # whether the mouse has rested for long enough
 
     def action(self) -> Action:
-        """Return the action that explains the first area."""
-        return Action(Command.HELP, self._begin, texts.HINT_EXPLAIN)
+        """Return the action that explains the first area; to be the last of a table, as F1 can be bound otherwise."""
+        return Action(pygame.K_F1, self._begin, texts.HINT_EXPLAIN, gamepad=Command.CHOICES)
 
     def handle_event(self, event: pygame.event.Event) -> bool:
         """Go on to another area, or end; false for an event that is the scene's."""
@@ -54,10 +54,12 @@ class Explained:
             self.stepping = self._ready = False
             return False
         command = translate(event)
-        if not self.stepping or command is None:
+        if not self.stepping:
             return False
-        if command in _BEFORE or command in _AFTER:
-            self._number += 1 if command in _AFTER else -1
+        if command in _AFTER or self.action().answers(event):
+            self._number += 1
+        elif command in _BEFORE:
+            self._number -= 1
         elif command in _LEAVE:
             self.stepping = False
         else:
@@ -70,7 +72,7 @@ class Explained:
         self._ready = self._rest >= _REST
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the tooltip of the area that is pointed at, or that the help command has come to."""
+        """Draw the tooltip of the area that is pointed at, or that is the next to be explained."""
         areas = canvas.explained
         if self.stepping and areas:
             area = areas[self._number % len(areas)]

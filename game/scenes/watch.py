@@ -124,14 +124,14 @@ class WatchScene(FormScene):
         """Stop and step; touch, and undo it; colour the sky; explain; show another lander; begin anew; pause."""
         many = COUNTS[self._count] > 1
         stop, step, *speeds = self.playback.actions(texts.HINT_DECISION)
-        undo = texts.HINT_UNTOUCH if self.world.can_untouch and not self.context.controls.gamepad_in_use else ""
+        by_pad = self.context.controls.gamepad_in_use  # which undoes in the hand, and finds the maps in their row
+        undo = [Action(pygame.K_z, self.world.untouch, "" if by_pad else texts.HINT_UNTOUCH)]
         return [
             stop,
             step,
             Action(Command.MODE, self._touch, texts.HINT_TOUCH),
-            *([Action(pygame.K_z, self.world.untouch, undo)] if self.world.can_untouch else []),
-            Action(Command.CHOICES, self._turn_map, texts.HINT_MAP),
-            self.explained.action(),
+            *(undo if self.world.can_untouch else []),
+            Action(pygame.K_m, self._turn_map, "" if by_pad else texts.HINT_MAP),
             Action(Command.NEXT, lambda: self._turn(1), texts.HINT_NEXT_LANDER if many else ""),
             Action(Command.RETRY, self._begin_anew, texts.HINT_RESTART),
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
@@ -139,6 +139,7 @@ class WatchScene(FormScene):
             Action(pygame.K_q, lambda: self.hand.turn(1)),
             Action(pygame.K_e, lambda: self.hand.turn(-1)),
             *speeds,
+            self.explained.action(),
         ]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:

@@ -159,6 +159,7 @@ class PolicyMap:
         small = pygame.Surface((across, up), pygame.SRCALPHA)
         pygame.surfarray.pixels3d(small)[:] = np.round(colours).astype(np.uint8).swapaxes(0, 1)
         pygame.surfarray.pixels_alpha(small)[:] = np.round(255 * _COVER * fade).astype(np.uint8).T
+        small = pygame.transform.box_blur(small, 1)
         half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
         sheet.surface = pygame.transform.scale(pygame.transform.smoothscale(small, half), sheet.size)
 
