@@ -122,6 +122,15 @@ class Hand(Widget):
         tip = tail + _PER_SPEED * min(speed, FASTEST)
         return (x + tail * way[0], y + tail * way[1]), (x + tip * way[0], y + tip * way[1])
 
+    @property
+    def busy(self) -> bool:
+        """Whether it holds the lander, by mouse, keys or gamepad."""
+        return self.dragging or self.typing
+
+    def used(self, pointer: Point | None) -> bool:
+        """Whether it holds the lander, or the mouse points at a part to take."""
+        return self.busy or (pointer is not None and self.part_at(pointer) is not None)
+
     def part_at(self, point: Point) -> int | None:
         """Return the part that the mouse would take at a point, if any."""
         if not self._lander.at_hand:
@@ -303,7 +312,7 @@ class Hand(Widget):
 
     def _takes(self, canvas: Canvas, part: int) -> bool:
         """Whether a part is held, or would be taken by the mouse."""
-        if self.dragging or self.typing:
+        if self.busy:
             return self.part == part
         return canvas.pointer is not None and self.part_at(canvas.pointer) == part
 

@@ -112,7 +112,7 @@ class WatchScene(FormScene):
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Explain, touch or pick a lander, or pass the event to the actions and the choices."""
-        if self.explained.handle_event(event) or (not self._on_panel(event) and self.hand.mouse(event)):
+        if self.explained.handle_event(event) or self.hand.mouse(event):
             return None
         if event.type == pygame.MOUSEWHEEL:
             self.hand.turn(event.y)
@@ -164,8 +164,12 @@ class WatchScene(FormScene):
     def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the world, the swarm, the panel and the choices."""
         self.world.draw(canvas, self.playback.between(alpha))
-        self.hand.draw(canvas)
+        above = self.hand.used(canvas.pointer)  # then it is drawn over the panel
+        if not above:
+            self.hand.draw(canvas)
         draw_decision(canvas, self.decision)
+        if above:
+            self.hand.draw(canvas)
         self._draw_words(canvas)
         self.explained.draw(canvas)
 
@@ -181,10 +185,6 @@ class WatchScene(FormScene):
 
     def _turn(self, direction: int) -> None:
         self.world.shown = (self.shown + direction) % COUNTS[self._count]
-
-    def _on_panel(self, event: pygame.event.Event) -> bool:
-        """Whether an event presses the mouse on the panel, which hides what lies under it."""
-        return event.type == pygame.MOUSEBUTTONDOWN and PANEL.collidepoint(event.pos)
 
     def _pick(self, point: tuple[float, float]) -> bool:
         """Show the decisions of the lander nearest to a point of the canvas, if one is close."""

@@ -156,12 +156,14 @@ class PolicyMap:
         x, y = np.linspace(-_HALF, _HALF, across), np.linspace(_TOP, GROUND_LINE, up)
         fade = np.minimum((_TOP - y) / _FADE, (y - GROUND_LINE) / _FADE_LOW).clip(0, 1)[:, None]
         fade = fade * ((_HALF - np.abs(x)) / _FADE).clip(0, 1)
-        small = pygame.Surface((across, up), pygame.SRCALPHA)
-        pygame.surfarray.pixels3d(small)[:] = np.round(colours).astype(np.uint8).swapaxes(0, 1)
-        pygame.surfarray.pixels_alpha(small)[:] = np.round(255 * _COVER * fade).astype(np.uint8).T
-        small = pygame.transform.box_blur(small, 1)
+        small = pygame.surfarray.make_surface(np.round(colours).astype(np.uint8).swapaxes(0, 1))
+        if self.kind == ACTION:
+            small = pygame.transform.box_blur(small, 1)
+        veil = pygame.Surface(small.get_size(), pygame.SRCALPHA)
+        veil.blit(small, (0, 0))
+        pygame.surfarray.pixels_alpha(veil)[:] = np.round(255 * _COVER * fade**2 * (3 - 2 * fade)).astype(np.uint8).T
         half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
-        sheet.surface = pygame.transform.scale(pygame.transform.smoothscale(small, half), sheet.size)
+        sheet.surface = pygame.transform.scale(pygame.transform.smoothscale(veil, half), sheet.size)
 
     def _colours(self, cells: PolicyCells) -> Doubles:
         """Return the colour of every place, (rows, columns, 3); of actions finer, with borders between them."""
