@@ -110,6 +110,11 @@ def rows() -> dict[str, Row]:
         "choices": Row(play.make, (pygame.K_c, pygame.K_DOWN)),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
+        "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
+        "watch, map of scores": Row(
+            lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
+        ),
+        "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         "physics, contacts": Row(heap, (pygame.K_c,)),
         **{f"physics, {name}, plot": Row(lambda context, n=name: plotted(context, n)) for name in EXHIBITS},
