@@ -23,7 +23,7 @@ _LINE: Final = 38
 
 
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
-ROWS: Final = ("play", "missions", "watch", "train", "digits", "physics", "logbook", "settings", "quit")
+ROWS: Final = ("play", "missions", "watch", "train", "digits", "learn", "physics", "logbook", "settings", "quit")
 
 
 class MenuScene(FormScene):
