@@ -19,6 +19,7 @@ class Entry(NamedTuple):
 # By the key of each chapter's texts in `texts.LEARN`.
 PATH: Final[dict[str, Entry]] = {
     "neuron": Entry("neuron.NeuronChapter", 3),
+    "plane": Entry("plane.PlaneChapter", 3),
 }
 FIRST: Final = next(iter(PATH))
 
