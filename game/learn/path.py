@@ -20,6 +20,7 @@ class Entry(NamedTuple):
 PATH: Final[dict[str, Entry]] = {
     "neuron": Entry("neuron.NeuronChapter", 3),
     "plane": Entry("plane.PlaneChapter", 3),
+    "downhill": Entry("downhill.DownhillChapter", 4),
 }
 FIRST: Final = next(iter(PATH))
 

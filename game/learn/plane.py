@@ -178,8 +178,8 @@ class PlaneChapter(Chapter):
         y = _PLANE.bottom + 18
         canvas.text(left, (_PLANE.left, y), size=LABEL, colour=MUTE, room=_SIDE / 2 - 8)
         canvas.text(right, (_PLANE.right, y), size=LABEL, colour=MUTE, align="right", room=_SIDE / 2 - 8)
-        for text, y in ((above, _PLANE.top + 16), (below, _PLANE.bottom - 8)):
-            canvas.text(text, (_PLANE.centerx + 6, y), size=LABEL, room=_SIDE / 2 - 12)
+        for text, y in ((above, _PLANE.top + 10), (below, _PLANE.bottom - 2)):
+            canvas.text(text, (_PLANE.right + 8, y), size=LABEL, colour=MUTE, room=124)
 
     def _draw_network(self, canvas: Canvas) -> None:
         """Draw each hidden unit as its own map of the plane, with lines as wide as the weights."""

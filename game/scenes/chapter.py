@@ -58,6 +58,7 @@ class ChapterScene(FormScene):
         context.settings.chapter = key
         self._progress.note(key, page=self.page)
         self._offer()
+        self.form.focus(self._widgets[0])
 
     def close(self) -> None:
         """Save the progress, and let the chapter release what it holds."""
@@ -157,6 +158,7 @@ class ChapterScene(FormScene):
     def _guess(self, number: int) -> None:
         self._progress.note(self.key, guess=number)
         self.turn_to(_TRY)
+        self.form.focus(self._widgets[0])
 
     def _show_function(self, number: int) -> None:
         self._function = number
