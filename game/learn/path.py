@@ -21,6 +21,7 @@ PATH: Final[dict[str, Entry]] = {
     "neuron": Entry("neuron.NeuronChapter", 3),
     "plane": Entry("plane.PlaneChapter", 3),
     "downhill": Entry("downhill.DownhillChapter", 4),
+    "backwards": Entry("backwards.BackwardsChapter", 3),
 }
 FIRST: Final = next(iter(PATH))
 
