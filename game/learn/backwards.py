@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -194,9 +195,7 @@ class BackwardsChapter(Chapter):
         for stage, (box, columns) in enumerate(zip(_BOXES, _COLUMNS, strict=True)):
             blamed = self.reached >= 4 - stage
             shows = (stage, blamed, self.steps, self.chosen)
-            self._cache.draw(
-                canvas, box, shows, lambda sheet, s=stage, b=blamed, c=columns: self._paint(sheet, s, b, c)
-            )
+            self._cache.draw(canvas, box, shows, partial(self._paint, stage, blamed, columns))
             canvas.text(
                 texts.LEARN_BACKWARDS_STAGES[stage], (box.left, box.top - 10), size=LABEL, colour=MUTE, room=180
             )
@@ -209,7 +208,7 @@ class BackwardsChapter(Chapter):
         words = texts.LEARN_BACKWARDS_COLOURS
         canvas.text(words, (STAGE.left, STAGE.bottom - 6), size=LABEL, colour=MUTE, room=STAGE.width)
 
-    def _paint(self, sheet: Canvas, stage: int, blamed: bool, columns: int) -> None:
+    def _paint(self, stage: int, blamed: bool, columns: int, sheet: Canvas) -> None:
         values = self.blames[stage] if blamed else self._image[0] if stage == 0 else np.abs(self.units[stage - 1])
         shown = -values / max(float(np.abs(values).max()), 1e-9) if blamed else values
         shades = SIGNED if blamed else GREY

@@ -22,6 +22,7 @@ PATH: Final[dict[str, Entry]] = {
     "plane": Entry("plane.PlaneChapter", 3),
     "downhill": Entry("downhill.DownhillChapter", 4),
     "backwards": Entry("backwards.BackwardsChapter", 3),
+    "pay": Entry("pay.PayChapter", 5),
 }
 FIRST: Final = next(iter(PATH))
 
