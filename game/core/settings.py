@@ -49,6 +49,8 @@ class Settings:
     buttons: dict[str, Any] = field(default_factory=dict)  # the same for gamepads
     tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
+    learnt: dict[str, Any] = field(default_factory=dict)  # progress by chapter, as game.learn.progress writes it
+    chapter: str = ""  # key of the chapter last opened
     unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged
     unread: bool = field(default=False, compare=False)  # whether the file exists but could not be read; not saved
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import pygame
@@ -14,14 +15,17 @@ from game.core.scene import Push, Scene
 from game.exhibits import EXHIBITS, Exhibit
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
+from game.learn.path import PATH
 from game.play.challenge import FlownMission
 from game.scenes.bindings import BindingsScene
+from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.dream import DreamScene
+from game.scenes.learn import LearnScene
 from game.scenes.logbook import LogbookScene
 from game.scenes.menu import MenuScene
 from game.scenes.missions import MissionsScene
@@ -55,6 +59,8 @@ SCREENS: dict[str, Make] = {
     "QuizScene": lambda context: QuizScene(context, reader()),
     "PhysicsScene": PhysicsScene,
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
+    "LearnScene": LearnScene,
+    **{f"Chapter, {key}": partial(ChapterScene, key=key) for key in PATH},
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
