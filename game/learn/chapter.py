@@ -22,7 +22,7 @@ from game.ui.context import Context
 from game.ui.widget import PointsManager, Widget
 
 STAGE: Final = pygame.FRect(448, 164, VIEW_SIZE[0] - MARGIN - 448, 452)  # where the picture is, in points
-PANEL: Final = pygame.FRect(MARGIN, 340, 344, 276)  # where the widgets of the second page are
+PANEL: Final = pygame.FRect(MARGIN, 304, 344, 312)  # where the widgets of the second page are
 ROW: Final = 34.0  # height of a row of widgets
 
 

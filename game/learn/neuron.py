@@ -44,6 +44,8 @@ class NeuronChapter(Chapter):
 
     Attributes:
         seconds: how long the present flight has been upright and in sight.
+        sensed: what the neuron was given for its latest decision, (1, 3).
+        output: what it answered, from -1 to 1.
         best: the longest such time, with the weights of then.
 
     """
@@ -72,11 +74,6 @@ class NeuronChapter(Chapter):
     def weights(self) -> tuple[float, ...]:
         """The three weights."""
         return tuple(self.layer.weights[:, 0].tolist())
-
-    @property
-    def sensed(self) -> Floats:
-        """What the neuron is given, (1, 3)."""
-        return self.env.observe()[:, SENSES]
 
     def widgets(self) -> list[Widget]:
         """Return a slider for each weight, and two buttons."""
@@ -121,6 +118,7 @@ class NeuronChapter(Chapter):
 
     def _decide(self) -> None:
         """Let the neuron choose the jet; a fixed rule fires the main engine when the lander sinks."""
+        self.sensed: Floats = self.env.observe()[:, SENSES]
         self.output = float(self.network.predict(self.sensed)[0, 0])
         self.steer = 1 if self.output > _FIRES else 2 if self.output < -_FIRES else 0
         sinking = self.env.velocity[0, 1] + 0.5 * (self.env.position[0, 1] - _HEIGHT) < 0

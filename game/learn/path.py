@@ -19,6 +19,8 @@ class Entry(NamedTuple):
 # By the key of each chapter's texts in `texts.LEARN`.
 PATH: Final[dict[str, Entry]] = {
     "neuron": Entry("neuron.NeuronChapter", 3),
+    "plane": Entry("plane.PlaneChapter", 3),
+    "downhill": Entry("downhill.DownhillChapter", 4),
 }
 FIRST: Final = next(iter(PATH))
 

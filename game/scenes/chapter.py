@@ -25,10 +25,11 @@ from game.ui.context import Context
 from game.ui.form_scene import FormScene
 from game.ui.widget import Widget
 from game.ui.widgets import Choice, TextButton
+from game.ui.words import row_width
 
 _PREDICT, _TRY, _WHY, _CODE = range(len(PAGES))
 _COLUMN: Final = (MARGIN, 188.0, 344.0)  # left, first baseline and width of the text
-_TABS: Final = (MARGIN, 120, 800, 26)
+_TABS: Final = (MARGIN, 120)
 _BODY, _LEADING = SMALL + 1.5, 20.0
 _ANSWER: Final = 38  # points from one answer to the next
 _NOTES: Final = 230.0  # width of what stands beside lines of code
@@ -51,11 +52,13 @@ class ChapterScene(FormScene):
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
         self.chapter = chapter_type(key)(context, self.form.manager)
         self.page, self._function, self._told = self._progress.page(key), 0, ""
-        self._tabs = self.form.add(Choice(self.form.manager, _TABS, "", texts.LEARN_PAGES, self.page, self.turn_to))
+        tabs = (*_TABS, row_width(texts.LEARN_PAGES, TEXT), 26)
+        self._tabs = self.form.add(Choice(self.form.manager, tabs, "", texts.LEARN_PAGES, self.page, self.turn_to))
         self._widgets: list[Widget] = []
         context.settings.chapter = key
         self._progress.note(key, page=self.page)
         self._offer()
+        self.form.focus(self._widgets[0])
 
     def close(self) -> None:
         """Save the progress, and let the chapter release what it holds."""
@@ -155,6 +158,7 @@ class ChapterScene(FormScene):
     def _guess(self, number: int) -> None:
         self._progress.note(self.key, guess=number)
         self.turn_to(_TRY)
+        self.form.focus(self._widgets[0])
 
     def _show_function(self, number: int) -> None:
         self._function = number

@@ -12,8 +12,8 @@ from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
-from game.play.challenge import FlownMission
 from game.learn.path import PATH
+from game.play.challenge import FlownMission
 from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
