@@ -20,7 +20,7 @@ from ai.lander.one_engine import OneEngineEnv
 from ai.lander.rewards import RewardWeights
 
 # Plain deep Q-learning: a hard copy of the target network every 100 gradient steps, as Mnih et al. 2015 had it.
-SMALL: Final = Config(
+SMALL_RUN: Final = Config(
     learning_rate=3e-3, final_learning_rate=3e-3, discount=0.99, n_step=1, batch_size=64, gradient_steps=4, cost="mse",
     hidden=(32, 32), layer_normalisation=False, replay_size=20_000, learning_starts=300, mirror=False, double=False,
     target_update_interval=100, tau=1.0, fly_target=False, epsilon_decisions=8_000, epsilon_spread=0.0, num_envs=16,
@@ -97,12 +97,14 @@ class SmallState:
 class Plan(NamedTuple):
     """Heights, in metres above the pad, at which the flights of a small run begin.
 
-    With `change`, flights begin within `later` after so many decisions. With `tested`, there are tests from there.
+    With `change`, flights begin within `later` after so many decisions, and with `keep` only so many memories are held
+    from then on. With `tested`, there are tests that begin there.
     """
 
     heights: tuple[float, float] = (1.0, 8.0)
     change: int | None = None
-    later: tuple[float, float] = (0.5, 1.5)
+    later: tuple[float, float] = (0.3, 1.0)
+    keep: int | None = None
     tested: tuple[float, float] | None = None
 
 
@@ -128,7 +130,7 @@ class SmallRun:
         agent_rng, env_rng, test_rng = np.random.default_rng(seed).spawn(3)
         self.config, self.plan = config, plan or Plan()
         self.env = OneEngineEnv(config.num_envs, env_rng, self.plan.heights, config.reward_weights)
-        self.replay = (WatchedPrioritisedReplay if config.prioritised else WatchedReplay)(
+        self.replay: WatchedReplay = (WatchedPrioritisedReplay if config.prioritised else WatchedReplay)(
             config.replay_size, self.env.num_features, config.replay_prune
         )
         self.agent = DeepQAgent(self.env.num_features, self.env.num_actions, config, agent_rng, replay=self.replay)
@@ -142,14 +144,23 @@ class SmallRun:
         self._observation = self.env.reset()
         self._held: Ints = np.zeros(self.config.num_envs, dtype=np.intp)
 
+    def _change(self) -> None:
+        """Begin flights elsewhere, and drop all but the newest memories if so planned."""
+        self.env.heights = self.plan.later
+        self._begin()
+        if self.plan.keep is not None and len(self.replay):
+            old, count = self.replay, min(self.plan.keep, len(self.replay))
+            self.replay = self.agent.replay = WatchedReplay(self.plan.keep, self.env.num_features)
+            self.replay.add(old.at((old.start + len(old) - count + np.arange(count)) % old.capacity))
+            self.replay.added = old.added
+
     @np.errstate(over="ignore", invalid="ignore")
     def advance(self) -> SmallState:
         """Let every lander take one decision, and learn; return the state. A run that has diverged stays as it is."""
         if self.state.problem:
             return self.state
         if self._decisions == self.plan.change:
-            self.env.heights = self.plan.later
-            self._begin()
+            self._change()
         epsilon = exploration(self.config, self.agent.decisions, self._flights)
         try:
             actions, result = self.agent.train_step(self.env, self._observation, epsilon, self._held)

@@ -11,7 +11,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.agent.schedule import exploration
 from ai.lander.rewards import RewardWeights
-from ai.training.small_run import SMALL, Plan
+from ai.training.small_run import SMALL_RUN, Plan
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
@@ -54,14 +54,23 @@ class DaringChapter(RunsChapter):
     def configs(self) -> Sequence[Config]:
         """Return a configuration without random actions, and the same with the chosen share of them."""
         return [
-            SMALL.changed(reward_weights=PAY, epsilon_start=share, epsilon_end=share)
+            SMALL_RUN.changed(reward_weights=PAY, epsilon_start=share, epsilon_end=share)
             for share in (DARING[0], DARING[self.choice])
         ]
 
     def widgets(self) -> list[Widget]:
         """Return the choice, and the button that starts."""
         words = [f"{share:.0%}" for share in DARING]
-        choice = Choice(self.manager, self.row(1), "", words, self.choice, self._choose, size=SMALL)
+        choice = Choice(
+            self.manager,
+            self.row(1),
+            texts.LEARN_DARING_LABEL,
+            words,
+            self.choice,
+            self._choose,
+            label_width=120,
+            size=SMALL,
+        )
         start = TextButton(self.manager, self.row(3), texts.LEARN_RUNS_START[bool(self.seed)], self.start, colour=INK)
         return [choice, start]
 
@@ -99,7 +108,9 @@ class DaringChapter(RunsChapter):
             if state is None:
                 continue
             draw_curve(canvas, chart, self.history(run, "landed"), colour, self.LENGTH)
-            told = texts.LEARN_RUNS_NOTHING if state.landed is None else texts.LEARN_RUNS_LANDED.format(share=state.landed)
+            told = (
+                texts.LEARN_RUNS_NOTHING if state.landed is None else texts.LEARN_RUNS_LANDED.format(share=state.landed)
+            )
             canvas.text(told, (box.left, box.bottom + 28), size=TEXT, tabular=True, room=_HALF * 0.6)
             flights = texts.LEARN_RUNS_FLIGHTS.format(count=state.flights)
             canvas.text(flights, (box.right, box.bottom + 28), size=SMALL, colour=MUTE, align="right", tabular=True,

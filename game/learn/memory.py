@@ -13,13 +13,13 @@ from ai.agent.config import Config
 from ai.agent.replay import PrioritisedReplayBuffer, ReplayBuffer
 from ai.common.environment import Doubles
 from ai.lander.environment import OBSERVATION_SCALE
-from ai.training.small_run import SMALL, TESTED, Plan, SmallState
+from ai.training.small_run import SMALL_RUN, TESTED, Plan, SmallState
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
 from game.drawing.paint_cache import PaintCache
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, MUTE, NET, NIGHT1, SMALL, TEXT, Colour
+from game.drawing.tokens import HUMAN, INK, MUTE, NET, NIGHT1, SMALL, TEXT, Colour
 from game.learn.chapter import STAGE, Code
 from game.learn.runs import RunsChapter, draw_landers
 from game.ui.context import Context
@@ -29,10 +29,9 @@ from game.ui.widgets import Choice, TextButton
 KINDS: Final = ("even", "surprising", "latest")
 YESTERDAY: Final = 600  # decisions from high up; then flights begin low
 TODAY: Final = 300
-LATEST: Final = 200  # memories that the memory of the latest holds
-_CHANGES: Final = {"even": {}, "surprising": {"prioritised": True}, "latest": {"replay_size": LATEST}}
+LATEST: Final = 200  # memories that are held of the latest only
 _COLUMNS, _ROWS = 45, 10
-_EACH: Final = (YESTERDAY + TODAY) * SMALL.num_envs // (_COLUMNS * _ROWS)  # memories that a cell stands for
+_EACH: Final = (YESTERDAY + TODAY) * SMALL_RUN.num_envs // (_COLUMNS * _ROWS)  # memories that a cell stands for
 _CELL: Final = (STAGE.width / _COLUMNS, 20.0)
 _WALL: Final = pygame.FRect(STAGE.left, STAGE.top + 26, STAGE.width, _ROWS * _CELL[1])
 _HALF: Final = (STAGE.width - 40) / 2
@@ -47,14 +46,14 @@ class MemoryChapter(RunsChapter):
     Attributes:
         choice: index into `KINDS`.
         light: how lately something was drawn from each cell of the wall, 1 for the last decision, (cells,).
-        results: by kind, the share that landed of the tests from high up, at the end of yesterday and of today.
+        results: by kind, the share that landed of the tests from high up: at the end of yesterday, and the least today.
 
     """
 
     key = "memory"
     door = Route("train")
     LENGTH = YESTERDAY + TODAY
-    PLAN = Plan(heights=(5.0, 8.0), change=YESTERDAY, later=(0.5, 1.5), tested=(5.0, 8.0))
+    PLAN = Plan(heights=(5.0, 8.0), change=YESTERDAY, later=(0.3, 1.0), tested=(5.0, 8.0))
 
     def __init__(self, context: Context, manager: PointsManager) -> None:
         self.choice = 0
@@ -79,12 +78,17 @@ class MemoryChapter(RunsChapter):
 
     def configs(self) -> Sequence[Config]:
         """Return the configuration with the chosen memory."""
-        return [SMALL.changed(**_CHANGES[KINDS[self.choice]])]
+        return [SMALL_RUN.changed(prioritised=KINDS[self.choice] == "surprising")]
+
+    @property
+    def plan(self) -> Plan:
+        """The two days, with the memory that is chosen."""
+        return self.PLAN._replace(keep=LATEST if KINDS[self.choice] == "latest" else None)
 
     def widgets(self) -> list[Widget]:
         """Return the choice, and the button that starts."""
         choice = Choice(self.manager, self.row(1), "", texts.LEARN_MEMORY_KINDS, self.choice, self._choose, size=SMALL)
-        start = TextButton(self.manager, self.row(3), texts.LEARN_RUNS_START[bool(self.seed)], self.start, colour=INK)
+        start = TextButton(self.manager, self.row(3), texts.LEARN_MEMORY_START, self.start, colour=INK)
         return [choice, start]
 
     def _choose(self, index: int) -> None:
@@ -102,7 +106,7 @@ class MemoryChapter(RunsChapter):
         self._oldest = memory.oldest
         heights = memory.cells.state[:, 0] / OBSERVATION_SCALE[1]
         speeds = memory.cells.state[:, 1] / OBSERVATION_SCALE[3]
-        pays = memory.cells.reward / SMALL.reward_scale
+        pays = memory.cells.reward / SMALL_RUN.reward_scale
         for number, *moment in zip(memory.first + np.arange(len(pays)), heights, speeds, pays, strict=True):
             cell = min(int(number) // _EACH, len(self._come) - 1)
             if not self._come[cell] or abs(moment[2]) > abs(self._pictured[cell, 2]):
@@ -114,7 +118,7 @@ class MemoryChapter(RunsChapter):
     def finished(self) -> None:
         """Keep the result, to compare it with that of other memories."""
         passed = self.history(0, "passed")
-        self.results[self._flown] = (float(np.nan_to_num(passed[YESTERDAY])), float(np.nan_to_num(passed[-1])))
+        self.results[self._flown] = (float(np.nan_to_num(passed[YESTERDAY])), float(np.nanmin(passed[YESTERDAY:])))
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return for each memory that was tried how it flew from high up before and after."""
@@ -127,7 +131,11 @@ class MemoryChapter(RunsChapter):
     def code(self) -> Sequence[Code]:
         """Return how memories are drawn, evenly and by priority, and where the agent draws them."""
         memory = self.states[-1][0].memory if self.states else None
-        held = texts.LEARN_MEMORY_HELD.format(count=memory.first + len(memory.cells.action) - memory.oldest) if memory else ""
+        held = (
+            texts.LEARN_MEMORY_HELD.format(count=memory.first + len(memory.cells.action) - memory.oldest)
+            if memory
+            else ""
+        )
         return [
             Code(ReplayBuffer.sample, "rng.integers", {"rng.integers": held}),
             Code(PrioritisedReplayBuffer.sample, "self.tree.find"),
@@ -147,7 +155,7 @@ class MemoryChapter(RunsChapter):
         flown, tested = (state.flown, state.tested) if state else (None, None)
         top = _WALL.bottom + 34
         for side, (name, each, count) in enumerate(
-            ((day, flown, SMALL.num_envs), (texts.LEARN_MEMORY_TESTS, tested, TESTED))
+            ((day, flown, SMALL_RUN.num_envs), (texts.LEARN_MEMORY_TESTS, tested, TESTED))
         ):
             box = pygame.FRect(STAGE.left + side * (_HALF + 40), top, _HALF, 142)
             canvas.text(name, (box.left, top - 6), size=TEXT, colour=(NET, HUMAN)[side], room=_HALF)
@@ -166,7 +174,7 @@ class MemoryChapter(RunsChapter):
             x, y = _place(cell)
             canvas.fill(canvas.rect(_WALL.left + x, _WALL.top + y + _CELL[1] - 3, _CELL[0] - 1, 2), INK,
                         round(4 * float(self.light[cell])) / 4)  # fmt: skip
-        x, y = _place(YESTERDAY * SMALL.num_envs // _EACH)
+        x, y = _place(YESTERDAY * SMALL_RUN.num_envs // _EACH)
         place = (_WALL.left + x, _WALL.top + y)
         canvas.line(place, (place[0], place[1] + _CELL[1]), HUMAN, 2)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ import pygame
 
 from ai.agent.agent import DeepQAgent
 from ai.common.decision import Decision, in_points
+from ai.common.environment import Floats
 from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.core.scene import Route
@@ -26,7 +28,14 @@ from game.ui.widget import PointsManager, Widget
 from game.ui.widgets import Slider, TextButton
 
 # Moments of flights of the shipped network: seed, kind of start, and decisions flown before.
-MOMENTS: Final = ((1, "random", 0), (4, "random", 60), (9, "hard", 0), (2, "random", 25), (3, "hard", 50), (8, "random", 5))
+MOMENTS: Final = (
+    (1, "random", 0),
+    (4, "random", 60),
+    (9, "hard", 0),
+    (2, "random", 25),
+    (3, "hard", 50),
+    (8, "random", 5),
+)
 SCALE: Final = (-150.0, 200.0)  # points, of the line
 _WORLD: Final = pygame.FRect(STAGE.left, STAGE.top, STAGE.width, 292)
 _MIDDLE: Final = (0.0, 9.4)  # metres, of the picture
@@ -106,10 +115,11 @@ class MomentChapter(Chapter):
         self.decision: Decision = self.agent.decide(self.env.observe(), held=self.env.actions)
 
     @property
-    def points(self) -> np.ndarray:
+    def points(self) -> Floats:
         """Value of each action at the latest decision, in points, (6,)."""
         assert self.decision.points is not None
-        return self.decision.points[0]
+        points: Floats = self.decision.points[0]
+        return points
 
     @property
     def over(self) -> bool:
@@ -122,8 +132,8 @@ class MomentChapter(Chapter):
             return []
         if self.flying:
             return [TextButton(self.manager, self.row(3), texts.LEARN_MOMENT_NEXT, self.turn, colour=INK)]
-        slider = Slider(self.manager, self.row(1), texts.LEARN_MOMENT_GUESS, self.guess, SCALE, self.set_guess, step=5,
-                        figure=lambda value: signed(value).partition(".")[0], label_width=120, colour=HUMAN)  # fmt: skip
+        slider = Slider(self.manager, self.row(1), texts.LEARN_MOMENT_GUESS, self.guess, SCALE, self.set_guess,
+                        step=5, figure=_whole, label_width=120, colour=HUMAN)  # fmt: skip
         go = TextButton(self.manager, self.row(3), texts.LEARN_MOMENT_GO, self.go, colour=INK)
         return [slider, go]
 
@@ -154,7 +164,7 @@ class MomentChapter(Chapter):
         self._lander.follow()
         if self._steps % DECISION_STEPS == 0:
             self._path.append(self.env.position[0].copy())
-        if self.over:
+        if self.env.outcome[0] != Outcome.FLYING:
             decisions = -(-self._steps // DECISION_STEPS)
             self.judged.append(Judged(self.guess, self.value, self.came, self.plain, decisions))
             self.tried = True
@@ -186,7 +196,9 @@ class MomentChapter(Chapter):
         best = f"{float(values.max()):.3f}"
         scaled = f"{best} / {config.reward_scale:g} = {signed(float(self.points.max()))}"
         return [
-            Code(DeepQAgent.q_values, "network.predict", {"network.predict": texts.LEARN_MOMENT_BEST.format(value=best)}),
+            Code(DeepQAgent.q_values, "network.predict", {
+                "network.predict": texts.LEARN_MOMENT_BEST.format(value=best),
+            }),
             Code(in_points, "points: NDArray", {"points: NDArray": scaled}),
             Code(DeepQAgent.targets, "targets: Floats", {
                 "discount = np": f"γ = {config.discount:g}, {config.n_step}",
@@ -210,10 +222,13 @@ class MomentChapter(Chapter):
             canvas.line((_WORLD.left, ground), (_WORLD.right, ground), FAINT)
             canvas.line((left, pad), (right, pad), MUTE, 3)
             places = view.points(self._path).tolist()
-            for a, b in zip(places, places[1:], strict=False):
+            for a, b in pairwise(places):
                 canvas.line(a, b, NET, 1.5, 0.6)
-            still = not self.flying
-            self._lander.draw(canvas, view, 1.0 if still else alpha)
+            self._lander.draw(canvas, view, alpha if self.flying and not self.over else 1.0)
+            if not self.flying:
+                start = self.env.position[0]
+                a, b = view.points([start, start + self.env.velocity[0]]).tolist()
+                canvas.line(a, b, HUMAN, 2)
         self._draw_state(canvas)
         self._draw_line(canvas)
 
@@ -252,3 +267,7 @@ class MomentChapter(Chapter):
             x = STAGE.left + 16 + column * width
             canvas.text(name, (x, _LINE + 54), size=SMALL, colour=MUTE, room=width - 16)
             canvas.text(figure, (x, _LINE + 80), size=20, colour=colour, weight="light", tabular=True)
+
+
+def _whole(points: float) -> str:
+    return signed(points).partition(".")[0]

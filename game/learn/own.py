@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from typing import Final, NamedTuple
 
@@ -54,7 +54,8 @@ class OwnChapter(Chapter):
 
     def restart(self) -> None:
         """Look at the player's files again."""
-        self._wait, self._seen = 0, None
+        self._wait = 0
+        self._seen: Hashable = None
         self._look()
 
     def widgets(self) -> list[Widget]:

@@ -21,6 +21,11 @@ PATH: Final[dict[str, Entry]] = {
     "neuron": Entry("neuron.NeuronChapter", 3),
     "plane": Entry("plane.PlaneChapter", 3),
     "downhill": Entry("downhill.DownhillChapter", 4),
+    "moment": Entry("moment.MomentChapter", 4),
+    "target": Entry("target.TargetChapter", 3),
+    "memory": Entry("memory.MemoryChapter", 4),
+    "daring": Entry("daring.DaringChapter", 3),
+    "own": Entry("own.OwnChapter", 5),
 }
 FIRST: Final = next(iter(PATH))
 

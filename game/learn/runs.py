@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import ClassVar, Final
 
 import numpy as np
 import pygame
 
 from ai.agent.config import Config
-from ai.common.environment import Doubles
+from ai.common.environment import Doubles, Ints
 from ai.lander.environment import PARAMS, Outcome
 from ai.training.small_run import Flown, Plan, SmallState, small_runs
 from game.core import texts
@@ -52,6 +53,11 @@ class RunsChapter(Chapter):
     def configs(self) -> Sequence[Config]:
         """Return the configurations of the runs."""
 
+    @property
+    def plan(self) -> Plan:
+        """Where flights begin."""
+        return self.PLAN
+
     def restart(self) -> None:
         """Forget the runs."""
         self.close()
@@ -60,13 +66,13 @@ class RunsChapter(Chapter):
 
     def _forget(self) -> None:
         self.states: list[tuple[SmallState, ...]] = []
-        self.last: list[np.ndarray] = []
+        self.last: list[Ints] = []
 
     def start(self) -> None:
         """Start the runs, from another seed each time."""
         self.close()
         self._forget()
-        self._worker = Worker(small_runs, tuple(self.configs()), self.seed, self.PLAN)
+        self._worker = Worker(small_runs, tuple(self.configs()), self.seed, self.plan)
         self._worker.set_pace(PACE)
         self.seed += 1
         self.changed = True
@@ -84,7 +90,7 @@ class RunsChapter(Chapter):
     @property
     def over(self) -> bool:
         """Whether the runs have come to their end."""
-        return bool(self.states) and self.states[-1][0].decisions >= self.LENGTH
+        return len(self.states) > self.LENGTH
 
     @property
     def problem(self) -> str:
@@ -95,10 +101,9 @@ class RunsChapter(Chapter):
         """Take what the worker has told, and end it when the runs are long enough."""
         if self._worker is None or self.over:
             return
-        for states in self._worker.poll():
-            if not self.over:
-                self._take(states)
-        if self.over:
+        for states in self._worker.poll()[: self.LENGTH + 1 - len(self.states)]:
+            self._take(states)
+        if len(self.states) > self.LENGTH:
             self.close()
             self.tried = self.changed = True
             self.finished()
@@ -131,7 +136,7 @@ class RunsChapter(Chapter):
 
 
 def draw_landers(
-    canvas: Canvas, box: pygame.FRect, flown: Flown | None, last: np.ndarray | None, flicker: int, count: int = 16
+    canvas: Canvas, box: pygame.FRect, flown: Flown | None, last: Ints | None, flicker: int, count: int = 16
 ) -> None:
     """Draw one-engine landers side by side, and under each how its last flight ended; only the pad before they fly."""
     metres = _APART * (count + 0.6)
@@ -162,16 +167,14 @@ def draw_landers(
             canvas.line((x - 3, foot + 8), (x + 3, foot + 8), MUTE, 1.5)
 
 
-def draw_curve(
-    canvas: Canvas, box: pygame.FRect, heights: Doubles, colour: Colour, length: int
-) -> None:
+def draw_curve(canvas: Canvas, box: pygame.FRect, heights: Doubles, colour: Colour, length: int) -> None:
     """Draw a curve of heights, 0 to 1, over `length` decisions; NaN leaves a gap."""
     kept = range(0, len(heights), max(1, length // 150))
     places = [
         (box.left + box.width * at / length, box.bottom - box.height * float(heights[at]))
         for at in kept if np.isfinite(heights[at])
     ]  # fmt: skip
-    for a, b in zip(places, places[1:], strict=False):
+    for a, b in pairwise(places):
         canvas.line(a, b, colour, 2)
 
 

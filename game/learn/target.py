@@ -12,7 +12,7 @@ import pygame
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.common.environment import Doubles
-from ai.training.small_run import SMALL
+from ai.training.small_run import SMALL_RUN
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
@@ -57,12 +57,21 @@ class TargetChapter(RunsChapter):
 
     def configs(self) -> Sequence[Config]:
         """Return the configurations: that of all small runs, and the same with the chosen copies."""
-        return SMALL, SMALL.changed(target_update_interval=EVERY[self.choice])
+        return SMALL_RUN, SMALL_RUN.changed(target_update_interval=EVERY[self.choice])
 
     def widgets(self) -> list[Widget]:
         """Return the choice, and the button that starts."""
         words = [f"{every:,}" for every in EVERY]
-        choice = Choice(self.manager, self.row(1), "", words, self.choice, self._choose, size=SMALL)
+        choice = Choice(
+            self.manager,
+            self.row(1),
+            texts.LEARN_TARGET_LABEL,
+            words,
+            self.choice,
+            self._choose,
+            label_width=140,
+            size=SMALL,
+        )
         start = TextButton(self.manager, self.row(3), texts.LEARN_RUNS_START[bool(self.seed)], self.start, colour=INK)
         return [choice, start]
 
@@ -76,12 +85,12 @@ class TargetChapter(RunsChapter):
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return what both expected at most, and how they landed in the end."""
-        self_run, other = self.states[-1]
+        usual, other = self.states[-1]
         peaks = self.peaks
         told = texts.LEARN_TARGET_WHY["ran" if peaks[1] > BOUND else "kept"].format(
-            every=EVERY[self._flown], peak=_figure(peaks[1]), usual=_figure(peaks[0]), bound=f"{BOUND:g}"
+            peak=_figure(peaks[1]), usual=_figure(peaks[0]), bound=f"{BOUND:g}"
         )
-        landed = texts.LEARN_TARGET_LANDED.format(usual=self_run.landed or 0.0, other=other.landed or 0.0)
+        landed = texts.LEARN_TARGET_LANDED.format(usual=usual.landed or 0.0, other=other.landed or 0.0)
         return f"{told} {landed}"
 
     def start(self) -> None:
@@ -93,7 +102,7 @@ class TargetChapter(RunsChapter):
         """Return how a target is made, and when the target network is copied."""
         every = EVERY[self.choice]
         return [
-            Code(DeepQAgent.targets, "targets: Floats", {"discount = np": f"γ = {SMALL.discount:g}"}),
+            Code(DeepQAgent.targets, "targets: Floats", {"discount = np": f"γ = {SMALL_RUN.discount:g}"}),
             Code(DeepQAgent._next_value, "self.target.predict", {"self.target.predict": texts.LEARN_TARGET_JUDGE}),
             Code(DeepQAgent._update_target, "self.train_count %", {
                 "self.train_count %": texts.LEARN_TARGET_EVERY.format(every=every),
@@ -104,7 +113,8 @@ class TargetChapter(RunsChapter):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
         """Draw both groups of landers, and below each what its network expects."""
-        names = (texts.LEARN_TARGET_NAMES[0], texts.LEARN_TARGET_NAMES[1].format(every=f"{EVERY[self.choice]:,}"))
+        usual, some, always = texts.LEARN_TARGET_NAMES
+        names = (usual, some.format(every=f"{EVERY[self.choice]:,}") if self.choice else always)
         for run, (name, colour) in enumerate(zip(names, (NET, HUMAN), strict=True)):
             box = pygame.FRect(STAGE.left + run * (_HALF + _GAP), STAGE.top + 22, _HALF, 168)
             canvas.text(name, (box.left, STAGE.top + 12), colour=colour, room=_HALF)
