@@ -21,6 +21,8 @@ PATH: Final[dict[str, Entry]] = {
     "neuron": Entry("neuron.NeuronChapter", 3),
     "plane": Entry("plane.PlaneChapter", 3),
     "downhill": Entry("downhill.DownhillChapter", 4),
+    "backwards": Entry("backwards.BackwardsChapter", 3),
+    "pay": Entry("pay.PayChapter", 5),
     "moment": Entry("moment.MomentChapter", 4),
     "target": Entry("target.TargetChapter", 3),
     "memory": Entry("memory.MemoryChapter", 4),
