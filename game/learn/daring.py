@@ -22,7 +22,7 @@ from game.ui.context import Context
 from game.ui.widget import PointsManager, Widget
 from game.ui.widgets import Choice, TextButton
 
-DARING: Final = (0.0, 0.05, 0.3, 1.0)  # shares of random actions, to choose from
+DARING: Final = (0.0, 0.05, 0.2, 1.0)  # shares of random actions, to choose from
 # Nothing is paid for coming nearer or slower: only time, fuel, feet on the pad and the end count.
 PAY: Final = RewardWeights(distance=0.0, speed=0.0, alignment=0.0, tilt=0.0)
 _GAP: Final = 40.0
@@ -54,7 +54,7 @@ class DaringChapter(RunsChapter):
     def configs(self) -> Sequence[Config]:
         """Return a configuration without random actions, and the same with the chosen share of them."""
         return [
-            SMALL_RUN.changed(reward_weights=PAY, epsilon_start=share, epsilon_end=share)
+            SMALL_RUN.changed(n_step=5, reward_weights=PAY, epsilon_start=share, epsilon_end=share)
             for share in (DARING[0], DARING[self.choice])
         ]
 

@@ -27,7 +27,7 @@ from game.world.craft import draw_crowd, draw_fires
 
 PACE: Final = 40.0  # decisions a second: four times as fast as they would fly
 _APART: Final = 2.6  # metres between two landers of the picture
-_SKY: Final = 11.0  # metres of height that are shown, at least
+_SKY: Final = 14.0  # metres of height that are shown, at least
 _SHARE: Final = 0.5  # a lander's size
 
 
