@@ -23,6 +23,11 @@ PATH: Final[dict[str, Entry]] = {
     "downhill": Entry("downhill.DownhillChapter", 4),
     "backwards": Entry("backwards.BackwardsChapter", 3),
     "pay": Entry("pay.PayChapter", 5),
+    "moment": Entry("moment.MomentChapter", 4),
+    "target": Entry("target.TargetChapter", 3),
+    "memory": Entry("memory.MemoryChapter", 4),
+    "daring": Entry("daring.DaringChapter", 3),
+    "own": Entry("own.OwnChapter", 5),
 }
 FIRST: Final = next(iter(PATH))
 
