@@ -134,6 +134,11 @@ class Chart:
         """Put the marker at x: a vertical line with a caption and a dot on the current run's curve; None removes it."""
         self._marker = None if x is None else (x, caption)
 
+    @property
+    def marker(self) -> float | None:
+        """The x of the marker; None without one."""
+        return self._marker[0] if self._marker else None
+
     def hover(self, point: Point | None) -> None:
         """Move the cursor to the mouse, a point of the canvas; None removes it."""
         self.point_to(None if point is None else self.x_at(point), pointed=True)

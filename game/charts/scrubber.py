@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
+
+import pygame
 
 from game.charts.charts import Charts
 from game.core.scene import Transition
@@ -10,16 +13,23 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import INK
 from game.ui.widget import OnPress, PointsManager, Widget
 
+_RING: Final = (12, 8)  # points by which the focus ring is wider and higher than the charts
+
 
 class Scrubber(Widget):
-    """Scrubber over the first row of charts. `on_move` gets an x, a float, or a step, the int -1 or 1."""
+    """Scrubber over all charts. `on_move` gets an x, a float, or a step, the int -1 or 1."""
 
     def __init__(
         self, manager: PointsManager, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress
     ) -> None:
+        # For the arrows it is as large as the first row; a pointer that is as large as all charts is reached from there.
         first, *others = (chart.box for chart in charts.charts)
         super().__init__(manager, first.unionall([box for box in others if box.top == first.top]), "")
         self._charts, self._on_move, self._on_press = charts, on_move, on_press
+
+    def hover_point(self, hover_x: float, hover_y: float) -> bool:
+        """Whether a point is on any of the charts."""
+        return self._charts.box.collidepoint(hover_x, hover_y)
 
     def press(self) -> Transition | None:
         """Call `on_press`, except for a mouse, which only moves the marker."""
@@ -30,13 +40,19 @@ class Scrubber(Widget):
         self._on_move(direction)
         return True
 
+    def process_event(self, event: pygame.event.Event) -> bool:
+        """Follow the mouse: a drag stays with the chart that it has begun on."""
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            self._charts.grip(event.pos)
+        return super().process_event(event)
+
     def drag(self, x: float) -> None:
         """Move the marker to the mouse."""
-        place = self._charts.x_at((x, self.box.centery))
+        place = self._charts.gripped(x)
         if place is not None:
             self._on_move(float(place))
 
     def paint(self, canvas: Canvas) -> None:
         """Draw the focus ring only."""
         if self.ringed and self.warmth > 0.02:
-            canvas.outline(self.box.inflate(12, 8), 8, INK, 1, 0.4 * self.warmth)
+            canvas.outline(self._charts.box.inflate(*_RING), 8, INK, 1, 0.4 * self.warmth)

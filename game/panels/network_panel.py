@@ -90,21 +90,26 @@ class NetworkPanel:
         ]
 
     def take(self, network_state: NetworkState, config: Config) -> None:
-        """Show the network that a run reports."""
+        """Show the network that a run reports, and see how healthy it is."""
+        if self.show(network_state, config) and self._network is not None:
+            self.health.look(self._network, network_state.observation, config.gradient_clip)
+
+    def show(self, network_state: NetworkState, config: Config) -> bool:
+        """Show a network, perhaps of an earlier moment; return whether it fits the run."""
         if self._network is None or self._network.values.shape != network_state.values.shape:
             self._network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
         network = self._network
         if network.values.shape != network_state.values.shape:
-            return  # it belongs to a run that has just been replaced
+            return False  # it belongs to a run that has just been replaced
         network.values = network_state.values
         network.gradients[:] = network_state.gradients
         self._view.output_scale = config.reward_scale
         self._view.set(network, network_state.observation)
-        self.health.look(network, network_state.observation, config.gradient_clip)
+        return True
 
-    def pay(self, history: History) -> None:
-        """Show the reward of the latest flights, part by part."""
-        self._reward_bar.set(PARTS, history.parts[-1])
+    def pay(self, history: History, row: int = -1) -> None:
+        """Show the reward of the latest flights, part by part, or of those before another point of the history."""
+        self._reward_bar.set(PARTS, history.parts[row])
 
     def follow(self, event: pygame.event.Event) -> None:
         """Follow the mouse or the virtual pointer; an event's position is in points."""

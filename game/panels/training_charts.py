@@ -1,17 +1,18 @@
-"""Training charts of a run, with other runs for comparison; a marker chooses one of its checkpoints."""
+"""Training charts of a run, with other runs for comparison; a marker chooses a moment of it."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 import pygame
 
 from ai.common.decision import in_points
 from ai.common.environment import Doubles
-from ai.training.history import REVERTED, Checkpoint, History, SettingChange
+from ai.training.history import REVERTED, History, SettingChange
 from ai.training.session import TAUGHT
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
@@ -42,11 +43,21 @@ _CHARTS: Final = (
 )
 
 
+class Seeks(Protocol):
+    """Goes to a moment of a run."""
+
+    def seek(self, decisions: float) -> None:
+        """Go to the moment in decisions."""
+
+    def shift(self, direction: int) -> None:
+        """Go a step back (-1) or on (1)."""
+
+
 class TrainingCharts:
     """Six charts over one axis: seconds, decisions, or each run from its beginning to its end.
 
     Attributes:
-        chosen: the checkpoint under the marker; None without one.
+        moment: the moment under the marker, in decisions; None for now.
         axis: index into `texts.TRAIN_AXES`.
 
     """
@@ -63,7 +74,7 @@ class TrainingCharts:
     def clear(self) -> None:
         """Reset for another run, or for other runs beside it."""
         self._history = History()
-        self.chosen: Checkpoint | None = None
+        self.moment: int | None = None
         self.charts.mark(None)
         self._told = [-1] * len(_CHARTS)  # points of the history shown in each chart
         self._legend: list[Series] = []
@@ -74,13 +85,13 @@ class TrainingCharts:
         for chart in self.charts.charts:
             chart.read_x = texts.TRAIN_AXIS[axis].format
         self._told = [-1] * len(_CHARTS)
-        self._mark()
 
     def look(self, history: History, beside: Sequence[EarlierRun[History]]) -> None:
         """Read new points of the current run and of those beside it; call it once a frame."""
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
         self._history, points = history, len(history)
+        self._mark()
         if odd or number >= len(_CHARTS) or self._told[number] == points:
             return
         self._told[number] = points
@@ -109,32 +120,34 @@ class TrainingCharts:
         return 100.0 * seconds / max(float(history["seconds"][-1]), 1e-9)
 
     def _mark(self) -> None:
-        if self.chosen is not None:
-            caption = texts.TRAIN_CHECKPOINT.format(seconds=self.chosen.seconds)
-            self.charts.mark(self._place(self.chosen.seconds), caption)
-
-    def choose(self, place: float | int, checkpoints: Sequence[Checkpoint]) -> None:
-        """Choose the checkpoint at a place on the axis (float), or the one to the left or right (int -1 or 1)."""
-        if not checkpoints:
+        """Put the marker at the moment that is shown."""
+        if self.moment is None or not len(self._history):
+            self.charts.mark(None)
             return
-        if isinstance(place, int):
-            places = [each.decisions for each in checkpoints]
-            last = (
-                places.index(self.chosen.decisions) if self.chosen and self.chosen.decisions in places else len(places)
-            )
-            self.chosen = checkpoints[min(max(last + place, 0), len(checkpoints) - 1)]
-        else:
-            self.chosen = min(checkpoints, key=lambda each: abs(self._place(each.seconds) - place))
-        self._mark()
+        seconds = float(np.interp(self.moment, self._history["decisions"], self._history["seconds"]))
+        self.charts.mark(self._place(seconds), texts.REWIND_MARK.format(seconds=seconds))
 
-    def widgets(self, manager: PointsManager, duel: OnPress, *, compared: bool) -> list[Widget]:
-        """Return a pointer for the charts, the scrubber of checkpoints and, beside earlier runs, the choice of axis.
+    def decisions_at(self, place: float) -> float:
+        """Return the moment of the current run, in decisions, at a place on the axis; infinite beyond its end."""
+        history = self._history
+        if not len(history) or place >= self._place(float(history["seconds"][-1])):
+            return math.inf
+        if self.axis == 1:
+            return place
+        seconds = place if self.axis == 0 else place / 100.0 * float(history["seconds"][-1])
+        return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
-        `duel` is called when the chosen checkpoint is pressed.
+    def widgets(self, manager: PointsManager, duel: OnPress, rewind: Seeks, *, compared: bool) -> list[Widget]:
+        """Return a pointer for the charts, their scrubber and, beside earlier runs, the choice of axis.
+
+        The scrubber rewinds the run; `duel` is called when it is pressed.
         """
 
         def scrub(place: float | int) -> None:
-            self.choose(place, self._history.checkpoints)
+            if isinstance(place, int):
+                rewind.shift(place)
+            else:
+                rewind.seek(self.decisions_at(place))
 
         found: list[Widget] = [
             VirtualPointer(manager, self.charts.box, self.charts.follow),

@@ -24,10 +24,13 @@ from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import Worker
 from game.training.library import Library
+from game.training.record import Record
 from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
 
 # Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
 PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
+SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
+NETWORK_BYTES: Final = 16 << 20  # of networks
 
 
 class LanderRun(TrainingRun):
@@ -37,7 +40,8 @@ class LanderRun(TrainingRun):
 
     Attributes:
         history: history of the current or last run.
-        sight, insight, in_force: the latest message of each kind; None before the first.
+        swarm_state, network_state, in_force: the latest message of each kind; None before the first.
+        swarms, networks: those of the whole run, as far as they were kept.
         earlier: the runs shown beside it, the latest first.
 
     """
@@ -51,6 +55,7 @@ class LanderRun(TrainingRun):
         self.history = History()
         self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
+        self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
         self.in_force: InForce | None = None
         self.earlier: list[EarlierRun[History]] = []
         self.begun = False  # whether a run has reported its configuration since this was last set to False
@@ -71,6 +76,8 @@ class LanderRun(TrainingRun):
         self.history = History()
         self.config, self.seed = config, seed
         self.swarm_state = self.network_state = self.in_force = None
+        self.swarms.clear()
+        self.networks.clear()
         self.runs += 1
         self._named = resume is not None and resume != self.library.unsaved
         self.name = resume.name if resume else ""
@@ -140,8 +147,10 @@ class LanderRun(TrainingRun):
         match message:
             case SwarmState():
                 self.swarm_state = message
+                self.swarms.append(message)
             case NetworkState():
                 self.network_state = message
+                self.networks.append(message)
             case InForce():
                 self.in_force = message
             case Point() | Checkpoint() | Validation():

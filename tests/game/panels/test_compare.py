@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ai.training.history import Checkpoint, History
+from ai.training.history import History
 from game.core import texts
 from game.panels.training_charts import TrainingCharts
 from game.training.training_run import EARLIER, EarlierRun, put_beside
@@ -51,11 +51,14 @@ def test_a_short_run_beside_a_long_one_can_be_measured_so_that_it_is_seen(axis: 
         assert chart.read_x(end) == texts.TRAIN_AXIS[axis].format(end)
 
 
-def test_a_checkpoint_is_chosen_where_it_stands_on_the_axis():
+@pytest.mark.parametrize(("axis", "place"), [(0, 50.0), (1, 500_000.0), (2, 50.0)])
+def test_a_place_on_the_axis_is_a_moment_of_the_run(axis: int, place: float):
     training_charts, run = TrainingCharts(), run_of(100.0, 1e6)
-    checkpoints = [Checkpoint(25.0 * number, 250_000 * number, 0.0, np.zeros(1, np.float32)) for number in range(5)]
-    for axis, place in ((0, 51.0), (1, 510_000.0), (2, 51.0)):
-        training_charts.measure_by(axis)
-        look(training_charts, run, [])
-        training_charts.choose(place, checkpoints)
-        assert training_charts.chosen is checkpoints[2]
+    training_charts.measure_by(axis)
+    look(training_charts, run, [])
+    assert training_charts.decisions_at(place) == pytest.approx(500_000)
+    assert training_charts.decisions_at(2e6) == np.inf, "beyond its end is now"
+    training_charts.moment = 500_000
+    look(training_charts, run, [])
+    for chart in training_charts.charts.charts:
+        assert chart.marker == pytest.approx(place)
