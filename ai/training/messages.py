@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ai.agent.config import Config
 from ai.agent.schedule import InForce
 from ai.common.environment import Floats
+from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, Point, SettingChange, Validation
 
 
@@ -91,7 +92,7 @@ class Saved:
 class Refused:
     """Refusal of a command that could not be carried out, and why. Nothing has changed."""
 
-    command: ChangeSetting | RestoreCheckpoint | AddDemonstrations
+    command: ChangeSetting | RestoreCheckpoint | AddDemonstrations | EditCommand
     problem: str
 
 
@@ -101,6 +102,16 @@ def problem_of(error: Exception) -> str:
 
 
 Message = (
-    RunStarted | SwarmState | NetworkState | InForce | Point | Checkpoint | Validation | SettingChange | Saved | Refused
+    RunStarted
+    | SwarmState
+    | NetworkState
+    | InForce
+    | Point
+    | Checkpoint
+    | Validation
+    | SettingChange
+    | Saved
+    | Refused
+    | NetworkEdits
 )
-Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations
+Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations | EditCommand

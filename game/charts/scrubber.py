@@ -22,7 +22,7 @@ class Scrubber(Widget):
     def __init__(
         self, manager: PointsManager, charts: Charts, on_move: Callable[[float | int], None], on_press: OnPress
     ) -> None:
-        # For the arrows it is as large as the first row; a pointer that is as large as all charts is reached from there.
+        # For the arrows, its box is the first row: the virtual pointer over all charts is reached from there.
         first, *others = (chart.box for chart in charts.charts)
         super().__init__(manager, first.unionall([box for box in others if box.top == first.top]), "")
         self._charts, self._on_move, self._on_press = charts, on_move, on_press

@@ -19,9 +19,11 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import MUTE, SMALL, TITLE
+from game.panels.network_editing import NetworkEditing
 from game.panels.network_plan import Show
 from game.panels.network_view import NetworkView
 from game.panels.reward_bar import RewardBar
+from game.training.lander_run import LanderRun
 from game.ui.form import Form
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import Widget
@@ -42,14 +44,16 @@ class NetworkPanel:
     Attributes:
         large: whether the network is shown large.
         health: diagnosis of the network's units and numbers.
+        editing: what a player does to the network by hand.
 
     """
 
-    def __init__(self, form: Form, on_closer: Callable[[], None]) -> None:
+    def __init__(self, form: Form, on_closer: Callable[[], None], lander_run: LanderRun) -> None:
         self.large = False
         self._form = form
         self._view = NetworkView(_SMALL, texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
         self._reward_bar = RewardBar(_STRIP)
+        self.editing = NetworkEditing(form, self._view, lander_run)
         self._picture = _NETWORK
         width = typeface.width(texts.TRAIN_CLOSER, SMALL, "regular")
         self._on_closer = on_closer
@@ -64,6 +68,7 @@ class NetworkPanel:
         """Reset for another run."""
         self._network: NeuralNetwork | None = None
         self.health = NetworkHealth()
+        self.editing.clear()
 
     @property
     def busy(self) -> bool:
@@ -77,6 +82,7 @@ class NetworkPanel:
     def place(self, large: bool) -> list[Widget]:
         """Show the network large or small; return the large network's widgets, for the form."""
         self.large = large
+        self.editing.place(large)
         self._closer.label = texts.TRAIN_CLOSER_BACK if large else texts.TRAIN_CLOSER
         self._view.place(_LARGE if large else _SMALL)
         self._heading.index = _PAID if large else self._picture  # beside the large network, the panel has the other
@@ -86,7 +92,7 @@ class NetworkPanel:
             return []
         return [
             Choice(self._form.manager, box, "", texts.NETWORK_VIEW_SHOWS, index, self._show),
-            VirtualPointer(self._form.manager, _LARGE, self.follow),
+            VirtualPointer(self._form.manager, _LARGE, self.follow, hold=texts.EDIT_PICK),
         ]
 
     def take(self, network_state: NetworkState, config: Config) -> None:
@@ -105,6 +111,7 @@ class NetworkPanel:
         network.gradients[:] = network_state.gradients
         self._view.output_scale = config.reward_scale
         self._view.set(network, network_state.observation)
+        self.editing.look(network)
         return True
 
     def pay(self, history: History, row: int = -1) -> None:
@@ -116,6 +123,7 @@ class NetworkPanel:
         if event.type == pygame.MOUSEMOTION:
             self._view.hover(event.pos if self._shows_network else None)
             self._reward_bar.hover(None if self._shows_network and not self.large else event.pos)
+        self.editing.follow(event)
 
     def covers(self, point: Point) -> bool:
         """Whether a point is on the small picture of the network."""
@@ -123,6 +131,7 @@ class NetworkPanel:
 
     def update(self, at_once: bool) -> None:
         """Advance by 1/60 s."""
+        self.editing.update()
         self._view.update(at_once=at_once)
         self._reward_bar.update(at_once=at_once)
 
@@ -133,6 +142,7 @@ class NetworkPanel:
             canvas.text(texts.NETWORK_VIEW_LINES[self._view.show], (_LEFT, 70), size=SMALL, colour=MUTE)
         if self._shows_network:
             self._view.draw(canvas)
+        self.editing.draw(canvas)
         if self.large or self._picture == _PAID:
             self._reward_bar.draw(canvas)
 

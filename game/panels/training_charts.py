@@ -12,6 +12,7 @@ import pygame
 
 from ai.common.decision import in_points
 from ai.common.environment import Doubles
+from ai.training.edits import EDITED
 from ai.training.history import REVERTED, History, SettingChange
 from ai.training.session import TAUGHT
 from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
@@ -193,6 +194,8 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _told(turn: SettingChange) -> str:
+    if turn.name == EDITED:
+        return texts.EDIT_TICK.format(count=turn.after) if turn.after else texts.EDIT_TICK_BACK
     if turn.name == TAUGHT:
         return texts.TRAIN_TAUGHT_TICK.format(count=turn.after)
     return texts.TRAIN_REVERTED if turn.name == REVERTED else told({turn.name: turn.after})

@@ -42,6 +42,7 @@ _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
+_BEHIND: Final = 0.72  # cover of the swarm behind an edited network
 _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
@@ -61,7 +62,7 @@ class TrainScene(TrainingScene[LanderRun]):
         self.training_charts = TrainingCharts()
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
-        self.inside = NetworkPanel(self.form, self._look_closer)
+        self.inside = NetworkPanel(self.form, self._look_closer, self.lander_run)
         self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin)
         self.rewind = Rewind(self.form, self.lander_run, DISPLAY_WIDTH / VIEW_SIZE[0])
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
@@ -146,7 +147,7 @@ class TrainScene(TrainingScene[LanderRun]):
         self.rewind.update()
         if moment == self.training_charts.moment:
             return
-        self.training_charts.moment = moment
+        self.training_charts.moment, self.inside.editing.past = moment, moment is not None
         network = lander_run.network_state if moment is None else self.rewind.network_state
         if network is not None:
             self.inside.show(network, lander_run.config)
@@ -310,7 +311,10 @@ class TrainScene(TrainingScene[LanderRun]):
     def _draw_display(self, canvas: Canvas, alpha: float) -> None:
         """Draw the swarm and the charts, or the ground of the large network."""
         if self.inside.large:
-            canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0)
+            edited = self.lander_run.edits.holds and self.moment is None  # then the swarm is seen behind the network
+            if edited:
+                self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
+            canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0, _BEHIND if edited else 1.0)
             return
         if self.moment is None:
             self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)

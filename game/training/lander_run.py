@@ -8,6 +8,7 @@ from typing import Any, Final
 from ai.agent.config import Config
 from ai.agent.schedule import InForce
 from ai.nn import ModelFormatError
+from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.messages import (
     AddDemonstrations,
@@ -42,6 +43,7 @@ class LanderRun(TrainingRun):
         history: history of the current or last run.
         swarm_state, network_state, in_force: the latest message of each kind; None before the first.
         swarms, networks: those of the whole run, as far as they were kept.
+        edits: what was edited of its network by hand.
         earlier: the runs shown beside it, the latest first.
 
     """
@@ -57,6 +59,7 @@ class LanderRun(TrainingRun):
         self.network_state: NetworkState | None = None
         self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
         self.in_force: InForce | None = None
+        self.edits = NetworkEdits()
         self.earlier: list[EarlierRun[History]] = []
         self.begun = False  # whether a run has reported its configuration since this was last set to False
         self.pace = len(PACES) - 1
@@ -76,6 +79,7 @@ class LanderRun(TrainingRun):
         self.history = History()
         self.config, self.seed = config, seed
         self.swarm_state = self.network_state = self.in_force = None
+        self.edits = NetworkEdits()
         self.swarms.clear()
         self.networks.clear()
         self.runs += 1
@@ -123,6 +127,10 @@ class LanderRun(TrainingRun):
         """Revert the network to a checkpoint."""
         self._send(RestoreCheckpoint(checkpoint.decisions))
 
+    def edit(self, command: EditCommand) -> None:
+        """Edit the run's network by hand, or take an edit back; its `edits` say how it stands then."""
+        self._send(command)
+
     def save(self, name: str) -> str:
         """Name the run in the library; raises LibraryError if that fails.
 
@@ -151,6 +159,8 @@ class LanderRun(TrainingRun):
             case NetworkState():
                 self.network_state = message
                 self.networks.append(message)
+            case NetworkEdits():
+                self.edits = message
             case InForce():
                 self.in_force = message
             case Point() | Checkpoint() | Validation():
