@@ -191,7 +191,7 @@ class Chart:
         if self._painted is None or self._painted[0].scale != canvas.scale:
             self._painted = self._paint(canvas)
         canvas.lay(self._painted[0], self.box.x - _MARGIN, self.box.y - _MARGIN)
-        if self._marker:
+        if self._marker and self.x_range[0] <= self._marker[0] <= self.x_range[1]:
             self._draw_marker(canvas, *self._marker)
         if self.cursor is not None:
             self._draw_cursor(canvas, self.cursor)
@@ -251,6 +251,8 @@ class Chart:
         start, end = self.x_range
         last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
         for tick in self._ticks:
+            if not start <= tick.x <= end:
+                continue
             x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
             if tick.kind == "knob":
                 sheet.marker("diamond", (x, plot.bottom), 8, HUMAN)

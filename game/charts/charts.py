@@ -7,14 +7,16 @@ from collections.abc import Sequence
 import pygame
 
 from game.charts.chart import Chart
+from game.charts.zoom import STEP, Zoom
 from game.drawing.canvas import Canvas, Point
 
 
 class Charts:
-    """Charts with a common x axis, cursor and marker, redrawn in turns."""
+    """Charts with a common x axis, cursor, marker and zoom, redrawn in turns; the mouse's wheel zooms."""
 
     def __init__(self, charts: Sequence[Chart]) -> None:
         self.charts = tuple(charts)
+        self.zoom = Zoom()
         self._gripped: Chart | None = None  # on which the mouse button was pressed
 
     def hover(self, point: Point | None) -> float | None:
@@ -28,6 +30,10 @@ class Charts:
         """Follow an event of the mouse or of a virtual pointer, its position in points."""
         if event.type == pygame.MOUSEMOTION:
             self.hover(event.pos)
+        elif event.type == pygame.MOUSEWHEEL:
+            pointed = next((chart.cursor for chart in self.charts if chart.pointed), None)
+            if pointed is not None:
+                self.zoom.by(STEP**event.y, pointed)
 
     @property
     def box(self) -> pygame.Rect:

@@ -104,6 +104,11 @@ class NetworkEditing:
             links(self._network)
         ) - 1  # fmt: skip
 
+    @property
+    def _silent(self) -> bool:
+        """Whether the picked unit is silenced."""
+        return isinstance(self.picked, Unit) and (self.picked.stage, self.picked.unit) in self._run.edits.silenced
+
     # What is done
 
     def follow(self, event: pygame.event.Event) -> None:
@@ -159,7 +164,7 @@ class NetworkEditing:
         for weight in edits.weights:
             pinned |= {(unit.stage, unit.unit) for unit in _units(Link(*weight))}
         self._view.pinned = frozenset(pinned)
-        shown = (self.enabled, self._large, self.picked, edits.steps > 0, edits.holds, edits.way_back)
+        shown = (self.enabled, self._large, self.picked, self._silent, edits.steps > 0, edits.holds, edits.way_back)
         if shown != self._laid:
             self._laid = shown
             self._lay()
@@ -169,7 +174,7 @@ class NetworkEditing:
     def _lay(self) -> None:
         """Add the slider and the words that fit what is picked and what was edited."""
         edits, row = self._run.edits, _ROW if self._large else _SMALL_ROW
-        part = self.picked if self.enabled and self._large else None
+        part = self.picked if self.enabled and self._large and not self._silent else None
         if part != self._of or part is None:  # a slider that is being dragged stays
             self._of, self._slider = part, None
             self._own = self._of_picked() if part else []
@@ -223,8 +228,10 @@ class NetworkEditing:
             return texts.EDIT_HINT
         if isinstance(self.picked, Link):
             return texts.EDIT_DUELING if self._fixed else ""
-        output = self.picked.stage == len(self._view.columns) - 1
-        return texts.EDIT_OUTPUT if output else name_of(self._view, self.picked)
+        if self.picked.stage == len(self._view.columns) - 1:
+            return texts.EDIT_OUTPUT
+        name = name_of(self._view, self.picked)
+        return texts.EDIT_SILENT.format(name=name) if self._silent else name
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the marks over the network, and the sentence beside the words."""

@@ -34,7 +34,7 @@ _NETWORK, _PAID = 0, 1
 _ROW: Final = pygame.Rect(868, 430, 384, 22)
 _SMALL: Final = pygame.Rect(868, 458, 384, 150)
 _STRIP: Final = pygame.Rect(868, 478, 384, 80)
-_LARGE: Final = pygame.Rect(48, 144, 740, 548)
+_LARGE: Final = pygame.Rect(48, 158, 740, 534)
 _LEFT: Final = 40.0
 
 

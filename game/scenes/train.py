@@ -26,7 +26,8 @@ from game.panels.rewind import Rewind
 from game.panels.run_status import draw_run_status
 from game.panels.training_charts import TrainingCharts
 from game.panels.training_status import lander_status
-from game.scenes.dialog import ListDialog, QuestionDialog
+from game.scenes.comparing import Comparing
+from game.scenes.dialog import QuestionDialog
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, TrainingScene
 from game.training.lander_run import PACES, LanderRun
 from game.training.library import Library, SavedRun
@@ -64,6 +65,7 @@ class TrainScene(TrainingScene[LanderRun]):
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer, self.lander_run)
         self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin)
+        self._comparing = Comparing(self, self.lander_run, self._ask)
         self.rewind = Rewind(self.form, self.lander_run, DISPLAY_WIDTH / VIEW_SIZE[0])
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
@@ -108,7 +110,7 @@ class TrainScene(TrainingScene[LanderRun]):
         still = self._settings.reduced_motion
         self._show_moment()
         self.training_charts.look(lander_run.history, lander_run.earlier)
-        if bool(lander_run.earlier) != self._compared:
+        if bool(lander_run.earlier) is not self._compared and not self.inside.large:
             self._compared = bool(lander_run.earlier)
             self._lay_beside(self.inside.large)
         self.swarm.update(still)
@@ -226,16 +228,8 @@ class TrainScene(TrainingScene[LanderRun]):
         else:
             self.context.note(texts.RUN_DELETED.format(name=name))
 
-    def _compare(self) -> Transition:
-        """Ask for a saved run whose curves shall be seen beside these."""
-        runs = self.lander_run.library.runs()
-
-        def put(number: int) -> None:
-            if note := self.lander_run.compare(runs[number].name, runs[number].folder):
-                self.context.note(note)
-            self.training_charts.clear()
-
-        return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
+    def _ask(self, question: Transition) -> None:
+        self._question = question
 
     # Checkpoints
 
@@ -281,13 +275,15 @@ class TrainScene(TrainingScene[LanderRun]):
             words = (
                 (texts.TRAIN_RUNS, self._open_runs),
                 (texts.TRAIN_DUEL, self._duel),
-                (texts.TRAIN_COMPARE, self._compare),
+                (texts.TRAIN_COMPARE, self._comparing.add),
                 (texts.TRAIN_TEACH, self._teach),
             )
             beside = [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
-            beside += self.training_charts.widgets(self.form.manager, self._duel, self.rewind, compared=self._compared)
+            beside += self.training_charts.widgets(
+                self.form.manager, self._duel, self.rewind, compared=self._compared, choose=self._comparing.choose
+            )
         self.form.replace(self._beside, beside)
         self._beside = beside
 

@@ -26,7 +26,7 @@ from game.core.names import LibraryError
 from game.core.worker import Worker
 from game.training.library import Library
 from game.training.record import Record
-from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
+from game.training.training_run import EarlierRun, TrainingRun, put_beside
 
 # Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
 PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
@@ -75,7 +75,8 @@ class LanderRun(TrainingRun):
         `name` is the name of its settings; a run that was saved under a name keeps that. Returns a note for the
         player, or ""; for a run that must wait, the note comes from `poll`.
         """
-        note = self._put_beside(self.name, self.history) if len(self.history) else ""
+        if len(self.history):
+            self._put_beside(self.name, self.history)
         self.history = History()
         self.config, self.seed = config, seed
         self.swarm_state = self.network_state = self.in_force = None
@@ -86,8 +87,7 @@ class LanderRun(TrainingRun):
         self._named = resume is not None and resume != self.library.unsaved
         self.name = resume.name if resume else ""
         self.call(name)
-        started = self._start(lambda: self._begin(config, seed, resume))
-        return " ".join(filter(None, [note, started]))
+        return self._start(lambda: self._begin(config, seed, resume))
 
     def _begin(self, config: Config, seed: int, resume: Path | None) -> str:
         note = ""
@@ -189,11 +189,12 @@ class LanderRun(TrainingRun):
             return str(error)
         if not len(history):
             return texts.TRAIN_NO_CURVES.format(name=name)
-        return self._put_beside(name, history)
+        self._put_beside(name, history)
+        return ""
 
-    def _put_beside(self, name: str, history: History) -> str:
-        gone = put_beside(self.earlier, name, history)
-        return texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
+    def _put_beside(self, name: str, history: History) -> None:
+        history.checkpoints.clear()  # only its curves are shown, and there may be many such runs
+        put_beside(self.earlier, name, history)
 
 
 def _turned(config: Config, name: str, value: Any) -> Config:
