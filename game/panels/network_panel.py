@@ -43,6 +43,7 @@ class NetworkPanel:
 
     Attributes:
         large: whether the network is shown large.
+        view, reward_bar: what it shows; `network` is the one in the view, None without a run.
         health: diagnosis of the network's units and numbers.
         editing: what a player does to the network by hand.
 
@@ -51,9 +52,9 @@ class NetworkPanel:
     def __init__(self, form: Form, on_closer: Callable[[], None], lander_run: LanderRun) -> None:
         self.large = False
         self._form = form
-        self._view = NetworkView(_SMALL, texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
-        self._reward_bar = RewardBar(_STRIP)
-        self.editing = NetworkEditing(form, self._view, lander_run)
+        self.view = NetworkView(_SMALL, texts.INPUTS, tuple(map(texts.said, ACTION_NAMES)))
+        self.reward_bar = RewardBar(_STRIP)
+        self.editing = NetworkEditing(form, self.view, lander_run)
         self._picture = _NETWORK
         width = typeface.width(texts.TRAIN_CLOSER, SMALL, "regular")
         self._on_closer = on_closer
@@ -66,14 +67,14 @@ class NetworkPanel:
 
     def clear(self) -> None:
         """Reset for another run."""
-        self._network: NeuralNetwork | None = None
+        self.network: NeuralNetwork | None = None
         self.health = NetworkHealth()
         self.editing.clear()
 
     @property
     def busy(self) -> bool:
         """Whether the next frame paints part of a new picture of the network."""
-        return self._shows_network and self._view.busy
+        return self._shows_network and self.view.busy
 
     @property
     def _shows_network(self) -> bool:
@@ -84,10 +85,10 @@ class NetworkPanel:
         self.large = large
         self.editing.place(large)
         self._closer.label = texts.TRAIN_CLOSER_BACK if large else texts.TRAIN_CLOSER
-        self._view.place(_LARGE if large else _SMALL)
+        self.view.place(_LARGE if large else _SMALL)
         self._heading.index = _PAID if large else self._picture  # beside the large network, the panel has the other
         box = (_LEFT, 88, 400, 28)
-        index = SHOWN.index(self._view.show)
+        index = SHOWN.index(self.view.show)
         if not large:
             return []
         return [
@@ -97,32 +98,32 @@ class NetworkPanel:
 
     def take(self, network_state: NetworkState, config: Config) -> None:
         """Show the network that a run reports, and see how healthy it is."""
-        if self.show(network_state, config) and self._network is not None:
-            self.health.look(self._network, network_state.observation, config.gradient_clip)
+        if self.show(network_state, config) and self.network is not None:
+            self.health.look(self.network, network_state.observation, config.gradient_clip)
 
     def show(self, network_state: NetworkState, config: Config) -> bool:
         """Show a network, perhaps of an earlier moment; return whether it fits the run."""
-        if self._network is None or self._network.values.shape != network_state.values.shape:
-            self._network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
-        network = self._network
+        if self.network is None or self.network.values.shape != network_state.values.shape:
+            self.network = build_network(NUM_FEATURES, NUM_ACTIONS, config, np.random.default_rng(0))
+        network = self.network
         if network.values.shape != network_state.values.shape:
             return False  # it belongs to a run that has just been replaced
         network.values = network_state.values
         network.gradients[:] = network_state.gradients
-        self._view.output_scale = config.reward_scale
-        self._view.set(network, network_state.observation)
+        self.view.output_scale = config.reward_scale
+        self.view.set(network, network_state.observation)
         self.editing.look(network)
         return True
 
     def pay(self, history: History, row: int = -1) -> None:
         """Show the reward of the latest flights, part by part, or of those before another point of the history."""
-        self._reward_bar.set(PARTS, history.parts[row])
+        self.reward_bar.set(PARTS, history.parts[row])
 
     def follow(self, event: pygame.event.Event) -> None:
         """Follow the mouse or the virtual pointer; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
-            self._view.hover(event.pos if self._shows_network else None)
-            self._reward_bar.hover(None if self._shows_network and not self.large else event.pos)
+            self.view.hover(event.pos if self._shows_network else None)
+            self.reward_bar.hover(None if self._shows_network and not self.large else event.pos)
         self.editing.follow(event)
 
     def covers(self, point: Point) -> bool:
@@ -132,19 +133,19 @@ class NetworkPanel:
     def update(self, at_once: bool) -> None:
         """Advance by 1/60 s."""
         self.editing.update()
-        self._view.update(at_once=at_once)
-        self._reward_bar.update(at_once=at_once)
+        self.view.update(at_once=at_once)
+        self.reward_bar.update(at_once=at_once)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the panel's picture, and the large network with its title beside it."""
         if self.large:
             canvas.text(texts.NETWORK_VIEW_TITLE, (_LEFT, 46), size=TITLE)
-            canvas.text(texts.NETWORK_VIEW_LINES[self._view.show], (_LEFT, 70), size=SMALL, colour=MUTE)
+            canvas.text(texts.NETWORK_VIEW_LINES[self.view.show], (_LEFT, 70), size=SMALL, colour=MUTE)
         if self._shows_network:
-            self._view.draw(canvas)
+            self.view.draw(canvas)
         self.editing.draw(canvas)
         if self.large or self._picture == _PAID:
-            self._reward_bar.draw(canvas)
+            self.reward_bar.draw(canvas)
 
     def _turn(self, index: int) -> None:
         self._picture = index
@@ -152,4 +153,4 @@ class NetworkPanel:
             self._on_closer()
 
     def _show(self, index: int) -> None:
-        self._view.show = SHOWN[index]
+        self.view.show = SHOWN[index]

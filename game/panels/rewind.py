@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from ai.common.environment import Doubles
 from ai.training.messages import NetworkState
 from game.core import texts
 from game.core.worker import WorkerState
@@ -101,14 +102,19 @@ class Rewind:
 
     def shift(self, direction: int) -> None:
         """Go a hundredth of the run back (-1) or on (1)."""
-        known = self._run.history["decisions"]
-        if not len(known) or (self.moment is None and direction > 0):
+        if not self._end or (self.moment is None and direction > 0):
             return
-        here = self._end if self.moment is None else self.moment
+        known = self._moments()
         step = max(1, len(known) // _STEPS)
+        here = self._end if self.moment is None else self.moment
         before, after = np.searchsorted(known, here, "left") - step, np.searchsorted(known, here, "right") - 1 + step
         goal = int(before if direction < 0 else after)
         self.seek(float(known[max(goal, 0)]) if goal < len(known) else self._end)
+
+    def _moments(self) -> Doubles:
+        """Return all moments to be shown, rising: of the landers, and before those were kept, of the curves."""
+        swarms, known = self._run.swarms, self._run.history["decisions"]
+        return np.concatenate([known[known < (swarms.begins or 0)], swarms.moments])
 
     def _network_at(self, decisions: int) -> NetworkState | None:
         """Return the nearest network: one the run has sent, or before the first of those, that of a checkpoint."""
