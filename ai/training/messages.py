@@ -13,6 +13,7 @@ from ai.agent.config import Config
 from ai.agent.lesson import Lesson
 from ai.agent.schedule import InForce
 from ai.common.environment import Floats
+from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, Point, SettingChange, Validation
 
 
@@ -124,5 +125,6 @@ Message = (
     | Saved
     | Refused
     | Lesson
+    | NetworkEdits
 )
-Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations | Explain
+Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations | Explain | EditCommand

@@ -28,7 +28,7 @@ from game.core import texts
 from game.core.names import LONGEST_NAME, LibraryError
 from game.core.worker import Worker
 from game.training.digit_models import PATIENCE, DigitModels
-from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
+from game.training.training_run import EarlierRun, TrainingRun, put_beside
 
 CurveMessage = DigitPoint | FilterMoment | HeldOutScore | DigitSettingChanged
 FALLEN: Final = 0.15  # drop of validation accuracy below its best at which a return to the best is offered
@@ -151,17 +151,14 @@ class DigitRun(TrainingRun):
         `name` is the name of its settings. Returns a note for the player, or ""; for a run that must wait, the note
         comes from `poll`.
         """
-        note = ""
         if self.curves.points:
-            gone = put_beside(self.earlier, self.name, self.curves)
-            note = texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
+            put_beside(self.earlier, self.name, self.curves)
         self.curves, self.confusion, self.test, self.kept_epoch = DigitCurves(), None, None, None
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
         self.call(name)
-        started = self._start(lambda: self._begin(config, seed, resume))
-        return " ".join(filter(None, [note, started]))
+        return self._start(lambda: self._begin(config, seed, resume))
 
     def _begin(self, config: DigitConfig, seed: int, resume: bool) -> str:
         notes = self._name_ended()
