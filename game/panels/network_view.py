@@ -41,6 +41,7 @@ class NetworkView:
         self.output_scale = 1.0  # one point of reward, in units of the network's outputs
         self.plan: NetworkPlan | None = None
         self.edges: list[Edge] = []
+        self.reads_out = True  # whether a unit's value is written beside it while it is highlighted
         self.redraws = 0  # number of times that the sheets were painted
         self._show: Show = "weights"
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
@@ -209,7 +210,7 @@ class NetworkView:
         canvas.surface.blit(signs.surface, corner)
         if self._show == "gradients" and not self._still:
             self._draw_pulses(canvas)
-        if self.hovered:
+        if self.hovered and self.reads_out:
             self._draw_tooltip(canvas, *self.hovered)
 
     def _blank(self, canvas: Canvas) -> Sheets:

@@ -1,0 +1,140 @@
+"""One learning step of any network, as the frames about networks, gradients and optimizers need it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
+from ai.nn.inspection import Link, links
+
+_SUM, _NORMALISED = "sum", "normalised"
+# What optimizers remember of the slopes so far, by its name in `Optimizer.remembers`.
+_RUNNING: Final = ("gradient_sum", "velocity")
+
+
+@dataclass(frozen=True)
+class WeightPlace:
+    """Place of a weight: the link it belongs to, from 0, and the units at its two ends."""
+
+    link: int
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, eq=False)
+class LearningStep:
+    """One step of an optimizer on a batch of examples, around one of them.
+
+    All flat vectors are (parameters,), in the order of `NeuralNetwork.values`.
+
+    Attributes:
+        network: the network as it was before the step.
+        observation: (inputs,) that the network was given.
+        inputs, outputs: names of the network's ends.
+        scale: size of one shown unit in the unit of the network's outputs: one point of reward, or 1.
+        values_before, values_after: the parameters.
+        gradient: of the cost of the whole batch, as the optimizer used it.
+        gradient_length: its length before it was clipped.
+        share: the part of the gradient that comes from this example alone.
+        step: what the optimizer took off the parameters.
+        optimizer: name of the optimizer.
+        learning_rate: of this step.
+        memory_before, memory_after: what the optimizer keeps of each parameter, by name.
+        examples: number of examples in the batch.
+
+    """
+
+    network: NeuralNetwork
+    observation: Array
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    scale: float
+    values_before: Array
+    values_after: Array
+    gradient: Array
+    gradient_length: float
+    share: Array
+    step: Array
+    optimizer: str
+    learning_rate: float
+    memory_before: Mapping[str, Array]
+    memory_after: Mapping[str, Array]
+    examples: int
+
+    @cached_property
+    def stages(self) -> list[list[tuple[str, Array]]]:
+        """Return, for each link, the name and the values (units,) of each layer from it up to the next link."""
+        found: list[list[tuple[str, Array]]] = []
+        layers = self.network.layers
+        for layer, values in zip(layers, self.network.activations(self.observation), strict=True):
+            if isinstance(layer, FullyConnectedLayer):
+                found.append([(_SUM, values)])
+            elif isinstance(layer, LayerNormalisation) and found:
+                found[-1].append((_NORMALISED, values))
+            elif isinstance(layer, ActivationLayer) and found:
+                found[-1].append((str(layer.activation.name), values))
+        return found
+
+    @cached_property
+    def _twin(self) -> NeuralNetwork:
+        return self.network.copy()
+
+    def links(self, flat: npt.NDArray[Any]) -> list[Link]:
+        """Return a flat vector of the parameters as the links between the network's stages; copies."""
+        self._twin.values = flat
+        return [Link(link.weights.copy(), link.bias.copy(), link.gradient) for link in links(self._twin)]
+
+    @cached_property
+    def weights(self) -> list[Link]:
+        """The weights before the step."""
+        return self.links(self.values_before)
+
+    @cached_property
+    def _indices(self) -> list[npt.NDArray[np.intp] | None]:
+        """For each link, where its weights lie in a flat vector; None where they are mixed, in a dueling layer."""
+        twin = self.network.copy()
+        found: list[npt.NDArray[np.intp] | None] = []
+        first = 0
+        for layer in twin.layers:
+            size = sum(parameter.value.size for parameter in layer.parameters)
+            if isinstance(layer, FullyConnectedLayer):
+                shape = layer.shapes["weights"]
+                whole = np.arange(first, first + int(np.prod(shape))).reshape(shape)
+                found.append(None if isinstance(layer, DuelingLayer) else whole)
+            first += size
+        return found[-len(self.weights) :]
+
+    def index(self, place: WeightPlace) -> int | None:
+        """Return where a weight lies in the flat vectors; None for one of a dueling layer, which mixes several."""
+        indices = self._indices[place.link]
+        return None if indices is None else int(indices[place.start, place.end])
+
+    def strongest(self, flat: Array, most: int) -> list[WeightPlace]:
+        """Return the places of the weights for which a flat vector is largest, the largest first."""
+        found = []
+        for link, indices in enumerate(self._indices):
+            if indices is None:
+                continue
+            sizes = np.nan_to_num(np.abs(flat[indices]), nan=np.inf)
+            best = np.argsort(-sizes, axis=None, kind="stable")[:most]
+            places = np.stack(np.unravel_index(best, sizes.shape), axis=1).tolist()
+            found += [(float(sizes[start, end]), WeightPlace(link, start, end)) for start, end in places]
+        found.sort(key=lambda each: -each[0])
+        return [place for _, place in found[:most]]
+
+    @property
+    def running(self) -> Array:
+        """What the step is proportional to, parameter by parameter: the slopes so far, or this gradient alone."""
+        return next((self.memory_after[name] for name in _RUNNING if name in self.memory_after), self.gradient)
+
+    @cached_property
+    def pace(self) -> Array:
+        """Step for each unit of `running`, parameter by parameter: 0 where nothing moves."""
+        running = self.running.astype(float)
+        return np.divide(self.step, running, out=np.zeros(len(running)), where=running != 0)
