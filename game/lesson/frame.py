@@ -10,13 +10,12 @@ from typing import Final
 import pygame
 
 from game.charts.tooltip import TooltipRow, draw_tooltip
-from game.core.texts import said
 from game.drawing import typeface
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, MUTE, SMALL, Colour
 
-__all__ = ["PICTURE", "Explanation", "Frame", "Label", "Spot", "rows_of", "said"]
+__all__ = ["PICTURE", "Explanation", "Frame", "Label", "Spot", "rows_of"]
 
 PICTURE: Final = pygame.Rect(40, 236, 752, 420)  # of the current frame, in points
 _WITHIN: Final = pygame.Rect(12, 160, 1256, 520)  # where explanations may stand

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -10,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from ai.agent.lesson import Step
 from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
 from ai.nn.inspection import Link, links
 
@@ -29,50 +29,33 @@ class WeightPlace:
 
 @dataclass(frozen=True, eq=False)
 class LearningStep:
-    """One step of an optimizer on a batch of examples, around one of them.
-
-    All flat vectors are (parameters,), in the order of `NeuralNetwork.values`.
+    """One step of an optimizer on a batch of examples, around one of them, and the names of all that it moves.
 
     Attributes:
-        network: the network as it was before the step.
+        network: a network with the parameters from before the step.
+        taken: the step as it was recorded.
         observation: (inputs,) that the network was given.
         inputs, outputs: names of the network's ends.
         scale: size of one shown unit in the unit of the network's outputs: one point of reward, or 1.
-        values_before, values_after: the parameters.
-        gradient: of the cost of the whole batch, as the optimizer used it.
-        gradient_length: its length before it was clipped.
-        share: the part of the gradient that comes from this example alone.
-        step: what the optimizer took off the parameters.
         optimizer: name of the optimizer.
-        learning_rate: of this step.
-        memory_before, memory_after: what the optimizer keeps of each parameter, by name.
         examples: number of examples in the batch.
 
     """
 
     network: NeuralNetwork
+    taken: Step
     observation: Array
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     scale: float
-    values_before: Array
-    values_after: Array
-    gradient: Array
-    gradient_length: float
-    share: Array
-    step: Array
     optimizer: str
-    learning_rate: float
-    memory_before: Mapping[str, Array]
-    memory_after: Mapping[str, Array]
     examples: int
 
     @cached_property
     def stages(self) -> list[list[tuple[str, Array]]]:
         """Return, for each link, the name and the values (units,) of each layer from it up to the next link."""
         found: list[list[tuple[str, Array]]] = []
-        layers = self.network.layers
-        for layer, values in zip(layers, self.network.activations(self.observation), strict=True):
+        for layer, values in zip(self.network.layers, self.taken.activations, strict=True):
             if isinstance(layer, FullyConnectedLayer):
                 found.append([(_SUM, values)])
             elif isinstance(layer, LayerNormalisation) and found:
@@ -93,7 +76,7 @@ class LearningStep:
     @cached_property
     def weights(self) -> list[Link]:
         """The weights before the step."""
-        return self.links(self.values_before)
+        return self.links(self.taken.values_before)
 
     @cached_property
     def _indices(self) -> list[npt.NDArray[np.intp] | None]:
@@ -131,10 +114,11 @@ class LearningStep:
     @property
     def running(self) -> Array:
         """What the step is proportional to, parameter by parameter: the slopes so far, or this gradient alone."""
-        return next((self.memory_after[name] for name in _RUNNING if name in self.memory_after), self.gradient)
+        kept = self.taken.optimizer_after
+        return next((kept[name] for name in _RUNNING if name in kept), self.taken.gradient)
 
     @cached_property
     def pace(self) -> Array:
         """Step for each unit of `running`, parameter by parameter: 0 where nothing moves."""
         running = self.running.astype(float)
-        return np.divide(self.step, running, out=np.zeros(len(running)), where=running != 0)
+        return np.divide(self.taken.taken, running, out=np.zeros(len(running)), where=running != 0)
