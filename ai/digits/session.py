@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
 from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.config import DigitConfig
+from ai.digits.lesson import DigitLesson, explain_digit
 from ai.digits.training import DigitTraining
 from ai.nn import Array
 from ai.training.history import REVERTED
@@ -105,12 +106,28 @@ class RestoreBest:
 
 
 @dataclass(frozen=True)
+class ExplainImage:
+    """Command to explain the next learning step around an image of its batch; a DigitLesson is the answer."""
+
+    row: int = 0
+
+
+@dataclass(frozen=True)
 class Finish:
     """Command to take no more steps: save the run, measure it, and end."""
 
 
-Message = DigitRunStarted | DigitPoint | HeldOutScore | Confusion | DigitSettingChanged | DigitRunSaved | Refused
-Command = ChangeSetting | Save | Finish | RestoreBest
+Message = (
+    DigitRunStarted
+    | DigitPoint
+    | HeldOutScore
+    | Confusion
+    | DigitSettingChanged
+    | DigitRunSaved
+    | DigitLesson
+    | Refused
+)
+Command = ChangeSetting | Save | Finish | RestoreBest | ExplainImage
 
 
 def live_digits(
@@ -217,6 +234,11 @@ class _LiveDigits:
             return []
         if isinstance(command, RestoreBest):
             return self._go_back()
+        if isinstance(command, ExplainImage):
+            try:
+                return [explain_digit(self.training, command.row)]
+            except (ValueError, FloatingPointError) as error:
+                return [Refused(command, str(error))]
         try:
             self.training.apply_live(self.training.config.turned(command.name, command.value))
         except ValueError as error:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ai.agent.config import Config
+from ai.agent.lesson import Lesson
 from ai.agent.schedule import InForce
 from ai.common.environment import Floats
 from ai.training.history import Checkpoint, Point, SettingChange, Validation
@@ -80,6 +81,17 @@ class AddDemonstrations:
 
 
 @dataclass(frozen=True)
+class Explain:
+    """Command to explain the learning step that follows from a lander's latest memory; a Lesson is the answer.
+
+    `decisions` of the run name a moment in the past, of which the nearest that was kept is taken; None is now.
+    """
+
+    slot: int
+    decisions: int | None = None
+
+
+@dataclass(frozen=True)
 class Saved:
     """Result of a save; no problem means that it is on the disk, whole."""
 
@@ -91,7 +103,7 @@ class Saved:
 class Refused:
     """Refusal of a command that could not be carried out, and why. Nothing has changed."""
 
-    command: ChangeSetting | RestoreCheckpoint | AddDemonstrations
+    command: Any
     problem: str
 
 
@@ -101,6 +113,16 @@ def problem_of(error: Exception) -> str:
 
 
 Message = (
-    RunStarted | SwarmState | NetworkState | InForce | Point | Checkpoint | Validation | SettingChange | Saved | Refused
+    RunStarted
+    | SwarmState
+    | NetworkState
+    | InForce
+    | Point
+    | Checkpoint
+    | Validation
+    | SettingChange
+    | Saved
+    | Refused
+    | Lesson
 )
-Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations
+Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations | Explain

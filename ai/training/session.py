@@ -17,6 +17,7 @@ from ai.lander.environment import LanderEnv
 from ai.training.autosave import Autosave
 from ai.training.checkpoints import restore_checkpoint, resume_run
 from ai.training.demonstrations import Demonstration, read, taught, teach
+from ai.training.explanations import Explanations
 from ai.training.history import (
     PARTS,
     REVERTED,
@@ -33,6 +34,7 @@ from ai.training.messages import (
     AddDemonstrations,
     ChangeSetting,
     Command,
+    Explain,
     Message,
     NetworkState,
     Refused,
@@ -97,6 +99,7 @@ class _LiveRun:
         training.evaluate_every = 0  # that is done here, bit by bit, so that the landers never stand still for it
         self._validation = ValidationFlights(training)
         self._autosave = Autosave(training, history, keep)
+        self._explanations = Explanations(training)
         self._swarm_state = self._swarm_state_of(self.env.outcome)
         self._network_state_at = 0.0
         self._point_at = 0
@@ -141,6 +144,7 @@ class _LiveRun:
         if progress.decisions >= self._checkpoint_at:
             self._record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
+        self._explanations.keep()
         self._messages += self._autosave.go_on(now)
         return self._flush()
 
@@ -153,6 +157,8 @@ class _LiveRun:
                 self._restore_checkpoint(command)
             case AddDemonstrations():
                 self._teach(command)
+            case Explain():
+                self._explain(command)
             case Save(folder):
                 self._record_validation(self._validation.finish())
                 self._messages.append(self._autosave.save(folder))
@@ -176,6 +182,7 @@ class _LiveRun:
 
     def _on_step(self, result: StepResult) -> None:
         self._swarm_state = self._swarm_state_of(result.outcome)
+        self._explanations.follow(self.env.actions, result)
 
     def _swarm_state_of(self, outcome: Ints) -> SwarmState:
         env, training = self.env, self.training
@@ -257,6 +264,12 @@ class _LiveRun:
         if not self.training.config.success_pass:
             self._change(ChangeSetting("success_pass", taught(self.training.config).success_pass))
         self._record_change(TAUGHT, None, used)
+
+    def _explain(self, command: Explain) -> None:
+        try:
+            self._messages.append(self._explanations.explain(command.slot, command.decisions))
+        except (ValueError, FloatingPointError) as error:
+            self._messages.append(Refused(command, str(error)))
 
     def _record_change(self, name: str, before: Any, after: Any, amends: bool = False) -> None:
         self._record(SettingChange(self.training.agent.decisions, name, before, after, amends))

@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from ai.agent.config import Config
+from ai.agent.lesson import Lesson
 from ai.agent.schedule import InForce
 from ai.nn import ModelFormatError
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.messages import (
     AddDemonstrations,
+    Explain,
     NetworkState,
     Refused,
     RestoreCheckpoint,
@@ -37,7 +39,7 @@ class LanderRun(TrainingRun):
 
     Attributes:
         history: history of the current or last run.
-        sight, insight, in_force: the latest message of each kind; None before the first.
+        swarm_state, network_state, in_force, lesson: the latest message of each kind; None before the first.
         earlier: the runs shown beside it, the latest first.
 
     """
@@ -52,6 +54,7 @@ class LanderRun(TrainingRun):
         self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
         self.in_force: InForce | None = None
+        self.lesson: Lesson | None = None
         self.earlier: list[EarlierRun[History]] = []
         self.begun = False  # whether a run has reported its configuration since this was last set to False
         self.pace = len(PACES) - 1
@@ -70,7 +73,7 @@ class LanderRun(TrainingRun):
         note = self._put_beside(self.name, self.history) if len(self.history) else ""
         self.history = History()
         self.config, self.seed = config, seed
-        self.swarm_state = self.network_state = self.in_force = None
+        self.swarm_state = self.network_state = self.in_force = self.lesson = None
         self.runs += 1
         self._named = resume is not None and resume != self.library.unsaved
         self.name = resume.name if resume else ""
@@ -116,6 +119,10 @@ class LanderRun(TrainingRun):
         """Revert the network to a checkpoint."""
         self._send(RestoreCheckpoint(checkpoint.decisions))
 
+    def explain(self, slot: int, decisions: int | None = None) -> None:
+        """Ask for the lesson of a lander's latest memory, now or at a time in the past; `poll` puts it in `lesson`."""
+        self._send(Explain(slot, decisions))
+
     def save(self, name: str) -> str:
         """Name the run in the library; raises LibraryError if that fails.
 
@@ -144,6 +151,8 @@ class LanderRun(TrainingRun):
                 self.network_state = message
             case InForce():
                 self.in_force = message
+            case Lesson():
+                self.lesson = message
             case Point() | Checkpoint() | Validation():
                 self.history.append(message)
             case SettingChange(_, name, _, after):

@@ -1,0 +1,131 @@
+"""Lessons of a live run: the learning step that follows from a moment of a flight, now or earlier in the run.
+
+A run keeps the last decisions of all landers, and now and then all that its next learning step depends on; that takes
+it a thousandth of its time. A lesson is made from these only when one is asked for, by a copy of the agent.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from ai.agent.lesson import Before, Flown, Lesson, explain
+from ai.agent.n_step import NStep
+from ai.agent.replay import MemoryCell
+from ai.common.environment import Floats, Ints, StepResult
+from ai.training.loop import Training
+
+_MOST_KEPT: Final = 40  # moments of a run; with twice as many, every second one is dropped
+_MOST_BYTES: Final = 32 << 20  # of them all, at the end of a long run with a large network
+_FIRST_EVERY: Final = 16  # decisions of each lander between two of the first that are kept
+
+
+@dataclass(frozen=True, eq=False)
+class _Decided:
+    """One decision of all landers: decisions of the run and observations (n, features) before it, and actions (n,)."""
+
+    decisions: int
+    observation: Floats
+    actions: Ints
+    result: StepResult
+
+
+@dataclass(frozen=True, eq=False)
+class _Moment:
+    """Moment of a run that can be explained: the last decisions, oldest first, and the step that follows."""
+
+    decided: tuple[_Decided, ...]
+    before: Before
+
+
+class Explanations:
+    """Explanations of a run's learning steps; `follow` is to be called after each decision, `keep` now and then."""
+
+    def __init__(self, training: Training) -> None:
+        self._training = training
+        self._decided: deque[_Decided] = deque(maxlen=training.config.n_step)
+        self._moments: list[_Moment] = []
+        self._every = _FIRST_EVERY * training.env.num_envs
+        self._keep_at = training.agent.decisions
+
+    def follow(self, actions: Ints, result: StepResult) -> None:
+        """Keep one decision of all landers: what comes of it, before those that have ended begin anew."""
+        before = self._training.agent.decisions - len(actions)
+        self._decided.append(_Decided(before, self._training.observation, actions, result))
+
+    def keep(self) -> None:
+        """Keep the present moment, if one is due."""
+        agent = self._training.agent
+        if agent.decisions < self._keep_at or not self._learns:
+            return
+        self._moments.append(self._now())
+        most = max(4, min(_MOST_KEPT, _MOST_BYTES // _size(self._moments[-1])))
+        if len(self._moments) >= 2 * most:
+            self._moments = self._moments[::2]
+            self._every *= 2
+        self._keep_at = agent.decisions + self._every
+
+    def explain(self, slot: int, decisions: int | None = None) -> Lesson:
+        """Return the lesson of a lander's latest memory that is complete, now or at the kept moment nearest to a time.
+
+        `decisions` are those of the run at that time. Raises ValueError where there is nothing to learn from yet, for a
+        lander that does not fly, and for a network that is too large; DivergenceError as the learning step does.
+        """
+        if not 0 <= slot < self._training.env.num_envs:
+            raise ValueError(f"there is no lander {slot}: {self._training.env.num_envs} fly")
+        if not self._learns or not self._decided:
+            raise ValueError("the network has not begun to learn: its replay buffer holds too few transitions")
+        kept = self._moments if decisions is not None else []
+        moment = min(kept, key=lambda each: abs(each.before.decisions - (decisions or 0)), default=None)
+        moment = moment or self._now()
+        cell, flown = _memory(moment, slot)
+        return explain(moment.before, cell, self._training.agent, flown)
+
+    @property
+    def _learns(self) -> bool:
+        agent = self._training.agent
+        return agent.replay.added >= max(1, agent.config.learning_starts)
+
+    def _now(self) -> _Moment:
+        agent = self._training.agent
+        # The run's own generator stays as it is, and the same moment gives the same lesson.
+        rng = np.random.default_rng((self._training.seed, agent.decisions))
+        return _Moment(tuple(self._decided), Before.of(agent, rng))
+
+
+def _memory(moment: _Moment, slot: int) -> tuple[MemoryCell, Flown]:
+    """Return a lander's latest memory that is complete, or of a flight's end the one that sums up most."""
+    config, decided = moment.before.config, list(moment.decided)
+    last = next(
+        (place for place in reversed(range(len(decided))) if decided[place].result.ended[slot]), len(decided) - 1
+    )
+    first = 1 + max((place for place in range(last) if decided[place].result.ended[slot]), default=-1)
+    decided = decided[first : last + 1]
+    mine, n_step = slice(slot, slot + 1), NStep(len(decided), config.discount)
+    for each in decided:
+        result = each.result
+        reward = result.reward[mine] * np.float32(config.reward_scale)
+        cells, _ = n_step.add(each.observation[mine], each.actions[mine], reward, result.observation[mine],
+                              result.terminated[mine], result.ended[mine])  # fmt: skip
+    results = [each.result for each in decided]
+    flown = Flown(
+        slot,
+        decided[0].decisions,
+        np.array([each.observation[slot] for each in decided] + [results[-1].observation[slot]]),
+        np.array([each.actions[slot] for each in decided]),
+        np.array([result.reward[slot] for result in results]),
+        {name: np.array([result.components[name][slot] for result in results]) for name in results[0].components},
+        int(results[-1].outcome[slot]) if results[-1].ended[slot] else 0,
+    )
+    return MemoryCell(*(part[0] for part in cells)), flown
+
+
+def _size(moment: _Moment) -> int:
+    """Return the number of bytes of a moment, about."""
+    before, decided = moment.before, moment.decided[0]
+    networks = (2 + len(before.optimizer)) * before.online.nbytes
+    parts = sum(part.nbytes for part in decided.result.components.values())
+    return int(networks + len(moment.decided) * (2 * decided.observation.nbytes + parts))

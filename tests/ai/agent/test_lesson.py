@@ -1,0 +1,158 @@
+"""Lesson: every number of it is that of the learning step which the agent takes when nobody looks, bit for bit."""
+
+import inspect
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import PRESETS
+from ai.agent.lesson import Before, explain, functions
+from ai.agent.replay import MemoryCell, ReplayBuffer
+from ai.training.lander_task import LANDER_SYMMETRY
+from ai.training.loop import Training
+
+SMALL = {
+    "modern": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=2, learning_starts=32, n_step=3,
+                      hidden=(16, 12), replay_size=2000),
+    "classic": replace(PRESETS["classic"], hidden=(16, 12), batch_size=16, learning_starts=32),
+    "all": replace(PRESETS["modern"], num_envs=8, batch_size=16, gradient_steps=1, learning_starts=32, n_step=2,
+                   hidden=(16,), replay_size=2000, prioritised=True, dueling=True, normalise_inputs=True,
+                   activation="leaky_relu", cost="mse", double=False, gradient_clip=0.1, optimizer="momentum"),
+}  # fmt: skip
+
+
+def trained(name):
+    training = Training(SMALL[name], seed=3, evaluate_every=0)
+    while training.agent.train_count < 40:
+        training.advance()
+    return training.agent
+
+
+class Drawn(ReplayBuffer):
+    """Replay buffer that draws what it was given."""
+
+    def __init__(self, cells, weights):
+        super().__init__(len(weights), cells.state.shape[1])
+        self.added, self.drawn = 10**6, (cells, np.arange(len(weights)), weights)
+
+    def sample(self, count, rng):
+        return self.drawn
+
+
+def unobserved(before, cell, agent):
+    """The same step by an agent that nobody looks at: it is handed the same minibatch, and learns."""
+    row = len(before.weights) // 2
+    cells = MemoryCell(*(np.array(part) for part in before.cells))
+    for part, own in zip(cells, cell, strict=True):
+        part[row] = own
+    twin = DeepQAgent(9, 6, before.config.changed(gradient_steps=1, success_pass=False), np.random.default_rng(5),
+                      symmetry=LANDER_SYMMETRY, replay=Drawn(cells, before.weights))  # fmt: skip
+    twin.copy_from(agent)
+    twin.learn()
+    return twin
+
+
+@pytest.fixture(scope="module", params=sorted(SMALL))
+def case(request):
+    agent = trained(request.param)
+    before = Before.of(agent, np.random.default_rng(1))
+    cell = MemoryCell(*(part[0] for part in agent.replay.at(np.array([7]))))
+    state = agent.online.values.copy(), agent.optimizer.state(), agent.rng.bit_generator.state
+    lesson = explain(before, cell, agent)
+    return agent, before, cell, lesson, state
+
+
+def test_the_step_is_the_one_that_is_taken_when_nobody_looks(case):
+    agent, before, cell, lesson, _ = case
+    alone = unobserved(before, cell, agent)
+    step = lesson.step
+    np.testing.assert_array_equal(step.values_after, alone.online.values)
+    np.testing.assert_array_equal(step.gradient, alone.online.gradients)
+    np.testing.assert_array_equal(step.taken, alone.optimizer.scratch)
+    for name, kept in step.optimizer_after.items():
+        np.testing.assert_array_equal(kept, alone.optimizer.memory[name])
+    assert step.learning_rate == alone.optimizer.learning_rate
+    np.testing.assert_array_equal(step.values_before, agent.online.values)
+    np.testing.assert_array_equal(step.values_before - step.taken, step.values_after)
+
+
+def test_the_target_is_the_agents(case):
+    agent, before, cell, lesson, _ = case
+    row = len(before.weights) // 2
+    cells = MemoryCell(*(np.array(part) for part in before.cells))
+    for part, own in zip(cells, cell, strict=True):
+        part[row] = own
+    if agent.normalizer:
+        cells = cells._replace(state=agent.normalizer(cells.state), next_state=agent.normalizer(cells.next_state))
+    targets, values = agent.targets(cells)
+    assert lesson.target == targets[row]
+    assert lesson.next_value == values[row]
+    assert lesson.error == lesson.predicted[int(cell.action)] - np.float32(lesson.target)
+    np.testing.assert_allclose(lesson.next_target, agent.target.predict(cells.next_state)[row], rtol=1e-6)
+    best = lesson.next_online if agent.config.double else lesson.next_target
+    assert lesson.best == int(np.argmax(best))
+    assert (lesson.next_online is None) == (not agent.config.double)
+    sum_up = float(cell.reward) + lesson.discount * lesson.next_value * (not cell.terminal)
+    assert lesson.target == pytest.approx(sum_up, rel=1e-6)
+
+
+def test_the_network_is_shown_as_it_ran(case):
+    agent, _, _, lesson, _ = case
+    network = agent.online
+    step = lesson.step
+    given = network.activations(lesson.state)
+    assert len(step.activations) == len(step.errors) == len(network.layers)
+    for shown, own in zip(step.activations, given, strict=True):
+        np.testing.assert_allclose(shown, own, rtol=2e-5, atol=2e-6)
+    np.testing.assert_array_equal(step.activations[-1], lesson.predicted)
+    assert np.flatnonzero(step.errors[-1]).tolist() in ([], [int(lesson.cell.action)])
+    assert step.errors[-1][int(lesson.cell.action)] == np.float32(lesson.derivative)
+
+
+def test_the_shares_of_all_memories_add_up_to_the_gradient(case):
+    agent, before, cell, lesson, _ = case
+    config, size = before.config, len(before.weights)
+    # A minibatch in which the same memory is drawn every time: each brings the same share.
+    cells = MemoryCell(*(np.repeat(np.asarray(part)[None], size, axis=0) for part in cell))
+    again = replace(before, cells=cells, weights=np.ones(size, np.float32), config=replace(config, mirror=False))
+    lesson = explain(again, cell, agent)
+    unclipped = lesson.step.gradient * max(1.0, lesson.step.gradient_length / config.gradient_clip)
+    np.testing.assert_allclose(size * lesson.step.share, unclipped, rtol=2e-3, atol=1e-6)
+
+
+def test_the_agent_is_as_before(case):
+    agent, _, _, _, (values, optimizer, rng) = case
+    np.testing.assert_array_equal(agent.online.values, values)
+    for name, kept in agent.optimizer.state().items():
+        np.testing.assert_array_equal(kept, optimizer[name])
+    assert agent.rng.bit_generator.state == rng
+
+
+def test_the_lines_are_those_of_the_running_code(case):
+    _, before, _, lesson, _ = case
+    known = functions(before.config)
+    for line in lesson.step.lines:
+        lines, first = inspect.getsourcelines(known[line.function])
+        assert first <= line.number < first + len(lines)
+    ran = [line.function for line in lesson.step.lines]
+    order = ["DeepQAgent._learn_from", "DeepQAgent.targets", "DeepQAgent.gradient_step", "Optimizer.step"]
+    assert [ran.index(name) for name in order] == sorted(ran.index(name) for name in order)
+    said = {value.name: value for line in lesson.step.lines for value in line.values
+            if line.function == "DeepQAgent.gradient_step"}  # fmt: skip
+    assert said["errors"].shape == (16,)
+    assert said["errors"].case == np.float32(lesson.error)
+
+
+def test_a_lesson_can_be_sent(case):
+    *_, lesson, _ = case
+    again = pickle.loads(pickle.dumps(lesson))
+    np.testing.assert_array_equal(again.step.values_after, lesson.step.values_after)
+
+
+def test_a_network_that_is_too_large_is_refused(case):
+    agent, before, cell, *_ = case
+    with pytest.raises(ValueError, match="too large"):
+        explain(replace(before, online=np.zeros(600_000, np.float32)), cell, agent)

@@ -1,0 +1,107 @@
+"""Explanations of a live run: the memory is the one that the run stores, and the run goes on as if nobody had asked."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ai.agent.config import PRESETS
+from ai.agent.lesson import Lesson
+from ai.training.history import Point
+from ai.training.messages import Explain, NetworkState, Refused
+from ai.training.session import live
+
+CONFIG = replace(PRESETS["modern"], num_envs=6, batch_size=16, gradient_steps=1, learning_starts=48, n_step=4,
+                 hidden=(16,), replay_size=5000, spawn="near")  # fmt: skip
+
+
+def run(config=CONFIG, **options):
+    ticks = iter(range(10**9))
+    return live(config, 7, clock=lambda: next(ticks) / 100, **options)
+
+
+def ask(session, slot, decisions=None):
+    (answer,) = session.send(Explain(slot, decisions))
+    return answer
+
+
+def test_the_memory_lies_in_the_replay_buffer():
+    session = run()
+    for _ in range(120):
+        next(session)
+    replay = session.gi_frame.f_locals["run"].training.agent.replay
+    for slot in range(6):
+        lesson = ask(session, slot)
+        assert isinstance(lesson, Lesson)
+        cells = replay.at(np.arange(len(replay)))
+        same = (cells.state == lesson.cell.state).all(axis=1) & (cells.steps == lesson.cell.steps)
+        (row,) = np.flatnonzero(same)
+        for kept, own in zip(cells, lesson.cell, strict=True):
+            np.testing.assert_array_equal(kept[row], own)
+        flown = lesson.flown
+        assert flown.slot == slot
+        assert len(flown.actions) == len(flown.rewards) == lesson.cell.steps
+        np.testing.assert_array_equal(flown.observations[0], lesson.cell.state)
+        np.testing.assert_array_equal(flown.observations[-1], lesson.cell.next_state)
+        assert flown.actions[0] == lesson.cell.action
+        np.testing.assert_allclose(sum(flown.parts.values()), flown.rewards, rtol=1e-5, atol=1e-5)
+        scale = CONFIG.reward_scale * CONFIG.discount ** np.arange(len(flown.rewards))
+        assert lesson.cell.reward == pytest.approx(float((scale * flown.rewards).sum()), rel=1e-4, abs=1e-6)
+        assert bool(flown.outcome) >= bool(lesson.cell.terminal)
+
+
+def test_a_run_that_is_asked_goes_on_as_one_that_is_not():
+    def networks(asked):
+        session, states = run(), []
+        for turn in range(200):
+            states += [each.values for each in next(session) if isinstance(each, NetworkState)]
+            if asked and turn % 20 == 19:
+                ask(session, turn % 6)
+                ask(session, turn % 6, turn * 3)
+        return states
+
+    for one, other in zip(networks(True), networks(False), strict=False):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_moment_in_the_past_has_the_network_of_that_time():
+    session, points = run(), []
+    for _ in range(1500):
+        points += [each for each in next(session) if isinstance(each, Point)]
+    now, early, middle = ask(session, 0), ask(session, 0, 600), ask(session, 0, points[len(points) // 2].decisions)
+    assert early.decisions < middle.decisions < now.decisions
+    assert abs(early.decisions - 600) <= 400
+    assert abs(middle.decisions - points[len(points) // 2].decisions) <= 800
+    assert not np.array_equal(early.step.values_before, middle.step.values_before)
+
+
+def test_the_same_moment_gives_the_same_lesson():
+    session = run()
+    for _ in range(60):
+        next(session)
+    one, other = ask(session, 2), ask(session, 2)
+    np.testing.assert_array_equal(one.step.values_after, other.step.values_after)
+    np.testing.assert_array_equal(one.batch_errors, other.batch_errors)
+
+
+@pytest.mark.parametrize(("turns", "slot", "why"), [(60, 6, "no lander 6"), (60, -1, "no lander"), (3, 0, "not begun")])
+def test_what_cannot_be_explained_is_refused(turns, slot, why):
+    session = run()
+    for _ in range(turns):
+        next(session)
+    answer = ask(session, slot)
+    assert isinstance(answer, Refused)
+    assert why in answer.problem
+
+
+def test_a_network_that_has_diverged_is_refused_and_not_lost():
+    session = run()
+    for _ in range(60):
+        next(session)
+    agent = session.gi_frame.f_locals["run"].training.agent
+    before = agent.online.values.copy()
+    agent.online.values[0] = np.inf
+    answer = ask(session, 0)
+    assert isinstance(answer, Refused)
+    agent.online.values = before
+    assert isinstance(ask(session, 0), Lesson)
