@@ -34,7 +34,8 @@ _MOON: Final = 5
 _ARROW: Final = 9.0  # points of the velocity's arrow for each metre per second
 _SENSED: Final = 640.0  # right end of the figures in units
 _GIVEN: Final = 745.0  # right end of the figures as the network gets them
-_DIGITS: Final = (2, 2, 2, 2, 3, 3, 3, 0, 0)
+_DIGITS: Final = (2, 2, 2, 2, 3, 3, 3)
+_UNITS: Final = (0, 0, 1, 1, None, None, 2)  # of each feature, among the texts; None for a plain number
 
 
 def in_units(observation: Floats) -> Doubles:
@@ -54,7 +55,8 @@ def sensed(value: float, feature: int) -> str:
     if feature >= 7:
         return texts.LESSON_FEET[value > 0.5]
     figure = f"{value:.{_DIGITS[feature]}f}".replace("-", "−")
-    return f"{figure} {texts.LESSON_UNITS[feature]}".strip()
+    unit = _UNITS[feature]
+    return figure if unit is None else texts.LESSON_UNITS[unit].format(value=figure)
 
 
 class MomentFrame(Frame):
@@ -84,7 +86,7 @@ class MomentFrame(Frame):
             self.label(sensed(value, feature), _SENSED, y, align="right", explanation=explanation, room=110)
             self.label(number(given), _GIVEN, y, align="right", explanation=explanation, colour=NET, room=84)
         speed = math.hypot(*units[2:4])
-        rows = rows_of((texts.LESSON_SPEED, f"{speed:.2f} m/s"))
+        rows = rows_of((texts.LESSON_SPEED, texts.LESSON_UNITS[1].format(value=f"{speed:.2f}")))
         self.spots.append(Spot(pygame.FRect(0, 0, *_WORLD), Explanation((texts.LESSON_PICTURE,), rows)))
         self.label(texts.LESSON_PICTURE_NOTE, 0, _WORLD[1] + 26, colour=MUTE, room=_WORLD[0])
 

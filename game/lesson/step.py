@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ai.agent.lesson import Step
+from ai.common.learning_step import Step
 from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
 from ai.nn.inspection import Link, links
 

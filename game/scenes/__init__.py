@@ -17,7 +17,7 @@ ROUTES: Final = {
     "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
     "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "settings.SettingsScene",
     "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "pause": "pause.PauseScene",
-    "error_screen": "error_screen.ErrorScene",
+    "error_screen": "error_screen.ErrorScene", "lesson": "lesson.LessonScene",
 }  # fmt: skip
 
 

@@ -61,7 +61,7 @@ class LessonScene(FormScene):
         controls = self.context.controls
         return [
             Hint(controls.arrows_aside, texts.LESSON_HINT_FRAME),
-            Hint(controls.arrows_up_down, texts.LESSON_HINT_LINE),
+            Hint(controls.arrows, texts.LESSON_HINT_LINE),
             self.form.confirms(texts.LESSON_HINT_POINT),
             Action(Command.LEFT, lambda: self.go(-1)),
             Action(Command.RIGHT, lambda: self.go(1)),
