@@ -58,7 +58,10 @@ class ErrorFrame(Frame):
             each: 90 + 570 * (each - low + around) / (high - low + 2 * around) for each in (predicted, target)
         }
         self._values = (predicted, target)
-        for value, word, y in ((predicted, texts.LESSON_PREDICTED, _LINE - 16), (target, texts.LESSON_TARGET, _LINE + 30)):
+        for value, word, y in (
+            (predicted, texts.LESSON_PREDICTED, _LINE - 16),
+            (target, texts.LESSON_TARGET, _LINE + 30),
+        ):
             text = f"{word} {points(value)}"
             own = rows_of((texts.LESSON_OWN_SCALE, number(value * scale)))
             self.label(text, self._ends[value], y, align="centre", explanation=Explanation((word,), own), room=300)

@@ -106,10 +106,15 @@ class GradientFrame(NetworkFrame):
             adam = Adam()
             mean, square = ("gradient_sum", 1 - adam.beta1), ("square_sum", 1 - adam.beta2)
             for name, (kept, factor) in (("mean", mean), ("square", square)):
-                before, after = (factor * float(memory[kept][index]) for memory in (step.taken.optimizer_before, step.taken.optimizer_after))
+                before, after = (
+                    factor * float(memory[kept][index])
+                    for memory in (step.taken.optimizer_before, step.taken.optimizer_after)
+                )
                 found.append((*_said(words[name], before=number(before)), number(after)))
         elif kind is Momentum and "velocity" in step.taken.optimizer_after:
-            before, after = (float(memory["velocity"][index]) for memory in (step.taken.optimizer_before, step.taken.optimizer_after))
+            before, after = (
+                float(memory["velocity"][index]) for memory in (step.taken.optimizer_before, step.taken.optimizer_after)
+            )
             found.append((*_said(words["velocity"], before=number(before)), number(after)))
         rule = words.get(f"step_{step.optimizer}", words["step_sgd"])
         found.append((*_said(rule, rate=number(step.taken.learning_rate)), signed(moved)))
@@ -150,4 +155,3 @@ def _said(words: Sequence[str], **figures: str) -> tuple[str, str]:
 
 def _length(vector: Array) -> float:
     return math.sqrt(float(np.dot(vector.astype(float), vector.astype(float))))
-

@@ -41,4 +41,6 @@ class FilmStrip:
             x, room = box.left + 12, box.width - 24
             canvas.text(str(number + 1), (x, box.top + 22), size=LABEL, colour=NET if lit else MUTE)
             canvas.text(frame.name, (x + 16, box.top + 22), size=SMALL, colour=INK if lit else MUTE, room=room - 16)
-            canvas.text(frame.figure, (x, box.top + 54), size=TEXT, colour=INK if lit else MUTE, tabular=True, room=room)
+            canvas.text(
+                frame.figure, (x, box.top + 54), size=TEXT, colour=INK if lit else MUTE, tabular=True, room=room
+            )

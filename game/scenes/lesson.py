@@ -42,9 +42,7 @@ class LessonScene(FormScene):
         self.parts = agent_frames(lesson)
         self.strip = FilmStrip([part.frame for part in self.parts])
         self.current = 0
-        self.pointer = self.form.add(
-            VirtualPointer(self.form.manager, _REACH, self._point, hold=texts.LESSON_PRESS)
-        )
+        self.pointer = self.form.add(VirtualPointer(self.form.manager, _REACH, self._point, hold=texts.LESSON_PRESS))
 
     @property
     def frame(self):  # type: ignore[no-untyped-def]

@@ -18,6 +18,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, VIEW_SIZE
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
+from game.lesson.door import LessonDoor
 from game.panels.advice import Advice
 from game.panels.knobs import KnobsPanel
 from game.panels.network_panel import NetworkPanel
@@ -31,6 +32,7 @@ from game.training.library import Library, SavedRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, TextButton
 from game.world.swarm import LearningSwarm
@@ -40,7 +42,8 @@ _KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
-_WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
+_WORDS: Final = pygame.Rect(684, 16, 136, 154)  # beside the swarm
+_SWARM: Final = pygame.Rect(16, 176, 804, 246)  # where keys can point at a lander
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
@@ -57,6 +60,7 @@ class TrainScene(TrainingScene[LanderRun]):
         left = self.lander_run.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(DISPLAY_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
+        self.lessons = LessonDoor(self.lander_run, self.swarm, self.context.note, lambda: self.training_charts.chosen)
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer)
@@ -76,7 +80,10 @@ class TrainScene(TrainingScene[LanderRun]):
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.inside.covers(event.pos):
             self._look_closer()
             return None
-        return super().handle_event(event)
+        outcome = super().handle_event(event)
+        if not self.inside.large and not self.form.used:
+            self.lessons.follow(event)
+        return outcome
 
     def actions(self) -> Table:
         """Go back; step, start or pause, and change the pace, as the buttons say."""
@@ -110,7 +117,7 @@ class TrainScene(TrainingScene[LanderRun]):
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
-        return self._ask_or(self.form.update())
+        return self._ask_or(self.form.update()) or self.lessons.update()
 
     def _listen(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
@@ -259,8 +266,10 @@ class TrainScene(TrainingScene[LanderRun]):
                 (texts.TRAIN_DUEL, self._duel),
                 (texts.TRAIN_COMPARE, self._compare),
                 (texts.TRAIN_TEACH, self._teach),
+                (texts.LESSON_WHY, self.lessons.open),
             )
-            beside = [
+            pointer = VirtualPointer(self.form.manager, _SWARM, self.lessons.follow, hold=texts.LESSON_MARK)
+            beside = [pointer] + [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
             beside += self.training_charts.widgets(self.form.manager, self._duel, compared=self._compared)
