@@ -9,16 +9,16 @@ import pygame
 
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import EMBER, FAINT, HUMAN, LABEL, LINE, MUTE, NET, SMALL
+from game.drawing.tokens import EMBER, FAINT, HUMAN, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
 from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.pulls import Pulls
 from game.lesson.step import LearningStep
 
 _WEIGHTS: Final = 8
-_ROW: Final = 24.0
+_ROW: Final = 25.0
 _NAME, _BEFORE, _AFTER, _STEP = 0.0, 470.0, 590.0, 752.0  # the last three are right ends
-_VALUE: Final = 262.0  # first baseline of the second half
+_VALUE: Final = 276.0  # first baseline of the second half
 _PULLS: Final = (0.0, 160.0, 210.0)  # name, right end of the figure, left end of the bars
 
 
@@ -35,7 +35,7 @@ class AfterFrame(Frame):
         derivative: float,
     ) -> None:
         before, after, target = (value / step.scale for value in values)
-        super().__init__(words[0], points(after), words[1], functions)
+        super().__init__(words[0], texts.LESSON_POINTS.format(points=points(after)), words[1], functions)
         self._step, self._values = step, (before, after, target)
         self.pulls = Pulls.of(step, derivative, values[1] - values[0])
         self._bars: list[tuple[pygame.FRect, bool]] = []
@@ -103,7 +103,6 @@ class AfterFrame(Frame):
             middle = 560.0
             box = pygame.FRect(min(middle, middle + length), baseline - 8, max(abs(length), 1), 7)
             self._bars.append((box, pull * (self._values[2] - self._values[0]) >= 0))
-        del scale
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the line of values with an arrow from before to after, and the bars of the pulls."""
@@ -119,6 +118,3 @@ class AfterFrame(Frame):
         for box, towards in self._bars:
             canvas.fill(canvas.rect(*box), NET if towards else EMBER)
         canvas.line((0, _VALUE - 22), (PICTURE.width, _VALUE - 22), LINE)
-
-
-_ = SMALL

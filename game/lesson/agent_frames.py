@@ -11,6 +11,7 @@ import numpy as np
 from ai.agent.lesson import Lesson, functions
 from ai.agent.n_step import NStep
 from ai.agent.network import build_network
+from ai.common.learning_step import Line
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.lesson.after_frame import AfterFrame
@@ -27,7 +28,7 @@ from game.lesson.target_frame import TargetFrame
 # The functions whose lines stand beside each frame, by the ends of their qualified names.
 _FORWARD: Final = ("NeuralNetwork.forward_propagate", "Layer.forward_propagate", "Normalisation.forward_propagate")
 _BACKWARD: Final = (".backward_propagate", ".fill_gradients", ".input_error", "Optimizer.step", "._fill_step")
-_NETWORK: Final = (0.0, 8.0, 752.0, 408.0)
+_NETWORK: Final = (0.0, 8.0, 752.0, 426.0)
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     derivative = lesson.derivative
     name, sentence = words["values"]
     sentence = sentence.format(action=said_action(action), value=points(predicted / scale))
-    values = NetworkFrame(name, points(predicted / scale), sentence, _FORWARD, step, _NETWORK, "activations",
+    values = NetworkFrame(name, texts.LESSON_POINTS.format(points=points(predicted / scale)), sentence, _FORWARD, step, _NETWORK, "activations",
                           step.taken.gradient)  # fmt: skip
     name, sentence = words["gradient"]
     length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
@@ -77,5 +78,5 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     return [Part(frame, CodeWalk(_lines_of(lesson, frame), known, fallback)) for frame, fallback in frames]
 
 
-def _lines_of(lesson: Lesson, frame: Frame):  # type: ignore[no-untyped-def]
+def _lines_of(lesson: Lesson, frame: Frame) -> list[Line]:
     return [line for line in lesson.step.lines if frame.functions and line.function.endswith(frame.functions)]

@@ -18,10 +18,10 @@ from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number
 from game.panels.code_listing import draw_listing
 
-CODE: Final = pygame.Rect(824, 236, 416, 428)
+CODE: Final = pygame.Rect(824, 216, 416, 448)
 _HEAD: Final = 12.0  # baseline of the heading
 _LISTING: Final = 24.0
-_VALUES: Final = 296.0  # below the corner of the box
+_VALUES: Final = 308.0  # below the corner of the box
 _ROW: Final = 18.0
 _MOST: Final = 7  # values of a line that are shown
 _FEW: Final = 4  # numbers of an array that are written out
@@ -45,7 +45,10 @@ class CodeWalk:
         functions: Mapping[str, Callable[..., Any]],
         fallback: Callable[..., Any] | None = None,
     ) -> None:
-        self.lines, self.index = tuple(lines), 0
+        self.lines = tuple(lines)
+        # Begin where numbers are set, past the head of the function.
+        sets = (number for number, line in enumerate(self.lines[:-1]) if number and line.values)
+        self.index = next(sets, 0)
         self._functions, self._fallback = functions, fallback
         self._cache = PaintCache()
 
@@ -92,11 +95,20 @@ class CodeWalk:
             shape = " × ".join(map(str, value.shape)) if value.shape else texts.LESSON_NUMBER
             sheet.text(value.name, (0, y), size=LABEL, weight="code", colour=INK, room=150)
             sheet.text(shape, (158, y), size=LABEL, colour=MUTE, tabular=True, room=80)
-            sheet.text(case_of(value), (CODE.width, y), size=LABEL, colour=NET, align="right", tabular=True, room=170)
-        if more := len(line.values) - _MOST:
-            if more > 0:
-                y = _VALUES + 12 + _ROW * (_MOST + 1)
-                sheet.text(texts.LESSON_MORE.format(count=more), (0, y), size=LABEL, colour=MUTE, room=CODE.width)
+            sheet.text(
+                case_of(value),
+                (CODE.width, y),
+                size=LABEL,
+                colour=NET,
+                align="right",
+                weight="code",
+                tabular=True,
+                room=170,
+            )
+        more = len(line.values) - _MOST
+        if more > 0:
+            y = _VALUES + 12 + _ROW * (_MOST + 1)
+            sheet.text(texts.LESSON_MORE.format(count=more), (0, y), size=LABEL, colour=MUTE, room=CODE.width)
 
 
 def case_of(value: Value) -> str:

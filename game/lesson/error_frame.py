@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -17,6 +18,8 @@ from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
 from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
 
+Curve = Callable[[float], float]
+
 _LINE: Final = 46.0  # height of the line of values
 _COST, _PUSH = pygame.FRect(0, 128, 352, 188), pygame.FRect(400, 128, 352, 188)
 _POINTS: Final = 121  # of a curve
@@ -28,7 +31,8 @@ class ErrorFrame(Frame):
 
     def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
         self._scale, self._lesson = lesson.config.reward_scale, lesson
-        super().__init__(words[0], points(lesson.error / self._scale), words[1], functions)
+        error = texts.LESSON_POINTS.format(points=points(lesson.error / self._scale))
+        super().__init__(words[0], error, words[1], functions)
         self._cost: Cost = COSTS[lesson.config.cost]()
         largest = max(float(np.abs(lesson.batch_errors).max()), abs(lesson.error), 1e-6)
         delta = float(self._cost.options.get("delta", 0.0))
@@ -71,12 +75,10 @@ class ErrorFrame(Frame):
             (texts.LESSON_ERROR, points(error)),
             (texts.LESSON_OWN_SCALE, signed(lesson.error)),
         )
-        middle = sum(self._ends.values()) / 2
         box = pygame.FRect(min(self._ends.values()), _LINE - 6, abs(self._ends[predicted] - self._ends[target]), 12)
         self.spots.append(Spot(box, Explanation((texts.LESSON_ERROR_HELP,), rows)))
-        del middle
 
-    def _write_curve(self, box: pygame.FRect, title: str, curve, help_: str) -> None:  # type: ignore[no-untyped-def]
+    def _write_curve(self, box: pygame.FRect, title: str, curve: Curve, help_: str) -> None:
         """Write the texts of a curve over errors, and what its points say."""
         self.label(title, box.left, box.top - 12, size=LABEL, colour=MUTE, explanation=Explanation((help_,)), room=340)
         end = points(self._reach / self._scale, 1)
@@ -97,13 +99,13 @@ class ErrorFrame(Frame):
         self.spots.append(Spot(pygame.FRect(place[0] - 4, place[1] - 4, 5, 5),
                                Explanation((texts.LESSON_THIS,), rows)))  # fmt: skip
 
-    def _place(self, box: pygame.FRect, curve, error: float) -> tuple[float, float]:  # type: ignore[no-untyped-def]
+    def _place(self, box: pygame.FRect, curve: Curve, error: float) -> tuple[float, float]:
         ends = [curve(-self._reach), curve(self._reach)]
         low, high = min(0.0, *ends), max(0.0, *ends)
         x = box.left + box.width * (error + self._reach) / (2 * self._reach)
         return x, box.bottom - box.height * (curve(error) - low) / max(high - low, 1e-12)
 
-    def _crowd(self, box: pygame.FRect, curve) -> list[tuple[tuple[float, float], float]]:  # type: ignore[no-untyped-def]
+    def _crowd(self, box: pygame.FRect, curve: Curve) -> list[tuple[tuple[float, float], float]]:
         """Return the places of the other memories of the batch on a curve, with their errors."""
         errors = np.delete(self._lesson.batch_errors, self._lesson.step.row).tolist()
         return [(self._place(box, curve, error), error) for error in errors]
@@ -138,7 +140,7 @@ class ErrorFrame(Frame):
             base = self._place(box, curve, 0.0)[1]
             canvas.line((box.left, base), (box.right, base), LINE)
             places = [self._place(box, curve, error) for error in self._errors.tolist()]
-            for start, end in zip(places, places[1:], strict=False):
+            for start, end in pairwise(places):
                 canvas.line(start, end, MUTE, 1.5)
             for place, _ in self._crowd(box, curve):
                 canvas.dot(place, 1.8, FAINT)

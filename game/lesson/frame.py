@@ -17,7 +17,7 @@ from game.drawing.tokens import FAINT, INK, LABEL, MUTE, SMALL, Colour
 
 __all__ = ["PICTURE", "Explanation", "Frame", "Label", "Spot", "rows_of"]
 
-PICTURE: Final = pygame.Rect(40, 236, 752, 420)  # of the current frame, in points
+PICTURE: Final = pygame.Rect(40, 216, 752, 440)  # of the current frame, in points
 _WITHIN: Final = pygame.Rect(12, 160, 1256, 520)  # where explanations may stand
 _AROUND: Final = 3.0  # points by which the pointer may miss a number
 
@@ -96,7 +96,7 @@ class Frame:
     def draw_live(self, canvas: Canvas) -> None:
         """Draw what moves, or follows the pointer; in points of the view."""
 
-    def spot_at(self, place: Point) -> Spot | None:
+    def spot_at(self, place: Point) -> Spot | None:  # noqa: ARG002
         """Return what is pointed at besides `spots`, by a place in points from the picture's corner."""
         return None
 

@@ -19,8 +19,8 @@ from game.lesson.frame import PICTURE, Explanation
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.step import LearningStep, WeightPlace
 
-_NETWORK: Final = (0.0, 22.0, 752.0, 246.0)
-_BELOW: Final = 300.0  # first baseline under the network
+_NETWORK: Final = (0.0, 26.0, 752.0, 254.0)
+_BELOW: Final = 316.0  # first baseline under the network
 _COLUMNS: Final = (0.0, 250.0)
 
 
@@ -36,7 +36,7 @@ class GradientFrame(NetworkFrame):
     def __init__(self, name: str, figure: str, sentence: str, functions: Sequence[str], step: LearningStep) -> None:
         super().__init__(name, figure, sentence, functions, step, _NETWORK, "gradients", step.taken.gradient)
         self.alone = False
-        self.weight = next(iter(step.strongest(step.taken.taken, 1)), None)
+        self.weight = next(iter(step.strongest(step.taken.gradient, 1)), None)
         self._write()
 
     def picks(self, weight: WeightPlace) -> Callable[[], None] | None:

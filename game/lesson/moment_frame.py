@@ -11,7 +11,6 @@ import numpy as np
 import pygame
 
 from ai.agent.lesson import Lesson
-from ai.common.decision import in_points
 from ai.common.environment import Doubles, Floats
 from ai.lander.environment import ACTION_NAMES, OBSERVATION_SCALE, PARAMS, Outcome
 from game.core import texts
@@ -136,8 +135,8 @@ class HappenedFrame(Frame):
 
     def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
         scale = lesson.config.reward_scale
-        pay = float(in_points(np.float64(lesson.cell.reward), 1.0)) / scale
-        super().__init__(words[0], points(pay), words[1], functions)
+        pay = float(lesson.cell.reward) / scale
+        super().__init__(words[0], texts.LESSON_POINTS.format(points=points(pay)), words[1], functions)
         self._bars: list[tuple[pygame.FRect, tuple[int, int, int]]] = []
         self._zero = self._BARS
         self.heading(texts.LESSON_PAY, self._LEFT, 14, 400)
@@ -182,8 +181,9 @@ class HappenedFrame(Frame):
                      for name, value in zip(names, paid[:, place].tolist(), strict=True) if value]  # fmt: skip
             total = float(flown.rewards[place])
             rows = rows_of(*parts, (texts.LESSON_SUM_OF_PARTS, texts.LESSON_POINTS.format(points=points(total))))
-            self.label(points(total), self._SUM, y, size=min(LABEL + 1, pitch), align="right", room=60,
-                       explanation=Explanation((texts.LESSON_DECISION.format(number=place + 1), word), rows))  # fmt: skip
+            whole = Explanation(first.lines, rows)
+            size = min(LABEL + 1, pitch)
+            self.label(points(total), self._SUM, y, size=size, align="right", room=60, explanation=whole)
         return 40 + pitch * (len(flown.actions) - 1)
 
     def _explain_return(self, lesson: Lesson) -> Explanation:

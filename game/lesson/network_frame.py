@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
@@ -92,7 +92,7 @@ class NetworkFrame(Frame):
         box = self._box(((point[0] + end[0]) / 2 if end[0] < point[0] else point[0], point[1]), 0.0)
         return Spot(box, self.link(weight), self.picks(weight))
 
-    def picks(self, weight: WeightPlace):  # type: ignore[no-untyped-def]
+    def picks(self, weight: WeightPlace) -> Callable[[], None] | None:  # noqa: ARG002
         """Return what a press on a link does; None for nothing."""
         return None
 

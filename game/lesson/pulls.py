@@ -47,5 +47,5 @@ class Pulls:
         gradient, whole = taken.gradient.astype(float), taken.taken.astype(float)
         own = step.pace * share * clipped
         together = step.pace * gradient
-        parts = [-float(slope @ part) for part in (own, together - own, whole - together)]
-        return cls(*parts, bend=moved - sum(parts))
+        pulls = [-float(slope @ part) for part in (own, together - own, whole - together)]
+        return cls(pulls[0], pulls[1], pulls[2], bend=moved - sum(pulls))

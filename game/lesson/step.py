@@ -121,4 +121,5 @@ class LearningStep:
     def pace(self) -> Array:
         """Step for each unit of `running`, parameter by parameter: 0 where nothing moves."""
         running = self.running.astype(float)
-        return np.divide(self.taken.taken, running, out=np.zeros(len(running)), where=running != 0)
+        pace: Array = np.divide(self.taken.taken, running, out=np.zeros(len(running)), where=running != 0)
+        return pace

@@ -34,7 +34,7 @@ class TargetFrame(Frame):
     def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
         self._scale = lesson.config.reward_scale
         target = lesson.target / self._scale
-        super().__init__(words[0], points(target), words[1], functions)
+        super().__init__(words[0], texts.LESSON_POINTS.format(points=points(target)), words[1], functions)
         self._lesson = lesson
         self._bars: list[tuple[pygame.FRect, float, bool]] = []
         self._write_sum(target)

@@ -14,7 +14,8 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, MUTE, NIGHT0, SMALL, TEXT, TITLE
 from game.input.controls import Command
 from game.lesson.agent_frames import agent_frames
-from game.lesson.frame import PICTURE
+from game.lesson.code import CodeWalk
+from game.lesson.frame import PICTURE, Frame
 from game.lesson.strip import STRIP, FilmStrip
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -45,12 +46,12 @@ class LessonScene(FormScene):
         self.pointer = self.form.add(VirtualPointer(self.form.manager, _REACH, self._point, hold=texts.LESSON_PRESS))
 
     @property
-    def frame(self):  # type: ignore[no-untyped-def]
+    def frame(self) -> Frame:
         """The frame that is shown large."""
         return self.parts[self.current].frame
 
     @property
-    def code(self):  # type: ignore[no-untyped-def]
+    def code(self) -> CodeWalk:
         """The walk through the code beside it."""
         return self.parts[self.current].code
 
@@ -108,7 +109,7 @@ class LessonScene(FormScene):
         self.frame.update(self.context.settings.reduced_motion)
         return super().update()
 
-    def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
+    def draw(self, canvas: Canvas, alpha: float) -> None:
         """Draw the strip, the current frame, its code, and the explanation of what is pointed at."""
         canvas.surface.fill(NIGHT0)
         canvas.text(texts.LESSON_TITLE, (_LEFT, 40), size=TITLE)
@@ -131,6 +132,6 @@ class LessonScene(FormScene):
             slot=lesson.flown.slot + 1, moment=lesson.flown.decisions, decisions=lesson.decisions
         )
 
-    def hint_rows(self, canvas: Canvas) -> list[HintRow]:  # noqa: ARG002
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints at the foot."""
         return [HintRow(self.hints, (_LEFT, 698), room=STRIP.width)]
