@@ -57,14 +57,14 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     derivative = lesson.derivative
     name, sentence = words["values"]
     sentence = sentence.format(action=said_action(action), value=points(predicted / scale))
-    values = NetworkFrame(name, texts.LESSON_POINTS.format(points=points(predicted / scale)), sentence, _FORWARD, step, _NETWORK, "activations",
-                          step.taken.gradient)  # fmt: skip
+    figure = texts.LESSON_POINTS.format(points=points(predicted / scale))
+    values = NetworkFrame(name, figure, sentence, _FORWARD, step, _NETWORK, "activations", step.taken.gradient)
     name, sentence = words["gradient"]
     length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
     gradient = GradientFrame(name, length, sentence, _BACKWARD, step)
     places = step.strongest(step.taken.taken, 8)
     frames: list[tuple[Frame, Callable[..., Any] | None]] = [
-        (MomentFrame(lesson, words["moment"], ("DeepQAgent.learn", "DeepQAgent._learn_from", "Normalizer.__call__")), None),
+        (MomentFrame(lesson, words["moment"], ("Agent.learn", "._learn_from", "Normalizer.__call__")), None),
         (values, None),
         (HappenedFrame(lesson, words["happened"], ()), NStep.add),
         (TargetFrame(lesson, words["target"], ("DeepQAgent.targets", "._next_value", "NeuralNetwork.predict")), None),

@@ -124,7 +124,8 @@ class ErrorFrame(Frame):
             push=signed(push), count=count, weight=f"{lesson.weight:g}", derivative=signed(lesson.derivative)
         )
         self.label(text, 0, y, explanation=Explanation((texts.LESSON_DERIVATIVE_HELP,), rows), room=PICTURE.width)
-        bend = texts.LESSON_BENDS[lesson.config.cost]
+        delta = float(self._cost.options.get("delta", 0.0)) / self._scale
+        bend = texts.LESSON_BENDS[lesson.config.cost].format(delta=f"{delta:g}")
         self.label(bend, 0, y + 22, colour=MUTE, room=PICTURE.width)
 
     def paint(self, canvas: Canvas) -> None:

@@ -42,6 +42,7 @@ class NetworkFrame(Frame):
         self.step = step
         self.view = NetworkView(pygame.FRect(box).move(PICTURE.topleft), step.inputs, step.outputs)
         self.view.reads_out, self.view.show, self.view.output_scale = False, show, step.scale
+        self._pointed_link: tuple[Point, Point] | None = None
         self._network = step.network.copy()
         self.flow(flowing)
 
@@ -56,12 +57,15 @@ class NetworkFrame(Frame):
 
     def follow(self, point: Point | None) -> None:
         """Point at a place; the links of a unit there are lit."""
+        self._pointed_link = None
         super().follow(point)
         self.view.hover(point)
 
     def draw_live(self, canvas: Canvas) -> None:
         """Draw the network, and the link that is pointed at."""
         self.view.draw(canvas)
+        if self._pointed_link:
+            canvas.line(*self._pointed_link, INK, 1.5)
 
     # What is pointed at
 
@@ -88,9 +92,8 @@ class NetworkFrame(Frame):
             int(columns[edge.column].units[edge.start]),
             int(columns[edge.column + 1].units[edge.end]),
         )
-        end = centres[edge.column + 1][edge.end]
-        box = self._box(((point[0] + end[0]) / 2 if end[0] < point[0] else point[0], point[1]), 0.0)
-        return Spot(box, self.link(weight), self.picks(weight))
+        self._pointed_link = centres[edge.column][edge.start], centres[edge.column + 1][edge.end]
+        return Spot(self._box(point, 0.0), self.link(weight), self.picks(weight))
 
     def picks(self, weight: WeightPlace) -> Callable[[], None] | None:  # noqa: ARG002
         """Return what a press on a link does; None for nothing."""

@@ -18,6 +18,7 @@ from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.dream import DreamScene
+from game.scenes.lesson import LessonScene
 from game.scenes.logbook import LogbookScene
 from game.scenes.menu import MenuScene
 from game.scenes.missions import MissionsScene
@@ -33,6 +34,7 @@ from game.scenes.watch import WatchScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
+from tests.support.lessons import lesson_of
 
 Make = Callable[[Context], Scene]
 
@@ -46,6 +48,7 @@ SCREENS: dict[str, Make] = {
     "DreamScene": lambda context: DreamScene(context, reader()),
     "QuizScene": lambda context: QuizScene(context, reader()),
     "PhysicsScene": PhysicsScene,
+    "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,

@@ -24,12 +24,14 @@ from game.play.challenge import DailyStart, FlownMission
 from game.play.race import race
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.dream import DreamScene
+from game.scenes.lesson import LessonScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.play import PlayScene
 from game.scenes.quiz import QuizScene
 from game.scenes.replay import ReplayScene
 from game.scenes.watch import COUNTS, WatchScene
 from game.ui.context import Context
+from tests.support.lessons import lesson_of
 
 FLIGHTS = 2
 
@@ -88,6 +90,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1))),
         "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
+        "LessonScene": lambda: LessonScene(context, lesson_of("modern")),
         "ReplayScene": lambda: replayed(ReplayScene),
         "DreamScene": lambda: of_digits(DreamScene),
         "QuizScene": lambda: of_digits(QuizScene),
