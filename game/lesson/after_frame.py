@@ -36,7 +36,7 @@ class AfterFrame(Frame):
     ) -> None:
         before, after, target = (value / step.scale for value in values)
         super().__init__(words[0], texts.LESSON_POINTS.format(points=points(after)), words[1], functions)
-        self._step, self._values = step, (before, after, target)
+        self.step, self._values = step, (before, after, target)
         self.pulls = Pulls.of(step, derivative, values[1] - values[0])
         self._bars: list[tuple[pygame.FRect, bool]] = []
         self._write_weights(names)
@@ -47,7 +47,7 @@ class AfterFrame(Frame):
         self.heading(texts.LESSON_CHANGED, _NAME, 12, 300)
         for right, word in zip((_BEFORE, _AFTER, _STEP), texts.LESSON_CHANGED_COLUMNS, strict=True):
             self.label(word, right, 12, size=LABEL, colour=MUTE, align="right", room=110)
-        step = self._step
+        step = self.step
         for row, (place, name) in enumerate(zip(step.strongest(step.taken.taken, _WEIGHTS), names, strict=False)):
             index = step.index(place)
             if index is None:
@@ -79,8 +79,8 @@ class AfterFrame(Frame):
         around = max(0.1 * (high - low), 1e-9)
         self._ends = [30 + 692 * (each - low + around) / (high - low + 2 * around) for each in self._values]
         for x, value, word in zip(self._ends, self._values, texts.LESSON_VALUE_MARKS, strict=True):
-            rows = rows_of((texts.LESSON_IN_POINTS.format(scale=f"{self._step.scale:g}"), points(value, 3)),
-                           (texts.LESSON_OWN_SCALE, number(value * self._step.scale)))  # fmt: skip
+            rows = rows_of((texts.LESSON_IN_POINTS.format(scale=f"{self.step.scale:g}"), points(value, 3)),
+                           (texts.LESSON_OWN_SCALE, number(value * self.step.scale)))  # fmt: skip
             self.spots.append(Spot(pygame.FRect(x - 6, _VALUE + 18, 12, 12), Explanation((word,), rows)))
 
     def _write_pulls(self) -> None:
@@ -89,14 +89,14 @@ class AfterFrame(Frame):
         if self.pulls is None:
             self.label(texts.LESSON_NO_PULL, 0, y + 24, colour=MUTE, room=PICTURE.width)
             return
-        scale = self._step.scale
+        scale = self.step.scale
         pulls = self.pulls
         found = [pull / scale for pull in (pulls.own, pulls.others, pulls.earlier, pulls.bend)]
         most = max(1e-12, *map(abs, found))
         for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
             baseline = y + 24 + 22 * row
-            told = Explanation((help_,), rows_of((word.format(count=self._step.examples - 1), points(pull, 3))))
-            self.label(word.format(count=self._step.examples - 1), _PULLS[0], baseline, colour=MUTE,
+            told = Explanation((help_,), rows_of((word.format(count=self.step.examples - 1), points(pull, 3))))
+            self.label(word.format(count=self.step.examples - 1), _PULLS[0], baseline, colour=MUTE,
                        explanation=told, room=_PULLS[1] + 90)  # fmt: skip
             self.label(points(pull), _PULLS[1] + 160, baseline, align="right", explanation=told, room=64)
             length = 150 * pull / most

@@ -269,9 +269,9 @@ def test_after_the_step_the_value_and_its_pulls_are_told(driver: Driver, lesson:
         assert pulls.earlier == pytest.approx(0.0, abs=1e-6)
     largest = int(np.argmax(np.abs(lesson.step.taken)))
     shown_steps = {word.lstrip("+") for word in words}
-    step = frame._step.strongest(lesson.step.taken, 1)[0]
-    assert number(-float(lesson.step.taken[frame._step.index(step)])) in shown_steps
-    assert abs(lesson.step.taken[largest]) >= abs(lesson.step.taken[frame._step.index(step)])
+    step = frame.step.strongest(lesson.step.taken, 1)[0]
+    assert number(-float(lesson.step.taken[frame.step.index(step)])) in shown_steps
+    assert abs(lesson.step.taken[largest]) >= abs(lesson.step.taken[frame.step.index(step)])
 
 
 # Under the pointer
