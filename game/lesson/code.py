@@ -119,4 +119,4 @@ def case_of(value: Value) -> str:
         return str(bool(value.case))
     numbers = np.asarray(value.case).ravel()
     shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:_FEW].tolist())
-    return shown if len(numbers) <= _FEW else f"{shown} …"
+    return shown if len(numbers) <= _FEW else f"{shown} ..."

@@ -21,7 +21,7 @@ from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
 Curve = Callable[[float], float]
 
 _LINE: Final = 46.0  # height of the line of values
-_COST, _PUSH = pygame.FRect(0, 128, 352, 188), pygame.FRect(400, 128, 352, 188)
+_COST, _PUSH = pygame.FRect(0, 122, 352, 176), pygame.FRect(400, 122, 352, 176)
 _POINTS: Final = 121  # of a curve
 _WIDEST: Final = 1.15  # the axis reaches so many times as far as the largest error of the batch
 
@@ -112,7 +112,7 @@ class ErrorFrame(Frame):
 
     def _write_result(self) -> None:
         lesson, count = self._lesson, len(self._lesson.batch_errors)
-        y = _COST.bottom + 56
+        y = _COST.bottom + 48
         push = self.push_of(lesson.error)
         rows = rows_of(
             (texts.LESSON_PUSH, signed(push)),
@@ -126,7 +126,7 @@ class ErrorFrame(Frame):
         self.label(text, 0, y, explanation=Explanation((texts.LESSON_DERIVATIVE_HELP,), rows), room=PICTURE.width)
         delta = float(self._cost.options.get("delta", 0.0)) / self._scale
         bend = texts.LESSON_BENDS[lesson.config.cost].format(delta=f"{delta:g}")
-        self.label(bend, 0, y + 22, colour=MUTE, room=PICTURE.width)
+        self.prose(bend, 0, y + 21, PICTURE.width)
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the line of values, and the two curves with the batch on them."""

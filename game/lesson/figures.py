@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from game.charts import plotting
+
+_SMALL: Final = 1e-4
+_MOST_DIGITS: Final = 12
 
 
 def points(value: float, digits: int = 2) -> str:
@@ -18,7 +22,11 @@ def points(value: float, digits: int = 2) -> str:
 
 
 def number(value: float) -> str:
-    """Write a number of a network with the digits that tell it from its neighbours."""
+    """Write a number of a network with the digits that tell it from its neighbours; never as a power of ten."""
+    size = abs(value)
+    if math.isfinite(value) and 0 < size < _SMALL:
+        digits = min(1 - math.floor(math.log10(size)), _MOST_DIGITS)
+        return f"{value:.{digits}f}".replace("-", "−")
     return plotting.compact(value, 4)
 
 

@@ -119,6 +119,19 @@ class Frame:
         """Add a small heading in capitals' place: muted, above what it names."""
         self.label(text, x, y, size=LABEL, colour=MUTE, room=room)
 
+    def prose(self, text: str, x: float, y: float, width: float, leading: float = 19.0) -> float:
+        """Add a muted sentence on as many lines as it needs; return the baseline after the last one."""
+        line = ""
+        for word in text.split():
+            longer = f"{line} {word}".strip()
+            if line and typeface.width(longer, SMALL, "regular") > width:
+                self.label(line, x, y, colour=MUTE)
+                line, y = word, y + leading
+            else:
+                line = longer
+        self.label(line, x, y, colour=MUTE)
+        return y + leading
+
     def follow(self, point: Point | None) -> None:
         """Point at a place of the view; None for none."""
         self.pointed = self._spot(point) if point else None

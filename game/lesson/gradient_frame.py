@@ -13,7 +13,7 @@ from ai.nn import OPTIMIZERS, Array
 from ai.nn.optimizers import Adam, Momentum
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, LINE, MUTE, NET, SMALL
+from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
 from game.lesson.figures import number, signed
 from game.lesson.frame import PICTURE, Explanation
 from game.lesson.network_frame import NetworkFrame
@@ -58,9 +58,10 @@ class GradientFrame(NetworkFrame):
         self.labels.clear()
         for place, (words, alone) in enumerate(zip(texts.LESSON_WHOSE, (False, True), strict=True)):
             self.label(
-                words.format(count=self.step.examples), 190.0 * place, 10.0, size=SMALL,
-                colour=INK if alone == self.alone else MUTE, press=partial(self.show_alone, alone), room=180.0,
+                words.format(count=self.step.examples), 250.0 * place, 13.0, size=SMALL,
+                colour=INK if alone == self.alone else MUTE, press=partial(self.show_alone, alone), room=240.0,
             )  # fmt: skip
+        self.label(texts.LESSON_PICK_WEIGHT, PICTURE.width, 13.0, size=LABEL, colour=MUTE, align="right", room=240.0)
         self._write_share()
         if self.weight is not None:
             self._write_step(self.weight)
@@ -129,7 +130,7 @@ class GradientFrame(NetworkFrame):
     def paint(self, canvas: Canvas) -> None:
         """Paint the line under the chosen words, and one between the network and what is written."""
         chosen = self.labels[int(self.alone)].box
-        canvas.line((chosen.left, 17), (chosen.right, 17), NET, 2)
+        canvas.line((chosen.left, 20), (chosen.right, 20), NET, 2)
         canvas.line((0, _BELOW - 18), (PICTURE.width, _BELOW - 18), LINE)
 
     def draw_live(self, canvas: Canvas) -> None:

@@ -87,7 +87,7 @@ class MomentFrame(Frame):
         speed = math.hypot(*units[2:4])
         rows = rows_of((texts.LESSON_SPEED, texts.LESSON_UNITS[1].format(value=f"{speed:.2f}")))
         self.spots.append(Spot(pygame.FRect(0, 0, *_WORLD), Explanation((texts.LESSON_PICTURE,), rows)))
-        self.label(texts.LESSON_PICTURE_NOTE, 0, _WORLD[1] + 26, colour=MUTE, room=_WORLD[0])
+        self.prose(texts.LESSON_PICTURE_NOTE, 0, _WORLD[1] + 26, _WORLD[0])
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the moon, the lander at its pose, an arrow along its velocity, and the table's lines."""
@@ -215,7 +215,7 @@ class HappenedFrame(Frame):
                        explanation=explanation, room=110)  # fmt: skip
         if ended:
             assert lesson.flown is not None
-            self.label(texts.LESSON_OUTCOMES[lesson.flown.outcome - 1], self._AFTER, 40 + 26.0 * 9 + 8, room=240)
+            self.prose(texts.LESSON_OUTCOMES[lesson.flown.outcome - 1], self._AFTER, 40 + 26.0 * 9 + 8, 240)
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the bars, with a line at nothing paid."""

@@ -15,7 +15,7 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, SMALL, TITLE
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, TITLE
 from game.lesson.figures import points
 from game.lesson.frame import PICTURE, Explanation, Frame, rows_of
 from game.lesson.moment_frame import said_action
@@ -114,8 +114,8 @@ class TargetFrame(Frame):
             lines = [text.format(action=picked, value=own) for text in texts.LESSON_ROLES_SINGLE]
         else:
             lines = [text.format(action=picked, value=own, most=most) for text in texts.LESSON_ROLES_DOUBLE]
-        for place, line in enumerate(lines):
-            self.label(line, 0, y + 20 * place, size=SMALL, colour=MUTE, room=PICTURE.width)
+        for line in lines:
+            y = self.prose(line, 0, y, PICTURE.width)
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the bars, on one scale for both networks, and a mark at the action that is picked."""
