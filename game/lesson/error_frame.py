@@ -21,7 +21,7 @@ from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
 Curve = Callable[[float], float]
 
 _LINE: Final = 46.0  # height of the line of values
-_COST, _PUSH = pygame.FRect(0, 122, 352, 176), pygame.FRect(400, 122, 352, 176)
+_COST, _PUSH = pygame.FRect(0, 118, 352, 166), pygame.FRect(400, 118, 352, 166)
 _POINTS: Final = 121  # of a curve
 _WIDEST: Final = 1.15  # the axis reaches so many times as far as the largest error of the batch
 

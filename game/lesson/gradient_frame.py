@@ -21,7 +21,7 @@ from game.lesson.step import LearningStep, WeightPlace
 
 _NETWORK: Final = (0.0, 26.0, 752.0, 254.0)
 _BELOW: Final = 316.0  # first baseline under the network
-_COLUMNS: Final = (0.0, 250.0)
+_COLUMNS: Final = (0.0, 276.0)
 
 
 class GradientFrame(NetworkFrame):
@@ -82,7 +82,7 @@ class GradientFrame(NetworkFrame):
         if step.taken.gradient_length > 1.001 * whole:
             rows.append((texts.LESSON_CLIPPED, number(step.taken.gradient_length), texts.LESSON_CLIPPED_HELP))
         for place, (word, figure, help_) in enumerate(rows):
-            self._row(x, 200.0, y + 24 + 22 * place, word, figure, Explanation((help_,)))
+            self._row(x, 240.0, y + 24 + 22 * place, word, figure, Explanation((help_,)))
 
     def _write_step(self, weight: WeightPlace) -> None:
         """Write out the optimizer's step for one weight."""
@@ -124,8 +124,8 @@ class GradientFrame(NetworkFrame):
         return [(word, figure, help_) for word, help_, figure in found]
 
     def _row(self, x: float, width: float, y: float, word: str, figure: str, explanation: Explanation) -> None:
-        self.label(word, x, y, explanation=explanation, colour=MUTE, room=width - 80)
-        self.label(figure, x + width, y, align="right", explanation=explanation, room=76)
+        self.label(word, x, y, explanation=explanation, colour=MUTE, room=width - 90)
+        self.label(figure, x + width, y, align="right", explanation=explanation, room=86)
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the line under the chosen words, and one between the network and what is written."""
