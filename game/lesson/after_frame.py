@@ -23,7 +23,12 @@ _PULLS: Final = (0.0, 160.0, 210.0)  # name, right end of the figure, left end o
 
 
 class AfterFrame(Frame):
-    """Frame after the step. `values` are the output before, the same after, and its target, in the network's scale."""
+    """Frame after the step.
+
+    `values` are an output before, the same after, and its target, in the network's scale; `telling` says that it is
+    nearer now, or farther. `derivative` is that of the cost by the output, which is in points then; without it,
+    nothing is said of pulls.
+    """
 
     def __init__(
         self,
@@ -32,16 +37,20 @@ class AfterFrame(Frame):
         step: LearningStep,
         names: Sequence[str],
         values: tuple[float, float, float],
-        derivative: float,
+        derivative: float | None,
+        telling: Sequence[str],
     ) -> None:
         before, after, target = (value / step.scale for value in values)
-        super().__init__(words[0], texts.LESSON_POINTS.format(points=points(after)), words[1], functions)
+        self._in_points = derivative is not None
+        figure = texts.LESSON_POINTS.format(points=points(after)) if self._in_points else number(after)
+        super().__init__(words[0], figure, words[1], functions)
         self.step, self._values = step, (before, after, target)
-        self.pulls = Pulls.of(step, derivative, values[1] - values[0])
+        self.pulls = None if derivative is None else Pulls.of(step, derivative, values[1] - values[0])
         self._bars: list[tuple[pygame.FRect, bool]] = []
         self._write_weights(names)
-        self._write_value()
-        self._write_pulls()
+        self._write_value(telling)
+        if derivative is not None:
+            self._write_pulls()
 
     def _write_weights(self, names: Sequence[str]) -> None:
         self.heading(texts.LESSON_CHANGED, _NAME, 12, 300)
@@ -67,20 +76,23 @@ class AfterFrame(Frame):
             for right, text in ((_BEFORE, number(before)), (_AFTER, number(after)), (_STEP, signed(moved))):
                 self.label(text, right, y, align="right", explanation=told, room=100)
 
-    def _write_value(self) -> None:
+    def _write_value(self, telling: Sequence[str]) -> None:
         before, after, target = self._values
+        write = points if self._in_points else number
         closer = abs(before - target) - abs(after - target)
-        words = texts.LESSON_NEARER if closer > 0 else texts.LESSON_FARTHER
         self.label(
-            words.format(before=points(before), after=points(after), target=points(target), by=f"{abs(closer):.2f}"),
+            telling[closer <= 0].format(
+                before=write(before), after=write(after), target=write(target), by=number(abs(closer))
+            ),
             0, _VALUE, room=PICTURE.width,
         )  # fmt: skip
         low, high = min(self._values), max(self._values)
         around = max(0.1 * (high - low), 1e-9)
         self._ends = [30 + 692 * (each - low + around) / (high - low + 2 * around) for each in self._values]
         for x, value, word in zip(self._ends, self._values, texts.LESSON_VALUE_MARKS, strict=True):
-            rows = rows_of((texts.LESSON_IN_POINTS.format(scale=f"{self.step.scale:g}"), points(value, 3)),
-                           (texts.LESSON_OWN_SCALE, number(value * self.step.scale)))  # fmt: skip
+            rows = rows_of((texts.LESSON_OWN_SCALE, number(value * self.step.scale)))
+            if self._in_points:
+                rows += rows_of((texts.LESSON_IN_POINTS.format(scale=f"{self.step.scale:g}"), points(value, 3)))
             self.spots.append(Spot(pygame.FRect(x - 6, _VALUE + 18, 12, 12), Explanation((word,), rows)))
 
     def _write_pulls(self) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -11,32 +10,20 @@ import numpy as np
 from ai.agent.lesson import Lesson, functions
 from ai.agent.n_step import NStep
 from ai.agent.network import build_network
-from ai.common.learning_step import Line
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.lesson.after_frame import AfterFrame
-from game.lesson.code import CodeWalk
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
 from game.lesson.frame import Frame
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.moment_frame import HappenedFrame, MomentFrame, said_action
 from game.lesson.network_frame import NetworkFrame
+from game.lesson.part import BACKWARD, FORWARD, Part
 from game.lesson.step import LearningStep
 from game.lesson.target_frame import TargetFrame
 
-# The functions whose lines stand beside each frame, by the ends of their qualified names.
-_FORWARD: Final = ("NeuralNetwork.forward_propagate", "Layer.forward_propagate", "Normalisation.forward_propagate")
-_BACKWARD: Final = (".backward_propagate", ".fill_gradients", ".input_error", "Optimizer.step", "._fill_step")
 _NETWORK: Final = (0.0, 8.0, 752.0, 426.0)
-
-
-@dataclass(frozen=True)
-class Part:
-    """One frame of a lesson, and the walk through the code that belongs to it."""
-
-    frame: Frame
-    code: CodeWalk
 
 
 def learning_step(lesson: Lesson) -> LearningStep:
@@ -58,10 +45,10 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     name, sentence = words["values"]
     sentence = sentence.format(action=said_action(action), value=points(predicted / scale))
     figure = texts.LESSON_POINTS.format(points=points(predicted / scale))
-    values = NetworkFrame(name, figure, sentence, _FORWARD, step, _NETWORK, "activations", step.taken.gradient)
+    values = NetworkFrame(name, figure, sentence, FORWARD, step, _NETWORK, "activations", step.taken.gradient)
     name, sentence = words["gradient"]
     length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
-    gradient = GradientFrame(name, length, sentence, _BACKWARD, step)
+    gradient = GradientFrame(name, length, sentence, BACKWARD, step)
     places = step.strongest(step.taken.taken, 8)
     frames: list[tuple[Frame, Callable[..., Any] | None]] = [
         (MomentFrame(lesson, words["moment"], ("Agent.learn", "._learn_from", "Normalizer.__call__")), None),
@@ -72,11 +59,7 @@ def agent_frames(lesson: Lesson) -> list[Part]:
         (gradient, None),
         (AfterFrame(words["after"], ("Optimizer.step", "._update_target"), step,
                     [gradient.weight_name(place) for place in places],
-                    (predicted, after, lesson.target), derivative), None),
+                    (predicted, after, lesson.target), derivative, texts.LESSON_NEARER), None),
     ]  # fmt: skip
     known = functions(lesson.config)
-    return [Part(frame, CodeWalk(_lines_of(lesson, frame), known, fallback)) for frame, fallback in frames]
-
-
-def _lines_of(lesson: Lesson, frame: Frame) -> list[Line]:
-    return [line for line in lesson.step.lines if frame.functions and line.function.endswith(frame.functions)]
+    return [Part.of(frame, lesson.step, known, fallback) for frame, fallback in frames]

@@ -104,6 +104,8 @@ class NetworkFrame(Frame):
 
     def unit_name(self, column: int, unit: int) -> str:
         """Return the name of a unit of a column, by its number in the layer."""
+        if column == 0 and self.step.input_name is not None:
+            return self.step.input_name(unit)
         names = self.step.inputs if column == 0 else self.step.outputs if column == len(self.step.weights) else ()
         return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=column, unit=unit + 1)
 
@@ -147,7 +149,7 @@ class NetworkFrame(Frame):
 
     def _given(self, link: int) -> Array:
         """Return what a link is given: the observation, or what the stage before it gives, (units,)."""
-        return self.step.stages[link - 1][-1][1] if link else np.asarray(self.step.observation, float)
+        return self.step.stages[link - 1][-1][1] if link else np.asarray(self.step.given, float)
 
     def link(self, weight: WeightPlace) -> Explanation:
         """Explain a weight: what it multiplies, its slope, and its step."""

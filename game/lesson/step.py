@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -10,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.common.learning_step import Step
-from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
+from ai.nn import ActivationLayer, Array, DuelingLayer, FullyConnectedLayer, Layer, LayerNormalisation, NeuralNetwork
+from ai.nn.dropout import DropoutLayer
 from ai.nn.inspection import Link, links
 
-_SUM, _NORMALISED = "sum", "normalised"
+_SUM, _NORMALISED, _DROPPED = "sum", "normalised", "dropout"
 # What optimizers remember of the slopes so far, by its name in `Optimizer.remembers`.
 _RUNNING: Final = ("gradient_sum", "velocity")
 
@@ -39,6 +41,7 @@ class LearningStep:
         scale: size of one shown unit in the unit of the network's outputs: one point of reward, or 1.
         optimizer: name of the optimizer.
         examples: number of examples in the batch.
+        input_name: names the inputs, by their numbers, where there are too many for `inputs`.
 
     """
 
@@ -50,19 +53,32 @@ class LearningStep:
     scale: float
     optimizer: str
     examples: int
+    input_name: Callable[[int], str] | None = None
 
     @cached_property
     def stages(self) -> list[list[tuple[str, Array]]]:
         """Return, for each link, the name and the values (units,) of each layer from it up to the next link."""
         found: list[list[tuple[str, Array]]] = []
         for layer, values in zip(self.network.layers, self.taken.activations, strict=True):
-            if isinstance(layer, FullyConnectedLayer):
+            if _joins_units(layer):
                 found.append([(_SUM, values)])
             elif isinstance(layer, LayerNormalisation) and found:
                 found[-1].append((_NORMALISED, values))
+            elif isinstance(layer, DropoutLayer) and found:
+                found[-1].append((_DROPPED, values))
             elif isinstance(layer, ActivationLayer) and found:
                 found[-1].append((str(layer.activation.name), values))
         return found
+
+    @cached_property
+    def given(self) -> Array:
+        """Return the numbers that the first link is given, (units,): the observation, or what the layers below make."""
+        given = np.asarray(self.observation).ravel()
+        for layer, values in zip(self.network.layers, self.taken.activations, strict=True):
+            if _joins_units(layer):
+                break
+            given = np.asarray(values).ravel()
+        return given
 
     @cached_property
     def _twin(self) -> NeuralNetwork:
@@ -86,7 +102,7 @@ class LearningStep:
         first = 0
         for layer in twin.layers:
             size = sum(parameter.value.size for parameter in layer.parameters)
-            if isinstance(layer, FullyConnectedLayer):
+            if _joins_units(layer):
                 shape = layer.shapes["weights"]
                 whole = np.arange(first, first + int(np.prod(shape))).reshape(shape)
                 found.append(None if isinstance(layer, DuelingLayer) else whole)
@@ -123,3 +139,8 @@ class LearningStep:
         running = self.running.astype(float)
         pace: Array = np.divide(self.taken.taken, running, out=np.zeros(len(running)), where=running != 0)
         return pace
+
+
+def _joins_units(layer: Layer) -> bool:
+    """Whether a layer is one of the links between units: a convolution joins images."""
+    return isinstance(layer, FullyConnectedLayer) and not isinstance(layer.inputs, tuple)

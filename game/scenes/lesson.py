@@ -7,6 +7,7 @@ from typing import Final
 import pygame
 
 from ai.agent.lesson import Lesson
+from ai.digits.lesson import DigitLesson
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing.canvas import Canvas
@@ -15,6 +16,7 @@ from game.drawing.tokens import INK, MUTE, NIGHT0, SMALL, TEXT, TITLE
 from game.input.controls import Command
 from game.lesson.agent_frames import agent_frames
 from game.lesson.code import CodeWalk
+from game.lesson.digit_frames import digit_frames
 from game.lesson.frame import PICTURE, Frame
 from game.lesson.strip import STRIP, FilmStrip
 from game.ui.actions import Action, Table
@@ -29,7 +31,7 @@ _REACH: Final = STRIP.union(PICTURE)  # of the pointer that keys move
 
 
 class LessonScene(FormScene):
-    """Lesson scene.
+    """Lesson scene, of a learning step of the agent or of a digit network.
 
     Attributes:
         parts: the frames with their code.
@@ -37,10 +39,10 @@ class LessonScene(FormScene):
 
     """
 
-    def __init__(self, context: Context, lesson: Lesson) -> None:
+    def __init__(self, context: Context, lesson: Lesson | DigitLesson) -> None:
         super().__init__(context)
         self.lesson = lesson
-        self.parts = agent_frames(lesson)
+        self.parts = agent_frames(lesson) if isinstance(lesson, Lesson) else digit_frames(lesson)
         self.strip = FilmStrip([part.frame for part in self.parts])
         self.current = 0
         self.pointer = self.form.add(VirtualPointer(self.form.manager, _REACH, self._point, hold=texts.LESSON_PRESS))
@@ -126,6 +128,9 @@ class LessonScene(FormScene):
 
     def _whose(self) -> str:
         lesson = self.lesson
+        if isinstance(lesson, DigitLesson):
+            digit = int(lesson.labels[lesson.step.row])
+            return texts.LESSON_DIGIT_WHEN.format(digit=digit, step=lesson.taken + 1)
         if lesson.flown is None:
             return texts.LESSON_WHEN.format(decisions=lesson.decisions)
         return texts.LESSON_WHOSE_MOMENT.format(

@@ -8,6 +8,7 @@ import pytest
 
 from ai.agent.lesson import Lesson, functions
 from ai.common.decision import in_points
+from ai.digits.lesson import digit_functions
 from ai.nn.costs import COSTS
 from game.charts.tooltip import TooltipRow
 from game.core import texts
@@ -21,7 +22,7 @@ from game.lesson.network_frame import NetworkFrame
 from game.lesson.step import WeightPlace
 from game.scenes.lesson import LessonScene
 from tests.support.driver import Driver
-from tests.support.lessons import SMALL, lesson_from, lesson_of
+from tests.support.lessons import SMALL, digit_lesson_of, lesson_from, lesson_of
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
@@ -322,6 +323,58 @@ def test_the_link_under_the_mouse_tells_its_weight_and_slope(driver: Driver, les
     assert number(float(lesson.step.gradient[index])) in figures
     assert number(float(lesson.step.share[index])) in figures
     assert number(-float(lesson.step.taken[index])) in figures
+
+
+# An image of the digit network
+
+
+@pytest.mark.parametrize("preset", ["classic", "modern"])
+def test_an_image_is_shown_in_seven_frames_as_well(open_game: Open, preset: str):
+    lesson = digit_lesson_of(preset)
+    driver = open_game(LessonScene, lesson)
+    driver.frames(2)
+    digit = int(lesson.labels[lesson.step.row])
+    assert len(driver.top.parts) == FRAMES
+    words = [shown(driver, frame) for frame in range(FRAMES)]
+    assert texts.LESSON_LABEL.format(digit=digit) in words[0]
+    for value in lesson.outputs.tolist():
+        assert f"{value:.2f}".replace("-", "−") in words[1] or lesson.config.dropout
+        assert number(value) in words[2]
+    for value in lesson.probabilities_before.tolist():
+        assert number(value) in words[2]
+    for value in lesson.target.tolist():
+        assert number(value) in words[3]
+    for value in lesson.derivative.tolist():
+        assert any(word.lstrip("+") == number(value) for word in words[4])
+    assert number(lesson.step.gradient_length) in " ".join(words[5])
+    before, after = (float(each[digit]) for each in (lesson.probabilities_before, lesson.probabilities_after))
+    assert any(number(before) in word and number(after) in word for word in words[6])
+    known = digit_functions(lesson.config)
+    for part in driver.top.parts:
+        assert all(line.number in dict(source_of(known[line.function]).lines) for line in part.code.lines)
+
+
+@pytest.mark.parametrize("preset", ["classic", "modern"])
+def test_a_units_sum_of_a_digit_network_adds_up(open_game: Open, preset: str):
+    driver = open_game(LessonScene, digit_lesson_of(preset))
+    driver.top.show(1)
+    driver.frames(2)
+    frame = driver.top.frame
+    assert isinstance(frame, NetworkFrame)
+    for column in range(1, len(frame.view.columns)):
+        told = frame.unit(column, 0)
+        at = [row.word for row in told.rows].index(texts.LESSON_STAGES["sum"])
+        assert sum(map(figure, told.rows[:at])) == pytest.approx(figure(told.rows[at]), rel=0.02, abs=0.005)
+
+
+def test_a_pixel_tells_its_ink(open_game: Open):
+    lesson = digit_lesson_of("classic")
+    driver = open_game(LessonScene, lesson)
+    driver.frames(2)
+    driver.move(in_view((14.0 * 10 + 7, 14.0 * 20 + 7)))
+    told = driver.top.frame.pointed.explanation
+    assert told.lines == (texts.LESSON_PIXEL.format(row=21, column=11),)
+    assert told.rows[0].figure == f"{float(lesson.image[20, 10]):.3f}"
 
 
 # Bad days
