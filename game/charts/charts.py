@@ -35,6 +35,13 @@ class Charts:
             if pointed is not None:
                 self.zoom.by(STEP**event.y, pointed)
 
+    def zoom_by(self, steps: int) -> None:
+        """Stretch the axis by so many steps of the keys, or with 0 show the whole of it."""
+        if steps:
+            self.zoom.by(STEP**steps, self.charts[0].marker)
+        else:
+            self.zoom.reset()
+
     @property
     def box(self) -> pygame.Rect:
         """Bounding box of all charts, in points."""

@@ -41,6 +41,7 @@ class NetworkView:
         self.output_scale = 1.0  # one point of reward, in units of the network's outputs
         self.plan: NetworkPlan | None = None
         self.edges: list[Edge] = []
+        self.reads_out = True  # whether a unit's value is written beside it while it is highlighted
         self.redraws = 0  # number of times that the sheets were painted
         self.pinned: frozenset[tuple[int, int]] = frozenset()  # stage and number of units to be shown in any case
         self._show: Show = "weights"
@@ -215,7 +216,7 @@ class NetworkView:
         canvas.surface.blit(signs.surface, corner)
         if self._show == "gradients" and not self._still:
             self._draw_pulses(canvas)
-        if self.hovered:
+        if self.hovered and self.reads_out:
             self._draw_tooltip(canvas, *self.hovered)
 
     def _blank(self, canvas: Canvas) -> Sheets:

@@ -19,7 +19,6 @@ from game.charts.chart import Chart, Series, Tick
 from game.charts.charts import Charts
 from game.charts.scrubber import Scrubber
 from game.charts.series import run_style
-from game.charts.zoom import STEP
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing import typeface
@@ -183,7 +182,7 @@ class TrainingCharts:
 
         found: list[Widget] = [
             VirtualPointer(manager, self.charts.box, self.charts.follow),
-            Scrubber(manager, self.charts, scrub, duel, self._zoom_by),
+            Scrubber(manager, self.charts, scrub, duel, self.charts.zoom_by),
         ]
         self._legend = RunLegend(manager, _LEGEND, choose) if compared else None
         if self._legend is not None:
@@ -194,13 +193,6 @@ class TrainingCharts:
         box = (_ZOOM_RIGHT - width, _AXES.top, width, _AXES.height)
         self._zoom_word = TextButton(manager, box, zoom_word(self.charts.zoom.factor), self._double, size=SMALL)
         return [*found, self._zoom_word]
-
-    def _zoom_by(self, steps: int) -> None:
-        """Stretch the axis by so many steps, or with 0 show the whole of it."""
-        if steps:
-            self.charts.zoom.by(STEP**steps, self.charts.charts[0].marker)
-        else:
-            self.charts.zoom.reset()
 
     def _double(self) -> None:
         self.charts.zoom.double(self.charts.charts[0].marker)

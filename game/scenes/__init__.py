@@ -19,7 +19,8 @@ ROUTES: Final = {
     "physics_step": "physics_step.PhysicsStepScene",
     "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "settings.SettingsScene",
     "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "pause": "pause.PauseScene",
-    "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "error_screen": "error_screen.ErrorScene",
+    "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
+    "error_screen": "error_screen.ErrorScene",
 }  # fmt: skip
 
 

@@ -212,7 +212,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self.film.release()
         manager, old = self.form.manager, self._shown
         if index:
-            self._shown = Scrubber(manager, self.charts, self.film.choose, lambda: None)
+            self._shown = Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
         else:
             cell = self.matrix.cell
             self._shown = self.matrix = ConfusionMatrix(manager, _MATRIX)

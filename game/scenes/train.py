@@ -19,6 +19,7 @@ from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, VIEW_SIZE
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
+from game.lesson.door import LessonDoor
 from game.panels.advice import Advice
 from game.panels.knobs import KnobsPanel
 from game.panels.network_panel import NetworkPanel
@@ -34,6 +35,7 @@ from game.training.library import Library, SavedRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow
+from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, Widget
 from game.ui.widgets import Choice, TextButton
 from game.world.swarm import LearningSwarm
@@ -44,7 +46,8 @@ _SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
 _BEHIND: Final = 0.72  # cover of the swarm behind an edited network
-_WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
+_WORDS: Final = pygame.Rect(684, 16, 136, 154)  # beside the swarm
+_SWARM: Final = pygame.Rect(16, 176, 804, 246)  # where keys can point at a lander
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
@@ -67,6 +70,7 @@ class TrainScene(TrainingScene[LanderRun]):
         self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin)
         self._comparing = Comparing(self, self.lander_run, self._ask)
         self.rewind = Rewind(self.form, self.lander_run, DISPLAY_WIDTH / VIEW_SIZE[0])
+        self.lessons = LessonDoor(self.lander_run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
         if self._resume:
@@ -82,7 +86,10 @@ class TrainScene(TrainingScene[LanderRun]):
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self.inside.covers(event.pos):
             self._look_closer()
             return None
-        return super().handle_event(event)
+        outcome = super().handle_event(event)
+        if not self.inside.large and not self.form.used:
+            self.lessons.follow(event)
+        return outcome
 
     def actions(self) -> Table:
         """Go back; step, start or pause, and change the pace, as the buttons say."""
@@ -117,7 +124,7 @@ class TrainScene(TrainingScene[LanderRun]):
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
-        return self._ask_or(self.form.update())
+        return self._ask_or(self.form.update()) or self.lessons.update()
 
     def _listen(self) -> bool:
         """Receive the worker's messages; return whether one was about the network."""
@@ -142,6 +149,11 @@ class TrainScene(TrainingScene[LanderRun]):
     def moment(self) -> int | None:
         """Moment of the run that is shown, in decisions; None for now."""
         return self.rewind.moment
+
+    @property
+    def shown_swarm(self) -> LearningSwarm:
+        """The landers of the moment that is shown."""
+        return self.swarm if self.moment is None else self.rewind.swarm
 
     def _show_moment(self) -> None:
         """Put all of the screen at the moment that was chosen, or back to now."""
@@ -277,8 +289,10 @@ class TrainScene(TrainingScene[LanderRun]):
                 (texts.TRAIN_DUEL, self._duel),
                 (texts.TRAIN_COMPARE, self._comparing.add),
                 (texts.TRAIN_TEACH, self._teach),
+                (texts.LESSON_WHY, self.lessons.open),
             )
-            beside = [
+            pointer = VirtualPointer(self.form.manager, _SWARM, self.lessons.follow, hold=texts.LESSON_MARK)
+            beside = [pointer] + [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
             beside += self.training_charts.widgets(

@@ -13,8 +13,8 @@ from ai.lander.environment import PARAMS, Outcome
 from ai.training.messages import SwarmState
 from ai.training.session import CAREFUL
 from game.core import texts
-from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
+from game.drawing.canvas import Canvas, Point
+from game.drawing.tokens import HUMAN, INK, LABEL, NET, NIGHT0, VIEW_SIZE, Colour
 from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft, draw_crowd, draw_fires
 from game.world.lander import LANDER
@@ -27,6 +27,7 @@ _KEEP: Final = 16  # flights whose trail stays visible
 _LONGEST_GAP: Final = 12.0  # frames between two snapshots, up to which landers are interpolated
 _JUMP: Final = 4.0  # metres: farther than any lander flies between two snapshots
 _LABEL: Final = (3.2, 1.6)  # metres that a lander's label takes; of landers closer than that, only the best is labelled
+_REACH: Final = 16.0  # points from a lander within which a click is meant for it
 _MOON: Final = 5
 _EARTH: Final = (880.0, 150.0)  # points of the small picture: clear of the figures
 
@@ -35,17 +36,23 @@ class LearningSwarm:
     """The landers of one training run in the upper left part of the view.
 
     `width` is their share of the view's width; the world keeps its proportions.
+
+    Attributes:
+        chosen: slot of the lander that the player has chosen; None without one.
+
     """
 
     def __init__(self, width: float) -> None:
         self._share = width
         span = (1 - width) / (2 * width * POINTS_PER_METRE)
         self._centre = (HOME[0] + span * VIEW_SIZE[0], HOME[1] - span * VIEW_SIZE[1])
+        self.chosen: int | None = None
         self.clear()
 
     def clear(self) -> None:
         """Forget the run shown so far."""
         self.swarm_state: SwarmState | None = None
+        self.chosen = None
         self._trails = Trails(0)
         self._before: Doubles = np.empty((0, 3))
         self._now: Doubles = self._before
@@ -77,6 +84,14 @@ class LearningSwarm:
         if fresh[self._lucky % len(fresh)] or not flying[self._lucky % len(flying)]:
             self._lucky = int(np.where(flying, swarm_state.earned, -np.inf).argmax())
 
+    def slot_at(self, point: Point) -> int | None:
+        """Return the slot of the lander at a point of the view, or None without one."""
+        if not len(self._now) or point[0] > VIEW_SIZE[0] * self._share:
+            return None
+        away = np.hypot(*(View(1.0, self._centre, self._share).points(self._now[:, :2]) - point).T)
+        nearest = int(away.argmin())
+        return nearest if away[nearest] <= _REACH else None
+
     def update(self, still: bool = False) -> None:
         """Advance by 1/60 s; while `still`, lamps and flames do not flicker."""
         self._since += 1
@@ -99,6 +114,9 @@ class LearningSwarm:
         size = next((size for most, size in _SIZES if count <= most), _SIZES[-1][1])
         marked = np.zeros(count, bool)
         marked[[CAREFUL, self._lucky % count]] = True
+        chosen = self.chosen if self.chosen is not None and self.chosen < count else None
+        if chosen is not None:
+            marked[chosen] = True
         canvas.surface.set_clip(canvas.rect(0, 0, VIEW_SIZE[0] * self._share, moon.get_height() / canvas.scale))
         self._trails.draw(canvas, view, CAREFUL)
         shown = ~marked & ~wrecked
@@ -107,10 +125,12 @@ class LearningSwarm:
         lucky = self._lucky % count
         apart = np.abs(poses[lucky, :2] - poses[CAREFUL, :2])
         luckiest = texts.SWARM_LUCKIEST if (apart > _LABEL).any() or wrecked[CAREFUL] else ""
-        if not wrecked[lucky] and lucky != CAREFUL:
+        if not wrecked[lucky] and lucky not in (CAREFUL, chosen):
             self._draw_marked(canvas, view, poses[lucky], lucky, luckiest, INK, size)
-        if not wrecked[CAREFUL]:
+        if not wrecked[CAREFUL] and chosen != CAREFUL:
             self._draw_marked(canvas, view, poses[CAREFUL], CAREFUL, texts.SWARM_BEST if count > 1 else "", NET, size)
+        if chosen is not None:
+            self._draw_marked(canvas, view, poses[chosen], chosen, texts.LESSON_CHOSEN, HUMAN, size)
         canvas.surface.set_clip(None)
 
     def _burning(self) -> Bools:

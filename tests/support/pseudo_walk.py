@@ -90,6 +90,16 @@ def answered(driver: Driver) -> None:
     driver.frames(5)
 
 
+def frame(number: int) -> Happens:
+    """Return what shows a frame of a lesson."""
+
+    def show(driver: Driver) -> None:
+        driver.keys(*[pygame.K_RIGHT] * number)
+        driver.frames(2)
+
+    return show
+
+
 def told(driver: Driver) -> None:
     """Have a long message shown."""
     driver.app.context.note(texts.SETTINGS_UNREADABLE.format(reason=texts.FLIGHT_ACTIONS, name="/settings"))
@@ -136,6 +146,7 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "a message": ("MenuScene", {}, told),
     "training": ("TrainScene", {}, trained),
     "training to read": ("DigitTrainingScene", {}, taught_to_read),
+    **{f"frame {number + 1}": ("LessonScene", {}, frame(number)) for number in range(7)},
     "a digit": ("DigitsScene", {}, drawn),
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
@@ -192,6 +203,8 @@ class Walk:
         page = self._written.turn(driver.app.canvas)
         driver.app.draw()
         for note in page.notes:
+            if note.code:
+                continue
             self.seen.setdefault(note.text, place)
         for text, how in misplaced(page):
             if how != "is cut short" or text not in self._whole:

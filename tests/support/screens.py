@@ -26,6 +26,7 @@ from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.dream import DreamScene
 from game.scenes.learn import LearnScene
+from game.scenes.lesson import LessonScene
 from game.scenes.logbook import LogbookScene
 from game.scenes.menu import MenuScene
 from game.scenes.missions import MissionsScene
@@ -43,6 +44,7 @@ from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
+from tests.support.lessons import lesson_of
 
 Make = Callable[[Context], Scene]
 
@@ -61,6 +63,7 @@ SCREENS: dict[str, Make] = {
     "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
     "LearnScene": LearnScene,
     **{f"Chapter, {key}": partial(ChapterScene, key=key) for key in PATH},
+    "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,

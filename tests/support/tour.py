@@ -26,6 +26,7 @@ from game.play.race import race
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.dream import DreamScene
+from game.scenes.lesson import LessonScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
@@ -34,6 +35,7 @@ from game.scenes.replay import ReplayScene
 from game.scenes.watch import COUNTS, WatchScene
 from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
+from tests.support.lessons import lesson_of
 
 FLIGHTS = 2
 
@@ -93,6 +95,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1))),
         "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
+        "LessonScene": lambda: LessonScene(context, lesson_of("modern")),
         "ReplayScene": lambda: replayed(ReplayScene),
         "DreamScene": lambda: of_digits(DreamScene),
         "QuizScene": lambda: of_digits(QuizScene),

@@ -1,0 +1,65 @@
+"""The seven frames of a lesson of the agent that learns to land."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+
+from ai.agent.lesson import Lesson, functions
+from ai.agent.n_step import NStep
+from ai.agent.network import build_network
+from ai.lander.environment import ACTION_NAMES
+from game.core import texts
+from game.lesson.after_frame import AfterFrame
+from game.lesson.error_frame import ErrorFrame
+from game.lesson.figures import number, points
+from game.lesson.frame import Frame
+from game.lesson.gradient_frame import GradientFrame
+from game.lesson.moment_frame import HappenedFrame, MomentFrame, said_action
+from game.lesson.network_frame import NetworkFrame
+from game.lesson.part import BACKWARD, FORWARD, Part
+from game.lesson.step import LearningStep
+from game.lesson.target_frame import TargetFrame
+
+_NETWORK: Final = (0.0, 8.0, 752.0, 426.0)
+
+
+def learning_step(lesson: Lesson) -> LearningStep:
+    """Return the optimizer's step of a lesson, with the names of what it moves."""
+    config, taken = lesson.config, lesson.step
+    network = build_network(len(lesson.state), len(lesson.predicted), config, np.random.default_rng(0))
+    network.values = taken.values_before
+    actions = tuple(map(texts.said, ACTION_NAMES))
+    return LearningStep(network, taken, lesson.state, texts.INPUTS, actions, config.reward_scale, config.optimizer,
+                        len(lesson.batch_errors))  # fmt: skip
+
+
+def agent_frames(lesson: Lesson) -> list[Part]:
+    """Return the seven frames of a lesson of the agent."""
+    step, scale = learning_step(lesson), lesson.config.reward_scale
+    action, words = int(lesson.cell.action), texts.LESSON_FRAMES
+    predicted, after = float(lesson.predicted[action]), float(lesson.predicted_after[action])
+    derivative = lesson.derivative
+    name, sentence = words["values"]
+    sentence = sentence.format(action=said_action(action), value=points(predicted / scale))
+    figure = texts.LESSON_POINTS.format(points=points(predicted / scale))
+    values = NetworkFrame(name, figure, sentence, FORWARD, step, _NETWORK, "activations", step.taken.gradient)
+    name, sentence = words["gradient"]
+    length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
+    gradient = GradientFrame(name, length, sentence, BACKWARD, step)
+    places = step.strongest(step.taken.taken, 8)
+    frames: list[tuple[Frame, Callable[..., Any] | None]] = [
+        (MomentFrame(lesson, words["moment"], ("Agent.learn", "._learn_from", "Normalizer.__call__")), None),
+        (values, None),
+        (HappenedFrame(lesson, words["happened"], ()), NStep.add),
+        (TargetFrame(lesson, words["target"], ("DeepQAgent.targets", "._next_value", "NeuralNetwork.predict")), None),
+        (ErrorFrame(lesson, words["error"], (".gradient_step", "<locals>.function", "<locals>.derivative")), None),
+        (gradient, None),
+        (AfterFrame(words["after"], ("Optimizer.step", "._update_target"), step,
+                    [gradient.weight_name(place) for place in places],
+                    (predicted, after, lesson.target), derivative, texts.LESSON_NEARER), None),
+    ]  # fmt: skip
+    known = functions(lesson.config)
+    return [Part.of(frame, lesson.step, known, fallback) for frame, fallback in frames]

@@ -1,0 +1,122 @@
+"""Our own code beside a frame: the lines that ran for it, one of them lit, with the values that it set below."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+import pygame
+
+from ai.common.learning_step import Line, Value
+from game.core import texts
+from game.core.source import Source, source_of
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
+from game.lesson.figures import number
+from game.panels.code_listing import draw_listing
+
+CODE: Final = pygame.Rect(824, 216, 416, 448)
+_HEAD: Final = 12.0  # baseline of the heading
+_LISTING: Final = 24.0
+_VALUES: Final = 308.0  # below the corner of the box
+_ROW: Final = 18.0
+_MOST: Final = 7  # values of a line that are shown
+_FEW: Final = 4  # numbers of an array that are written out
+
+
+class CodeWalk:
+    """Walk through the lines that ran for one frame.
+
+    `functions` are those of the lesson by their qualified names. `fallback` is shown, with no line lit, where no line
+    was recorded.
+
+    Attributes:
+        lines: the lines, in the order in which they ran.
+        index: number of the current one.
+
+    """
+
+    def __init__(
+        self,
+        lines: Sequence[Line],
+        functions: Mapping[str, Callable[..., Any]],
+        fallback: Callable[..., Any] | None = None,
+    ) -> None:
+        self.lines = tuple(lines)
+        # Begin where numbers are set, past the head of the function.
+        sets = (number for number, line in enumerate(self.lines[:-1]) if number and line.values)
+        self.index = next(sets, 0)
+        self._functions, self._fallback = functions, fallback
+        self._cache = PaintCache()
+
+    @property
+    def line(self) -> Line | None:
+        """The current line; None where no line was recorded."""
+        return self.lines[self.index] if self.lines else None
+
+    @property
+    def source(self) -> Source | None:
+        """Source of the current line's function; None without one."""
+        function = self._functions.get(self.line.function) if self.line else self._fallback
+        return source_of(function) if function else None
+
+    def step(self, direction: int) -> None:
+        """Go to the line before or after."""
+        self.index = min(max(self.index + direction, 0), max(len(self.lines) - 1, 0))
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the listing and the values."""
+        self._cache.draw(canvas, CODE, self.index, self._paint)
+
+    def _paint(self, sheet: Canvas) -> None:
+        sheet.text(texts.LESSON_CODE, (0, _HEAD), size=LABEL, colour=MUTE, room=220)
+        source, line = self.source, self.line
+        if self.lines:
+            place = texts.LESSON_LINE.format(number=self.index + 1, count=len(self.lines))
+            sheet.text(place, (CODE.width, _HEAD), size=LABEL, colour=MUTE, align="right", tabular=True, room=180)
+        if source is None:
+            draw_wrapped(sheet, texts.LESSON_NO_SOURCE, (0, _LISTING + 20), CODE.width, colour=MUTE, size=LABEL)
+        else:
+            box = (0, _LISTING, CODE.width, (_VALUES if self.lines else CODE.height) - _LISTING - 14)
+            draw_listing(sheet, box, source, line.number if line else None)
+        if line:
+            self._paint_values(sheet, line)
+
+    def _paint_values(self, sheet: Canvas, line: Line) -> None:
+        """Write the name, the shape and the numbers of what the current line has set."""
+        sheet.line((0, _VALUES - 8), (CODE.width, _VALUES - 8), LINE)
+        words = texts.LESSON_SETS if line.values else texts.LESSON_SETS_NOTHING
+        sheet.text(words, (0, _VALUES + 10), size=LABEL, colour=MUTE, room=CODE.width)
+        for row, value in enumerate(line.values[:_MOST]):
+            y = _VALUES + 12 + _ROW * (row + 1)
+            shape = " × ".join(map(str, value.shape)) if value.shape else texts.LESSON_NUMBER
+            sheet.text(value.name, (0, y), size=LABEL, weight="code", colour=INK, room=150)
+            sheet.text(shape, (158, y), size=LABEL, colour=MUTE, tabular=True, room=80)
+            sheet.text(
+                case_of(value),
+                (CODE.width, y),
+                size=LABEL,
+                colour=NET,
+                align="right",
+                weight="code",
+                tabular=True,
+                room=170,
+            )
+        more = len(line.values) - _MOST
+        if more > 0:
+            y = _VALUES + 12 + _ROW * (_MOST + 1)
+            sheet.text(texts.LESSON_MORE.format(count=more), (0, y), size=LABEL, colour=MUTE, room=CODE.width)
+
+
+def case_of(value: Value) -> str:
+    """Write this case's numbers of a value, the first few of many."""
+    if value.case is None:
+        return ""
+    if isinstance(value.case, bool | np.bool_):
+        return str(bool(value.case))
+    numbers = np.asarray(value.case).ravel()
+    shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:_FEW].tolist())
+    return shown if len(numbers) <= _FEW else f"{shown} ..."

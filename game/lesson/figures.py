@@ -1,0 +1,36 @@
+"""Numbers of a lesson as they are written: points of reward with their sign, other numbers briefly."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from game.charts import plotting
+
+_SMALL: Final = 1e-4
+_MOST_DIGITS: Final = 12
+
+
+def points(value: float, digits: int = 2) -> str:
+    """Write points of reward with their sign: +12.30."""
+    if not math.isfinite(value):
+        return "–"
+    if abs(value) >= 1e5:
+        return ("+" if value > 0 else "") + plotting.compact(value)
+    text = f"{value:+.{digits}f}"
+    return text.replace("-", "−")
+
+
+def number(value: float) -> str:
+    """Write a number of a network with the digits that tell it from its neighbours; never as a power of ten."""
+    size = abs(value)
+    if math.isfinite(value) and 0 < size < _SMALL:
+        digits = min(1 - math.floor(math.log10(size)), _MOST_DIGITS)
+        return f"{value:.{digits}f}".replace("-", "−")
+    return plotting.compact(value, 4)
+
+
+def signed(value: float) -> str:
+    """Write a number of a network with its sign."""
+    text = number(value)
+    return f"+{text}" if value > 0 else text

@@ -1,0 +1,142 @@
+"""Lesson scene: one learning step as a strip of seven frames, each beside the code that does it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pygame
+
+from ai.agent.lesson import Lesson
+from ai.digits.lesson import DigitLesson
+from game.core import texts
+from game.core.scene import Transition
+from game.drawing.canvas import Canvas
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import INK, MUTE, NIGHT0, SMALL, TEXT, TITLE
+from game.input.controls import Command
+from game.lesson.agent_frames import agent_frames
+from game.lesson.code import CodeWalk
+from game.lesson.digit_frames import digit_frames
+from game.lesson.frame import PICTURE, Frame
+from game.lesson.strip import STRIP, FilmStrip
+from game.ui.actions import Action, Table
+from game.ui.context import Context
+from game.ui.form_scene import FormScene
+from game.ui.hints import Hint, HintRow
+from game.ui.virtual_pointer import VirtualPointer
+
+_LEFT: Final = 40.0
+_SENTENCE: Final = 166.0
+_REACH: Final = STRIP.union(PICTURE)  # of the pointer that keys move
+
+
+class LessonScene(FormScene):
+    """Lesson scene, of a learning step of the agent or of a digit network.
+
+    Attributes:
+        parts: the frames with their code.
+        current: number of the frame that is shown large.
+
+    """
+
+    def __init__(self, context: Context, lesson: Lesson | DigitLesson) -> None:
+        super().__init__(context)
+        self.lesson = lesson
+        self.parts = agent_frames(lesson) if isinstance(lesson, Lesson) else digit_frames(lesson)
+        self.strip = FilmStrip([part.frame for part in self.parts])
+        self.current = 0
+        self.pointer = self.form.add(VirtualPointer(self.form.manager, _REACH, self._point, hold=texts.LESSON_PRESS))
+
+    @property
+    def frame(self) -> Frame:
+        """The frame that is shown large."""
+        return self.parts[self.current].frame
+
+    @property
+    def code(self) -> CodeWalk:
+        """The walk through the code beside it."""
+        return self.parts[self.current].code
+
+    def actions(self) -> Table:
+        """Go from frame to frame, and from line to line; point at numbers; go back."""
+        controls = self.context.controls
+        return [
+            Hint(controls.arrows_aside, texts.LESSON_HINT_FRAME),
+            Hint(controls.arrows, texts.LESSON_HINT_LINE),
+            self.form.confirms(texts.LESSON_HINT_POINT),
+            Action(Command.LEFT, lambda: self.go(-1)),
+            Action(Command.RIGHT, lambda: self.go(1)),
+            Action(Command.PREVIOUS, lambda: self.go(-1)),
+            Action(Command.NEXT, lambda: self.go(1)),
+            Action(Command.STEP, lambda: self.go(1)),
+            Action(Command.UP, lambda: self.code.step(-1)),
+            Action(Command.DOWN, lambda: self.code.step(1)),
+            self.form.goes_back(texts.HINT_BACK),
+        ]
+
+    def go(self, direction: int) -> None:
+        """Go to the frame before or after."""
+        self.show(min(max(self.current + direction, 0), len(self.parts) - 1))
+
+    def show(self, number: int) -> None:
+        """Show a frame large."""
+        if number != self.current:
+            self.frame.follow(None)
+            self.current = number
+            self.context.sound.play("move")
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Follow the mouse; a click goes to a frame, or picks what it points at."""
+        if event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN) and not self.form.typing:
+            self._point(event)
+        if event.type == pygame.MOUSEWHEEL:
+            self.code.step(-event.y)
+            return None
+        return super().handle_event(event)
+
+    def _point(self, event: pygame.event.Event) -> None:
+        """Follow the mouse or the pointer that keys move; an event's position is in points."""
+        if event.type == pygame.MOUSEMOTION:
+            self.frame.follow(event.pos)
+        elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            number = self.strip.at(event.pos)
+            if number is not None:
+                self.show(number)
+            elif self.frame.press(event.pos):
+                self.frame.follow(event.pos)
+                self.context.sound.play("choose")
+
+    def update(self) -> Transition | None:
+        """Let gradients flow."""
+        self.frame.update(self.context.settings.reduced_motion)
+        return super().update()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the strip, the current frame, its code, and the explanation of what is pointed at."""
+        canvas.surface.fill(NIGHT0)
+        canvas.text(texts.LESSON_TITLE, (_LEFT, 40), size=TITLE)
+        canvas.text(self._whose(), (STRIP.right, 40), size=SMALL, colour=MUTE, align="right", tabular=True, room=900)
+        self.strip.draw(canvas, self.current)
+        draw_wrapped(canvas, self.frame.sentence, (_LEFT, _SENTENCE), STRIP.width, size=TEXT, colour=INK, leading=22,
+                     most=2)  # fmt: skip
+        self.code.draw(canvas)
+        self.frame.draw(canvas)
+        self.frame.draw_explanation(canvas)
+        if self.pointer.typing:
+            self.form.draw(canvas)
+        self.draw_hints(canvas)
+
+    def _whose(self) -> str:
+        lesson = self.lesson
+        if isinstance(lesson, DigitLesson):
+            digit = int(lesson.labels[lesson.step.row])
+            return texts.LESSON_DIGIT_WHEN.format(digit=digit, step=lesson.taken + 1)
+        if lesson.flown is None:
+            return texts.LESSON_WHEN.format(decisions=lesson.decisions)
+        return texts.LESSON_WHOSE_MOMENT.format(
+            slot=lesson.flown.slot + 1, moment=lesson.flown.decisions, decisions=lesson.decisions
+        )
+
+    def hint_rows(self, canvas: Canvas) -> list[HintRow]:
+        """Return the hints at the foot."""
+        return [HintRow(self.hints, (_LEFT, 698), room=STRIP.width)]

@@ -1,0 +1,401 @@
+"""A lesson on the screen: seven frames by keys, mouse and gamepad, whose numbers are those of the learning step."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.lesson import Lesson, functions
+from ai.common.decision import in_points
+from ai.digits.lesson import digit_functions
+from ai.nn.costs import COSTS
+from game.charts.tooltip import TooltipRow
+from game.core import texts
+from game.core.source import source_of
+from game.lesson.error_frame import ErrorFrame
+from game.lesson.figures import number, points
+from game.lesson.frame import PICTURE, Explanation
+from game.lesson.gradient_frame import GradientFrame
+from game.lesson.moment_frame import in_units, sensed
+from game.lesson.network_frame import NetworkFrame
+from game.lesson.step import WeightPlace
+from game.scenes.lesson import LessonScene
+from tests.support.driver import Driver
+from tests.support.lessons import SMALL, digit_lesson_of, lesson_from, lesson_of
+from tests.support.written import words_written
+
+Open = Callable[..., Driver]
+FRAMES = 7
+
+
+@pytest.fixture(params=sorted(SMALL))
+def lesson(request: pytest.FixtureRequest) -> Lesson:
+    return lesson_of(request.param)
+
+
+@pytest.fixture
+def driver(open_game: Open, lesson: Lesson) -> Driver:
+    opened = open_game(LessonScene, lesson)
+    opened.frames(3)
+    return opened
+
+
+def shown(driver: Driver, frame: int) -> list[str]:
+    """Go to a frame and return what is written on the screen there."""
+    driver.top.show(frame)
+    with pytest.MonkeyPatch.context() as patch:
+        words = words_written(patch)
+        driver.app.canvas.attach(driver.app.window.surface)
+        for part in driver.top.parts:
+            part.frame.changed()
+        driver.frames(2)
+    return words
+
+
+def in_view(place: tuple[float, float]) -> tuple[float, float]:
+    return place[0] + PICTURE.x, place[1] + PICTURE.y
+
+
+# The ways through it
+
+
+def test_all_frames_by_keys(driver: Driver):
+    names = ("moment", "values", "happened", "target", "error", "gradient", "after")
+    for number_, name in enumerate(names):
+        assert driver.top.current == number_
+        assert driver.top.frame.name == texts.LESSON_FRAMES[name][0]
+        driver.key(pygame.K_RIGHT)
+    assert driver.top.current == FRAMES - 1
+    driver.keys(*[pygame.K_LEFT] * 9)
+    assert driver.top.current == 0
+
+
+def test_all_frames_by_mouse(driver: Driver):
+    for number_ in reversed(range(FRAMES)):
+        driver.click(driver.top.strip.box(number_).center)
+        assert driver.top.current == number_
+
+
+def test_all_frames_by_gamepad(driver: Driver):
+    for number_ in range(FRAMES):
+        assert driver.top.current == number_
+        driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    driver.button(pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
+    assert driver.top.current == FRAMES - 2
+    before = driver.top.code.index
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    assert driver.top.code.index == before + 1
+
+
+def test_numbers_are_pointed_at_without_a_mouse(open_game: Open):
+    driver = open_game(LessonScene, lesson_of("modern"))
+    driver.frames(2)
+    driver.keys(pygame.K_RIGHT, pygame.K_RETURN)
+    assert driver.top.pointer.typing
+    unit = driver.top.frame.view.centres[1][0]
+    driver.top.pointer.place.update(unit[0] - 12, unit[1])
+    driver.post(pygame.KEYDOWN, key=pygame.K_RIGHT, mod=0)
+    driver.frames(1)
+    driver.post(pygame.KEYUP, key=pygame.K_RIGHT, mod=0)
+    assert driver.top.frame.pointed is not None
+    assert driver.top.current == 1, "the arrows move the pointer now"
+    driver.key(pygame.K_ESCAPE)
+    assert isinstance(driver.top, LessonScene)
+    assert driver.top.frame.pointed is None
+
+
+def test_a_gamepads_pointer_picks_a_weight(open_game: Open):
+    driver = open_game(LessonScene, lesson_of("modern"))
+    driver.frames(2)
+    for _ in range(5):
+        driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    frame = driver.top.frame
+    assert isinstance(frame, GradientFrame)
+    label = frame.labels[1]
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    driver.top.pointer.place.update(in_view(label.box.center))
+    driver.button(pygame.CONTROLLER_BUTTON_A)
+    assert frame.alone
+
+
+def test_lines_are_stepped_through_and_stand_in_the_source(driver: Driver, lesson: Lesson):
+    known = functions(lesson.config)
+    seen = 0
+    for part in driver.top.parts:
+        code = part.code
+        for line in code.lines:
+            source = source_of(known[line.function])
+            assert source is not None
+            assert line.number in dict(source.lines), f"{line.function}, line {line.number}"
+            seen += 1
+    assert seen > 100
+    driver.top.show(3)
+    code = driver.top.code
+    before = code.index
+    driver.keys(pygame.K_DOWN, pygame.K_DOWN, pygame.K_UP)
+    assert code.index == before + 1
+    driver.keys(*[pygame.K_UP] * (before + 5))
+    assert code.index == 0
+
+
+def test_lines_and_their_numbers_are_on_the_screen(driver: Driver):
+    words = shown(driver, 4)
+    line, source = driver.top.code.line, driver.top.code.source
+    assert str(line.number) in words
+    text = dict(source.lines)[line.number].strip()
+    assert any(word and text.startswith(word) for word in words)
+    assert line.values
+    for value in line.values:
+        assert value.name in words
+
+
+# The numbers are the lesson's
+
+
+def test_the_moment_shows_the_nine_inputs(driver: Driver, lesson: Lesson):
+    words = shown(driver, 0)
+    for feature, value in enumerate(in_units(lesson.cell.state).tolist()):
+        assert texts.INPUTS[feature] in words
+        assert sensed(value, feature) in words
+        assert number(float(lesson.state[feature])) in words
+
+
+def test_the_values_are_the_networks(driver: Driver, lesson: Lesson):
+    words = shown(driver, 1)
+    for value in in_points(lesson.predicted, lesson.config.reward_scale).tolist():
+        assert f"{value:.2f}".replace("-", "−") in words
+
+
+def test_what_happened_shows_the_pay_of_each_decision(driver: Driver, lesson: Lesson):
+    words = shown(driver, 2)
+    assert lesson.flown is not None
+    for reward in lesson.flown.rewards.tolist():
+        assert points(reward) in words
+    assert points(float(lesson.cell.reward) / lesson.config.reward_scale) in words
+    for feature, value in enumerate(in_units(lesson.cell.next_state).tolist()):
+        assert sensed(value, feature) in words
+
+
+def test_the_target_is_a_sum_that_can_be_read(driver: Driver, lesson: Lesson):
+    words, scale = shown(driver, 3), lesson.config.reward_scale
+    for value in (lesson.target, float(lesson.cell.reward), lesson.next_value):
+        assert points(value / scale) in words
+    assert f"{lesson.discount:.3f}" in words
+    assert (texts.LESSON_PICK in words) == lesson.config.double
+    assert (texts.LESSON_PICK_AND_JUDGE in words) != lesson.config.double
+    for value in in_points(lesson.next_target, scale).tolist():
+        assert points(value) in words
+
+
+def test_a_target_at_the_end_of_a_flight_says_that_nothing_comes_after(open_game: Open):
+    config = SMALL["modern"].changed(n_step=3)
+    lesson = next(
+        found for turns in range(40, 200) if (found := lesson_from(config, turns)).cell.terminal or turns == 199
+    )
+    assert lesson.cell.terminal
+    driver = open_game(LessonScene, lesson)
+    words = shown(driver, 3)
+    assert texts.LESSON_PART_ENDED in words
+    assert points(lesson.target / config.reward_scale) in words
+    assert lesson.target == pytest.approx(float(lesson.cell.reward))
+    assert set(texts.LESSON_OUTCOMES) & set(shown(driver, 2))
+
+
+def test_the_curve_is_the_costs_own(driver: Driver, lesson: Lesson):
+    words = shown(driver, 4)
+    frame = driver.top.frame
+    assert isinstance(frame, ErrorFrame)
+    cost = COSTS[lesson.config.cost]()
+    for error in (-2.5, -0.1, 0.0, 0.4, 3.0):
+        assert frame.cost_of(error) == cost(np.array([error]), np.zeros(1))
+    # What goes back is the slope of the curve, shared by the batch.
+    push = frame.push_of(lesson.error) * lesson.weight / len(lesson.batch_errors)
+    assert lesson.derivative == pytest.approx(push, rel=1e-5)
+    assert any(number(abs(lesson.derivative)) in word for word in words)
+
+
+def test_the_gradient_and_the_step_of_a_weight_are_the_optimizers(driver: Driver, lesson: Lesson):
+    words = shown(driver, 5)
+    frame = driver.top.frame
+    assert isinstance(frame, GradientFrame)
+    assert frame.weight is not None
+    index = frame.step.index(frame.weight)
+    step = lesson.step
+    for value in (step.gradient[index], -step.taken[index]):
+        assert any(word.lstrip("+") == number(float(value)) for word in words)
+    assert number(float(step.values_after[index])) in words
+    assert number(float(np.linalg.norm(step.share))) in words
+    if lesson.config.optimizer == "adam":
+        assert number(0.1 * float(step.optimizer_after["gradient_sum"][index])) in words
+        assert number(0.001 * float(step.optimizer_after["square_sum"][index])) in words
+
+
+def test_another_weight_is_picked_by_a_click_on_its_link(driver: Driver):
+    driver.top.show(5)
+    driver.frames(2)
+    frame = driver.top.frame
+    assert isinstance(frame, GradientFrame)
+    before = frame.weight
+    edge = next(each for each in reversed(frame.view.edges) if each.column == 0)
+    (x0, y0), (x1, y1) = frame.view.centres[0][edge.start], frame.view.centres[1][edge.end]
+    driver.click((x0 + 0.4 * (x1 - x0), y0 + 0.4 * (y1 - y0)))
+    assert frame.weight is not None
+    frame.pick(before)
+    assert frame.weight == before
+
+
+def test_the_share_alone_flows_back_when_it_is_asked_for(driver: Driver, lesson: Lesson):
+    driver.top.show(5)
+    driver.frames(2)
+    frame = driver.top.frame
+    assert isinstance(frame, GradientFrame)
+    driver.click(in_view(frame.labels[1].box.center))
+    assert frame.alone
+    driver.click(in_view(frame.labels[0].box.center))
+    assert not frame.alone
+
+
+def test_after_the_step_the_value_and_its_pulls_are_told(driver: Driver, lesson: Lesson):
+    words, scale = shown(driver, 6), lesson.config.reward_scale
+    frame, action = driver.top.frame, int(lesson.cell.action)
+    before, after = (float(each[action]) / scale for each in (lesson.predicted, lesson.predicted_after))
+    assert any(points(before) in word and points(after) in word for word in words)
+    pulls = frame.pulls
+    moved = (after - before) * scale
+    assert pulls.own + pulls.others + pulls.earlier + pulls.bend == pytest.approx(moved, abs=1e-9)
+    assert pulls.own * lesson.error < 0, "a memory's own gradient pulls its value towards the target"
+    assert abs(pulls.bend) < 0.2 * (abs(pulls.own) + abs(pulls.others) + abs(pulls.earlier))
+    if lesson.config.optimizer == "sgd":
+        assert pulls.earlier == pytest.approx(0.0, abs=1e-6)
+    largest = int(np.argmax(np.abs(lesson.step.taken)))
+    shown_steps = {word.lstrip("+") for word in words}
+    step = frame.step.strongest(lesson.step.taken, 1)[0]
+    assert number(-float(lesson.step.taken[frame.step.index(step)])) in shown_steps
+    assert abs(lesson.step.taken[largest]) >= abs(lesson.step.taken[frame.step.index(step)])
+
+
+# Under the pointer
+
+
+def figure(row: TooltipRow) -> float:
+    return float(row.figure.replace("−", "-").replace("k", "e3"))
+
+
+def test_a_units_sum_adds_up_to_its_value(driver: Driver, lesson: Lesson):
+    driver.top.show(1)
+    frame = driver.top.frame
+    assert isinstance(frame, NetworkFrame)
+    for column in range(1, len(frame.view.columns)):
+        for place in range(len(frame.view.columns[column].units)):
+            told: Explanation = frame.unit(column, place)
+            rows = [row.word for row in told.rows]
+            at = rows.index(texts.LESSON_STAGES["sum"])
+            assert sum(map(figure, told.rows[:at])) == pytest.approx(figure(told.rows[at]), rel=0.02, abs=0.005)
+    last = frame.unit(len(frame.view.columns) - 1, int(lesson.cell.action))
+    predicted = float(lesson.predicted[int(lesson.cell.action)]) / lesson.config.reward_scale
+    assert last.rows[-1].figure == points(predicted)
+
+
+def test_every_number_of_every_picture_explains_itself(driver: Driver):
+    for number_, part in enumerate(driver.top.parts):
+        driver.top.show(number_)
+        for label in part.frame.labels:
+            if label.explanation is None:
+                continue
+            driver.move(in_view(label.box.center))
+            assert part.frame.pointed is not None, label.text
+            assert part.frame.pointed.explanation is not None
+
+
+def test_the_link_under_the_mouse_tells_its_weight_and_slope(driver: Driver, lesson: Lesson):
+    driver.top.show(5)
+    frame = driver.top.frame
+    assert isinstance(frame, GradientFrame)
+    place = WeightPlace(1, 2, 3)
+    told = frame.link(place)
+    index = frame.step.index(place)
+    inputs, units = len(lesson.state), lesson.config.hidden[0]
+    norm = 2 * units if lesson.config.layer_normalisation else 0
+    assert index == inputs * units + units + norm + 2 * lesson.config.hidden[1] + 3
+    figures = [row.figure.lstrip("+") for row in told.rows]
+    assert number(float(lesson.step.values_before[index])) in figures
+    assert number(float(lesson.step.gradient[index])) in figures
+    assert number(float(lesson.step.share[index])) in figures
+    assert number(-float(lesson.step.taken[index])) in figures
+
+
+# An image of the digit network
+
+
+@pytest.mark.parametrize("preset", ["classic", "modern"])
+def test_an_image_is_shown_in_seven_frames_as_well(open_game: Open, preset: str):
+    lesson = digit_lesson_of(preset)
+    driver = open_game(LessonScene, lesson)
+    driver.frames(2)
+    digit = int(lesson.labels[lesson.step.row])
+    assert len(driver.top.parts) == FRAMES
+    words = [shown(driver, frame) for frame in range(FRAMES)]
+    assert texts.LESSON_LABEL.format(digit=digit) in words[0]
+    for value in lesson.outputs.tolist():
+        assert f"{value:.2f}".replace("-", "−") in words[1] or lesson.config.dropout
+        assert number(value) in words[2]
+    for value in lesson.probabilities_before.tolist():
+        assert number(value) in words[2]
+    for value in lesson.target.tolist():
+        assert number(value) in words[3]
+    for value in lesson.derivative.tolist():
+        assert any(word.lstrip("+") == number(value) for word in words[4])
+    assert number(lesson.step.gradient_length) in " ".join(words[5])
+    before, after = (float(each[digit]) for each in (lesson.probabilities_before, lesson.probabilities_after))
+    assert any(number(before) in word and number(after) in word for word in words[6])
+    known = digit_functions(lesson.config)
+    for part in driver.top.parts:
+        assert all(line.number in dict(source_of(known[line.function]).lines) for line in part.code.lines)
+
+
+@pytest.mark.parametrize("preset", ["classic", "modern"])
+def test_a_units_sum_of_a_digit_network_adds_up(open_game: Open, preset: str):
+    driver = open_game(LessonScene, digit_lesson_of(preset))
+    driver.top.show(1)
+    driver.frames(2)
+    frame = driver.top.frame
+    assert isinstance(frame, NetworkFrame)
+    for column in range(1, len(frame.view.columns)):
+        told = frame.unit(column, 0)
+        at = [row.word for row in told.rows].index(texts.LESSON_STAGES["sum"])
+        assert sum(map(figure, told.rows[:at])) == pytest.approx(figure(told.rows[at]), rel=0.02, abs=0.005)
+
+
+def test_a_pixel_tells_its_ink(open_game: Open):
+    lesson = digit_lesson_of("classic")
+    driver = open_game(LessonScene, lesson)
+    driver.frames(2)
+    driver.move(in_view((14.0 * 10 + 7, 14.0 * 20 + 7)))
+    told = driver.top.frame.pointed.explanation
+    assert told.lines == (texts.LESSON_PIXEL.format(row=21, column=11),)
+    assert told.rows[0].figure == f"{float(lesson.image[20, 10]):.3f}"
+
+
+# Bad days
+
+
+def test_a_dueling_network_and_one_without_source_are_shown(open_game: Open, monkeypatch: pytest.MonkeyPatch):
+    lesson = lesson_from(SMALL["modern"].changed(dueling=True, normalise_inputs=True, optimizer="momentum"), 60)
+    monkeypatch.setattr("game.lesson.code.source_of", lambda _: None)
+    driver = open_game(LessonScene, lesson)
+    for frame in range(FRAMES):
+        words = shown(driver, frame)
+        assert words
+    driver.move((500, 400))
+    driver.top.show(5)
+    driver.move((600, 350))
+    driver.frames(2)
+
+
+def test_a_window_of_another_size_shows_the_same(driver: Driver):
+    driver.resize((1000, 700))
+    for frame in range(FRAMES):
+        driver.top.show(frame)
+        driver.frames(2)
+    assert driver.top.current == FRAMES - 1

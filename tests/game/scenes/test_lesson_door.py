@@ -1,0 +1,145 @@
+"""Into a lesson from Train: by a word, a click on a lander, a mark on the charts, after a step; and back to the run."""
+
+from collections.abc import Callable
+
+import pygame
+import pytest
+
+from game.charts.scrubber import Scrubber
+from game.core import texts
+from game.core.worker import WorkerState
+from game.scenes.lesson import LessonScene
+from game.scenes.train import TrainScene
+from game.ui.virtual_pointer import VirtualPointer
+from tests.support import inline_worker
+from tests.support.driver import Driver
+from tests.support.small import LANDERS
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
+    """The screen, with a run within this process that has begun to learn."""
+    inline_worker.install(monkeypatch.setattr)
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    driver.top.knobs.set_config(LANDERS, 3)
+    return driver
+
+
+def toggle(driver: Driver) -> None:
+    """Start, pause or resume."""
+    driver.form.focus(driver.top.start_button)
+    driver.key(pygame.K_RETURN)
+
+
+def start(driver: Driver) -> None:
+    toggle(driver)
+    driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
+    toggle(driver)
+    driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
+    driver.frames(30)
+
+
+def place_of(driver: Driver, slot: int) -> tuple[float, float]:
+    """Where a lander stands on the screen."""
+    swarm = driver.top.swarm
+    x, y = next(
+        (x, y) for y in range(0, 430, 4) for x in range(0, 830, 4) if swarm.slot_at((x, y)) == slot
+    )  # fmt: skip
+    return x, y
+
+
+def test_a_word_opens_the_lesson_of_the_best_lander(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    train.press_on(texts.LESSON_WHY)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    assert train.top.lesson.flown.slot == 0
+    assert train.top.lesson.decisions == scene.lander_run.swarm_state.decisions
+    train.frames(3)
+    train.key(pygame.K_ESCAPE)
+    assert train.top is scene
+    train.frames(5)
+    assert train.top is scene, "one lesson is opened once"
+    assert scene.lander_run.state is WorkerState.PAUSED
+
+
+def test_a_run_that_goes_on_waits_for_the_lesson_and_goes_on(train: Driver) -> None:
+    start(train)
+    toggle(train)
+    scene = train.top
+    train.press_on(texts.LESSON_WHY)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    assert scene.lander_run.state is WorkerState.PAUSED
+    stood = scene.lander_run.swarm_state.decisions
+    train.frames(10)
+    train.key(pygame.K_ESCAPE)
+    train.wait(lambda: scene.lander_run.swarm_state.decisions > stood)
+
+
+def test_a_click_chooses_a_lander_and_another_opens_its_lesson(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    place = place_of(train, 2)
+    train.click(place)
+    assert scene.swarm.chosen == 2
+    assert train.top is scene
+    train.click(place)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    assert train.top.lesson.flown.slot == 2
+
+
+def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
+    start(train)
+    scene = train.top
+    place = place_of(train, 3)
+    pointer = next(each for each in scene.form.widgets if isinstance(each, VirtualPointer) and each.box.top < 200)
+    scene.form.focus(pointer)
+    train.key(pygame.K_RETURN)
+    assert pointer.typing
+    pointer.place.update(place)
+    train.key(pygame.K_RETURN)
+    assert scene.swarm.chosen == 3
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    assert train.top.lesson.flown.slot == 3
+
+
+def test_the_mark_on_the_charts_is_the_moment_until_another_is_meant(train: Driver) -> None:
+    toggle(train)
+    scene = train.top
+    train.wait(lambda: len(scene.lander_run.history.checkpoints) >= 3)
+    toggle(train)
+    train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
+    train.frames(30)
+    scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
+    train.keys(pygame.K_LEFT, pygame.K_LEFT)
+    marked = scene.training_charts.chosen.decisions
+    train.press_on(texts.LESSON_WHY)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    now = scene.lander_run.swarm_state.decisions
+    assert abs(train.top.lesson.decisions - marked) < abs(train.top.lesson.decisions - now)
+    train.key(pygame.K_ESCAPE)
+    train.key(pygame.K_PERIOD)
+    train.wait(lambda: scene.lander_run.swarm_state.decisions > now)
+    train.frames(3)
+    train.press_on(texts.LESSON_WHY)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    assert train.top.lesson.decisions == scene.lander_run.swarm_state.decisions, "after a step, now is meant"
+
+
+def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
+    train.press_on(texts.LESSON_WHY)
+    train.frames(2)
+    assert isinstance(train.top, TrainScene)
+    assert train.said == texts.LESSON_NO_RUN
+
+
+def test_a_run_that_has_not_begun_to_learn_says_so(train: Driver) -> None:
+    train.top.knobs.set_config(LANDERS.changed(learning_starts=50_000, replay_size=60_000), 3)
+    toggle(train)
+    train.wait(lambda: train.top.lander_run.swarm_state)
+    train.press_on(texts.LESSON_WHY)
+    train.frames(5)
+    assert isinstance(train.top, TrainScene)
+    assert "learn" in train.said

@@ -1,0 +1,49 @@
+"""Real lessons of small runs, for what shows them."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from ai.agent.config import PRESETS, Config
+from ai.agent.lesson import Lesson
+from ai.digits.config import DIGIT_PRESETS
+from ai.digits.lesson import DigitLesson, explain_digit
+from ai.digits.training import DigitTraining
+from ai.training.messages import Explain
+from ai.training.session import live
+
+SMALL = {
+    "modern": PRESETS["modern"].changed(
+        num_envs=4, hidden=(16, 8), learning_starts=64, replay_size=2000, batch_size=16, gradient_steps=1
+    ),
+    "classic": PRESETS["classic"].changed(num_envs=1, hidden=(16, 8), learning_starts=32, batch_size=16),
+}
+
+
+@cache
+def lesson_of(name: str, turns: int = 60) -> Lesson:
+    """Return the lesson of the first lander of a small run with that preset, after so many decisions."""
+    return lesson_from(SMALL[name], turns)
+
+
+def lesson_from(config: Config, turns: int = 60, slot: int = 0) -> Lesson:
+    """Return the lesson of a lander of a run with these settings, after so many decisions."""
+    run = live(config, 3)
+    for _ in range(turns + 1):
+        next(run)
+    answer = run.send(Explain(slot))
+    run.close()
+    (lesson,) = [message for message in answer if isinstance(message, Lesson)]
+    return lesson
+
+
+@cache
+def digit_lesson_of(name: str) -> DigitLesson:
+    """Return the lesson of an image of noise, of a run with that preset."""
+    rng = np.random.default_rng(0)
+    data = rng.random((60, 28, 28), np.float32), rng.integers(10, size=60).astype(np.uint8)
+    training = DigitTraining(replace(DIGIT_PRESETS[name], batch_size=8, held_out=12), 1, data)
+    for _ in range(3):
+        training.advance()
+    return explain_digit(training, 5)
