@@ -66,6 +66,13 @@ class Save:
 
 
 @dataclass(frozen=True)
+class AutosaveTo:
+    """Command to save the run by itself to this folder from now on."""
+
+    folder: Path
+
+
+@dataclass(frozen=True)
 class RestoreCheckpoint:
     """Command to restore the networks from a checkpoint of the history; time does not go back."""
 
@@ -103,4 +110,4 @@ def problem_of(error: Exception) -> str:
 Message = (
     RunStarted | SwarmState | NetworkState | InForce | Point | Checkpoint | Validation | SettingChange | Saved | Refused
 )
-Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations
+Command = ChangeSetting | Save | AutosaveTo | RestoreCheckpoint | AddDemonstrations

@@ -31,6 +31,7 @@ from ai.training.history import (
 from ai.training.loop import Progress, Training
 from ai.training.messages import (
     AddDemonstrations,
+    AutosaveTo,
     ChangeSetting,
     Command,
     Message,
@@ -153,6 +154,8 @@ class _LiveRun:
                 self._restore_checkpoint(command)
             case AddDemonstrations():
                 self._teach(command)
+            case AutosaveTo(folder):
+                self._autosave.move_to(folder)
             case Save(folder):
                 self._record_validation(self._validation.finish())
                 self._messages.append(self._autosave.save(folder))

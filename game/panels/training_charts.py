@@ -31,6 +31,7 @@ _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
 _LEGEND: Final = (40.0, 450.0)
 _AXES: Final = pygame.Rect(560, 436, 260, 20)  # by what the charts are measured, while runs are compared
+BY_DECISIONS: Final = 1  # of the ways to measure the horizontal axis: see texts.TRAIN_AXES
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
     ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),

@@ -10,6 +10,7 @@ import pygame
 
 from ai.agent.config import PRESETS, Config
 from ai.training.checkpoints import agent_of
+from ai.training.experiments import Experiment, differences
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition, push
@@ -20,14 +21,17 @@ from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.panels.advice import Advice
 from game.panels.knobs import KnobsPanel
+from game.panels.lab import Laboratory
 from game.panels.network_panel import NetworkPanel
 from game.panels.run_status import draw_run_status
-from game.panels.training_charts import TrainingCharts
+from game.panels.split_view import SplitView
+from game.panels.training_charts import BY_DECISIONS, TrainingCharts
 from game.panels.training_status import lander_status
 from game.scenes.dialog import ListDialog, QuestionDialog
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, TrainingScene
-from game.training.lander_run import PACES, LanderRun
+from game.training.lander_run import PACES
 from game.training.library import Library, SavedRun
+from game.training.split_run import SplitRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow
@@ -44,13 +48,13 @@ _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene(TrainingScene[LanderRun]):
+class TrainScene(TrainingScene[SplitRun]):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
     def __init__(self, context: Context, resume: Path | None = None) -> None:
         self._resume = resume
         self._compared = False
-        self.lander_run = LanderRun(Library(context.user_dir))
+        self.lander_run = SplitRun(Library(context.user_dir))
         super().__init__(context, self.lander_run, self.lander_run.library, ((_SAID.left, _SAID.top + 17.0), 3))
 
     def _build(self) -> None:
@@ -60,7 +64,12 @@ class TrainScene(TrainingScene[LanderRun]):
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer)
-        self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin)
+        self.laboratory = Laboratory(self.lander_run, self._experiment, self._leave_split)
+        self.split_view = SplitView(self.laboratory)
+        self.knobs = KnobsPanel(
+            self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin,
+            laboratory=self.laboratory, show_all=self._settings.all_knobs, on_show=self._remember_knobs,
+        )  # fmt: skip
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
         if self._resume:
@@ -98,15 +107,17 @@ class TrainScene(TrainingScene[LanderRun]):
         lander_run = self.lander_run
         looked = self._listen()
         self._follow_run()
-        self._advice.hush(bool(self.knobs.waiting))
+        self._advice.hush(bool(self.knobs.waiting) or self.split_view.shown)
         if lander_run.alive:
             self.knobs.show_in_force(lander_run.in_force)
         still = self._settings.reduced_motion
-        self.training_charts.look(lander_run.history, lander_run.earlier)
-        if bool(lander_run.earlier) != self._compared:
-            self._compared = bool(lander_run.earlier)
+        beside = self.split_view.beside
+        self.training_charts.look(lander_run.history, beside)
+        if bool(beside) != self._compared:
+            self._compared = bool(beside)
             self._lay_beside(self.inside.large)
         self.swarm.update(still)
+        self.split_view.update(still)
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
@@ -143,7 +154,47 @@ class TrainScene(TrainingScene[LanderRun]):
         """Resume a saved run, with its own settings."""
         self._start(Config(), 0, folder)
 
+    # Experiments
+
+    def _experiment(self, experiment: Experiment, name: str) -> Transition | None:
+        """Fly an experiment beside a healthy twin; ask first if the player's run would end for it."""
+        split = partial(self._split, experiment, name)
+        if not (self.lander_run.alive and self._learnt) or self.split_view.shown:
+            split()
+            return None
+        answers = [(texts.SPLIT_START, split), (texts.SPLIT_SAVE, self._ask_to_save)]
+        return Push(QuestionDialog(self, texts.SPLIT_ASK, texts.SPLIT_ASK_MORE, answers))
+
+    def _split(self, experiment: Experiment, name: str) -> None:
+        config, seed = self.knobs.config, self.knobs.seed
+        changed = experiment.applied(config)
+        self._was_running = False
+        if note := self.lander_run.split(config, seed, changed, tuple(differences(config, changed)), self.knobs.name):
+            self.context.note(note)
+        self._clear()
+        self.knobs.set_config(config, seed)
+        self.training_charts.measure_by(BY_DECISIONS)
+        self._lay_beside(self.inside.large)
+        self.knobs.show_experiment()
+
+    def _ask_to_save(self) -> None:
+        self._question = self._save()
+
+    def _leave_split(self, experiment: bool) -> None:
+        """End the split view; go on with the healthy run, or with the experiment."""
+        if experiment:
+            self.lander_run.keep_twin()
+        else:
+            self.lander_run.leave()
+        self._clear()
+        self.knobs.show_experiment()
+
+    def _remember_knobs(self, show_all: bool) -> None:
+        self._settings.all_knobs = show_all
+        self.context.apply_settings()
+
     def _clear(self) -> None:
+        self.split_view.clear()
         self.swarm.clear()
         self._advice.clear()
         self.training_charts.clear()
@@ -282,7 +333,10 @@ class TrainScene(TrainingScene[LanderRun]):
         if self.inside.large:
             canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0)
             return
-        self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
+        if self.split_view.shown:
+            self.split_view.draw(canvas, alpha)
+        else:
+            self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
         canvas.fill(canvas.rect(0, _FLOOR, DISPLAY_WIDTH, VIEW_SIZE[1] - _FLOOR), NIGHT0)
         canvas.line((0, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
         self._draw_title(canvas)
