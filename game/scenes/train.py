@@ -20,6 +20,7 @@ from game.drawing.tokens import LINE, NIGHT0, VIEW_SIZE
 from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.panels.advice import Advice
+from game.panels.chart_captions import ChartCaptions
 from game.panels.knobs import KnobsPanel
 from game.panels.lab import Laboratory
 from game.panels.network_panel import NetworkPanel
@@ -61,6 +62,7 @@ class TrainScene(TrainingScene[SplitRun]):
         left = self.lander_run.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(DISPLAY_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
+        self.captions = ChartCaptions()
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer)
@@ -139,6 +141,7 @@ class TrainScene(TrainingScene[SplitRun]):
         if lander_run.alive and len(lander_run.history):
             health = self.inside.health
             self._advice.follow(lander_run.history, lander_run.config, health.dead_share, health.clipped_share)
+            self.captions.follow(lander_run.history, lander_run.config, self._advice.hint)
         return True
 
     # The run
@@ -198,6 +201,7 @@ class TrainScene(TrainingScene[SplitRun]):
         self.swarm.clear()
         self._advice.clear()
         self.training_charts.clear()
+        self.captions.clear()
         self.inside.clear()
 
     def _clear_advice(self) -> None:
@@ -341,6 +345,7 @@ class TrainScene(TrainingScene[SplitRun]):
         canvas.line((0, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
         self._draw_title(canvas)
         self.training_charts.draw(canvas)
+        self.captions.draw(canvas, self.training_charts.charts.charts)
 
     def _draw_panel(self, canvas: Canvas) -> None:
         self.inside.draw(canvas)
