@@ -13,7 +13,7 @@ from ai.training.history import History
 Kind = Literal["as_well", "later", "never", "runs_away"]
 KINDS: Final[tuple[Kind, ...]] = ("as_well", "later", "never", "runs_away")
 LANDS: Final = 0.8  # share of a hundred flights from which a run counts as one that lands
-_NEVER: Final = 0.2  # share below which it does not
+_NEVER: Final = 0.3  # share below which it does not: near the pad, some land by chance
 _GRACE: Final = 1.5  # times as long as the twin took, after which it is judged
 _LATER: Final = 1.25  # times as long as the twin took, from which it came later
 _WORSE: Final = 0.15  # of a share that is worse than the twin's by more than chance

@@ -44,8 +44,8 @@ class Deeds(NamedTuple):
 
     turn: Callable[[str, Any], None]
     enter: Callable[[], None]
-    open: Callable[[str], None]
-    fly: knob_page.Try | None
+    open: Callable[[str], None] = lambda _: None
+    fly: knob_page.Try | None = None
 
 
 class KnobRows:

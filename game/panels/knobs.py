@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 from typing import Any, Final, Literal
 
 import pygame
 
 from ai.agent.schedule import InForce
-from ai.training.experiments import Experiment, experiment_of
 from ai.training.sabotage import MEASURED
 from game.core import texts
-from game.core.scene import Transition
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, SMALL, TEXT, TITLE
-from game.panels import knob_foot, knob_page, lab
+from game.panels import knob_foot
 from game.panels.knob import Knob
 from game.panels.knob_rows import Deeds, KnobRows
 from game.panels.knob_words import BASELINE, Title, Word, make_words, word_width
-from game.panels.lab import TOP, Laboratory
+from game.panels.lab import TOP
 from game.panels.seed_knob import SeedKnob
-from game.training.knob_descriptions import Configuration, KnobDescription
+from game.training.knob_descriptions import Configuration
 from game.training.run_settings import LANDER, SEED, Named, RunKind, RunSettings
 from game.ui.form import Form
 from game.ui.widget import Widget
@@ -29,7 +27,7 @@ from game.ui.widgets import TextButton
 
 View = Literal["few", "all", "knob", "picks", "guess", "result"]
 
-_KNOBS: Final[tuple[View, ...]] = ("few", "all", "knob")
+Section = tuple[Hashable, Callable[[], list[Widget]]]  # made again when the first changes
 _PICK: Final = 26  # points from one sabotage to the next
 
 
@@ -48,9 +46,6 @@ class KnobsPanel:
             Names are those of the configuration ("reward_weights.time" for a part of the reward, "seed" for the seed).
         on_restart: called with a configuration and seed for a new run, once the player has applied them.
         run_kind: the kind of run, with its presets and knobs.
-        laboratory: flies experiments beside the run; without it, there are none, and all knobs are shown.
-        show_all: whether to show all knobs at first, where a few come first.
-        on_show: called with that when the player changes it.
 
     """
 
@@ -63,18 +58,11 @@ class KnobsPanel:
         on_change: Callable[[str, Any], None],
         on_restart: Callable[[Configuration, int], None],
         run_kind: RunKind = LANDER,
-        *,
-        laboratory: Laboratory | None = None,
-        show_all: bool = True,
-        on_show: Callable[[bool], None] = lambda _: None,
     ) -> None:
         self._form, self._box, self._run_kind = form, pygame.Rect(box), run_kind
         self._run_settings = RunSettings(config, seed, on_change, on_restart, run_kind)
         self._page = 0
-        self._laboratory, self._show_all, self._on_show = laboratory, show_all or laboratory is None, on_show
-        fly = self._try if laboratory else None
-        deeds = Deeds(self.turn, self._seek, self._open, fly)
-        self._rows = KnobRows(form.manager, self._box, self._run_settings, deeds)
+        self._rows = KnobRows(form.manager, self._box, self._run_settings, self._deeds)
         self._view: View = self._home
         self._opened = ""  # the knob whose page is open
         self._sections: dict[str, tuple[Hashable, list[Widget]]] = {}
@@ -83,8 +71,13 @@ class KnobsPanel:
 
     @property
     def _home(self) -> View:
-        """The view of the knobs, all or few."""
-        return "all" if self._show_all else "few"
+        """The view of the knobs."""
+        return "all"
+
+    @property
+    def _deeds(self) -> Deeds:
+        """What knobs ask for."""
+        return Deeds(self.turn, self._seek)
 
     @property
     def view(self) -> View:
@@ -140,11 +133,6 @@ class KnobsPanel:
         self._run_settings.turn(name, value)
         self._lay()
 
-    def show_experiment(self) -> None:
-        """Show what has come of the experiment that flies, or the knobs if there is none."""
-        self._view = "result" if self._laboratory and self._laboratory.flies else self._home
-        self._go("body")
-
     def draw(self, canvas: Canvas) -> None:
         """Draw all but the widgets, which the form draws."""
         box, y = self._box, self._box.top + TOP
@@ -154,16 +142,14 @@ class KnobsPanel:
         if self._view == "picks":
             heading = texts.SABOTAGE_HEADING.format(name=self._run_kind.word((self._run_settings.named[0], ""))).upper()
             canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
-        if self._laboratory and self._laboratory.chosen and self._view == "guess":
-            lab.draw_guess(canvas, box, self._laboratory.chosen)
-        elif self._laboratory and self._view == "result":
-            lab.draw_result(canvas, box, self._laboratory)
-        else:
-            self._draw_foot(canvas)
+        self._draw_page(canvas)
 
-    def _draw_foot(self, canvas: Canvas) -> None:
+    def _draw_page(self, canvas: Canvas) -> None:
+        """Draw what is written beside the widgets of the page."""
+        self._draw_foot(canvas, None)
+
+    def _draw_foot(self, canvas: Canvas, room: pygame.Rect | None) -> None:
         focused = self._form.focused if self._form.focused in self._widgets else None
-        knob_page.draw_try(canvas, self._sections["tries"][1])
         knob_foot.draw_foot(
             canvas,
             self._box,
@@ -171,13 +157,8 @@ class KnobsPanel:
             getattr(focused, "knob", focused),
             self._form.controls,
             picking=self._view == "picks",
-            room=None if self._view == "picks" else self._rows.advice_room(len(self._few)),
+            room=room,
         )
-
-    @property
-    def _few(self) -> tuple[str, ...]:
-        """Names of the knobs that are shown with their experiments."""
-        return {"few": self._run_kind.first, "knob": (self._opened,)}.get(self._view, ())
 
     def _draw_changed(self, canvas: Canvas) -> None:
         """Mark that knobs were changed: by a word, or by a dot where there is no room for it."""
@@ -194,12 +175,11 @@ class KnobsPanel:
         """Lay out the widgets of the current page, and show the current values in them."""
         run_settings, view = self._run_settings, self._view
         answer = "apply" if run_settings.waiting else "undo" if run_settings.put_aside else ""
-        sections: dict[str, tuple[Hashable, Callable[[], list[Widget]]]] = {
-            "head": ((run_settings.holds, view, self._flies), self._make_head),
+        sections: dict[str, Section] = {
+            "head": ((run_settings.holds, self._lab_word()[0]), self._make_head),
             "tabs": (view, lambda: [self._rows.tabs(self._page, self._turn_page)] if view == "all" else []),
             "body": ((view, self._page, self._opened), self._bodies[view]),
-            "tries": ((self._few, run_settings.config), self._make_tries),
-            "switch": (view, self._make_switch),
+            **self._more_sections(),
             "answers": (answer, lambda: self._make_answers(answer)),
         }
         for name, (key, make) in sections.items():
@@ -243,37 +223,16 @@ class KnobsPanel:
         """Return the word that leads to the laboratory, or back from there."""
         if self._view in ("picks", "guess"):
             return texts.SABOTAGE_LEAVE, self._leave_lab
-        if self._flies and self._view != "result":
-            return texts.LAB_RESULT, self.show_experiment
         return texts.SABOTAGE, partial(self._show, "picks")
 
     @property
-    def _flies(self) -> bool:
-        return self._laboratory is not None and self._laboratory.flies
-
-    @property
     def _bodies(self) -> dict[View, Callable[[], list[Widget]]]:
-        return {
-            "few": lambda: self._rows.few(self._few),
-            "knob": lambda: self._rows.few(self._few),
-            "all": lambda: self._rows.page(self._page),
-            "picks": self._make_picks,
-            "guess": self._make_guess,
-            "result": self._make_result,
-        }
+        """What makes the widgets of each view."""
+        return {"all": lambda: self._rows.page(self._page), "picks": self._make_picks}
 
-    def _make_tries(self) -> list[Widget]:
-        return self._rows.tries(self._sections["body"][1]) if self._few else []
-
-    def _make_switch(self) -> list[Widget]:
-        """Make the word that shows all knobs, or few again, or leaves the page of one."""
-        if self._laboratory is None or self._view not in _KNOBS:
-            return []
-        words: dict[View, str] = {
-            "few": texts.KNOBS_ALL.format(count=len(self._run_settings.knob_descriptions)),
-            "all": texts.KNOBS_FEW.format(count=len(self._run_kind.first)),
-        }
-        return [self._rows.switch(words.get(self._view, texts.BACK), self._switch, every=self._view == "all")]
+    def _more_sections(self) -> dict[str, Section]:
+        """Return further sections of widgets, after the body."""
+        return {}
 
     def _make_picks(self) -> list[Widget]:
         """Make the list of sabotages, in two columns."""
@@ -284,30 +243,18 @@ class KnobsPanel:
         for number, (name, (word, *said)) in enumerate(sabotages.items()):
             column, row = divmod(number, half)
             box = (left + column * self._box.width // 2, top + TOP + 38 + row * _PICK, 160, _PICK)
-            press = partial(self._ask, name) if self._laboratory else self._loads((base, name))
-            pick = TextButton(self._form.manager, box, word, press, size=SMALL + 1)
-            measured = base == MEASURED and not self._laboratory  # or the words come after the guess
-            pick.help = "\n".join(said if measured else said[:1])
+            pick = TextButton(self._form.manager, box, word, self._picks((base, name)), size=SMALL + 1)
+            pick.help = "\n".join(self._told(base, said))
             picks.append(pick)
         return picks
 
-    def _make_guess(self) -> list[Widget]:
-        laboratory = self._laboratory
-        if laboratory is None or laboratory.chosen is None:
-            return []
-        alone = self._loads((self._run_settings.named[0], laboratory.chosen.experiment.sabotage))
-        return lab.guess_widgets(laboratory, self._form.manager, self._box, alone)
+    def _picks(self, named: Named) -> Callable[[], None]:
+        """Return what a sabotage of the list does at a press."""
+        return self._loads(named)
 
-    def _make_result(self) -> list[Widget]:
-        laboratory = self._laboratory
-        if laboratory is None:
-            return []
-        words: list[Word] = [
-            (texts.LAB_KNOBS, partial(self._show, self._home)),
-            (texts.LAB_KEEP_RUN, partial(laboratory.keep, experiment=False)),
-            (texts.LAB_KEEP_EXPERIMENT, partial(laboratory.keep, experiment=True)),
-        ]
-        return lab.words_of(self._form.manager, self._box, words)
+    def _told(self, base: str, said: Sequence[str]) -> Sequence[str]:
+        """Return what the list says of a sabotage of a preset: what was measured holds for one of them."""
+        return said if base == MEASURED else said[:1]
 
     def _make_answers(self, answer: str) -> list[Widget]:
         """Make the buttons that apply or undo."""
@@ -328,12 +275,8 @@ class KnobsPanel:
         self._lay()
 
     def _seek(self) -> None:
-        """Move the focus to the buttons that apply and undo, if there are any; else open the knob's page."""
-        knob = self._form.focused
-        if not self._sections["answers"][1] and isinstance(knob, Knob) and knob.more is not None:
-            knob.more()
-        else:
-            self._go("answers")
+        """Move the focus to the buttons that apply and undo, if there are any."""
+        self._go("answers")
 
     def _go(self, section: str) -> None:
         """Lay out the widgets, and move the focus to the first widget of a section."""
@@ -345,43 +288,9 @@ class KnobsPanel:
         self._view = view
         self._go("body")
 
-    def _open(self, name: str) -> None:
-        """Open the page of a knob; where it is open already, go to its first experiment."""
-        if self._view == "all":
-            self._opened = name
-            self._show("knob")
-        elif tries := [
-            each for each in self._sections["tries"][1] if getattr(each, "knob", None) is self._form.focused
-        ]:
-            self._form.focus(tries[0])
-
-    def _switch(self) -> None:
-        """Show all knobs or few; from the page of one knob, all again."""
-        if self._view != "knob":
-            self._show_all = not self._show_all
-            self._on_show(self._show_all)
-        opened = self._opened if self._view == "knob" else ""
-        self._show(self._home)
-        for widget in self._sections["body"][1]:
-            if isinstance(widget, Knob) and widget.description.name == opened:
-                self._form.focus(widget)
-
-    def _try(self, experiment: Experiment, description: KnobDescription) -> Transition | None:
-        """Fly a knob's experiment beside the run."""
-        if self._laboratory is None:
-            return None
-        self._laboratory.choose(experiment, lab.experiment_name(experiment, description))
-        return self._laboratory.fly(None)
-
-    def _ask(self, sabotage: str) -> None:
-        """Ask for a guess at what a sabotage will do."""
-        if self._laboratory is not None:
-            self._laboratory.choose(experiment_of(self.config, sabotage), self._run_kind.sabotages[sabotage][0])
-            self._show("guess")
-
     def _leave_lab(self) -> None:
-        """Go back from a guess to the list, and from the list to the knobs or the experiment that flies."""
-        self._show("picks" if self._view == "guess" else "result" if self._flies else self._home)
+        """Go back from the list of sabotages to the knobs."""
+        self._show(self._home)
 
     def _loads(self, named: Named) -> Callable[[], None]:
         def load() -> None:

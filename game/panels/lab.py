@@ -30,7 +30,7 @@ _FOOT: Final = 32  # from the bottom to the words there
 _MEANINGS: Final = 96.0  # from the left to what stands beside a label
 _LEADING: Final = 16.0
 
-Start = Callable[[Experiment, str], Transition | None]
+Start = Callable[[Experiment], Transition | None]
 
 
 class Chosen(NamedTuple):
@@ -50,7 +50,7 @@ class Laboratory:
 
     Args:
         split: the runs; an experiment flies beside a run of theirs.
-        start: starts an experiment, given its name on the screen; may ask the player first.
+        start: starts an experiment; may ask the player first.
         leave: ends the split view, and keeps the experiment if that is true.
 
     """
@@ -75,7 +75,7 @@ class Laboratory:
         if self.chosen is None:
             return None
         self.chosen = self.chosen._replace(guess=guess)
-        return self._start(self.chosen.experiment, self.chosen.name)
+        return self._start(self.chosen.experiment)
 
     def keep(self, experiment: bool) -> None:
         """End the split view, and keep the run, or the experiment."""
@@ -137,7 +137,7 @@ def guess_widgets(laboratory: Laboratory, manager: PointsManager, box: pygame.Re
 def words_of(manager: PointsManager, box: pygame.Rect, words: list[tuple[str, OnPress]]) -> list[Widget]:
     """Make buttons side by side at the foot of a page."""
     found: list[Widget] = []
-    x = float(box.left)
+    x: float = box.left
     for word, press in words:
         width = typeface.width(word, SMALL, "regular")
         found.append(TextButton(manager, (x, box.bottom - _FOOT, width, 24), word, press, size=SMALL, colour=NET))
@@ -159,7 +159,7 @@ def draw_result(canvas: Canvas, box: pygame.Rect, laboratory: Laboratory) -> Non
     twin, chosen = laboratory.split.twin, laboratory.chosen
     if twin is None or chosen is None:
         return
-    x, y = box.left, box.top + TOP
+    x, y = box.left, float(box.top + TOP)
     canvas.text(texts.LAB_HEADING, (x, y + 25), size=LABEL, weight="medium", colour=MUTE)
     canvas.text(chosen.name, (x, y + 52), size=TEXT)
     y = draw_wrapped(

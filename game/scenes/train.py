@@ -8,9 +8,8 @@ from typing import Final
 
 import pygame
 
-from ai.agent.config import PRESETS, Config
+from ai.agent.config import Config
 from ai.training.checkpoints import agent_of
-from ai.training.experiments import Experiment, differences
 from game.core import texts
 from game.core.names import LibraryError
 from game.core.scene import Pop, Push, Transition, push
@@ -21,15 +20,13 @@ from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.panels.advice import Advice
 from game.panels.chart_captions import ChartCaptions
-from game.panels.knobs import KnobsPanel
-from game.panels.lab import Laboratory
 from game.panels.network_panel import NetworkPanel
 from game.panels.run_status import draw_run_status
-from game.panels.split_view import SplitView
-from game.panels.training_charts import BY_DECISIONS, TrainingCharts
+from game.panels.training_charts import TrainingCharts
 from game.panels.training_status import lander_status
 from game.scenes.dialog import ListDialog, QuestionDialog
-from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, TrainingScene
+from game.scenes.split_scene import SplitTrainingScene
+from game.scenes.training_scene import DISPLAY_WIDTH, LEFT
 from game.training.lander_run import PACES
 from game.training.library import Library, SavedRun
 from game.training.split_run import SplitRun
@@ -41,7 +38,6 @@ from game.ui.widgets import Choice, TextButton
 from game.world.swarm import LearningSwarm
 
 _FLOOR: Final = 434.0  # where the charts begin
-_KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
@@ -49,7 +45,7 @@ _WORDS: Final = pygame.Rect(684, 16, 136, 126)  # beside the swarm
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene(TrainingScene[SplitRun]):
+class TrainScene(SplitTrainingScene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
     def __init__(self, context: Context, resume: Path | None = None) -> None:
@@ -66,12 +62,7 @@ class TrainScene(TrainingScene[SplitRun]):
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer)
-        self.laboratory = Laboratory(self.lander_run, self._experiment, self._leave_split)
-        self.split_view = SplitView(self.laboratory)
-        self.knobs = KnobsPanel(
-            self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin,
-            laboratory=self.laboratory, show_all=self._settings.all_knobs, on_show=self._remember_knobs,
-        )  # fmt: skip
+        self._add_knobs()
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
         if self._resume:
@@ -117,7 +108,7 @@ class TrainScene(TrainingScene[SplitRun]):
         self.training_charts.look(lander_run.history, beside)
         if bool(beside) != self._compared:
             self._compared = bool(beside)
-            self._lay_beside(self.inside.large)
+            self._lay_again()
         self.swarm.update(still)
         self.split_view.update(still)
         self.inside.update(still)
@@ -156,45 +147,6 @@ class TrainScene(TrainingScene[SplitRun]):
     def _go_on(self, folder: Path) -> None:
         """Resume a saved run, with its own settings."""
         self._start(Config(), 0, folder)
-
-    # Experiments
-
-    def _experiment(self, experiment: Experiment, name: str) -> Transition | None:
-        """Fly an experiment beside a healthy twin; ask first if the player's run would end for it."""
-        split = partial(self._split, experiment, name)
-        if not (self.lander_run.alive and self._learnt) or self.split_view.shown:
-            split()
-            return None
-        answers = [(texts.SPLIT_START, split), (texts.SPLIT_SAVE, self._ask_to_save)]
-        return Push(QuestionDialog(self, texts.SPLIT_ASK, texts.SPLIT_ASK_MORE, answers))
-
-    def _split(self, experiment: Experiment, name: str) -> None:
-        config, seed = self.knobs.config, self.knobs.seed
-        changed = experiment.applied(config)
-        self._was_running = False
-        if note := self.lander_run.split(config, seed, changed, tuple(differences(config, changed)), self.knobs.name):
-            self.context.note(note)
-        self._clear()
-        self.knobs.set_config(config, seed)
-        self.training_charts.measure_by(BY_DECISIONS)
-        self._lay_beside(self.inside.large)
-        self.knobs.show_experiment()
-
-    def _ask_to_save(self) -> None:
-        self._question = self._save()
-
-    def _leave_split(self, experiment: bool) -> None:
-        """End the split view; go on with the healthy run, or with the experiment."""
-        if experiment:
-            self.lander_run.keep_twin()
-        else:
-            self.lander_run.leave()
-        self._clear()
-        self.knobs.show_experiment()
-
-    def _remember_knobs(self, show_all: bool) -> None:
-        self._settings.all_knobs = show_all
-        self.context.apply_settings()
 
     def _clear(self) -> None:
         self.split_view.clear()
@@ -321,6 +273,9 @@ class TrainScene(TrainingScene[SplitRun]):
             beside += self.training_charts.widgets(self.form.manager, self._duel, compared=self._compared)
         self.form.replace(self._beside, beside)
         self._beside = beside
+
+    def _lay_again(self) -> None:
+        self._lay_beside(self.inside.large)
 
     def _look_closer(self) -> None:
         self._lay_beside(large=not self.inside.large)

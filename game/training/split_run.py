@@ -10,6 +10,7 @@ from ai.agent.config import Config
 from ai.training.history import Checkpoint
 from ai.training.messages import AutosaveTo
 from ai.training.session import live
+from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import Worker
 from game.training.lander_run import PACES, LanderRun
@@ -74,12 +75,15 @@ class SplitRun(LanderRun):
             self.twin, self.differing = None, ()
             self._keep_in_step()
 
-    def keep_twin(self) -> None:
-        """Go on with the experiment in place of the run, whose curves stay beside; its network can be restored."""
+    def keep_twin(self) -> str:
+        """Go on with the experiment in place of the run, whose curves stay beside; its network can be restored.
+
+        Returns a note for the player, or "": an experiment that has ended cannot be kept, and nothing changes then.
+        """
         twin = self.twin
-        if twin is None or twin._worker is None or self._worker is None:
-            return
-        self._put_beside(self.name, self.history)
+        if twin is None or not twin.alive or twin._worker is None or self._worker is None:
+            return texts.SPLIT_OVER
+        note = self._put_beside(self.name, self.history)
         self._leaving, self._worker = self._worker, twin._worker
         self._leaving.stop()
         self.runs += 1
@@ -89,6 +93,7 @@ class SplitRun(LanderRun):
         self.in_force, self.begun = twin.in_force, True
         twin._worker, self.twin, self.differing = None, None, ()
         self._keep_in_step()
+        return note
 
     def poll(self) -> list[str]:
         """Handle all messages of both workers; return notes for the player."""
