@@ -68,6 +68,13 @@ class Save:
 
 
 @dataclass(frozen=True)
+class AutosaveTo:
+    """Command to save the run by itself to this folder from now on."""
+
+    folder: Path
+
+
+@dataclass(frozen=True)
 class RestoreCheckpoint:
     """Command to restore the networks from a checkpoint of the history; time does not go back."""
 
@@ -127,4 +134,4 @@ Message = (
     | Lesson
     | NetworkEdits
 )
-Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations | Explain | EditCommand
+Command = ChangeSetting | Save | AutosaveTo | RestoreCheckpoint | AddDemonstrations | Explain | EditCommand

@@ -33,6 +33,7 @@ from ai.training.history import (
 from ai.training.loop import Progress, Training
 from ai.training.messages import (
     AddDemonstrations,
+    AutosaveTo,
     ChangeSetting,
     Command,
     Explain,
@@ -162,6 +163,8 @@ class _LiveRun:
                 self._teach(command)
             case Explain():
                 self._explain(command)
+            case AutosaveTo(folder):
+                self._autosave.move_to(folder)
             case Save(folder):
                 self._record_validation(self._validation.finish())
                 self._messages.append(self._autosave.save(folder))

@@ -40,14 +40,15 @@ _LEGEND: Final = (40, 436, 416, 20)
 _DIMMED: Final = 0.68  # of the other runs' lines, while one is emphasised
 _ZOOM_RIGHT: Final = 820.0
 _AXES: Final = pygame.Rect(470, 436, 262, 20)  # by what the charts are measured, while runs are compared
+BY_DECISIONS: Final = 1  # of the ways to measure the horizontal axis: see texts.TRAIN_AXES
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
-    ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),
-    ("mean_return", (436, 456, 360, 128), None, "{:.0f}"),
-    ("loss", (40, 594, 172, 112), None, "{:.3g}"),
-    ("mean_q", (234, 594, 172, 112), None, "{:.1f}"),
-    ("epsilon", (428, 594, 172, 112), (0.0, 1.0), "{:.2f}"),
-    ("stage", (622, 594, 174, 112), (0.0, 3.0), "{:.0f}"),
+    ("success", (40, 456, 360, 112), (0.0, 100.0), "{:.0f}"),
+    ("mean_return", (436, 456, 360, 112), None, "{:.0f}"),
+    ("loss", (40, 592, 172, 92), None, "{:.3g}"),
+    ("mean_q", (234, 592, 172, 92), None, "{:.1f}"),
+    ("epsilon", (428, 592, 172, 92), (0.0, 1.0), "{:.2f}"),
+    ("stage", (622, 592, 174, 92), (0.0, 3.0), "{:.0f}"),
 )
 
 

@@ -9,7 +9,7 @@ from typing import Final
 
 import pygame
 
-from ai.agent.config import PRESETS, Config
+from ai.agent.config import Config
 from ai.training.checkpoints import agent_of
 from game.core import texts
 from game.core.names import LibraryError
@@ -21,7 +21,7 @@ from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.lesson.door import LessonDoor
 from game.panels.advice import Advice
-from game.panels.knobs import KnobsPanel
+from game.panels.chart_captions import ChartCaptions
 from game.panels.network_panel import NetworkPanel
 from game.panels.rewind import Rewind
 from game.panels.run_status import draw_run_status
@@ -29,9 +29,11 @@ from game.panels.training_charts import TrainingCharts
 from game.panels.training_status import lander_status
 from game.scenes.comparing import Comparing
 from game.scenes.dialog import QuestionDialog
-from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, TrainingScene
-from game.training.lander_run import PACES, LanderRun
+from game.scenes.split_scene import SplitTrainingScene
+from game.scenes.training_scene import DISPLAY_WIDTH, LEFT
+from game.training.lander_run import PACES
 from game.training.library import Library, SavedRun
+from game.training.split_run import SplitRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow
@@ -41,7 +43,6 @@ from game.ui.widgets import Choice, TextButton
 from game.world.swarm import LearningSwarm
 
 _FLOOR: Final = 434.0  # where the charts begin
-_KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
@@ -51,23 +52,24 @@ _SWARM: Final = pygame.Rect(16, 176, 804, 246)  # where keys can point at a land
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene(TrainingScene[LanderRun]):
+class TrainScene(SplitTrainingScene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
     def __init__(self, context: Context, resume: Path | None = None) -> None:
         self._resume = resume
         self._compared = False
-        self.lander_run = LanderRun(Library(context.user_dir))
+        self.lander_run = SplitRun(Library(context.user_dir))
         super().__init__(context, self.lander_run, self.lander_run.library, ((_SAID.left, _SAID.top + 17.0), 3))
 
     def _build(self) -> None:
         left = self.lander_run.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(DISPLAY_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
+        self.captions = ChartCaptions()
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer, self.lander_run)
-        self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin)
+        self._add_knobs()
         self._comparing = Comparing(self, self.lander_run, self._ask)
         self.rewind = Rewind(self.form, self.lander_run, DISPLAY_WIDTH / VIEW_SIZE[0])
         self.lessons = LessonDoor(self.lander_run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
@@ -111,16 +113,18 @@ class TrainScene(TrainingScene[LanderRun]):
         lander_run = self.lander_run
         looked = self._listen()
         self._follow_run()
-        self._advice.hush(bool(self.knobs.waiting))
+        self._advice.hush(bool(self.knobs.waiting) or self.split_view.shown)
         if lander_run.alive:
             self.knobs.show_in_force(lander_run.in_force)
         still = self._settings.reduced_motion
         self._show_moment()
-        self.training_charts.look(lander_run.history, lander_run.earlier)
-        if bool(lander_run.earlier) is not self._compared and not self.inside.large:
-            self._compared = bool(lander_run.earlier)
-            self._lay_beside(self.inside.large)
+        beside = self.split_view.beside
+        self.training_charts.look(lander_run.history, beside)
+        if bool(beside) is not self._compared and not self.inside.large:
+            self._compared = bool(beside)
+            self._lay_again()
         self.swarm.update(still)
+        self.split_view.update(still, self.moment)
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
@@ -143,6 +147,7 @@ class TrainScene(TrainingScene[LanderRun]):
         if lander_run.alive and len(lander_run.history):
             health = self.inside.health
             self._advice.follow(lander_run.history, lander_run.config, health.dead_share, health.clipped_share)
+            self.captions.follow(lander_run.history, lander_run.config, self._advice.hint)
         return True
 
     @property
@@ -182,10 +187,12 @@ class TrainScene(TrainingScene[LanderRun]):
         self._start(Config(), 0, folder)
 
     def _clear(self) -> None:
+        self.split_view.clear()
         self.swarm.clear()
         self.rewind.clear()
         self._advice.clear()
         self.training_charts.clear()
+        self.captions.clear()
         self.inside.clear()
 
     def _clear_advice(self) -> None:
@@ -301,6 +308,9 @@ class TrainScene(TrainingScene[LanderRun]):
         self.form.replace(self._beside, beside)
         self._beside = beside
 
+    def _lay_again(self) -> None:
+        self._lay_beside(self.inside.large)
+
     def _look_closer(self) -> None:
         self._lay_beside(large=not self.inside.large)
         self.training_charts.charts.hover(None)
@@ -326,14 +336,17 @@ class TrainScene(TrainingScene[LanderRun]):
                 self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
             canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0, _BEHIND if edited else 1.0)
             return
-        if self.moment is None:
-            self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
-        else:
+        if self.split_view.shown:
+            self.split_view.draw(canvas, alpha)
+        elif self.moment is not None:
             self.rewind.swarm.draw(canvas, alpha, paused=True)
+        else:
+            self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
         canvas.fill(canvas.rect(0, _FLOOR, DISPLAY_WIDTH, VIEW_SIZE[1] - _FLOOR), NIGHT0)
         canvas.line((0, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
         self._draw_title(canvas)
         self.training_charts.draw(canvas)
+        self.captions.draw(canvas, self.training_charts.charts.charts)
 
     def _draw_panel(self, canvas: Canvas) -> None:
         self.inside.draw(canvas)
