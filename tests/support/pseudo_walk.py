@@ -143,11 +143,11 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
     "a swarm": ("swarm", {}, lambda driver: driver.skip(400)),
-    "a neuron, tried": ("Chapter, neuron", {}, tried(texts.LEARN_NEURON_HINT, steps=640)),
-    "a plane, tried": ("Chapter, plane", {}, tried(steps=320)),
-    "downhill, tried": ("Chapter, downhill", {}, tried(steps=340)),
+    "a neuron, tried": ("ChapterScene", {}, tried(texts.LEARN_NEURON_HINT, steps=640)),
+    "a plane, tried": ("chapter, plane", {}, tried(steps=320)),
+    "downhill, tried": ("chapter, downhill", {}, tried(steps=340)),
     "backwards, tried": (
-        "Chapter, backwards",
+        "chapter, backwards",
         {},
         tried(
             texts.LEARN_BACKWARDS_BACK,
@@ -158,7 +158,7 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
             steps=2,
         ),
     ),
-    "pay, tried": ("Chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
+    "pay, tried": ("chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
 }
 
 
