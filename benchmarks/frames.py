@@ -41,8 +41,10 @@ from ai.lander.missions import MISSIONS
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.exhibits import EXHIBITS
+from game.learn.path import PATH
 from game.play.challenge import FlownMission
 from game.scenes import scene_of
+from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.error_screen import ErrorScene
 from game.scenes.menu import MenuScene
@@ -92,6 +94,7 @@ def rows() -> dict[str, Row]:
             "WatchScene",
             "PhysicsScene",
             "PhysicsStepScene",
+            "ChapterScene",
             "mission",
         }
     return {
@@ -116,6 +119,10 @@ def rows() -> dict[str, Row]:
         ),
         "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
+        **{
+            f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
+            for key in PATH
+        },
         "physics, contacts": Row(heap, (pygame.K_c,)),
         **{f"physics, {name}, plot": Row(lambda context, n=name: plotted(context, n)) for name in EXHIBITS},
         "physics, measuring": Row(lambda context: plotted(context, "heap", measuring=True)),

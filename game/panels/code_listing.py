@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Final
 
@@ -16,6 +17,9 @@ _LEADING: Final = 16.0
 _NUMBER: Final = 34.0  # room for the line's number
 _INDENT: Final = 6  # characters by which the rest of a long line is moved to the right
 _BETWEEN: Final = 12.0  # points between code and notes
+_CODE: Final[Colour] = (190, 198, 214)
+# Characters of an operator are drawn one by one: the font would make one sign of some pairs.
+_PARTS: Final = re.compile(r"[-!<>=*/&|:+~]|[^-!<>=*/&|:+~]*[^-!<>=*/&|:+~\s]")
 
 
 def draw_listing(
@@ -78,7 +82,7 @@ def _around(rows: list[tuple[int, str, bool]], current: int | None, most: int) -
 def _coloured(text: str, lit: bool) -> Iterator[tuple[str, Colour, int]]:
     """Yield the parts of a row: its text, colour and column; comments are muted."""
     code, mark, comment = text.partition("# ")
-    if code.strip():
-        yield code.strip(), INK if lit else (190, 198, 214), len(code) - len(code.lstrip())
+    for part in _PARTS.finditer(code):
+        yield part[0], INK if lit else _CODE, part.start()
     if mark:
         yield mark + comment, MUTE, len(code)
