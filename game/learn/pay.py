@@ -154,7 +154,7 @@ class PayChapter(Chapter):
         words = [texts.LEARN_PAY_NAMES[key] for key in keys]
         pay = Choice(self.manager, self.row(0), "", words, keys.index(self.pay), self._choose, gap=18)
         label = texts.LEARN_PAY_STOP if self.training else texts.LEARN_PAY_TRAIN
-        return [pay, TextButton(self.manager, self.row(6), label, self.train)]
+        return [pay, TextButton(self.manager, self.row(1), label, self.train)]
 
     def _choose(self, index: int) -> None:
         self.close()
@@ -177,11 +177,7 @@ class PayChapter(Chapter):
         if self._worker:
             self._hear(self._worker)
         elif self.trial and not self.trial.over:
-            for _ in range(_PACE):
-                self.trial.step()
-            if self.trial.over:
-                self.results[self.pay] = self.trial.flown()
-                self.tried = True
+            self._fly(self.trial)
 
     def _hear(self, worker: Worker) -> None:
         for message in worker.poll():
@@ -197,6 +193,13 @@ class PayChapter(Chapter):
             self.close()
             self.trial = Trial(config_of(PAYS[self.pay]), self._checkpoint)
             self.changed = True
+
+    def _fly(self, trial: Trial) -> None:
+        for _ in range(_PACE):
+            trial.step()
+        if trial.over:
+            self.results[self.pay] = trial.flown()
+            self.tried = True
 
     # What it tells
 
