@@ -58,6 +58,7 @@ class BackwardsChapter(Chapter):
     """
 
     key = "backwards"
+    answer = 1
     door = Route("digits")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

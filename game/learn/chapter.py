@@ -47,6 +47,7 @@ class Chapter(ABC):
 
     Attributes:
         key: key of its texts in `texts.LEARN` and `texts.LEARN_ANSWERS`.
+        answer: number of the answer that is true of what a try shows; None if that depends on the try.
         door: where the same can be done freely.
         tried: whether the player has done what the chapter is about, so that `why` has something to tell.
         changed: set when other widgets are to be offered; the scene asks for them again.
@@ -54,6 +55,7 @@ class Chapter(ABC):
     """
 
     key: ClassVar[str]
+    answer: ClassVar[int | None] = None
     door: ClassVar[Route]
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

@@ -132,6 +132,7 @@ class DownhillChapter(Chapter):
     """
 
     key = "downhill"
+    answer = 1
     door = Route("train")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

@@ -51,6 +51,7 @@ class NeuronChapter(Chapter):
     """
 
     key = "neuron"
+    answer = 2
     door = Route("watch")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

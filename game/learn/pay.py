@@ -116,6 +116,7 @@ class PayChapter(Chapter):
     """
 
     key = "pay"
+    answer = 1
     door = Route("train")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

@@ -77,6 +77,7 @@ class PlaneChapter(Chapter):
     """
 
     key = "plane"
+    answer = 2
     door = Route("train")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

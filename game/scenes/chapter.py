@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Final
 
@@ -12,6 +12,7 @@ from game.core import texts
 from game.core.scene import Push, Replace, Route, Transition
 from game.core.source import Source, source_of
 from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
@@ -55,7 +56,9 @@ class ChapterScene(FormScene):
         tabs = (*_TABS, row_width(texts.LEARN_PAGES, TEXT), 26)
         self._tabs = self.form.add(Choice(self.form.manager, tabs, "", texts.LEARN_PAGES, self.page, self.turn_to))
         self._widgets: list[Widget] = []
+        self._listing = PaintCache()
         context.settings.chapter = key
+        self._code = self._read_code()
         self._progress.note(key, page=self.page)
         self._offer()
         self.form.focus(self._widgets[0])
@@ -78,7 +81,12 @@ class ChapterScene(FormScene):
             self._progress.note(self.key, done=True)
         self._told = self.chapter.why(self._progress.guess(self.key)) if self.chapter.tried else ""
         self.context.apply_settings()
+        self._code = self._read_code()
         self._offer()
+
+    def _read_code(self) -> Sequence[Code]:
+        """Return the code with the numbers of this moment: those that run on can't be read."""
+        return self.chapter.code() if self.page == _CODE else ()
 
     def restart(self) -> None:
         """Begin the chapter's picture anew."""
@@ -136,12 +144,12 @@ class ChapterScene(FormScene):
         ]  # fmt: skip
 
     def _functions(self) -> list[Widget]:
-        codes = self.chapter.code()
+        codes = self._code
         left, _, width = _COLUMN
         top = STAGE.bottom - 30 * len(codes)
         return [
             TextButton(self.form.manager, (left, top + 30 * number, width, 30), code.function.__qualname__,
-                       partial(self._show_function, number), size=SMALL,
+                       partial(self._show_function, number), size=SMALL, weight="code",
                        colour=NET if number == self._function else MUTE)
             for number, code in enumerate(codes)
         ]  # fmt: skip
@@ -209,20 +217,35 @@ class ChapterScene(FormScene):
     def _draw_why(self, canvas: Canvas) -> None:
         y = _COLUMN[1]
         if guess := self._progress.answer(self.key):
-            y = self._write(canvas, texts.LEARN_GUESSED.format(guess=guess), y, HUMAN) + 10
+            y = self._write(canvas, self._compared(guess), y, HUMAN) + 10
         told = self._told or texts.LEARN_TRY_FIRST
         y = self._write(canvas, told, y) + 10
         self._write(canvas, self.chapter.words["why"], y, MUTE)
 
+    def _compared(self, guess: str) -> str:
+        """Return the guess, and once it was tried, beside it what happens."""
+        right = self.chapter.answer
+        if right is None or not self._told:
+            return texts.LEARN_GUESSED.format(guess=guess)
+        answer = texts.LEARN_ANSWERS[self.key][right]
+        told = texts.LEARN_AGREES if guess == answer else texts.LEARN_DIFFERS
+        return told.format(guess=guess, answer=answer)
+
     def _draw_code(self, canvas: Canvas) -> None:
         self._write(canvas, self.chapter.words["code"], _COLUMN[1])
-        code = self.chapter.code()[self._function]
+        code = self._code[self._function]
         source = source_of(code.function)
         if source is None:
             canvas.text(texts.LEARN_NO_SOURCE, (STAGE.left, _COLUMN[1]), size=_BODY, colour=MUTE, room=STAGE.width)
             return
         current, notes = placed(source, code)
-        draw_listing(canvas, STAGE, source, current, notes, notes_width=_NOTES if notes else 0.0)
+        box, room = pygame.FRect(0, 0, *STAGE.size), _NOTES if notes else 0.0
+        self._listing.draw(
+            canvas,
+            STAGE,
+            (source, current, tuple(notes.items())),
+            lambda sheet: draw_listing(sheet, box, source, current, notes, notes_width=room),
+        )
 
 
 def placed(source: Source, code: Code) -> tuple[int | None, Mapping[int, str]]:

@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 UNITS = {"m", "s", "ms", "min", "k", "M"}
 KEY = re.compile(r"[A-Z]|F\d+")
 # Names of networks, of errors in Python, and of what the tests ask in their own dialogs.
-NAMES = {"modern", "classic", "mine", "ValueError", "a", "b", "yes", "no", "name"}
+NAMES = {"ai", "modern", "classic", "mine", "ValueError", "a", "b", "yes", "no", "name"}
 PATH = re.compile(r"/\S*")
 
 

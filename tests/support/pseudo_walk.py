@@ -29,7 +29,9 @@ from game.core.scene import Scene
 from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
+from game.learn import pay
 from game.scenes import scene_of
+from game.scenes.chapter import ChapterScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
@@ -44,6 +46,7 @@ from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
 from tests.support.written import Written, misplaced
 
+SHORT = 2_560  # decisions of a run that shows nothing but its texts
 SIZES = ("normal", "large", "largest")
 Happens = Callable[[Driver], object]
 
@@ -96,6 +99,23 @@ def told(driver: Driver) -> None:
     driver.frames(2)
 
 
+def tried(*labels: str, steps: int) -> Happens:
+    """Return what tries a chapter: presses on widgets, each for so many steps; then it is asked why."""
+
+    def try_it(driver: Driver) -> None:
+        scene = driver.top
+        assert isinstance(scene, ChapterScene)
+        scene.turn_to(1)
+        for label in labels or ("",):
+            if label:
+                driver.press_on(label)
+            driver.skip(steps)
+        scene.turn_to(2)
+        driver.frames(2)
+
+    return try_it
+
+
 class Blank(Scene):
     """Nothing, for a dialog to stand over."""
 
@@ -123,6 +143,22 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
     "a swarm": ("swarm", {}, lambda driver: driver.skip(400)),
+    "a neuron, tried": ("Chapter, neuron", {}, tried(texts.LEARN_NEURON_HINT, steps=640)),
+    "a plane, tried": ("Chapter, plane", {}, tried(steps=320)),
+    "downhill, tried": ("Chapter, downhill", {}, tried(steps=340)),
+    "backwards, tried": (
+        "Chapter, backwards",
+        {},
+        tried(
+            texts.LEARN_BACKWARDS_BACK,
+            texts.LEARN_BACKWARDS_BACK,
+            texts.LEARN_BACKWARDS_BACK,
+            texts.LEARN_BACKWARDS_BACK,
+            texts.LEARN_BACKWARDS_STEP,
+            steps=2,
+        ),
+    ),
+    "pay, tried": ("Chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
 }
 
 
@@ -173,6 +209,8 @@ class Walk:
         page = self._written.turn(driver.app.canvas)
         driver.app.draw()
         for note in page.notes:
+            if note.code:
+                continue
             self.seen.setdefault(note.text, place)
         for text, how in misplaced(page):
             if how != "is cut short" or text not in self._whole:
@@ -191,6 +229,7 @@ def strings(value: object) -> Iterator[str]:
 def main() -> None:
     """Walk, and write what was seen and what was wrong."""
     inline_worker.install(setattr)
+    setattr(pay, "DECISIONS", SHORT)  # noqa: B010 - it is final for all others
     with TemporaryDirectory() as folder:
         walk = Walk(Path(folder))
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))

@@ -29,6 +29,7 @@ class Note:
     box: pygame.FRect
     room: float = math.inf
     within: pygame.FRect = field(default_factory=_VIEW.copy)
+    code: bool = False  # whether it is a piece of our own code, which is the same in every language
 
 
 @dataclass
@@ -63,9 +64,10 @@ class Written:
         def noted_text(canvas: Canvas, string: str, position: tuple[float, float], **more: Any) -> pygame.FRect:
             box = text(canvas, string, position, **more)
             if string.strip() and more.get("alpha", 1.0) > _SEEN:
+                code = more.get("weight") == "code"
                 size = box.height * TEXT / sum(typeface.extent(TEXT, "regular"))
                 top, height = position[1] - ABOVE * size, ABOVE * size + BELOW * min(size, TITLE)
-                note = Note(string, pygame.FRect(box.x, top, box.width, height), more.get("room", math.inf))
+                note = Note(string, pygame.FRect(box.x, top, box.width, height), more.get("room", math.inf), code=code)
                 self.page(canvas).notes.append(note)
             return box
 
