@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -59,7 +60,7 @@ class MemoryChapter(RunsChapter):
         self.choice = 0
         self.results: dict[str, tuple[float, float]] = {}
         super().__init__(context, manager)
-        self._painted = PaintCache()
+        self._painted = [PaintCache() for _ in range(_ROWS)]
 
     def restart(self) -> None:
         """Forget the runs and their results."""
@@ -158,7 +159,7 @@ class MemoryChapter(RunsChapter):
             ((day, flown, SMALL_RUN.num_envs), (texts.LEARN_MEMORY_TESTS, tested, TESTED))
         ):
             box = pygame.FRect(STAGE.left + side * (_HALF + 40), top, _HALF, 142)
-            canvas.text(name, (box.left, top - 6), size=TEXT, colour=(NET, HUMAN)[side], room=_HALF)
+            canvas.text(name, (box.left, top - 6), size=TEXT, colour=(NET, INK)[side], room=_HALF)
             draw_landers(canvas, box, each, self.last[0] if state and not side else None, len(self.states), count)
             share = (state.passed if side else state.landed) if state else None
             if share is not None:
@@ -167,9 +168,12 @@ class MemoryChapter(RunsChapter):
         self.draw_status(canvas)
 
     def _draw_wall(self, canvas: Canvas) -> None:
-        """Draw the wall; its pictures are painted anew as they come, the light of what is drawn is laid over them."""
-        shows = (int(self._come.sum()), self._oldest)
-        self._painted.draw(canvas, _WALL, shows, self._paint_wall)
+        """Draw the wall; a row is painted anew as its memories come or go, and the light of what is drawn laid over it."""
+        for row, painted in enumerate(self._painted):
+            cells = slice(row * _COLUMNS, (row + 1) * _COLUMNS)
+            held = min(max(self._oldest // _EACH, cells.start), cells.stop)
+            box = (_WALL.left, _WALL.top + row * _CELL[1], _WALL.width, _CELL[1])
+            painted.draw(canvas, box, (int(self._come[cells].sum()), held), partial(self._paint_row, row))
         for cell in np.flatnonzero(self.light > 0.25).tolist():
             x, y = _place(cell)
             canvas.fill(canvas.rect(_WALL.left + x, _WALL.top + y + _CELL[1] - 3, _CELL[0] - 1, 2), INK,
@@ -178,9 +182,9 @@ class MemoryChapter(RunsChapter):
         place = (_WALL.left + x, _WALL.top + y)
         canvas.line(place, (place[0], place[1] + _CELL[1]), HUMAN, 2)
 
-    def _paint_wall(self, sheet: Canvas) -> None:
-        for cell in range(len(self._come)):
-            x, y = _place(cell)
+    def _paint_row(self, row: int, sheet: Canvas) -> None:
+        for cell in range(row * _COLUMNS, (row + 1) * _COLUMNS):
+            x, y = _place(cell)[0], 0.0
             area = sheet.rect(x, y, _CELL[0] - 1, _CELL[1] - 1)
             held = self._come[cell] and (cell + 1) * _EACH > self._oldest
             if not held:

@@ -83,7 +83,7 @@ class OwnChapter(Chapter):
         for run in self._runs:
             policy = networks.load(run.name, run.folder).policy if run.flyable else None
             if policy is not None:
-                Progress(self.context.settings).note(self.key, raced=int(time.time()))
+                Progress(self.context.settings).note(self.key, raced=int(time.time()) + 1)
                 self.context.apply_settings()
                 return push("play", rival=policy, rival_name=run.name)
         self.context.note(texts.LEARN_OWN_NONE)
@@ -113,11 +113,12 @@ class OwnChapter(Chapter):
         self.tried = self.steps["train"].done
 
     def _changed(self) -> tuple[float, ...]:
-        """Return when the player's files were changed last."""
-        found = [0.0, 0.0]
-        for number, path in enumerate((self.context.user_dir / networks.PLAYERS, self._records.logbook)):
+        """Return what tells whether the player's files have changed: dates, and the logbook's size."""
+        found: list[float] = []
+        for path in (self.context.user_dir / networks.PLAYERS, self._records.logbook):
             with suppress(OSError):
-                found[number] = path.stat().st_mtime
+                stat = path.stat()
+                found += [stat.st_mtime, stat.st_size]
         return tuple(found)
 
     def _own_names(self) -> set[str]:

@@ -1,0 +1,200 @@
+"""Chapters 6 to 10: what they show is what was computed, and what they tell is true of the player's own try."""
+
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.lander.environment import LanderEnv, Outcome
+from ai.training.checkpoints import save_run
+from ai.training.loop import Training
+from game.core import texts
+from game.core.assets import MODELS_DIR
+from game.core.scene import Push
+from game.flight.logbook import Records
+from game.learn import runs as runs_module
+from game.learn.chapter import Chapter
+from game.learn.daring import DaringChapter
+from game.learn.memory import KINDS, MemoryChapter
+from game.learn.moment import MOMENTS, MomentChapter
+from game.learn.own import OwnChapter
+from game.learn.runs import RunsChapter
+from game.learn.target import TargetChapter
+from game.ui.context import Context
+from game.ui.form import Form
+from tests.support.flights import scripted
+from tests.support.inline_worker import InlineWorker
+
+Made = Callable[[type[Chapter]], Chapter]
+
+
+@pytest.fixture
+def made(context: Context, monkeypatch: pytest.MonkeyPatch) -> Iterator[Made]:
+    """Make a chapter, as its scene does; its runs are short and need no process."""
+    monkeypatch.setattr(runs_module, "Worker", InlineWorker)
+    chapters: list[Chapter] = []
+
+    def make(kind: type[Chapter]) -> Chapter:
+        chapters.append(kind(context, Form(context).manager))
+        return chapters[-1]
+
+    yield make
+    for chapter in chapters:
+        chapter.close()
+
+
+# The value of a moment
+
+
+def test_the_value_is_the_networks_own_and_what_comes_is_the_discounted_pay(made: Made):
+    chapter = made(MomentChapter)
+    agent = DeepQAgent.load(MODELS_DIR / "lander" / "modern")
+    for number, (seed, spawn, decisions) in enumerate(MOMENTS[:3]):
+        chapter.set_guess(40.0)
+        chapter.go()
+        while not chapter.over:
+            chapter.update()
+        env = LanderEnv(1, seed, spawn, frame_skip=4, weights=agent.config.reward_weights)
+        observation, pays = env.reset(), []
+        while env.outcome[0] == Outcome.FLYING:
+            decided = agent.decide(observation, held=env.actions)
+            if len(pays) == decisions:
+                value = float(decided.points.max())
+            result = env.step(decided.action)
+            observation = result.observation
+            pays.append(float(result.reward[0]))
+        pays = pays[decisions:]
+        came = sum(pay * agent.config.discount**late for late, pay in enumerate(pays))
+        judged = chapter.judged[number]
+        assert judged.value == pytest.approx(value, abs=1e-3)
+        assert judged.plain == pytest.approx(sum(pays), abs=1e-2)
+        # The chapter adds the pay of each physics step, the loop above that of each decision of four.
+        assert judged.came == pytest.approx(came, abs=0.05)
+        assert judged.decisions == len(pays)
+        assert chapter.tried
+        chapter.turn()
+    assert "3 moments" in chapter.why(None)
+
+
+def test_the_network_judges_moments_better_than_a_guess_of_the_whole_score(made: Made):
+    chapter = made(MomentChapter)
+    for _ in MOMENTS:
+        chapter.go()
+        while not chapter.over:
+            chapter.update()
+        chapter.turn()
+    missed = [abs(each.value - each.came) for each in chapter.judged]
+    assert np.mean(missed) < 12
+    assert np.mean([abs(each.plain - each.came) for each in chapter.judged]) > 40
+    # The answer to the chapter's question: the start of a good flight is worth some 20 points.
+    assert 10 < chapter.judged[0].came < 45
+
+
+def test_a_missing_network_is_said_and_the_chapter_stays_usable(context: Context, tmp_path):
+    context.models_dir = tmp_path
+    chapter = MomentChapter(context, Form(context).manager)
+    assert chapter.problem
+    assert chapter.widgets() == []
+    chapter.update()
+    chapter.restart()
+    assert len(chapter.code()) == 3
+
+
+# Runs side by side
+
+
+@pytest.mark.parametrize("kind", [TargetChapter, MemoryChapter, DaringChapter])
+def test_a_run_learns_to_its_end_and_tells_its_own_numbers(made: Made, kind, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(kind, "LENGTH", 90)
+    if kind is MemoryChapter:
+        monkeypatch.setattr("game.learn.memory.YESTERDAY", 45)
+        monkeypatch.setattr(kind, "PLAN", kind.PLAN._replace(change=45))
+    chapter = made(kind)
+    assert isinstance(chapter, RunsChapter)
+    chapter.update()
+    assert not chapter.states
+    chapter.start()
+    for _ in range(100):
+        chapter.update()
+    assert chapter.over
+    assert chapter.tried
+    assert not chapter.running
+    assert [states[0].decisions for states in chapter.states] == list(range(91))
+    told = chapter.why(None)
+    assert "{" not in told
+    last = chapter.states[-1]
+    if kind is not MemoryChapter:
+        assert f"{last[0].landed:.0%}" in told
+        assert f"{last[1].landed:.0%}" in told
+    chapter.restart()
+    assert not chapter.states
+    assert not chapter.tried
+
+
+def test_each_memory_that_was_tried_is_compared(made: Made, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(MemoryChapter, "LENGTH", 60)
+    monkeypatch.setattr("game.learn.memory.YESTERDAY", 30)
+    monkeypatch.setattr(MemoryChapter, "PLAN", MemoryChapter.PLAN._replace(change=30))
+    chapter = made(MemoryChapter)
+    for number in range(len(KINDS)):
+        chapter.widgets()[0].choose(number)
+        chapter.start()
+        for _ in range(70):
+            chapter.update()
+        assert chapter.light.max() == 1.0  # something was drawn with the last decision
+    assert set(chapter.results) == set(KINDS)
+    assert all(name in chapter.why(None) for name in texts.LEARN_MEMORY_NAMES)
+    assert chapter.states[-1][0].memory.oldest > 0  # the last one kept the latest only
+
+
+def test_a_worker_that_fails_is_said(made: Made, monkeypatch: pytest.MonkeyPatch):
+    chapter = made(TargetChapter)
+    monkeypatch.setattr(runs_module, "small_runs", _broken)
+    chapter.start()
+    chapter.update()
+    assert "broken on purpose" in chapter.problem
+    assert not chapter.tried
+
+
+def _broken(*_: object) -> Iterator[tuple[()]]:
+    yield ()
+    raise ValueError("broken on purpose")
+
+
+# Your own
+
+
+def look(chapter: OwnChapter) -> set[str]:
+    """Return the names of the steps that are done."""
+    for _ in range(60):
+        chapter.update()
+    return {name for name, step in chapter.steps.items() if step.done}
+
+
+def test_the_list_ticks_what_was_really_done_and_nothing_before(made: Made, context: Context):
+    chapter = made(OwnChapter)
+    assert isinstance(chapter, OwnChapter)
+    assert look(chapter) == set()
+    race = chapter.widgets()[4]
+    assert race.press() is None  # there is none to race yet
+    training = Training(Config(num_envs=4, learning_starts=8, batch_size=8), validation_episodes=2, evaluate_every=0)
+    training.advance()
+    save_run(training, context.user_dir / "models" / "mine")
+    assert look(chapter) == {"train"}
+    assert "mine" in chapter.why(None)
+    context.settings.model = "mine"
+    assert look(chapter) == {"train", "choose"}
+    records = Records(context.user_dir)
+    records.keep(scripted(), time.time(), network="modern")
+    assert look(chapter) == {"train", "choose"}  # another network flew
+    records.keep(scripted(), time.time(), network="mine")
+    assert "hand" in look(chapter)
+    assert "race" not in look(chapter)
+    pushed = race.press()
+    assert isinstance(pushed, Push)
+    assert "race" not in look(chapter)  # opened, and not flown yet
+    records.keep(scripted(), time.time() + 5, network="mine")
+    assert "race" in look(chapter)
