@@ -142,13 +142,16 @@ class Bench:
                 self._waits = None
                 self._rebuild()
         assert self._exhibit
-        self.results.add(self._exhibit)
-        done = self.measuring is not None and self.measuring.advance(self._now, _BUDGET)
-        if done:
-            self.measuring = None
-            self._offer_measuring()
+        news = self.results.add(self._exhibit)
+        if self.measuring:
+            before = self.measuring.done
+            if self.measuring.advance(self._now, _BUDGET):
+                self.measuring = None
+                self._offer_measuring()
+            news = news or self.measuring is None or self.measuring.done > before
         if self.panel:
-            self.panel.refresh()
+            if news:
+                self.panel.refresh()
             self.panel.update()
 
     def covers(self, point: Point) -> bool:

@@ -15,10 +15,12 @@ class Results:
     def __init__(self) -> None:
         self._results: dict[_Run, float] = {}
 
-    def add(self, exhibit: Exhibit) -> None:
-        """Keep the result of a run, if it has one."""
-        if exhibit.result is not None:
-            self._results[_run(exhibit)] = exhibit.result
+    def add(self, exhibit: Exhibit) -> bool:
+        """Keep the result of a run, if it has one; return whether that is news."""
+        if exhibit.result is None or self._results.get(_run(exhibit)) == exhibit.result:
+            return False
+        self._results[_run(exhibit)] = exhibit.result
+        return True
 
     def along(self, exhibit: Exhibit, name: str) -> list[tuple[float, float]]:
         """Return the values of one quantity and their results, rising, where all else is as in this exhibit."""
