@@ -84,10 +84,11 @@ class LawPanel:
         now = self.exhibit.values[self.name]
         here = Series([now], [self.law], texts.LAW_NOW, INK, smooth=False)
         law = Series(self._x, self._y, texts.LAW_CURVE, MUTE, smooth=False)
-        # A gap after each point, so that no line runs through what has been measured one by one.
-        x = np.repeat([x for x, _ in self.points], 2) + np.tile((0.0, 1e-6), len(self.points))
-        y = np.repeat([result for _, result in self.points], 2)
-        y[1::2] = np.nan
+        # A gap between any two points, so that no line joins what has been measured one by one.
+        places = np.array([x for x, _ in self.points])
+        x = np.insert(places, range(1, len(places)), (places[1:] + places[:-1]) / 2)
+        y = np.full(len(x), np.nan)
+        y[::2] = [result for _, result in self.points]
         measured = Series(x, y, texts.LAW_MEASURED, HUMAN, smooth=False)
         self._chart.set([here, law, measured], (float(self._x[0]), float(self._x[-1])))
         self._chart.mark(now)

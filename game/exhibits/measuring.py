@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 from game.exhibits.exhibit import Exhibit
 
+_SMOOTHING: Final = 0.3
 _Run = tuple[type[Exhibit], float, tuple[tuple[str, float], ...]]  # of which exhibit, gravity, values
 
 
@@ -48,7 +50,7 @@ class RangeMeasurement:
         self._waiting = [(kind, gravity, values | {name: x}) for x in reversed(quantity.spread(kind.points))]
         self.count, self.done = len(self._waiting), 0
         self._exhibit: Exhibit | None = None
-        self._longest = 0.0  # seconds that a step or the making of a world has taken
+        self._usual = 0.0  # seconds that a step takes, smoothed
 
     def advance(self, now: Callable[[], float], seconds: float) -> bool:
         """Work for about so many seconds, one step at least; return whether all values have been measured."""
@@ -56,9 +58,9 @@ class RangeMeasurement:
         while self.done < self.count:
             self._step()
             time = now()
-            self._longest = max(0.9 * self._longest, time - last)
+            self._usual += _SMOOTHING * (time - last - self._usual)
             last = time
-            if time - start + self._longest > seconds:
+            if time - start + self._usual > seconds:
                 break
         return self.done == self.count
 
