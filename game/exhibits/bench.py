@@ -13,7 +13,7 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import HUMAN, SMALL
 from game.exhibits.exhibit import Exhibit
-from game.exhibits.law_panel import BOX, LawPanel
+from game.exhibits.law_panel import LawPanel
 from game.exhibits.measuring import RangeMeasurement, Results
 from game.exhibits.sliders import LEFT, quantity_sliders
 from game.ui.form import Form
@@ -120,10 +120,8 @@ class Bench:
         new: list[Widget] = []
         if self.panel:
             words = texts.LAW_CANCEL if self.measuring else texts.LAW_MEASURE
-            left, top = self.panel.foot
-            box = pygame.Rect(left, top, BOX.width - 56, _HEIGHT)
-            new = [TextButton(self._form.manager, box, words, self.measure, size=SMALL, colour=HUMAN)]
-        if [each.label for each in new] != [each.label for each in self._panel_widgets]:
+            new = [TextButton(self._form.manager, self.panel.foot, words, self.measure, size=SMALL, colour=HUMAN)]
+        if [(each.label, each.box) for each in new] != [(each.label, each.box) for each in self._panel_widgets]:
             self._form.replace([*self._buttons, *self._panel_widgets], [*self._buttons, *new])
             self._panel_widgets = new
 
@@ -142,18 +140,21 @@ class Bench:
                 self._waits = None
                 self._rebuild()
         assert self._exhibit
-        self.results.add(self._exhibit)
-        done = self.measuring is not None and self.measuring.advance(self._now, _BUDGET)
-        if done:
-            self.measuring = None
-            self._offer_measuring()
+        news = self.results.add(self._exhibit)
+        if self.measuring:
+            before = self.measuring.done
+            if self.measuring.advance(self._now, _BUDGET):
+                self.measuring = None
+                self._offer_measuring()
+            news = news or self.measuring is None or self.measuring.done > before
         if self.panel:
-            self.panel.refresh()
+            if news:
+                self.panel.refresh()
             self.panel.update()
 
     def covers(self, point: Point) -> bool:
         """Whether the panel lies over a point of the canvas."""
-        return self.panel is not None and BOX.collidepoint(point)
+        return self.panel is not None and self.panel.box.collidepoint(point)
 
     def hover(self, point: Point) -> None:
         """Follow the mouse, or the virtual pointer, in points."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, Literal
 
 import numpy as np
 
@@ -70,6 +70,7 @@ class Exhibit:
     not be so after it.
 
     Attributes:
+        plot_side: side on which the plot covers nothing that bears on the measurement.
         result: the number that this run has measured; None until then, and if a hand has come in before.
         width: width of the view, in metres.
         weightless: whether there is no gravity, whatever was chosen.
@@ -85,6 +86,7 @@ class Exhibit:
     patience: ClassVar[int]
     points: ClassVar[int] = 9
     tolerance: ClassVar[float] = 0.01
+    plot_side: ClassVar[Literal["left", "right"]] = "right"
     width = 28.0
     weightless = False
 

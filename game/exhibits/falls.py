@@ -112,6 +112,7 @@ class Bounce(Exhibit):
 
     name = "bounce"
     quantities = (Quantity("restitution", (0.1, 1.0), 0.75, 0.05), Quantity("drop", (1.0, 6.5), 6.0, 0.5))
+    plot_side = "left"
     patience = 420
     tolerance = 0.03
     width = 22.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+import pygame
 
 from engine.vector import Array
 from game.drawing.canvas import Canvas
@@ -14,14 +15,17 @@ from game.exhibits.exhibit import Label
 from game.world.camera import View
 
 _GAUGE: Final = 64.0
+_AROUND: Final = 180  # points: labels are written around their places
 
 
-def draw_label(canvas: Canvas, view: View, label: Label, poses: Array) -> None:
-    """Draw a label, with its mark and its bar; `poses` (bodies, 3) are where the bodies are drawn."""
+def draw_label(canvas: Canvas, view: View, label: Label, poses: Array, covered: pygame.Rect | None) -> None:
+    """Draw a label, with its mark and its bar, unless a panel has it `covered`; `poses` (bodies, 3) are as drawn."""
     place = np.asarray(label.place)
     if label.body is not None:
         place = place + poses[label.body.index, :2]
     x, y = view.points(place).tolist()
+    if covered and covered.inflate(_AROUND, 24).collidepoint(x, y):
+        return
     left, _ = write_figures(canvas, label.text, (x, y + 4), size=SMALL, centred=True)
     palette = canvas.palette
     if label.within is not None:

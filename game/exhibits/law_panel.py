@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -12,17 +14,20 @@ from game.charts.chart import Chart
 from game.charts.series import Series
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
+from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL, VIEW_SIZE
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL, VIEW_SIZE, Colour
 from game.exhibits.exhibit import Exhibit
 from game.exhibits.measuring import Results
 
-BOX: Final = pygame.Rect(836, 168, VIEW_SIZE[0] - 836 - 40, 372)
-_PADDING: Final = 28.0
-_CHART: Final = (BOX.left + _PADDING, BOX.top + 40, BOX.width - 2 * _PADDING + 14, 186)
-_WORDS: Final = BOX.top + 246.0  # first baseline under the chart
-_FOOT: Final = BOX.bottom - 32.0  # top of the row of widgets
+_SIZE: Final = (404, 372)
+_TOP, _EDGE = 168, 40  # points from the view's edges
+_PADDING: Final = 28
+_CHART: Final = (40, 186)  # top in the panel, and height
+_WORDS: Final = 246  # first baseline under the chart, from the panel's top
+_FOOT: Final = 32  # height of the row of widgets
 _CURVE: Final = 65  # places at which the law is evaluated
+_ALPHA: Final = 0.97
 _LEADING: Final = 17.0
 _SEEN: Final = 5e-3  # share of the law's greatest value from which the reason for a difference is told
 
@@ -31,6 +36,7 @@ class LawPanel:
     """Plot of law and measurement of one exhibit, over the quantity that was changed last.
 
     Attributes:
+        box: the panel's box, in points.
         name: that quantity.
         law: what the law says of the values as they are.
         points: values of that quantity, and what was measured there.
@@ -41,6 +47,8 @@ class LawPanel:
 
     def __init__(self, exhibit: Exhibit, name: str, results: Results) -> None:
         self.exhibit, self.name, self._results = exhibit, name, results
+        left = _EDGE if exhibit.plot_side == "left" else VIEW_SIZE[0] - _EDGE - _SIZE[0]
+        self.box = pygame.Rect((left, _TOP), _SIZE)
         self._what, self.unit, self._formula, self._when, self._why = texts.LAWS[exhibit.name]
         quantity = next(each for each in exhibit.quantities if each.name == name)
         self._x = np.linspace(*quantity.limits, _CURVE)
@@ -49,21 +57,22 @@ class LawPanel:
         label, figure = texts.QUANTITIES[name]
         self._quantity = label
         self._chart = Chart(
-            _CHART,
+            (left + _PADDING, _TOP + _CHART[0], _SIZE[0] - 2 * _PADDING + 14, _CHART[1]),
             texts.LAW_AXIS.format(what=self._what, unit=self.unit),
             limits=(0.0, float(plotting.grid(0.0, self.top)[-1])),
             read=lambda value: f"{value:.2f}",
             read_x=lambda value: figure.format(value=value),
         )
+        self._words = PaintCache()
         self.points: list[tuple[float, float]] = []
         self.worst = 0.0
         self.refresh()
         self._chart.update(at_once=True)
 
     @property
-    def foot(self) -> Point:
-        """Left end and top of the room for widgets, in points."""
-        return BOX.left + _PADDING, _FOOT
+    def foot(self) -> pygame.Rect:
+        """Room for widgets, in points."""
+        return pygame.Rect(self.box.left + _PADDING, self.box.bottom - _FOOT, _SIZE[0] - 2 * _PADDING, 20)
 
     def _law_at(self, x: float) -> float:
         return self.exhibit.law(self.exhibit.gravity, self.exhibit.values | {self.name: x})
@@ -75,10 +84,11 @@ class LawPanel:
         now = self.exhibit.values[self.name]
         here = Series([now], [self.law], texts.LAW_NOW, INK, smooth=False)
         law = Series(self._x, self._y, texts.LAW_CURVE, MUTE, smooth=False)
-        # A gap after each point, so that no line runs through what has been measured one by one.
-        x = np.repeat([x for x, _ in self.points], 2) + np.tile((0.0, 1e-6), len(self.points))
-        y = np.repeat([result for _, result in self.points], 2)
-        y[1::2] = np.nan
+        # A gap between any two points, so that no line joins what has been measured one by one.
+        places = np.array([x for x, _ in self.points])
+        x = np.insert(places, range(1, len(places)), (places[1:] + places[:-1]) / 2)
+        y = np.full(len(x), np.nan)
+        y[::2] = [result for _, result in self.points]
         measured = Series(x, y, texts.LAW_MEASURED, HUMAN, smooth=False)
         self._chart.set([here, law, measured], (float(self._x[0]), float(self._x[-1])))
         self._chart.mark(now)
@@ -93,20 +103,27 @@ class LawPanel:
 
     def draw(self, canvas: Canvas, progress: str) -> None:
         """Draw the panel; `progress` tells of a range that is being measured, if one is."""
-        canvas.panel(BOX, 0.92)
-        left, room = BOX.left + _PADDING, BOX.width - 2 * _PADDING
-        canvas.text(texts.LAW_FORMULA.format(formula=self._formula), (left, BOX.top + 26), size=SMALL, room=room)
+        canvas.panel(self.box, _ALPHA)
+        left, top = self.box.left + _PADDING, self.box.top
+        room = self.box.width - 2 * _PADDING
         self._chart.draw(canvas)
         for x, result in self.points:
             canvas.dot(self._chart.place(x, result), 3.2, HUMAN)
-        middle = self._chart.plot.centerx
         foot = self._chart.plot.bottom + 15
-        canvas.text(self._quantity, (middle, foot), size=LABEL - 1, colour=MUTE, align="centre", room=room / 2)
-        y = _WORDS
-        for sentence, colour in self.sentences(progress):
-            y = draw_wrapped(canvas, sentence, (left, y), room, colour=colour, leading=_LEADING) + 2
+        where = (self._chart.plot.centerx, foot)
+        canvas.text(self._quantity, where, size=LABEL - 1, colour=MUTE, align="centre", room=room / 2)
+        told = tuple(self.sentences(progress))
+        self._words.draw(canvas, (left, top, room, _SIZE[1] - _FOOT), told, partial(self._paint_words, told))
 
-    def sentences(self, progress: str) -> list[tuple[str, tuple[int, int, int]]]:
+    def _paint_words(self, told: Sequence[tuple[str, Colour]], sheet: Canvas) -> None:
+        """Paint what is said above and under the chart; breaking it into lines in each frame would take long."""
+        room = _SIZE[0] - 2 * _PADDING
+        sheet.text(texts.LAW_FORMULA.format(formula=self._formula), (0, 26), size=SMALL, room=room)
+        y = float(_WORDS)
+        for sentence, colour in told:
+            y = draw_wrapped(sheet, sentence, (0, y), room, colour=colour, leading=_LEADING) + 2
+
+    def sentences(self, progress: str) -> list[tuple[str, Colour]]:
         """Return what is said under the chart, each sentence with its colour."""
         result = self.exhibit.result
         if result is None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final
 
 from game.exhibits.exhibit import Exhibit
 
+_SMOOTHING: Final = 0.3
 _Run = tuple[type[Exhibit], float, tuple[tuple[str, float], ...]]  # of which exhibit, gravity, values
 
 
@@ -15,10 +17,12 @@ class Results:
     def __init__(self) -> None:
         self._results: dict[_Run, float] = {}
 
-    def add(self, exhibit: Exhibit) -> None:
-        """Keep the result of a run, if it has one."""
-        if exhibit.result is not None:
-            self._results[_run(exhibit)] = exhibit.result
+    def add(self, exhibit: Exhibit) -> bool:
+        """Keep the result of a run, if it has one; return whether that is news."""
+        if exhibit.result is None or self._results.get(_run(exhibit)) == exhibit.result:
+            return False
+        self._results[_run(exhibit)] = exhibit.result
+        return True
 
     def along(self, exhibit: Exhibit, name: str) -> list[tuple[float, float]]:
         """Return the values of one quantity and their results, rising, where all else is as in this exhibit."""
@@ -46,7 +50,7 @@ class RangeMeasurement:
         self._waiting = [(kind, gravity, values | {name: x}) for x in reversed(quantity.spread(kind.points))]
         self.count, self.done = len(self._waiting), 0
         self._exhibit: Exhibit | None = None
-        self._longest = 0.0  # seconds that a step or the making of a world has taken
+        self._usual = 0.0  # seconds that a step takes, smoothed
 
     def advance(self, now: Callable[[], float], seconds: float) -> bool:
         """Work for about so many seconds, one step at least; return whether all values have been measured."""
@@ -54,9 +58,9 @@ class RangeMeasurement:
         while self.done < self.count:
             self._step()
             time = now()
-            self._longest = max(0.9 * self._longest, time - last)
+            self._usual += _SMOOTHING * (time - last - self._usual)
             last = time
-            if time - start + self._longest > seconds:
+            if time - start + self._usual > seconds:
                 break
         return self.done == self.count
 

@@ -24,6 +24,7 @@ class Impacts(Exhibit):
 
     name = "impacts"
     quantities = (Quantity("restitution", (0.8, 1.0), 1.0, 0.05), Quantity("striker", (0.25, 1.25), 1.0, 0.25))
+    plot_side = "left"
     patience = 240
     radius = 0.45
     gap = 0.01
@@ -101,6 +102,7 @@ class Spin(Exhibit):
 
     name = "spin"
     quantities = (Quantity("reach", (0.0, 1.4), 1.2, 0.1), Quantity("impulse", (0.1, 1.0), 0.4, 0.05))
+    plot_side = "left"
     patience = 32
     weightless = True
     momentum = 1.2  # kg·m²/s

@@ -24,6 +24,7 @@ from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, 
 from game.exhibits import EXHIBITS
 from game.exhibits.bench import Bench
 from game.exhibits.labels import draw_label
+from game.exhibits.sliders import LEFT
 from game.input.controls import Command
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -47,6 +48,7 @@ _ROOM: Final = (16.0, 152.0, VIEW_SIZE[0] - 32.0, 444.0)
 _COLUMNS: Final = (758.0, 880.0, 1002.0, 1124.0)
 _REACH: Final = 8.0  # points by which the mouse may miss a body
 _HINTS: Final = 960.0
+_ROOM_LEFT: Final = LEFT - MARGIN - 24.0  # points for the sentences beside the sliders
 _SCALE: Final = (330.0, 702.0)  # left end of the forces' legend, on its baseline
 _SMOOTHING: Final = 0.05
 
@@ -141,7 +143,7 @@ class PhysicsScene(FormScene):
         if self.contacts_drawn:
             draw_contacts(canvas, view, self.exhibit.world, self._weight)
         for label in self.exhibit.labels():
-            draw_label(canvas, view, label, poses)
+            draw_label(canvas, view, label, poses, self.bench.panel.box if self.bench.panel else None)
         if self.grip:
             place = self.grip.place(poses[self.grip.body.index])
             x, y = view.points(place).tolist()
@@ -249,9 +251,9 @@ class PhysicsScene(FormScene):
     def _draw_words(self, canvas: Canvas) -> None:
         canvas.text(texts.PHYSICS_TITLE, (MARGIN, 38), size=SMALL, colour=MUTE)
         _, law, live = texts.EXHIBITS[self.chosen]
-        canvas.text(law, (MARGIN, 112), size=TEXT)
+        canvas.text(law, (MARGIN, 112), size=TEXT, room=_ROOM_LEFT)
         sentence = live[self.exhibit.state].format(**self.exhibit.figures())
-        write_figures(canvas, sentence, (MARGIN, 136), size=SMALL + 1)
+        write_figures(canvas, sentence, (MARGIN, 136), size=SMALL + 1, room=_ROOM_LEFT)
         if self.exhibit.weightless:
             x, y, _ = _ROWS
             for part, left in ((texts.PHYSICS_GRAVITY, x), (texts.PHYSICS_WEIGHTLESS, x + LABEL_WIDTH)):

@@ -103,6 +103,17 @@ def frame(number: int) -> Happens:
     return show
 
 
+def measured(driver: Driver) -> None:
+    """Show an exhibit's law and what has been measured, and its contacts."""
+    driver.keys(pygame.K_g, pygame.K_c)
+    driver.skip(130)
+
+
+def taken_apart(driver: Driver) -> None:
+    """Walk through every kind of piece of a step."""
+    driver.keys(*[pygame.K_PERIOD] * 5)
+
+
 def told(driver: Driver) -> None:
     """Have a long message shown."""
     driver.app.context.note(texts.SETTINGS_UNREADABLE.format(reason=texts.FLIGHT_ACTIONS, name="/settings"))
@@ -167,6 +178,8 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "training": ("TrainScene", {}, trained),
     "training to read": ("DigitTrainingScene", {}, taught_to_read),
     **{f"frame {number + 1}": ("LessonScene", {}, frame(number)) for number in range(7)},
+    "a law": ("PhysicsScene", {}, measured),
+    "a step": ("PhysicsStepScene", {}, taken_apart),
     "a digit": ("DigitsScene", {}, drawn),
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),

@@ -8,7 +8,6 @@ import pytest
 
 from game.core import texts
 from game.drawing.tokens import HUMAN
-from game.exhibits.law_panel import BOX
 from game.scenes import physics_step
 from game.scenes.physics import GRAVITIES, PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
@@ -121,7 +120,8 @@ def test_a_run_adds_its_point_to_the_plot(open_game: Open):
     [(value, result)] = panel.points
     assert (value, result) == (1.2, pytest.approx(panel.law))
     gallery(driver).draw(driver.app.canvas, 1.0)
-    pixels = pygame.surfarray.array3d(driver.app.canvas.surface)[BOX.left : BOX.right, BOX.top : BOX.bottom]
+    box = panel.box
+    pixels = pygame.surfarray.array3d(driver.app.canvas.surface)[box.left : box.right, box.top : box.bottom]
     assert int((np.abs(pixels.astype(int) - HUMAN).max(axis=2) < 12).sum()) > 15
     slider(driver, "impulse").set(0.8)  # the plot turns to the quantity changed last
     driver.frames(40)
@@ -162,9 +162,10 @@ def test_measuring_can_be_stopped_and_what_was_measured_stays(open_game: Open):
 def test_nothing_is_gripped_through_the_panel(open_game: Open):
     driver = open_game(PhysicsScene, "stack")
     scene = gallery(driver)
-    box = next(body for body in scene.exhibit.bodies if BOX.collidepoint(*scene.view(1.0).points(body.position[0])))
-    place = tuple(scene.view(1.0).points(box.position[0]).tolist())
     driver.key(pygame.K_g)
+    assert scene.bench.panel is not None
+    places = [tuple(scene.view(1.0).points(body.position[0]).tolist()) for body in scene.exhibit.bodies]
+    place = next(place for place in places if scene.bench.covers(place))
     driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(place), button=1)
     assert scene.grip is None
     driver.key(pygame.K_g)
