@@ -10,6 +10,7 @@ import pygame
 import pytest
 
 from ai.agent.config import Config
+from ai.nn.files import read_json
 from ai.training.history import History
 from ai.training.loop import Training
 from game.core import texts
@@ -160,7 +161,7 @@ def test_a_healthy_run_that_dies_is_reported_and_the_experiment_can_be_kept(besi
     assert run.state is WorkerState.RUNNING
     assert run.config.learning_rate == 0.2
     beside.frames(5)
-    beside.key(pygame.K_ESCAPE)
+    beside.app.close()
     kept = Library(tmp_path / "user").rescued()
     assert kept is not None
     assert kept.changes
@@ -168,17 +169,12 @@ def test_a_healthy_run_that_dies_is_reported_and_the_experiment_can_be_kept(besi
 
 def test_only_the_healthy_run_is_kept_on_the_disk(train: Driver, tmp_path: Path) -> None:
     split(train)
-    train.key(pygame.K_ESCAPE)
+    train.app.close()
     library = Library(tmp_path / "user")
-    assert [run.preset for run in library.items()] == []
-    left = library.claim()
-    library.release()
+    assert library.items() == []
+    left = library.rescued()
     assert left is not None
-    assert "learning_rate" not in read(left.folder)
-
-
-def read(folder: Path) -> str:
-    return (folder / "training.json").read_text()
+    assert "learning_rate" not in read_json(left.folder / "training.json")["changes"]
 
 
 def test_pause_and_step_are_for_both(train: Driver) -> None:
