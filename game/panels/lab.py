@@ -29,6 +29,7 @@ _PITCH: Final = 30  # of the guesses
 _FOOT: Final = 32  # from the bottom to the words there
 _MEANINGS: Final = 96.0  # from the left to what stands beside a label
 _LEADING: Final = 16.0
+_GAP: Final = 20.0  # between words at the foot
 
 Start = Callable[[Experiment], Transition | None]
 
@@ -100,7 +101,7 @@ def experiment_word(experiment: Experiment, description: KnobDescription) -> str
         words = texts.LAB_TIMES if experiment.kind == "times" else texts.LAB_DIVIDED
         return words.format(factor=float(f"{experiment.amount:.2g}"))
     if description.kind == "slider" and experiment.amount == 0:
-        return texts.KNOB_SWITCH[False]
+        return figure(False)
     value = figure(experiment.amount)
     return value if description.kind != "slider" else texts.LAB_TO.format(value=value)
 
@@ -135,13 +136,15 @@ def guess_widgets(laboratory: Laboratory, manager: PointsManager, box: pygame.Re
 
 
 def words_of(manager: PointsManager, box: pygame.Rect, words: list[tuple[str, OnPress]]) -> list[Widget]:
-    """Make buttons side by side at the foot of a page."""
+    """Make buttons side by side at the foot of a page, narrower where there is no room for all."""
+    widths = [typeface.width(word, SMALL, "regular") for word, _ in words]
+    share = min(1.0, (box.width - _GAP * (len(words) - 1)) / sum(widths))
     found: list[Widget] = []
     x: float = box.left
-    for word, press in words:
-        width = typeface.width(word, SMALL, "regular")
-        found.append(TextButton(manager, (x, box.bottom - _FOOT, width, 24), word, press, size=SMALL, colour=NET))
-        x += width + 20
+    for (word, press), width in zip(words, widths, strict=True):
+        place = (x, box.bottom - _FOOT, share * width, 24)
+        found.append(TextButton(manager, place, word, press, size=SMALL, colour=NET))
+        x += share * width + _GAP
     return found
 
 

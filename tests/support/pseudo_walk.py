@@ -32,6 +32,7 @@ from game.drawing.canvas import Canvas
 from game.learn import pay
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
+from game.scenes.dialog import QuestionDialog
 from game.scenes.error_screen import ErrorScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
@@ -61,6 +62,29 @@ def taught_to_read(driver: Driver) -> None:
     """Train a network to read for a moment."""
     run = driver.top.digit_run
     learn(driver, run, DIGITS, lambda: run.confusion and run.curves.points)
+
+
+def listed(driver: Driver) -> None:
+    """Open the list of sabotages, without the run of an earlier visit."""
+    if isinstance(driver.top, QuestionDialog):
+        driver.press_on(texts.TRAIN_LEFT_DISCARD)
+    driver.top.knobs.set_config(LANDERS, 3)
+    driver.press_on(texts.SABOTAGE)
+
+
+def asked(driver: Driver) -> None:
+    """Be asked what a sabotage will do."""
+    listed(driver)
+    driver.press_on(texts.SABOTAGES["rate_times_100"][0])
+
+
+def experimented(driver: Driver) -> None:
+    """Guess, and fly two runs side by side for a moment."""
+    asked(driver)
+    driver.press_on(texts.LAB_GUESSES["later"])
+    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2, 90.0)
+    driver.press_on(texts.TRAIN_PAUSE)
+    driver.frames(5)
 
 
 def learn(driver: Driver, run: TrainingRun, config: object, enough: Callable[[], object]) -> None:
@@ -175,7 +199,11 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "the tutorial": ("tutorial", {"tutored": False}, lambda _: None),
     "an error": ("error", {}, lambda _: None),
     "a message": ("MenuScene", {}, told),
+    "all knobs": ("TrainScene", {"all_knobs": True}, lambda _: None),
+    "the laboratory": ("TrainScene", {}, listed),
+    "a guess": ("TrainScene", {}, asked),
     "training": ("TrainScene", {}, trained),
+    "an experiment": ("TrainScene", {}, experimented),
     "training to read": ("DigitTrainingScene", {}, taught_to_read),
     **{f"frame {number + 1}": ("LessonScene", {}, frame(number)) for number in range(7)},
     "a law": ("PhysicsScene", {}, measured),

@@ -1,0 +1,284 @@
+"""Train's few knobs and its laboratory, through real pygame events; with real workers where their processes matter."""
+
+import os
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.config import Config
+from ai.nn.files import read_json
+from ai.training.history import History
+from ai.training.loop import Training
+from game.core import texts
+from game.core.worker import WorkerState
+from game.panels.knob import Knob
+from game.panels.knob_page import MORE, TryButton
+from game.scenes.dialog import NameDialog, QuestionDialog
+from game.scenes.train import TrainScene
+from game.training.knob_descriptions import knob_descriptions
+from game.training.library import Library
+from game.training.split_run import AHEAD
+from tests.support import inline_worker
+from tests.support.driver import Driver
+from tests.support.small import LANDERS as SMALL
+
+ALL = texts.KNOBS_ALL.format(count=len(knob_descriptions()))
+FEW = texts.KNOBS_FEW.format(count=3)
+TIMES = texts.LAB_TIMES.format(factor=100.0)
+
+
+@pytest.fixture
+def beside(open_game: Callable[..., Driver]) -> Driver:
+    """The screen, with processes of their own for its runs."""
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    driver.top.knobs.set_config(SMALL, 3)
+    return driver
+
+
+@pytest.fixture
+def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
+    """The screen, with its runs within this process."""
+    inline_worker.install(monkeypatch.setattr)
+    return beside
+
+
+def knobs(driver: Driver) -> list[str]:
+    return [each.description.name for each in driver.form.widgets if isinstance(each, Knob)]
+
+
+def split(driver: Driver) -> None:
+    driver.press_on(TIMES)
+    driver.wait(lambda: driver.top.lander_run.twin and len(driver.top.lander_run.twin.history) >= 2)
+
+
+# Knobs
+
+
+def test_three_knobs_come_first_and_all_on_demand_which_is_remembered(
+    train: Driver, open_game: Callable[..., Driver]
+) -> None:
+    assert knobs(train) == ["learning_rate", "epsilon_end", "discount"]
+    train.press_on(ALL)
+    assert len(knobs(train)) == 10
+    assert train.choice(texts.KNOB_PAGES["reward"])
+    train.frames(2)
+    assert train.saved()["all_knobs"] is True
+    again = open_game(TrainScene)
+    again.frames(2)
+    assert len(knobs(again)) == 10
+    again.press_on(FEW)
+    assert len(knobs(again)) == 3
+
+
+@pytest.mark.parametrize("device", ["keys", "pad", "mouse"])
+def test_a_knob_has_a_page_with_experiments(train: Driver, device: str) -> None:
+    train.press_on(ALL)
+    train.choice(texts.KNOB_PAGES["reward"]).choose(texts_page("memory"))
+    knob = next(each for each in train.form.widgets if isinstance(each, Knob) and each.label == texts.KNOBS["mirror"])
+    train.form.focus(knob)
+    if device == "keys":
+        train.key(pygame.K_c)
+    elif device == "pad":
+        train.button(pygame.CONTROLLER_BUTTON_BACK)
+    else:
+        [sign] = [each for each in train.form.widgets if isinstance(each, TryButton) and each.knob is knob]
+        assert sign.label == MORE
+        train.click(sign.box.center)
+    assert knobs(train) == ["mirror"]
+    assert [each.label for each in train.form.widgets if isinstance(each, TryButton)] == [texts.KNOB_SWITCH[False]]
+    train.press_on(texts.BACK)
+    assert train.form.focused.label == texts.KNOBS["mirror"]
+
+
+def texts_page(page: str) -> int:
+    return list(dict.fromkeys(each.page for each in knob_descriptions())).index(page)
+
+
+def test_every_numeric_knob_says_what_too_little_and_too_much_does_and_what_to_watch() -> None:
+    for knob in knob_descriptions():
+        if knob.kind == "slider":
+            assert len(knob.advice) == 3, knob.name
+            assert all(knob.advice), knob.name
+
+
+# Experiments
+
+
+def test_both_runs_begin_alike_and_stay_in_step(beside: Driver) -> None:
+    beside.unseen = True
+    split(beside)
+    run = beside.top.lander_run
+    assert run.config == SMALL
+    assert run.twin.config == SMALL.changed(learning_rate=0.2, final_learning_rate=0.03)
+    assert run.seed == run.twin.seed == 3
+    gaps = []
+    for _ in range(60):
+        beside.frames(1)
+        gaps.append(abs(run.turns[0] - run.turns[1]))
+    assert max(gaps) <= AHEAD
+    beside.wait(lambda: len(run.history.checkpoints) >= 2 and len(run.twin.history.checkpoints) >= 2)
+    for each in (run, run.twin):
+        assert np.array_equal(each.history.checkpoints[0].values, run.history.checkpoints[0].values)
+        assert np.array_equal(each.history.checkpoints[1].values, alone(each.config, each.history)), "as without a twin"
+
+
+def alone(config: Config, history: History) -> np.ndarray:
+    training = Training(config, 3)
+    while training.agent.decisions < history.checkpoints[1].decisions:
+        training.advance()
+    return training.agent.network.values
+
+
+def test_a_worker_that_dies_leaves_the_other_flying(beside: Driver) -> None:
+    split(beside)
+    run = beside.top.lander_run
+    os.kill(run.twin._worker.process_id, signal.SIGKILL)
+    beside.wait(lambda: run.twin.state is WorkerState.FAILED)
+    before = run.turns[0]
+    beside.wait(lambda: run.turns[0] > before + 3 * AHEAD)
+    assert run.state is WorkerState.RUNNING
+    assert "SIGKILL" in run.twin.problem
+    beside.press_on(texts.LAB_KEEP_EXPERIMENT)
+    assert beside.said == texts.SPLIT_OVER
+    assert run.twin is not None
+    beside.press_on(texts.LAB_KEEP_RUN)
+    assert run.twin is None
+    assert run.state is WorkerState.RUNNING
+
+
+def test_a_healthy_run_that_dies_is_reported_and_the_experiment_can_be_kept(beside: Driver, tmp_path: Path) -> None:
+    split(beside)
+    run = beside.top.lander_run
+    os.kill(run._worker.process_id, signal.SIGKILL)
+    beside.wait(lambda: run.state is WorkerState.FAILED)
+    assert "SIGKILL" in run.problem
+    beside.press_on(texts.LAB_KEEP_EXPERIMENT)
+    assert run.state is WorkerState.RUNNING
+    assert run.config.learning_rate == 0.2
+    beside.frames(5)
+    beside.app.close()
+    kept = Library(tmp_path / "user").rescued()
+    assert kept is not None
+    assert kept.changes
+
+
+def test_only_the_healthy_run_is_kept_on_the_disk(train: Driver, tmp_path: Path) -> None:
+    split(train)
+    train.app.close()
+    library = Library(tmp_path / "user")
+    assert library.items() == []
+    left = library.rescued()
+    assert left is not None
+    assert "learning_rate" not in read_json(left.folder / "training.json")["changes"]
+
+
+def test_pause_and_step_are_for_both(train: Driver) -> None:
+    split(train)
+    run = train.top.lander_run
+    train.press_on(texts.TRAIN_PAUSE)
+    train.frames(3)
+    assert run.twin.state is run.state is WorkerState.PAUSED
+    before = run.turns
+    train.press_on(texts.TRAIN_STEP)
+    train.frames(3)
+    assert run.turns == (before[0] + 1, before[1] + 1)
+
+
+def test_a_turned_knob_is_turned_in_both_but_the_one_that_differs(train: Driver) -> None:
+    split(train)
+    run = train.top.lander_run
+    train.top.knobs.turn("discount", 0.9)
+    train.top.knobs.turn("learning_rate", 0.001)
+    train.wait(lambda: run.config.learning_rate == 0.001 and run.twin.config.discount == 0.9)
+    train.frames(5)
+    assert run.config.discount == 0.9
+    assert run.twin.config.learning_rate == 0.2
+
+
+def test_two_lines_in_every_chart_by_decisions(train: Driver) -> None:
+    split(train)
+    train.frames(60)
+    charts = train.top.training_charts
+    for chart in charts.charts.charts:
+        assert len(chart.runs) == 2
+    assert train.choice(texts.TRAIN_AXES[1]).index == 1
+
+
+def test_the_player_is_asked_before_a_run_ends_for_an_experiment(train: Driver) -> None:
+    scene = train.top
+    train.press_on(texts.TRAIN_START)
+    train.wait(lambda: len(scene.lander_run.history) >= 2)
+    train.press_on(TIMES)
+    assert isinstance(train.top, QuestionDialog)
+    train.key(pygame.K_ESCAPE)
+    assert scene.lander_run.twin is None
+    train.press_on(TIMES)
+    train.press_on(texts.SPLIT_SAVE)
+    train.frames(2)
+    assert isinstance(train.top, NameDialog)
+    train.key(pygame.K_ESCAPE)
+    train.press_on(TIMES)
+    train.press_on(texts.SPLIT_START)
+    train.frames(2)
+    assert scene.lander_run.twin is not None
+
+
+# The guess
+
+
+@pytest.mark.parametrize("device", ["keys", "mouse", "pad"])
+def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str) -> None:
+    def press(label: str) -> None:
+        widget = train.widget(label)
+        if device == "mouse":
+            train.click(widget.box.center)
+            return
+        train.form.focus(widget)
+        train.key(pygame.K_RETURN) if device == "keys" else train.button(pygame.CONTROLLER_BUTTON_A)
+
+    scene, laboratory = train.top, train.top.laboratory
+    press(texts.SABOTAGE)
+    press(texts.SABOTAGES["plain_steps"][0])
+    assert scene.knobs.view == "guess"
+    assert scene.lander_run.twin is None
+    press(texts.LAB_GUESSES["never"])
+    assert scene.knobs.view == "result"
+    assert laboratory.chosen.guess == "never"
+    assert scene.lander_run.twin.config == SMALL.changed(optimizer="sgd")
+    train.wait(lambda: len(scene.lander_run.twin.history) >= 2)
+    train.frames(3)
+    assert laboratory.came is None
+    assert laboratory.so_far != texts.TRAIN_BEGINS
+    press(texts.LAB_KNOBS)
+    assert scene.knobs.view == "few"
+    press(texts.LAB_RESULT)
+    press(texts.LAB_KEEP_RUN)
+    assert scene.lander_run.twin is None
+    assert scene.knobs.view == "few"
+
+
+def test_the_guess_can_be_skipped_or_the_sabotage_flown_alone(train: Driver) -> None:
+    scene = train.top
+    train.press_on(texts.SABOTAGE)
+    train.press_on(texts.SABOTAGES["no_n_step"][0])
+    train.press_on(texts.LAB_ALONE)
+    assert scene.lander_run.twin is None
+    assert scene.knobs.config.n_step == 1
+    train.press_on(texts.SABOTAGE)
+    train.press_on(texts.SABOTAGES["short_sight"][0])
+    train.press_on(texts.LAB_SKIP)
+    assert scene.lander_run.twin.config.discount == 0.8
+    assert scene.laboratory.chosen.guess is None
+
+
+def test_captions_follow_the_run(train: Driver) -> None:
+    train.press_on(texts.TRAIN_START)
+    scene = train.top
+    train.wait(lambda: scene.captions.shown)
+    assert scene.captions.text("success") == texts.CHART_CAPTIONS["success"]["unknown"]
+    assert scene.captions.text("stage") == texts.CHART_CAPTIONS["stage"]["same"]
