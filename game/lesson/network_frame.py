@@ -104,8 +104,6 @@ class NetworkFrame(Frame):
 
     def unit_name(self, column: int, unit: int) -> str:
         """Return the name of a unit of a column, by its number in the layer."""
-        if column == 0 and self.step.input_name is not None:
-            return self.step.input_name(unit)
         names = self.step.inputs if column == 0 else self.step.outputs if column == len(self.step.weights) else ()
         return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=column, unit=unit + 1)
 

@@ -31,6 +31,7 @@ from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.scenes import scene_of
 from game.scenes.error_screen import ErrorScene
+from game.scenes.lesson import LessonScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
 from game.training.training_run import TrainingRun
@@ -38,6 +39,7 @@ from game.ui.context import Context
 from game.ui.widgets import Choice
 from tests.support import inline_worker
 from tests.support.driver import Driver
+from tests.support.lessons import digit_lesson_of
 from tests.support.pen import SEVEN, stroke
 from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, settle, shared
 from tests.support.small import DIGITS, LANDERS
@@ -116,6 +118,7 @@ class Blank(Scene):
 
 OTHERS: dict[str, Make] = {
     "tutorial": PlayScene,
+    "a digit's lesson": lambda context: LessonScene(context, digit_lesson_of("modern")),
     "error": lambda context: ErrorScene(context, ValueError(), Path("/home/somebody/log")),
 }
 # What happens in a scene: its name, settings, and what is done there.
@@ -130,6 +133,7 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "training": ("TrainScene", {}, trained),
     "training to read": ("DigitTrainingScene", {}, taught_to_read),
     **{f"frame {number + 1}": ("LessonScene", {}, frame(number)) for number in range(7)},
+    **{f"frame {number + 1} of a digit": ("a digit's lesson", {}, frame(number)) for number in range(7)},
     "a digit": ("DigitsScene", {}, drawn),
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
