@@ -48,6 +48,7 @@ from game.scenes.error_screen import ErrorScene
 from game.scenes.menu import MenuScene
 from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
+from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
 from game.scenes.watch import COUNTS, WatchScene
 from game.shell.app import App
@@ -90,6 +91,7 @@ def rows() -> dict[str, Row]:
             "PlayScene",
             "WatchScene",
             "PhysicsScene",
+            "PhysicsStepScene",
             "mission",
         }
     return {
@@ -108,8 +110,18 @@ def rows() -> dict[str, Row]:
         "choices": Row(play.make, (pygame.K_c, pygame.K_DOWN)),
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
+        "watch, map of actions": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m,)),
+        "watch, map of scores": Row(
+            lambda context: WatchScene(context, 16, seed=4), (pygame.K_m, pygame.K_LSHIFT, pygame.K_m)
+        ),
+        "watch, touched": Row(lambda context: WatchScene(context, 1, seed=4), (pygame.K_m, pygame.K_g, pygame.K_LEFT)),
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
         "physics, contacts": Row(heap, (pygame.K_c,)),
+        **{f"physics, {name}, plot": Row(lambda context, n=name: plotted(context, n)) for name in EXHIBITS},
+        "physics, measuring": Row(lambda context: plotted(context, "heap", measuring=True)),
+        "physics, one step": Row(
+            lambda context: PhysicsStepScene(context, PhysicsScene(context, "stack").exhibit), (pygame.K_PERIOD,)
+        ),
         **{
             name.removesuffix("Scene").lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN))
             for name in sorted(others)
@@ -118,6 +130,15 @@ def rows() -> dict[str, Row]:
         "train": Row(of_tour("TrainScene"), (pygame.K_RETURN,)),
         "digittraining": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
     }
+
+
+def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> PhysicsScene:
+    """Open the gallery with the plot of law and measurement; `measuring` its whole range at once."""
+    scene = PhysicsScene(context, exhibit)
+    scene.bench.toggle()
+    if measuring:
+        scene.bench.measure()
+    return scene
 
 
 def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:

@@ -93,8 +93,8 @@ def collide(a: Shape, pose_a: Array, b: Shape, pose_b: Array, margin: float = 0.
 
 def collide_polygons(a: PlacedPolygons, b: PlacedPolygons, margin: float) -> Manifold:
     """Contacts of n pairs of convex polygons."""
-    gap_a, face_a = _deepest_face(a, b.start)
-    gap_b, face_b = _deepest_face(b, a.start)
+    gap_a, face_a = deepest_face(a, b.start)
+    gap_b, face_b = deepest_face(b, a.start)
     touching = np.maximum(gap_a, gap_b) <= margin
     flip = gap_b > gap_a + _REFERENCE_BIAS  # B holds the reference face
     rows = np.arange(len(flip))
@@ -123,7 +123,8 @@ def collide_polygons(a: PlacedPolygons, b: PlacedPolygons, margin: float) -> Man
 def collide_polygon_circle(a: PlacedPolygons, centre: Array, radius: Array, margin: float) -> Manifold:
     """Contacts of n convex polygons with n circles, `centre` (n, 2) and `radius` (n,)."""
     rows = np.arange(len(centre))
-    face = np.argmax(dot(a.normal, centre[:, None] - a.start), axis=1)
+    gaps = dot(a.normal, centre[:, None] - a.start)
+    face = gaps.argmax(axis=1)
     start, end, normal = a.start[rows, face], a.end[rows, face], a.normal[rows, face]
     gap = dot(normal, centre - start)
     edge = end - start
@@ -148,7 +149,7 @@ def collide_circles(centre_a: Array, radius_a: Array, centre_b: Array, radius_b:
     return _single(normal, centre_a + normal * (radius_a - depth / 2)[:, None], depth, margin)
 
 
-def _deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
+def deepest_face(a: PlacedPolygons, corners: Array) -> tuple[Array, Ints]:
     """Largest gap between a face of `a` and all `corners`, (n,), below 0 for an overlap; and which face."""
     gaps = np.empty(a.normal.shape[:2])
     for first in range(0, len(gaps), _BLOCK):

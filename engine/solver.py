@@ -52,7 +52,7 @@ class Solver:
 
     def __init__(self, state: BodyState, params: BodyParams, contacts: Contacts) -> None:
         self.contacts = contacts
-        self._rows = _Rows.build(state, params, contacts)
+        self._rows = Rows.build(state, params, contacts)
         contacts.approach = self._rows.speeds(state.velocity.reshape(-1))
         contacts.approach[:2] *= -1
         starts = [0, *contacts.colour_ends[:-1]]
@@ -98,7 +98,7 @@ class Solver:
 
 
 @dataclass
-class _Rows:
+class Rows:
     """Constraint rows. First axis: normal, normal, friction; last axis: A's x, y, turn, then B's."""
 
     index: Ints  # (m, 6): where A's and B's velocities stand among all of them, laid flat
@@ -111,7 +111,8 @@ class _Rows:
     cross_inverse: Array  # (m,): and what stands beside it
 
     @classmethod
-    def build(cls, state: BodyState, params: BodyParams, contacts: Contacts) -> _Rows:
+    def build(cls, state: BodyState, params: BodyParams, contacts: Contacts) -> Rows:
+        """Return the rows of these contacts, before any has been solved."""
         slots = contacts.world[:, None] * state.pose.shape[1] + contacts.body
         index = (slots[:, :, None] * 3 + np.arange(3)).reshape(-1, 6)
         jacobian = _jacobian(state.pose.reshape(-1, 3)[slots, :2], contacts.manifold)
@@ -133,9 +134,9 @@ class _Rows:
         cross_inverse = np.where(alone, 0.0, -coupling / determinant)
         return cls(index, jacobian, response, mass, coupling, stiffness[4:], inverse, cross_inverse)
 
-    def part(self, span: slice) -> _Rows:
+    def part(self, span: slice) -> Rows:
         """Only the manifolds of `span`."""
-        return _Rows(
+        return Rows(
             self.index[span],
             self.jacobian[:, span],
             self.response[:, span],

@@ -66,6 +66,7 @@ class DeepQAgent:
         train_count: gradient steps taken so far.
         loss: mean absolute temporal-difference error of the last `learn`, in scaled reward.
         mean_q: mean value of the next states it learned from, in the same unit.
+        held: whether `learn` does nothing, while its network is edited by hand.
 
     """
 
@@ -93,6 +94,7 @@ class DeepQAgent:
             self.replay = replay
         self.decisions = self.train_count = 0
         self.loss = self.mean_q = 0.0
+        self.held = False
         self._n_step = NStep(self.config.n_step, self.config.discount)
         self._episodes = Episodes()
 
@@ -148,11 +150,11 @@ class DeepQAgent:
     def learn(self) -> float | None:
         """Take `config.gradient_steps` steps, and a second pass over successes if asked for; return the mean loss.
 
-        None until `config.learning_starts` transitions have been stored. Raises DivergenceError when a number is no
-        longer finite.
+        None until `config.learning_starts` transitions have been stored, and while it is `held`. Raises
+        DivergenceError when a number is no longer finite.
         """
         config = self.config
-        if self.replay.added < config.learning_starts:
+        if self.held or self.replay.added < config.learning_starts:
             return None
         self.optimizer.learning_rate = learning_rate(config, self.decisions)
         self.optimizer.clip = config.gradient_clip

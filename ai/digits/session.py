@@ -8,22 +8,21 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from ai.digits.checkpoints import resume_digit_run, save_digit_run
-from ai.digits.classifier import DIGITS, DigitClassifier
 from ai.digits.config import DigitConfig
+from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.lesson import DigitLesson, explain_digit
 from ai.digits.training import DigitTraining
+from ai.digits.validation import Confusion, HeldOutScore, ValidationReading
 from ai.nn import Array
 from ai.training.history import REVERTED
 from ai.training.messages import ChangeSetting, Refused, Save, Saved, problem_of
 
 POINT_SECONDS: Final = 0.1  # of learning, at least, between two points
 KEEP_SECONDS: Final = 20.0
-EXAMPLES: Final = 12  # misread images of a kind that are shown
-_SLICE: Final = 100  # images of those held out that are read between two steps
-_SHARE: Final = 0.25  # of the time that goes into reading them
+_LARGEST: Final = float(np.finfo(np.float16).max)
+_SHARE: Final = 0.25  # of the time that goes into reading the images held out
 
 
 @dataclass(frozen=True)
@@ -49,32 +48,6 @@ class DigitPoint:
     accuracy: float  # as they were learnt from: bent, and with dropout
     learning_rate: float
     images_per_second: float
-
-
-@dataclass(frozen=True)
-class HeldOutScore:
-    """Accuracy on the images held out, of the network as it would be kept now."""
-
-    seconds: float
-    accuracy: float
-
-
-@dataclass(frozen=True, eq=False)
-class Confusion:
-    """Confusion matrix of the images held out, with some that were misread.
-
-    Attributes:
-        table: (10, 10) how often each digit (row) was read as which (column).
-        cells: (n, 2) row and column of some that were misread, at most EXAMPLES of each kind.
-        images: (n, 28, 28) uint8, those images.
-
-    """
-
-    newest_only: ClassVar = True
-
-    table: npt.NDArray[np.int64]
-    cells: npt.NDArray[np.int64]
-    images: npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -120,6 +93,7 @@ class Finish:
 Message = (
     DigitRunStarted
     | DigitPoint
+    | FilterMoment
     | HeldOutScore
     | Confusion
     | DigitSettingChanged
@@ -144,49 +118,14 @@ def live_digits(
     early = yield []  # unpacking the images takes a while: show the caller first that the run is alive
     training = resume_digit_run(resume, data=data) if resume else DigitTraining(config, seed, data)
     run = _LiveDigits(training, keep)
-    command = (yield [DigitRunStarted(training.config, training.seed, training.step, training.steps)]) or early
+    started = DigitRunStarted(training.config, training.seed, training.step, training.steps)
+    command = (yield [started, run.filters()]) or early
     try:
         while not training.done and not isinstance(command, Finish):
             command = yield (run.advance() if command is None else run.carry_out(command))
         yield from run.finish(command)
     finally:
         run.end()
-
-
-class _HeldOut:
-    """Validation on the images held out, a slice at a time, of the network as it was at the start."""
-
-    def __init__(self, training: DigitTraining, classifier: DigitClassifier | None = None) -> None:
-        self._classifier = classifier or training.current()
-        self._images, self._labels = training.held_images, training.held_labels
-        self._read: list[npt.NDArray[np.intp]] = []
-        self._at = 0
-
-    def go_on(self) -> bool:
-        """Read a slice; return whether that was the last."""
-        part = self._images[self._at : self._at + _SLICE]
-        self._read.append(self._classifier.predict(part).argmax(axis=1))
-        self._at += _SLICE
-        return self._at >= len(self._images)
-
-    @property
-    def values(self) -> Array:
-        """The network's parameters."""
-        return self._classifier.network.values
-
-    def told(self, at: float) -> tuple[HeldOutScore, Confusion]:
-        """Return score and confusion matrix of the network, which had learnt for so many seconds."""
-        labels, read = self._labels.astype(np.int64), np.concatenate(self._read)
-        table = np.zeros((DIGITS, DIGITS), np.int64)
-        np.add.at(table, (labels, read), 1)
-        kinds = labels * DIGITS + read
-        wrong = np.flatnonzero(labels != read)
-        chosen = np.sort(
-            np.concatenate([wrong[:0], *(wrong[kinds[wrong] == kind][:EXAMPLES] for kind in np.unique(kinds[wrong]))])
-        )
-        images = (self._images[chosen] * 255).astype(np.uint8)
-        accuracy = float(table.trace() / len(labels))
-        return HeldOutScore(at, accuracy), Confusion(table, np.stack([labels[chosen], read[chosen]], axis=1), images)
 
 
 class _LiveDigits:
@@ -197,9 +136,10 @@ class _LiveDigits:
         self._batches: list[tuple[float, float]] = []  # loss and accuracy
         self._point_at = training.seconds
         self._keep_at = training.seconds + KEEP_SECONDS
+        self._filters_at = training.seconds
         self._kept = training.step
         self._trouble = ""
-        self._reading: _HeldOut | None = None
+        self._reading: ValidationReading | None = None
         self._best: tuple[float, Array] | None = None  # of all that was read, the accuracy and the values
         self._learning = self._looking = 0.0  # seconds
 
@@ -218,6 +158,8 @@ class _LiveDigits:
             self._batches.clear()
             told.append(DigitPoint(training.seconds, progress.step, progress.epoch, loss, accuracy,
                                    progress.learning_rate, progress.images_per_second))  # fmt: skip
+        if training.seconds >= self._filters_at:
+            told.append(self.filters())
         if self._looking <= _SHARE * self._learning:
             told += self._look()
             self._looking += training.clock() - stepped
@@ -225,6 +167,13 @@ class _LiveDigits:
             self._keep_at = training.seconds + KEEP_SECONDS
             told += self._keep()
         return told
+
+    def filters(self) -> FilterMoment:
+        """Return the first layer's filters as they are now, of the weights that learn."""
+        training = self.training
+        self._filters_at = next_moment(training.seconds)
+        images = np.clip(first_filters(training.classifier.network), -_LARGEST, _LARGEST).astype(np.float16)
+        return FilterMoment(training.seconds, training.step, images)
 
     def carry_out(self, command: Command) -> list[Message]:
         """Turn a live knob, for which the answer is a refusal or nothing, or save."""
@@ -269,13 +218,13 @@ class _LiveDigits:
     def _last_words(self) -> Iterator[list[Message]]:
         yield self._keep()  # measuring takes a while, and a user who does not wait must lose nothing
         if len(self.training.held_images):
-            reading = _HeldOut(self.training)
+            reading = ValidationReading(self.training)
             while not reading.go_on():
                 yield []
             score, misread = reading.told(self.training.seconds)
             yield [score, misread]
             if self.training.best_epoch is not None:  # another network is kept: its misread images are shown
-                reading = _HeldOut(self.training, self.training.best_classifier())
+                reading = ValidationReading(self.training, self.training.best_classifier())
                 while not reading.go_on():
                     yield []
                 yield [reading.told(self.training.seconds)[1]]
@@ -290,7 +239,7 @@ class _LiveDigits:
         """Read some of the images held out; return the messages if that completes them."""
         if not len(self.training.held_images):
             return []
-        self._reading = self._reading or _HeldOut(self.training)
+        self._reading = self._reading or ValidationReading(self.training)
         if not self._reading.go_on():
             return []
         reading, self._reading = self._reading, None

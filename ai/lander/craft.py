@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Any, Final
 
 import numpy as np
 
@@ -11,6 +12,19 @@ from ai.lander.conditions import Conditions
 from ai.lander.ground import Ground
 from ai.lander.rules import FOOT_CENTRE, FOOT_SIZE, HULL, LanderParams
 from engine import DT, Polygon, World
+
+_ALONG: Final = np.linspace(0.0, 1.0, 32, endpoint=False)[:, None, None]  # of every edge of the craft
+
+
+def _outline() -> Doubles:
+    """Return points around the craft, metres from its centre of mass, (k, 2): every corner, and some between."""
+    middle, (half, rise) = np.array(FOOT_CENTRE), np.array(FOOT_SIZE) / 2
+    foot = middle + np.array([(-half, -rise), (half, -rise), (half, rise), (-half, rise)])
+    parts = np.array(HULL), foot, foot * (-1, 1)
+    return np.concatenate([(part + _ALONG * (np.roll(part, -1, axis=0) - part)).reshape(-1, 2) for part in parts])
+
+
+_OUTLINE: Final = _outline()
 
 
 class Craft:
@@ -133,6 +147,15 @@ class Craft:
     def altitude(self) -> Doubles:
         """Metres between the level feet and the target pad's top, (n,)."""
         return self.position[:, 1] - self.pad[:, 1] - self.params.stand
+
+    def lowest(self, x: float, angle: float) -> float:
+        """Return the least height, in metres, at which a lander at `x` that leans by `angle` clears the ground.
+
+        Pads that move count where they are at rest.
+        """
+        cos, sin = math.cos(angle), math.sin(angle)
+        across, up = (_OUTLINE @ np.array([[cos, sin], [-sin, cos]])).T
+        return float((self.ground.height(x + across) - up).max())
 
     def _top(self, pad: Any) -> Doubles:
         """Middle of the top of one pad, or of one for each slot, where it is now: (2,) or (n, 2)."""

@@ -37,6 +37,7 @@ from ai.lander.rules import (
     Outcome,
     engines_switched,
 )
+from ai.lander.sensing import sensed
 from ai.lander.spawns import SPAWNS, Curriculum
 from engine import DT
 
@@ -48,8 +49,6 @@ __all__ = [
 
 _COUNTERS: Final = ("outcome", "cause", "actions", "contacts", "impact", "steps", "main_steps", "side_steps",
                     "touched", "_still", "_feet_steps")  # fmt: skip
-# Metres sideways beyond which networks were never trained: with several pads, farther ones are shown at this.
-_FAR: Final = 16.0
 
 
 class LanderEnv(Craft):
@@ -139,6 +138,21 @@ class LanderEnv(Craft):
         self.lander.active = self.outcome == Outcome.FLYING
         self._started = True
 
+    def begin_at(self, slot: int, start: Doubles) -> None:
+        """Begin a flight of one slot at x, y, vx, vy, angle, spin, above the ground inside the area.
+
+        Raises ValueError for any other start.
+        """
+        start = np.asarray(start, dtype=float)
+        if start.shape != (6,) or not np.isfinite(start).all():
+            raise ValueError(f"a start is six finite numbers, not {start}")
+        x, y, angle = start[[0, 1, 4]].tolist()
+        if abs(x) > self.limits.half_width or y > self.limits.ceiling:
+            raise ValueError(f"a flight begins inside the area, not at ({x:.2f}, {y:.2f})")
+        if y < self.lowest(x, angle):
+            raise ValueError(f"a flight begins above the ground, not at ({x:.2f}, {y:.2f})")
+        self.place(np.arange(self.num_envs) == slot, start[None])
+
     def step(self, actions: Any) -> StepResult:
         """Fly one decision; `actions` (n,) are 0 to 5. Raises ValueError for others, RuntimeError before a reset."""
         held = self.actions
@@ -198,19 +212,23 @@ class LanderEnv(Craft):
     def observe(self, pad: Any = None) -> Floats:
         """Return every lander's observation (n, 9) of its target, or of another `pad`, one number or (n,)."""
         pad = self.target if pad is None else np.asarray(pad)
+        pads = len(self.ground.pads)
+        contacts = self.contacts if pads == 1 else self.contacts * (self.touched == pad)[:, None]
+        offset = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
+        return sensed(offset, self._relative_velocity(), *self._turned(), contacts, pads=pads)
+
+    def observe_at(self, slot: int, places: Doubles) -> Floats:
+        """Return what lander `slot` would observe at other places (m, 2) in the air, moving as it does now: (m, 9)."""
+        at = np.full(len(places), slot)
+        offset = places - (self.pad[at] + np.array([0.0, self.params.stand]))
+        sin, cos, spin = (part[at] for part in self._turned())
+        nothing = np.zeros((len(places), 2), dtype=bool)
+        return sensed(offset, self._relative_velocity()[at], sin, cos, spin, nothing, pads=len(self.ground.pads))
+
+    def _turned(self) -> tuple[Doubles, Doubles, Doubles]:
+        """Return sine and cosine of every lander's angle, and its turning in rad/s, (n,) each."""
         state, body = self.world.state, self.lander.index
-        sensed = np.empty((self.num_envs, NUM_FEATURES))
-        sensed[:, 0:2] = self.position - (self._top(pad) + np.array([0.0, self.params.stand]))
-        sensed[:, 2:4] = self._relative_velocity()
-        sensed[:, 4] = state.sin[:, body]
-        sensed[:, 5] = state.cos[:, body]
-        sensed[:, 6] = self.angular_velocity
-        sensed[:, 7:9] = self.contacts
-        if len(self.ground.pads) > 1:
-            sensed[:, 0].clip(-_FAR, _FAR, out=sensed[:, 0])
-            sensed[:, 7:9] *= (self.touched == pad)[:, None]
-        sensed *= OBSERVATION_SCALE
-        return sensed.astype(np.float32)
+        return state.sin[:, body], state.cos[:, body], self.angular_velocity
 
     def observe_pads(self) -> Floats:
         """Return every lander's observation of each pad, (n, pads, 9)."""

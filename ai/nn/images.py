@@ -103,6 +103,13 @@ class ConvolutionLayer(FullyConnectedLayer):
         self.backward.correlate(self.framed_error.T, turned, np.zeros(turned.shape[-1], self.dtype), self.error.T)
         return self.error
 
+    def window(self, image: Array, row: int, column: int) -> Array:
+        """Return what one output reads of an image (height, width, channels): (kernel, kernel, channels)."""
+        frame = self._frame(1)
+        _place(image[None], frame, self.padding)
+        top, left = row * self.stride, column * self.stride
+        return frame[0, top : top + self.kernel, left : left + self.kernel]
+
     def _correlate(self, images: Array, frame: Array, output: Array) -> Array:
         _place(images, frame, self.padding)
         self.forward.correlate(frame.T, self.kernels, self.bias, output.T)

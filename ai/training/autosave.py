@@ -28,6 +28,11 @@ class Autosave:
         self._writer = ThreadPoolExecutor(max_workers=1)
         self._writing: Future[None] | None = None
 
+    def move_to(self, folder: Path) -> None:
+        """Save to another folder from now on, the first time as soon as possible."""
+        self.wait()
+        self._folder, self._saved_at, self._due = folder, -1, self._training.clock()
+
     def go_on(self, now: float) -> list[Saved]:
         """Start a save when it is time, by the clock; return a message when one did not succeed, once."""
         if self._folder is None:

@@ -13,6 +13,7 @@ from ai.agent.config import Config
 from ai.agent.lesson import Lesson
 from ai.agent.schedule import InForce
 from ai.common.environment import Floats
+from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, Point, SettingChange, Validation
 
 
@@ -62,6 +63,13 @@ class ChangeSetting:
 @dataclass(frozen=True)
 class Save:
     """Command to save the run, as it is now, to a folder."""
+
+    folder: Path
+
+
+@dataclass(frozen=True)
+class AutosaveTo:
+    """Command to save the run by itself to this folder from now on."""
 
     folder: Path
 
@@ -124,5 +132,6 @@ Message = (
     | Saved
     | Refused
     | Lesson
+    | NetworkEdits
 )
-Command = ChangeSetting | Save | RestoreCheckpoint | AddDemonstrations | Explain
+Command = ChangeSetting | Save | AutosaveTo | RestoreCheckpoint | AddDemonstrations | Explain | EditCommand

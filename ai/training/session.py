@@ -17,6 +17,7 @@ from ai.lander.environment import LanderEnv
 from ai.training.autosave import Autosave
 from ai.training.checkpoints import restore_checkpoint, resume_run
 from ai.training.demonstrations import Demonstration, read, taught, teach
+from ai.training.edits import EDITED, EditCommand, NetworkEditor
 from ai.training.explanations import Explanations
 from ai.training.history import (
     PARTS,
@@ -32,6 +33,7 @@ from ai.training.history import (
 from ai.training.loop import Progress, Training
 from ai.training.messages import (
     AddDemonstrations,
+    AutosaveTo,
     ChangeSetting,
     Command,
     Explain,
@@ -100,6 +102,7 @@ class _LiveRun:
         self._validation = ValidationFlights(training)
         self._autosave = Autosave(training, history, keep)
         self._explanations = Explanations(training)
+        self._editor = NetworkEditor(training.agent)
         self._swarm_state = self._swarm_state_of(self.env.outcome)
         self._network_state_at = 0.0
         self._point_at = 0
@@ -141,11 +144,12 @@ class _LiveRun:
         if progress.decisions >= self._point_at:
             self._point_at = progress.decisions + POINT_DECISIONS
             self._record(self._point(progress))
-        if progress.decisions >= self._checkpoint_at:
+        if progress.decisions >= self._checkpoint_at and not training.agent.held:
             self._record(self._checkpoint(progress.success_rate))
             self._checkpoint_at = progress.decisions + self._checkpoint_every
         self._explanations.keep()
-        self._messages += self._autosave.go_on(now)
+        if not training.agent.held:  # what is edited is only looked at, until it learns on from there
+            self._messages += self._autosave.go_on(now)
         return self._flush()
 
     def carry_out(self, command: Command) -> tuple[Message, ...]:
@@ -159,17 +163,24 @@ class _LiveRun:
                 self._teach(command)
             case Explain():
                 self._explain(command)
+            case AutosaveTo(folder):
+                self._autosave.move_to(folder)
             case Save(folder):
                 self._record_validation(self._validation.finish())
                 self._messages.append(self._autosave.save(folder))
+            case _:
+                self._edit(command)
         return self._flush()
 
     def restore_last_checkpoint(self) -> None:
         """Restore the networks from the last checkpoint, when training has diverged since."""
+        self._editor.forget()
         restore_checkpoint(self.training.agent, self.history.checkpoints[-1])
 
     def end(self) -> None:
-        """Save what has not been saved, and wait until it is on the disk."""
+        """Save what has not been saved, without an edit that was only looked at; wait until it is on the disk."""
+        if self.training.agent.held:
+            self._editor.restore()
         self._autosave.end()
 
     def _flush(self) -> tuple[Message, ...]:
@@ -211,7 +222,8 @@ class _LiveRun:
 
     def _point(self, progress: Progress) -> Point:
         flown = 1.0 if self.training.statistics.known else np.nan
-        learnt = 1.0 if self.training.agent.train_count > self._began_learning else np.nan
+        agent = self.training.agent
+        learnt = 1.0 if agent.train_count > self._began_learning and not agent.held else np.nan
         landed, crashed, out_of_bounds, timed_out = (flown * share for share in progress.shares)
         return Point(
             self.training.seconds, progress.decisions, progress.episodes, flown * progress.success_rate,
@@ -286,11 +298,23 @@ class _LiveRun:
             del self._turned_at[name]
         return amends
 
+    def _edit(self, command: EditCommand) -> None:
+        editor, before = self._editor, self._editor.count
+        try:
+            editor.carry_out(command)
+        except ValueError as error:
+            self._messages.append(Refused(command, str(error)))
+            return
+        if editor.count != before:
+            self._record_change(EDITED, before, editor.count, self._amends(EDITED, editor.count))
+        self._messages += (editor.edits, *self._state_messages())
+
     def _restore_checkpoint(self, command: RestoreCheckpoint) -> None:
         checkpoint = self.history.checkpoint_at(command.decisions)
         if checkpoint is None:
             self._messages.append(Refused(command, "this run has no checkpoints yet"))
             return
+        self._editor.forget()
         restore_checkpoint(self.training.agent, checkpoint)
         self._record_change(REVERTED, None, checkpoint.decisions)
-        self._messages += self._state_messages()
+        self._messages += (self._editor.edits, *self._state_messages())

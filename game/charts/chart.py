@@ -134,6 +134,11 @@ class Chart:
         """Put the marker at x: a vertical line with a caption and a dot on the current run's curve; None removes it."""
         self._marker = None if x is None else (x, caption)
 
+    @property
+    def marker(self) -> float | None:
+        """The x of the marker; None without one."""
+        return self._marker[0] if self._marker else None
+
     def hover(self, point: Point | None) -> None:
         """Move the cursor to the mouse, a point of the canvas; None removes it."""
         self.point_to(None if point is None else self.x_at(point), pointed=True)
@@ -186,7 +191,7 @@ class Chart:
         if self._painted is None or self._painted[0].scale != canvas.scale:
             self._painted = self._paint(canvas)
         canvas.lay(self._painted[0], self.box.x - _MARGIN, self.box.y - _MARGIN)
-        if self._marker:
+        if self._marker and self.x_range[0] <= self._marker[0] <= self.x_range[1]:
             self._draw_marker(canvas, *self._marker)
         if self.cursor is not None:
             self._draw_cursor(canvas, self.cursor)
@@ -246,6 +251,8 @@ class Chart:
         start, end = self.x_range
         last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
         for tick in self._ticks:
+            if not start <= tick.x <= end:
+                continue
             x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
             if tick.kind == "knob":
                 sheet.marker("diamond", (x, plot.bottom), 8, HUMAN)

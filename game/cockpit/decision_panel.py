@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from functools import partial
 from typing import Final
 
 import numpy as np
 import pygame
 
 from ai.common.decision import Decision
+from ai.lander.environment import OBSERVATION_SCALE
 from game.cockpit import hud
 from game.core import texts
 from game.drawing.canvas import Canvas
@@ -32,10 +35,12 @@ def draw_decision(canvas: Canvas, decision: Decision) -> None:
     canvas.text(texts.DECISION_SCRIPTED_TITLE if values is None else texts.DECISION_TITLE, (left, top + 34), room=width)
     if values is None:
         draw_actions(canvas, int(decision.action[0]), left, top + _VALUES)
+        canvas.explain((left, top + _VALUES - 14, width, HEIGHT - 20), texts.EXPLAIN_RULES)
     else:
         draw_q_values(canvas, values, left, top + _VALUES, width)
     for number, line in enumerate(decision_words(decision)):
         canvas.text(line, (left, top + _WORDS + 18 * number), size=SMALL, colour=MUTE if number else INK, room=width)
+    canvas.explain((left, top + _WORDS - 14, width, 38), texts.EXPLAIN_WHY, partial(_keeps, decision))
     canvas.line((left, top + _WORDS + 32), (left + width, top + _WORDS + 32), LINE)
     canvas.text(texts.DECISION_INPUTS, (left, top + _WORDS + 54), size=LABEL, colour=MUTE, weight="medium")
     _draw_inputs(canvas, decision.observation[0].tolist(), left, top + _INPUTS, width)
@@ -49,3 +54,24 @@ def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, w
         canvas.text(name, (left, y), size=LABEL, colour=MUTE, room=90)
         figure = f"{value:.2f}".replace("-", "−")
         canvas.text(figure, (left + width, y), size=LABEL, colour=MUTE, align="right", tabular=True)
+        what = texts.EXPLAIN_INPUTS[number].format(unit=1 / OBSERVATION_SCALE[number])
+        canvas.explain((left, y - 13, width, _PITCH), what, partial(_sensed, inputs, number))
+
+
+def _sensed(inputs: list[float], number: int) -> str:
+    """Say what an input means, in metres, seconds and degrees."""
+    value = inputs[number] / float(OBSERVATION_SCALE[number])
+    if number in (4, 5):
+        value = math.degrees(math.asin(value) if number == 4 else math.acos(value)) if abs(value) <= 1 else 0.0
+    elif number == 6:
+        value = math.degrees(value)
+    return texts.EXPLAIN_INPUTS_NOW[number].format(value=value).replace("-", "−")
+
+
+def _keeps(decision: Decision) -> str:
+    """Say when this pilot keeps an action."""
+    if decision.points is None:
+        return texts.EXPLAIN_WHY_RULES
+    if not decision.margin:
+        return texts.EXPLAIN_WHY_BEST
+    return texts.EXPLAIN_WHY_NOW.format(margin=decision.margin)

@@ -131,6 +131,11 @@ def draw_readouts(canvas: Canvas, readouts: Sequence[Readout], columns: Sequence
             canvas.line((x + readout.limit * _BAR[0], _BAR_TOP - 3), (x + readout.limit * _BAR[0], _BAR_TOP + 5), INK)
 
 
+def readout_box(x: float) -> tuple[float, float, float, float]:
+    """Return the area of the read-out whose column begins at x."""
+    return x - _ASIDE, _LABEL_LINE - _ABOVE, _BAR[0] + 2 * _ASIDE, _BAR_TOP - _LABEL_LINE + _ABOVE + 8
+
+
 @lru_cache(maxsize=2)
 def _shade(size: tuple[int, int]) -> pygame.Surface:
     """Return the dark gradient behind the figures, which makes them readable over craters and wrecks."""

@@ -47,8 +47,11 @@ class Settings:
     pace: Annotated[float, Within(*PACES)] = 1.0  # time scale of a flight
     keys: dict[str, Any] = field(default_factory=dict)  # changed keys, as game.input.bindings writes them
     buttons: dict[str, Any] = field(default_factory=dict)  # the same for gamepads
+    all_knobs: bool = False  # whether Train shows all knobs, and not three
     tutored: bool = False  # whether the tutorial flight was flown or skipped, so it is not offered again
     first_flown: bool = False  # whether the tutorial flight was flown to its landing
+    learnt: dict[str, Any] = field(default_factory=dict)  # progress by chapter, as game.learn.progress writes it
+    chapter: str = ""  # key of the chapter last opened
     unknown: dict[str, Any] = field(default_factory=dict)  # values written by a newer version; kept unchanged
     unread: bool = field(default=False, compare=False)  # whether the file exists but could not be read; not saved
 

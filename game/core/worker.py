@@ -135,6 +135,10 @@ class Worker:
         """Limit the generator to `per_second` turns a second; None for no limit."""
         self._order("pace", per_second)
 
+    def set_limit(self, turns: int | None) -> None:
+        """Let the generator take so many turns in all, besides those of commands, and then wait; None for no limit."""
+        self._order("limit", turns)
+
     def send(self, command: Any) -> None:
         """Send a command into the generator; its answer arrives with `poll`."""
         self._order("command", command)

@@ -129,6 +129,8 @@ class _Service:
         self._orders: SimpleQueue[Order] = SimpleQueue()
         self.terminated = self._stopped = self._paused = False
         self._steps = 0  # single turns requested during a pause
+        self._taken = 0  # turns so far, besides those of commands
+        self._limit: int | None = None  # of these turns: then it waits
         self._period = 0.0  # seconds between turns
         self._due = 0.0  # time of the next turn
         self._wanted = CREDIT  # bundles the window has requested
@@ -151,6 +153,7 @@ class _Service:
                 if not self._stopped and self._seconds_to_turn(now) == 0.0:
                     self._due = max(self._due + self._period, now)
                     self._steps = max(0, self._steps - 1)
+                    self._taken += 1
                     self.waiting.add(next(turns))
         except StopIteration:
             pass
@@ -158,9 +161,11 @@ class _Service:
             turns.close()
 
     def _seconds_to_turn(self, now: float) -> float | None:
-        """Seconds until the next turn is due, or None while paused."""
+        """Seconds until the next turn is due, or None while paused or at the limit."""
         if self._paused:
             return 0.0 if self._steps else None
+        if self._limit is not None and self._taken >= self._limit:
+            return None
         return max(0.0, self._due - now) if self._period else 0.0
 
     def _answer(self) -> None:
@@ -196,6 +201,8 @@ class _Service:
                 self._steps += 1
             case "pace", per_second:
                 self._period, self._due = (1.0 / per_second if per_second else 0.0), time.monotonic()
+            case "limit", turns_in_all:
+                self._limit = turns_in_all
             case "stop", _:
                 self._stopped = True
             case "raise", error:

@@ -58,8 +58,20 @@ class ExplanationView:
         self._saliency = self._filters = pygame.Surface((1, 1))
         self._layers: list[pygame.Surface] = []
 
-    def draw(self, canvas: Canvas, reading: Reading, name: str, why: Explanation | None, steps: list[bool]) -> None:
-        """Draw the whole explanation; `steps` says which preprocessing steps are on."""
+    def draw(
+        self,
+        canvas: Canvas,
+        reading: Reading,
+        name: str,
+        why: Explanation | None,
+        steps: list[bool],
+        *,
+        aside: bool = False,
+    ) -> None:
+        """Draw the explanation; `steps` says which preprocessing steps are on.
+
+        With `aside`, saliency and filters make room for something else.
+        """
         if self._read != (reading, canvas.scale):
             self._read = reading, canvas.scale
             self._stages = [_fitted(image, canvas.px(_TILE)) for image in reading.stages]
@@ -69,8 +81,9 @@ class ExplanationView:
         self._draw_stages(canvas, steps)
         if why is None:
             return
-        self._draw_why(canvas, reading, name)
-        self._draw_filters(canvas, why)
+        if not aside:
+            self._draw_why(canvas, reading, name)
+            self._draw_filters(canvas, why)
         self._draw_layers(canvas, why)
 
     def _build(self, canvas: Canvas, why: Explanation | None) -> None:

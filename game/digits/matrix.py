@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import pygame
 
-from ai.digits.session import Confusion
+from ai.digits.validation import Confusion
 from game.core import texts
 from game.digits.pictures import picture
 from game.drawing.canvas import Canvas

@@ -57,6 +57,23 @@ def height_of(count: int, columns: int, shape: tuple[int, int], width: float, ga
     return -(-count // columns) * (tile * shape[0] / shape[1] + gap) - gap
 
 
+def tiling(
+    count: int, shape: tuple[int, ...], room: tuple[float, float], gap: float
+) -> tuple[int, tuple[float, float]]:
+    """Return in how many columns tiles (height, width) fill a room best, and the width and height that they take."""
+    (width, most), aspect = room, shape[0] / shape[1]
+
+    def height(columns: int) -> float:
+        return -(-count // columns) * (((width + gap) / columns - gap) * aspect + gap) - gap
+
+    fitting = [columns for columns in range(1, count + 1) if height(columns) <= most]
+    if not fitting:  # all in one row, as high as there is room
+        return count, (count * (most / aspect + gap) - gap, most)
+    even = (columns for columns in fitting if count % columns == 0 and columns <= 1.6 * fitting[0])
+    columns = next(even, fitting[0])  # rows of one length, where that costs little
+    return columns, (width, height(columns))
+
+
 @lru_cache(maxsize=64)
 def _places(count: int, cells: int, pixels: int, gap: float) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     """Return for each pixel along a side its tile and its cell in that tile; cell number `cells` is the gap."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from ai.digits.filters import MOST_FILTERS, first_filters
 from ai.digits.preprocessing import SIDE, Image, Stages, stages, stroke_stages
 from ai.nn.files import brief
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 SURE: Final = 0.9  # nine in ten rightly read test images have a higher probability
 LIKELY: Final = 0.65  # and 99 in a hundred
 LEAST_INK, MOST_INK = 18.0, 200.0  # pixels: test images have 25 to 257, 99 in a hundred up to 186, a dot has 5
-MOST_FILTERS: Final = 32  # as many as there is room for
 Numbers = npt.NDArray[np.float32]
 _log = logging.getLogger("tranquility")
 
@@ -152,15 +152,13 @@ def _normalised(values: Numbers) -> Numbers:
 
 
 def _filters(classifier: DigitClassifier, outputs: list[Numbers]) -> Numbers:
-    """Return the first layer's weights as images, each in -1 to 1."""
-    from ai.nn import ConvolutionLayer
-
-    number, first = next(pair for pair in enumerate(classifier.network.layers) if pair[1].parameters)
-    if isinstance(first, ConvolutionLayer):
-        images = first.kernels[:, :, 0].transpose(2, 1, 0)[:MOST_FILTERS]
-    else:
+    """Return the first layer's weights as images, each in -1 to 1; of plain units, those most active here."""
+    number = next(at for at, layer in enumerate(classifier.network.layers) if layer.parameters)
+    images = first_filters(classifier.network, None)
+    if images.shape[-1] == SIDE:
         active = np.argsort(-np.abs(outputs[min(number + 1, len(outputs) - 1)][0]), kind="stable")
-        images = first.parameters[0].value.T.reshape(-1, SIDE, SIDE)[active[:MOST_FILTERS]]
+        images = images[active]
+    images = images[:MOST_FILTERS]
     return np.asarray(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9), np.float32)
 
 

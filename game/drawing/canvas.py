@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from copy import copy
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 import pygame
 
@@ -28,7 +28,16 @@ LEAST: Final = 1.0 if texts.LANGUAGE == ENGLISH else 0.7
 _PARTS: Final = re.compile(r"\d|\D+")  # single digits, and the text between them
 
 Point = tuple[float, float]
+Now = Callable[[], str]
 Align = Literal["left", "centre", "right"]
+
+
+class Explanation(NamedTuple):
+    """Area of the screen, in points, with what stands there, and what that means now."""
+
+    box: pygame.FRect
+    what: str
+    now: Now
 
 
 class Canvas:
@@ -44,6 +53,7 @@ class Canvas:
         palette: the player's colours for within and beyond limits.
         pointer: position of the mouse in points; None while it is not in use.
         words: boxes of words, widgets and panels of the last frame with a margin, in pixels.
+        explained: areas of this frame that can be explained, in the order in which they were drawn.
 
     """
 
@@ -53,6 +63,7 @@ class Canvas:
         self.pointer: Point | None = None
         self.words: list[pygame.Rect] = []
         self._covered: deque[pygame.Rect] = deque(maxlen=_MOST_WORDS)  # boxes noted in this frame
+        self.explained: deque[Explanation] = deque(maxlen=_MOST_WORDS)
         self.attach(window)
 
     def attach(self, window: pygame.Surface) -> None:
@@ -86,9 +97,16 @@ class Canvas:
         sheet = copy(self)
         sheet.size = (max(1, math.ceil(width * self.scale)), max(1, math.ceil(height * self.scale)))
         sheet.offset = (0, 0)
-        sheet._covered = deque(maxlen=0)
+        sheet._covered, sheet.explained = deque(maxlen=0), deque(maxlen=0)
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
+
+    def part(self, x: float, y: float, width: float, height: float) -> Canvas:
+        """Return a canvas that draws into a box of this one, in points, with its own origin and at the same scale."""
+        part = copy(self)
+        part._covered = deque(maxlen=0)
+        part.surface = self.surface.subsurface(self.rect(x, y, width, height).clip(self.surface.get_rect()))
+        return part
 
     def lay(self, sheet: Canvas, x: float, y: float) -> None:
         """Copy a sheet onto the canvas, with its top left corner at (x, y) in points."""
@@ -113,6 +131,11 @@ class Canvas:
         around = 2 * self.px(_AROUND)
         self.words = [box.inflate(around, around) for box in self._covered]
         self._covered.clear()
+        self.explained.clear()
+
+    def explain(self, box: pygame.typing.RectLike, what: str, now: Now = str) -> None:
+        """Note what stands in a box, in points, and a function that says what it means now, for those who ask."""
+        self.explained.append(Explanation(pygame.FRect(box), what, now))
 
     def to_points(self, window_position: Point) -> Point:
         """Convert a position from the window's pixels, such as the mouse's, to points."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -38,6 +39,29 @@ class Label:
     limit: float | None = None
 
 
+@dataclass(frozen=True)
+class Quantity:
+    """Quantity of an exhibit that the visitor can change, named and written with its unit in `texts.QUANTITIES`.
+
+    Attributes:
+        limits: least and greatest value: the law has been measured to hold from one to the other.
+        start: value at first.
+        step: distance between two values that can be chosen.
+
+    """
+
+    name: str
+    limits: tuple[float, float]
+    start: float
+    step: float
+
+    def spread(self, count: int) -> list[float]:
+        """Return at most `count` values that can be chosen, evenly spread over the range, both ends among them."""
+        low, high = self.limits
+        steps = np.unique(np.rint(np.linspace(0, round((high - low) / self.step), count)))
+        return [round(low + number * self.step, 6) for number in steps.tolist()]
+
+
 class Exhibit:
     """One law of the engine, in a room of its own: a floor at y = 0, and walls at the edges of the view.
 
@@ -46,6 +70,7 @@ class Exhibit:
     not be so after it.
 
     Attributes:
+        result: the number that this run has measured; None until then, and if a hand has come in before.
         width: width of the view, in metres.
         weightless: whether there is no gravity, whatever was chosen.
         sprites: all that is drawn, by the image keys of `game.world.bodies`.
@@ -55,11 +80,19 @@ class Exhibit:
 
     """
 
+    name: ClassVar[str]
+    quantities: ClassVar[tuple[Quantity, ...]]
+    patience: ClassVar[int]
+    points: ClassVar[int] = 9
+    tolerance: ClassVar[float] = 0.01
     width = 28.0
     weightless = False
 
-    def __init__(self, gravity: float) -> None:
+    def __init__(self, gravity: float, values: Mapping[str, float] | None = None, *, lean: bool = False) -> None:
         self.gravity = 0.0 if self.weightless else gravity
+        self.values = self.start_values() | dict(values or {})
+        self.lean = lean
+        self.result: float | None = None
         self.world = World((0.0, -self.gravity))
         self.sprites: list[Sprite] = []
         self.bodies: list[Body] = []
@@ -74,6 +107,16 @@ class Exhibit:
 
     def build(self) -> None:
         """Add the bodies."""
+        raise NotImplementedError
+
+    @classmethod
+    def start_values(cls) -> dict[str, float]:
+        """Return the values of its quantities at first, by their names."""
+        return {quantity.name: quantity.start for quantity in cls.quantities}
+
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
+        """Return the number that the law gives for `result`, in closed form, with all quantities given."""
         raise NotImplementedError
 
     @property
@@ -93,7 +136,7 @@ class Exhibit:
         """Apply the exhibit's own impulses before the next step."""
 
     def observe(self) -> None:
-        """Take the exhibit's measurements after a step."""
+        """Take the exhibit's measurements after a step; set `result` once it is known."""
 
     def step(self, grip: Grip | None = None) -> None:
         """Advance by 1/60 s, during which a grip may pull at a body."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 
-from engine import Body, Circle, Polygon
+from engine import DT, Body, Circle, Polygon
 from game.core import texts
-from game.exhibits.exhibit import Exhibit, Label, height, speed
+from game.exhibits.exhibit import Exhibit, Label, Quantity, height, speed
 
 # Baseline of the columns' names below the ground line; points become metres by an exhibit's width.
 _BELOW: Final = -0.014
@@ -22,33 +23,55 @@ _WALL: Final = 0.1  # a face whose normal points up by less is a wall
 class Slopes(Exhibit):
     """Five boxes on one slope: those slide whose coefficient of friction is less than tan θ."""
 
+    name = "slopes"
+    quantities = (Quantity("degrees", (5.0, 36.0), 30.0, 1.0), Quantity("friction", (0.0, 1.0), 0.5, 0.05))
+    patience = 40
     width = 32.0
-    degrees = 30.0
-    frictions = (0.2, 0.35, 0.5, 0.65, 0.8)
     size = (1.4, 0.9)
+    length = 16.0 / math.cos(math.pi / 6)  # metres along the slope
+    which: int = 2  # the box whose friction can be changed, and whose acceleration is measured
+    timed = (10, 40)  # steps between which it is measured
+
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
+        """Return the acceleration down the slope, in m/s²: g (sin θ - μ cos θ), or 0 where friction holds."""
+        slope = math.radians(values["degrees"])
+        return gravity * max(0.0, math.sin(slope) - values["friction"] * math.cos(slope))
 
     def build(self) -> None:
         """Place the slipperiest box lowest, so that none runs into another."""
+        self.degrees = self.values["degrees"]
+        self.frictions: tuple[float, ...] = (0.2, 0.35, self.values["friction"], 0.65, 0.8)
         slope = math.radians(self.degrees)
-        left, right = -11.0, 5.0
-        top = (right - left) * math.tan(slope)
+        right, top = 5.0, self.length * math.sin(slope)
+        left = right - self.length * math.cos(slope)
         middle = np.array([(left + right) / 2, top / 2])
         corners = np.array([(left, 0.0), (right, 0.0), (left, top)]) - middle
         self.slope = self.add(Polygon(corners), middle, "slope", static=True)
+        self.down = np.array([math.cos(slope), -math.sin(slope)])
         along, away = np.array([-math.cos(slope), math.sin(slope)]), np.array([math.sin(slope), math.cos(slope)])
         self.boxes: list[Body] = []
         for number, friction in enumerate(self.frictions):
+            if self.lean and number != self.which:
+                continue
             place = np.array([right, 0.0]) + (3.4 + 3.3 * number) * along + self.size[1] / 2 * away
-            box = self.add(Polygon.box(*self.size), place, "box", angle=-slope, friction=friction)
+            image = "bright-box" if number == self.which else "box"
+            box = self.add(Polygon.box(*self.size), place, image, angle=-slope, friction=friction)
             self.boxes.append(box)
         self.places = [box.position[0].copy() for box in self.boxes]
-        self.slid: set[float] = set()
+        self.slid: set[int] = set()
+        self._pace = 0.0
 
     def observe(self) -> None:
-        """Record the boxes that have slid without the hand's help, by their coefficients of friction."""
-        for box, place, friction in zip(self.boxes, self.places, self.frictions, strict=True):
+        """Record the boxes that have slid without the hand's help, by their numbers, and time one of them."""
+        for number, (box, place) in enumerate(zip(self.boxes, self.places, strict=True)):
             if not self.touched[box.index] and np.hypot(*(box.position[0] - place)) > _SLID:
-                self.slid.add(friction)
+                self.slid.add(number)
+        box, (first, last) = self.boxes[0 if self.lean else self.which], self.timed
+        if self.steps == first:
+            self._pace = float(box.velocity[0] @ self.down)
+        if self.steps == last and not self.touched[box.index]:
+            self.result = (float(box.velocity[0] @ self.down) - self._pace) / ((last - first) * DT)
 
     def figures(self) -> dict[str, float]:
         """Return the slope, its tangent, and the number of boxes that have slid."""
@@ -87,19 +110,31 @@ class Slopes(Exhibit):
 class Bounce(Exhibit):
     """Five balls dropped from one height h: each bounces back to e² h."""
 
+    name = "bounce"
+    quantities = (Quantity("restitution", (0.1, 1.0), 0.75, 0.05), Quantity("drop", (1.0, 6.5), 6.0, 0.5))
+    patience = 420
+    tolerance = 0.03
     width = 22.0
-    drop = 6.0
     radius = 0.4
-    restitutions = (0.0, 0.25, 0.5, 0.75, 1.0)
-    which = 3  # the ball that the live line is about
+    which: int = 3  # the ball that the live line is about, and whose restitution can be changed
+
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:  # noqa: ARG003
+        """Return the height of the first bounce, in metres: e² h."""
+        return values["restitution"] ** 2 * values["drop"]
 
     def build(self) -> None:
         """Place the balls, and mark the height to which each will bounce."""
+        self.drop = self.values["drop"]
+        self.restitutions: tuple[float, ...] = (0.0, 0.25, 0.5, self.values["restitution"], 1.0)
+        if self.lean:
+            self.restitutions, self.which = (self.values["restitution"],), 0
         self.balls: list[Body] = []
         for number, restitution in enumerate(self.restitutions):
             x = self._column(number)
             place = (x, self.drop + self.radius)
-            self.balls.append(self.add(Circle(self.radius), place, "ember-disc", restitution=restitution))
+            image = "bright-disc" if number == self.which else "ember-disc"
+            self.balls.append(self.add(Circle(self.radius), place, image, restitution=restitution))
             if restitution:
                 self.rules.append(((x - 0.9, restitution**2 * self.drop), (x + 0.9, restitution**2 * self.drop)))
         self.peaks = np.zeros(len(self.balls))
@@ -115,10 +150,12 @@ class Bounce(Exhibit):
         self.bounced |= followed & (bottom <= _TOUCH)
         self.rising = followed & self.bounced & upward
         self.peaks = np.maximum(self.peaks, np.where(self.rising, bottom, 0.0))
+        if self.measured[self.which]:
+            self.result = float(self.peaks[self.which])
 
     @property
     def state(self) -> str:
-        """Phase of the ball with e = 0.75: falling, rising, measured or touched."""
+        """Phase of the ball whose restitution can be changed: falling, rising, measured or touched."""
         if self.measured[self.which]:
             return "measured"
         if self.touched[self.balls[self.which].index]:
@@ -126,7 +163,7 @@ class Bounce(Exhibit):
         return "rising" if self.rising[self.which] else "falling"
 
     def figures(self) -> dict[str, float]:
-        """Return the predicted bounce height of the ball with e = 0.75, and the measured one."""
+        """Return the bounce height that the law predicts for one ball, and the measured one."""
         which = self.which
         restitution = self.restitutions[which]
         return {
@@ -155,25 +192,47 @@ class Bounce(Exhibit):
 class DragRace(Exhibit):
     """Discs fall side by side without drag, with linear and with quadratic drag: each has its own terminal speed."""
 
+    name = "drag"
+    quantities = (Quantity("linear_drag", (0.5, 2.0), 1.0, 0.1), Quantity("mass", (0.5, 2.0), 1.0, 0.1))
+    patience = 1200
+    tolerance = 0.02
     width = 40.0
     top = 13.0
-    which = 1  # the disc that the live line is about
-    # Name of the column, mass, linear drag in kg/s, quadratic drag in kg/m.
-    lanes = (
-        ("none", 1.0, 0.0, 0.0),
-        ("linear", 1.0, 1.0, 0.0),
-        ("linear", 2.0, 1.0, 0.0),
-        ("quadratic", 1.0, 0.0, 0.5),
-        ("quadratic", 2.0, 0.0, 0.5),
-    )
+    which: int = 1  # the disc that the live line is about, and whose mass can be changed
+
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
+        """Return the speed at the floor, in m/s, of a disc that has fallen under linear drag.
+
+        A fall from rest reaches a share s of its terminal speed m g / c after the distance (-s - ln(1 - s)) g m² / c²,
+        which rises with s: the share for the height of the fall is found by bisection.
+        """
+        ease = values["linear_drag"] / values["mass"]
+        far = (cls.top - disc_radius(values["mass"])) * ease**2 / gravity
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            share = (low + high) / 2
+            low, high = (share, high) if share < 1 and -share - math.log1p(-share) < far else (low, share)
+        return low * gravity / ease
 
     def build(self) -> None:
         """Place the discs in a row."""
+        drag, mass = self.values["linear_drag"], self.values["mass"]
+        # Name of the column, mass, linear drag in kg/s, quadratic drag in kg/m.
+        self.lanes: tuple[tuple[str, float, float, float], ...] = (
+            ("none", 1.0, 0.0, 0.0),
+            ("linear", mass, drag, 0.0),
+            ("linear", 2.0, drag, 0.0),
+            ("quadratic", 1.0, 0.0, 0.5),
+            ("quadratic", 2.0, 0.0, 0.5),
+        )
+        if self.lean:
+            self.lanes, self.which = self.lanes[1:2], 0
         self.discs: list[Body] = []
         for number, (_, mass, linear, quadratic) in enumerate(self.lanes):
             image = "disc" if not linear + quadratic else "bright-disc" if linear else "ember-disc"
             disc = self.add(
-                Circle(_DISC * math.sqrt(mass)),
+                Circle(disc_radius(mass)),
                 (self._lane(number), self.top),
                 image,
                 mass=mass,
@@ -189,9 +248,11 @@ class DragRace(Exhibit):
         disc = self.discs[self.which]
         if self.landed or self.touched[disc.index]:
             return
-        self.landed = height(disc) - _DISC <= _TOUCH
+        self.landed = height(disc) - disc_radius(disc.mass) <= _TOUCH
         if not self.landed:
             self.speed = speed(disc)
+        else:
+            self.result = self.speed
 
     @property
     def state(self) -> str:
@@ -209,7 +270,8 @@ class DragRace(Exhibit):
 
     def figures(self) -> dict[str, float]:
         """Return the terminal speed of the light disc with linear drag, and its current or last speed."""
-        return {"terminal": self.terminal(self.which), "speed": self.speed}
+        mass = self.values["mass"]
+        return {"mass": mass, "terminal": self.terminal(self.which), "speed": self.speed}
 
     def labels(self) -> list[Label]:
         """Put a gauge beside each disc, the terminal speed marked; name the lanes."""
@@ -226,3 +288,8 @@ class DragRace(Exhibit):
 
     def _lane(self, number: int) -> float:
         return -15.2 + 7.2 * number
+
+
+def disc_radius(mass: float) -> float:
+    """Return the radius, in metres, of a disc of so many kilograms: all have the same density."""
+    return _DISC * math.sqrt(mass)

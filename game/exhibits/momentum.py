@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 
 from engine import DT, Body, Circle, Polygon
 from game.core import texts
-from game.exhibits.exhibit import CLEAR, Exhibit, Label, height, speed
+from game.exhibits.exhibit import CLEAR, Exhibit, Label, Quantity, height, speed
 
 _MOVES: Final = 0.05  # metres per second, from which a disc counts as moving
 
@@ -21,17 +22,31 @@ class Impacts(Exhibit):
     one problem with many answers, and the solver's would spread the motion over the row.
     """
 
+    name = "impacts"
+    quantities = (Quantity("restitution", (0.8, 1.0), 1.0, 0.05), Quantity("striker", (0.25, 1.25), 1.0, 0.25))
+    patience = 240
     radius = 0.45
     gap = 0.01
     row = 6
     pace = 3.0
     rails = (6.4, 3.2, 0.0)
 
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:  # noqa: ARG003
+        """Return the speed that one striker gives to the last disc of its row, in m/s.
+
+        An impact of masses M and m gives the struck disc (1 + e) M / (M + m) times the speed of the striking one; it
+        is handed on by one impact for each further disc of the row. Less restitution or a heavier striker would bring
+        further impacts before the first has passed through, which this law does not count; the limits exclude them.
+        """
+        handed = (1 + values["restitution"]) / 2
+        return cls.pace * 2 * values["striker"] / (values["striker"] + 1) * handed**cls.row
+
     def build(self) -> None:
         """Lay the rails, and set the strikers in motion."""
         self.discs: list[list[Body]] = []
         pitch = 2 * self.radius + self.gap
-        for number, rail in enumerate(self.rails):
+        for number, rail in enumerate(self.rails[:1] if self.lean else self.rails):
             if rail:
                 self.add(Polygon.box(self.width, 0.12), (0.0, rail - 0.06), "rail", static=True)
             strikers = [self._disc(-7.0 - pitch * k, rail, self.pace) for k in reversed(range(number + 1))]
@@ -40,12 +55,21 @@ class Impacts(Exhibit):
 
     @property
     def state(self) -> str:
-        """State of the energy: "untouched", or "touched" once a hand has changed it."""
-        return "touched" if self.touched.any() else "untouched"
+        """State of the energy: "untouched", "losing" with a restitution below 1, "touched" once a hand changed it."""
+        if self.touched.any():
+            return "touched"
+        return "untouched" if self.values["restitution"] == 1 else "losing"
+
+    def observe(self) -> None:
+        """Measure the speed of the last disc of the highest rail as soon as it moves, unless a hand has come in."""
+        last = self.discs[0][-1]
+        if self.result is None and speed(last) > _MOVES and not self.touched.any():
+            self.result = speed(last)
 
     def figures(self) -> dict[str, float]:
-        """Return the kinetic energy at the start and now."""
-        return {"first": self.energy_at_first, "now": self.kinetic_energy}
+        """Return the kinetic energy at the start and now, and the restitution."""
+        restitution = self.values["restitution"]
+        return {"first": self.energy_at_first, "now": self.kinetic_energy, "restitution": restitution}
 
     def labels(self) -> list[Label]:
         """Label each rail with the number of discs that moved at first, and that move on it now."""
@@ -65,7 +89,9 @@ class Impacts(Exhibit):
 
     def _disc(self, x: float, rail: float, pace: float) -> Body:
         image = "ember-disc" if pace else "disc"
-        disc = self.add(Circle(self.radius), (x, rail + self.radius), image, friction=0.0, restitution=1.0)
+        surface = {"friction": 0.0, "restitution": self.values["restitution"]}
+        mass = self.values["striker"] if pace else 1.0
+        disc = self.add(Circle(self.radius), (x, rail + self.radius), image, mass=mass, **surface)
         disc.velocity = (pace, 0.0)
         return disc
 
@@ -73,14 +99,23 @@ class Impacts(Exhibit):
 class Spin(Exhibit):
     """Conservation of angular momentum, without gravity; an off-centre impulse both moves and turns a bar."""
 
+    name = "spin"
+    quantities = (Quantity("reach", (0.0, 1.4), 1.2, 0.1), Quantity("impulse", (0.1, 1.0), 0.4, 0.05))
+    patience = 32
     weightless = True
     momentum = 1.2  # kg·m²/s
-    impulse = 0.4  # N·s
-    reach = 1.2  # metres from the middle of a bar to where it is pushed
+    bar = (0.5, 3.0)  # metres
     push_at = 30  # steps
+
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:  # noqa: ARG003
+        """Return the spin, in rad/s, of a bar of 1 kg pushed beside its middle: r J / I."""
+        inertia = (cls.bar[0] ** 2 + cls.bar[1] ** 2) / 12
+        return values["reach"] * values["impulse"] / inertia
 
     def build(self) -> None:
         """Add three bodies spinning with the same angular momentum, and two bars to be pushed."""
+        self.reach, self.impulse = self.values["reach"], self.values["impulse"]
         ceiling = CLEAR * self.width
         self.world.add(Polygon.box(self.width, 4.0), (0.0, ceiling + 2.0), static=True)
         self.rules.append(((-self.width / 2, ceiling), (self.width / 2, ceiling)))
@@ -92,7 +127,7 @@ class Spin(Exhibit):
         ]
         for body in self.turning:
             body.angular_velocity = self.momentum / body.inertia
-        bar = Polygon.box(0.5, 3.0)
+        bar = Polygon.box(*self.bar)
         self.pushed = [False, False]
         self.bars = [self.add(bar, (3.4, y), "box", restitution=0.8) for y in (middle + 2.6, middle - 2.4)]
 
@@ -104,6 +139,11 @@ class Spin(Exhibit):
         for bar, offset, still in zip(self.bars, (0.0, self.reach), self.pushed, strict=True):
             if still:
                 bar.apply_force((self.impulse / DT, 0.0), bar.position[0] + (0.0, offset))
+
+    def observe(self) -> None:
+        """Measure the spin of the bar that is pushed beside its middle, right after the push."""
+        if self.steps == self.push_at + 1 and self.pushed[1]:
+            self.result = abs(float(self.bars[1].angular_velocity[0]))
 
     def figures(self) -> dict[str, float]:
         """Return the impulse, and the speed and spin that it gives to the bars."""
@@ -126,8 +166,8 @@ class Spin(Exhibit):
         for number, bar in enumerate(self.bars):
             motion = texts.SPIN_MOTION.format(pace=speed(bar), spin=float(np.abs(bar.angular_velocity[0])))
             if self.pushed[number]:
-                motion = texts.SPIN_BARS[number].format(motion=motion)
+                motion = texts.SPIN_BARS[number].format(motion=motion, reach=self.reach)
             elif waiting and not self.touched[bar.index]:
-                motion = texts.SPIN_BARS_BEFORE[number]
+                motion = texts.SPIN_BARS_BEFORE[number].format(reach=self.reach)
             labels.append(Label(motion, (0.0, -1.95), bar))
         return labels

@@ -2,35 +2,58 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
 
 from engine import Body, Circle, Polygon
-from game.exhibits.exhibit import Exhibit
+from game.exhibits.exhibit import Exhibit, Quantity
 
 _SEED: Final = 3
 _SETTLED: Final = 60  # steps until contact impulses, which start at zero, carry ten boxes
+_TIMED: Final = 60  # steps over which a push is averaged
 _SQUARE: Final = 0.1  # tolerance of a box in a column: radians, and shares of a box's side
 
 
 class Stack(Exhibit):
     """Three columns and a pyramid: the lowest contact carries every box above it. A ball to throw at them."""
 
+    name = "stack"
+    quantities = (Quantity("boxes", (2.0, 12.0), 10.0, 1.0), Quantity("iterations", (1.0, 20.0), 10.0, 1.0))
+    patience = _SETTLED + _TIMED
+    tolerance = 0.07  # with a single iteration and a high column; 0.001 with 6 or more
     box = 0.8
-    high = 10
     base = 8
+
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
+        """Return the push of the ground under a column, in newtons: the weight n m g of its boxes of 1 kg."""
+        return values["boxes"] * gravity
 
     def build(self) -> None:
         """Add the columns and the pyramid, of boxes of one kilogram."""
-        self.columns = [
-            [self._box(x, (level + 0.5) * self.box) for level in range(self.high)] for x in (-5.4, -2.7, 0.0)
-        ]
+        self.high = round(self.values["boxes"])
+        self.world.iterations = round(self.values["iterations"])
+        places = (-5.4, -2.7, 0.0)[: 1 if self.lean else 3]
+        self.columns = [[self._box(x, (level + 0.5) * self.box) for level in range(self.high)] for x in places]
+        self._pushes = 0.0
+        if self.lean:
+            return
         for level in range(self.base):
             count = self.base - level
             for number in range(count):
                 self._box(6.4 + 1.05 * self.box * (number - (count - 1) / 2), (level + 0.5) * self.box)
         self.ball = self.add(Circle(0.7), (-10.5, 0.7), "ember-disc", mass=4.0, friction=0.6, restitution=0.2)
+
+    def observe(self) -> None:
+        """Take the mean push of the ground under the first column, for as long as it stands."""
+        first = self.columns[0]
+        if self.result is not None or self.touched[[box.index for box in first]].any() or self.steps <= _SETTLED:
+            return
+        self._pushes += self.push(self.floor, first[0])
+        if self.steps == _SETTLED + _TIMED:
+            self.result = self._pushes / _TIMED
 
     @property
     def state(self) -> str:
@@ -69,12 +92,25 @@ class Stack(Exhibit):
 class Heap(Exhibit):
     """A hundred boxes and discs fall: impacts and friction turn their energy into heat."""
 
+    name = "heap"
+    quantities = (Quantity("count", (10.0, 100.0), 100.0, 5.0), Quantity("rubbing", (0.1, 1.0), 0.5, 0.1))
+    patience = 480
+    points = 5
     columns = 14
-    count = 100
+
+    @classmethod
+    def law(cls, gravity: float, values: Mapping[str, float]) -> float:
+        """Return the mean push of the ground, in newtons, from the start until the heap lies: the weight n m g.
+
+        Bodies of 1 kg are at rest at first and in the end, so all impulses of the ground undo all those of gravity.
+        """
+        return values["count"] * gravity
 
     def build(self) -> None:
         """Place the bodies in rows above the floor, each a little askew."""
         self.world.iterations = 6  # enough to come to rest: no load passes through more than a few bodies
+        self.count, friction = round(self.values["count"]), self.values["rubbing"]
+        self._pushes = 0.0
         rng = np.random.default_rng(_SEED)
         for number in range(self.count):
             row, column = divmod(number, self.columns)
@@ -82,12 +118,19 @@ class Heap(Exhibit):
             y = 1.0 + 1.26 * row
             angle = rng.uniform(0, 2 * np.pi)
             if rng.random() < 0.4:
-                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), (x, y), "ember-disc", angle=angle, friction=0.5)
+                self.add(Circle(rng.choice((0.34, 0.44, 0.54))), (x, y), "ember-disc", angle=angle, friction=friction)
             else:
                 wide, tall = rng.uniform(0.55, 0.95, 2)
                 image = "bright-box" if rng.random() < 0.15 else "box"
-                self.add(Polygon.box(wide, tall), (x, y), image, angle=angle, friction=0.5)
+                self.add(Polygon.box(wide, tall), (x, y), image, angle=angle, friction=friction)
         self.at_first = self.energy
+
+    def observe(self) -> None:
+        """Add up the pushes of the ground from the first step on, unless a hand has come in."""
+        if self.steps <= self.patience and not self.touched.any():
+            self._pushes += self.push(self.floor)
+            if self.steps == self.patience:
+                self.result = self._pushes / self.patience
 
     @property
     def state(self) -> str:

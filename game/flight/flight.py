@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ai.common.decision import Decision
-from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.common.environment import Doubles, Floats
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.missions import STARTS
 from ai.lander.pilots import COAST
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 # Physics steps per decision of a network, here as in training.
 DECISION_STEPS: Final = 4
-# Steps that an ended flight of a swarm stays visible.
-REST_STEPS: Final = 75
 
 
 class StickHolder(Enum):
@@ -239,60 +237,3 @@ class Flight:
         """Aim read-outs and network at the most `likely` (pads,) intended pad; among equals, at the nearest."""
         away = np.abs(self.env.ground.middles[:, 0] - self.env.position[0, 0])
         self.env.target[:] = int((likely - 1e-6 * away).argmax())
-
-
-class Swarm:
-    """Swarm of landers, all flown by one network, each again and again.
-
-    Attributes:
-        since_end: steps since each flight's end, 0 while it flies.
-        landed, lost: numbers of flights that ended so.
-        fresh: mask of the slots whose flight began with the last step.
-        decision: latest decision of each slot, which is being flown.
-        decided: number of decisions of each slot.
-        steps: number of steps since the beginning.
-
-    """
-
-    def __init__(self, count: int, seed: int, policy: Policy, spawn: str = "random") -> None:
-        self.env = LanderEnv(count, seed, spawn, frame_skip=1)
-        self.observation: Floats = self.env.reset()
-        self.policy = policy
-        self.poses = Poses(self.env)
-        self.since_end: Ints = np.zeros(count, dtype=np.intp)
-        self.landed = self.lost = 0
-        self.fresh: Bools = np.ones(count, dtype=bool)
-        self.decision = decide(policy, self.observation, np.zeros(count, dtype=np.intp))
-        self.decided: Ints = np.ones(count, dtype=np.intp)
-        self._age: Ints = np.arange(count) % DECISION_STEPS  # steps since the latest decision; staggered at first
-        self.steps = 0
-
-    def step(self) -> Bools:
-        """Advance by 1/60 s, and restart flights that have been over for a while. Return a mask of those just ended."""
-        self.fresh = self.since_end >= REST_STEPS
-        if self.fresh.any():
-            self.observation = self.env.reset(self.fresh)
-            self.since_end[self.fresh] = 0
-        self._decide(np.flatnonzero(self.fresh | ((self._age == DECISION_STEPS) & (self.since_end == 0))))
-        self._age += self.since_end == 0
-        self.steps += 1
-        self.env.fly(self.decision.action)
-        self.observation = self.env.observe()
-        outcome = self.env.outcome
-        over = outcome != Outcome.FLYING
-        ended: Bools = over & (self.since_end == 0)
-        self.since_end += over
-        landed = int((outcome[ended] == Outcome.LANDED).sum())
-        self.landed += landed
-        self.lost += int(ended.sum()) - landed
-        self.poses.take(self.fresh)
-        return ended
-
-    def _decide(self, due: Ints) -> None:
-        """Decide for the slots that are due; these are staggered so that all frames cost the same."""
-        if not len(due):
-            return
-        held = np.where(self.fresh, COAST, self.decision.action)[due]
-        self.decision = self.decision.updated(due, decide(self.policy, self.observation[due], held))
-        self.decided[due] += 1
-        self._age[due] = 0

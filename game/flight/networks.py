@@ -39,12 +39,18 @@ class QPolicy(Policy, Protocol):
         """Return the decisions of `act`, with the values they are based on."""
 
 
-def decide(policy: Policy, observation: Floats, held: Ints) -> Decision:
-    """Return a flyer's decisions for observations (n, 9), `held` (n,) the previous actions, to fly and to show."""
+def decide(policy: Policy, observation: Floats, held: Ints | None = None) -> Decision:
+    """Return a flyer's decisions for observations (n, 9), to fly and to show; `held` (n,) are the previous actions."""
     if isinstance(policy, QPolicy):
         return policy.decide(observation, held=held)
     action = policy.act(observation, held=held)
     return Decision(observation, action, action)
+
+
+def work_of(policy: Policy) -> int:
+    """Return about how many multiplications a policy takes for one decision: its network's parameters."""
+    network = getattr(policy, "network", None)
+    return 0 if network is None else int(network.values.size)
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,11 @@ class Advice:
         """Whether the box has anything to show."""
         return bool(self._words)
 
+    @property
+    def hint(self) -> str:
+        """Name of the hint that is shown; empty without one."""
+        return self._hint.name if self._hint and self.shown else ""
+
     def follow(
         self, history: History, config: Config, dead_share: float | None = None, clipped_share: float | None = None
     ) -> None:

@@ -6,8 +6,9 @@ from typing import Final
 
 from ai.digits.session import DigitSettingChanged
 from ai.training.history import REVERTED
-from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
+from game.charts.chart import Chart, Series, Tick, draw_legend
 from game.charts.charts import Charts
+from game.charts.series import run_style
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import MUTE
@@ -33,15 +34,16 @@ class DigitCharts(Charts):
 
     def look(self, curves: DigitCurves, earlier: list[EarlierRun[DigitCurves]]) -> None:
         """Show the curves of this run and of earlier ones, if they have changed."""
-        told = (curves.seconds, len(curves.points), len(curves.scores), len(earlier), *curves.turns)
+        shown = [(beside.name, beside.style) for beside in earlier]
+        told = (curves.seconds, len(curves.points), len(curves.scores), shown, self.zoom.shown, *curves.turns)
         if told == self._told:
             return
         self._told = told
         runs = [EarlierRun(texts.TRAIN_THIS, curves, 0), *earlier]
-        end = max(10.0, *(beside.run.seconds for beside in runs))
+        self.zoom.end = max(10.0, *(beside.run.seconds for beside in runs))
         losses, accuracies = [], []
         for beside in runs:
-            name, each, (colour, dash) = beside.name, beside.run, RUN_STYLES[beside.style]
+            name, each, (colour, dash) = beside.name, beside.run, run_style(beside.style)
             if each.points:
                 seconds = [point.seconds for point in each.points]
                 losses.append(Series(seconds, [point.loss for point in each.points], name, colour, dash))
@@ -51,7 +53,7 @@ class DigitCharts(Charts):
             accuracies.append(_batches(curves))
         ticks = [Tick(turn.seconds, _turn_told(turn), "knob") for turn in curves.turns]
         for chart, series in zip(self.charts, (losses, accuracies), strict=True):
-            chart.set(series, (0.0, end), ticks)
+            chart.set(series, self.zoom.shown, ticks)
 
 
 def draw_accuracy_legend(canvas: Canvas, curves: DigitCurves) -> None:

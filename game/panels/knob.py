@@ -41,6 +41,7 @@ class Knob(Widget):
         waits: whether the value is yet to be applied.
         now: the value in force at this moment of a run, where it differs; else None.
         idle: why the knob has no effect; empty if it has one.
+        more: shows all that there is to say about it, and its experiments; None where there is no more.
 
     """
 
@@ -60,6 +61,7 @@ class Knob(Widget):
         self.now: float | None = None
         self.idle = ""
         self._turn, self._enter = turn, enter
+        self.more: Callable[[], None] | None = None
         self._named = False  # the mouse was pressed on the name
 
     def display(self, value: Any, home: Any, *, waits: bool, now: float | None = None, idle: str = "") -> None:
@@ -95,7 +97,10 @@ class Knob(Widget):
             self._turn(self.description.name, value)
 
     def take(self, event: pygame.event.Event) -> bool:
-        """Restore the preset's value on the key for it."""
+        """Restore the preset's value on the key for it, or show more."""
+        if self.more is not None and translate(event) is Command.CHOICES:
+            self.more()
+            return True
         if self.changed and translate(event) is Command.RETRY:
             self.turn(self.home)
             return True

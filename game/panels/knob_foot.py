@@ -12,6 +12,7 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, SMALL
 from game.input.controls import Command, Controls
 from game.panels.knob import Knob
+from game.panels.knob_page import draw_advice
 from game.panels.seed_knob import SeedKnob
 from game.training.knob_descriptions import figure, label
 from game.training.run_settings import RunSettings
@@ -19,6 +20,7 @@ from game.ui.hints import Hint, HintRow
 from game.ui.widget import Widget
 
 HEIGHT: Final = 60  # points, at the bottom of the panel
+TALL: Final = 124  # where there is more to say about a knob
 ANSWERS: Final = 42  # from the bottom to the top of a notice's buttons
 _ABOVE: Final = 40.0  # extra height for a longer text
 _NOTICE: Final = 50.0  # from the bottom to the top of a notice
@@ -33,8 +35,12 @@ def draw_foot(
     controls: Controls,
     *,
     picking: bool,
+    room: pygame.Rect | None = None,
 ) -> None:
-    """Draw the most important message into the panel's box; `focused` is the panel's widget in focus."""
+    """Draw the most important message into the panel's box; `focused` is the panel's widget in focus.
+
+    `room` is the box, from its first baseline to its last, for all that there is to say about a knob.
+    """
     first = box.bottom - HEIGHT + 22.0
     if run_settings.problem:
         canvas.marker("triangle", (box.left + 5, first - 4), 10, canvas.palette.warn)
@@ -55,7 +61,11 @@ def draw_foot(
         _draw_notice(canvas, box, texts.KNOBS_PUT_ASIDE, line)
     else:
         told = (focused and focused.help) or run_settings.run_kind.sentence(run_settings.named)
-        _write_parts(canvas, told, (box.left, first - (_ABOVE if picking else 0.0)), box.width)
+        if room is not None and isinstance(focused, Knob):
+            draw_advice(canvas, focused.description, told, room)
+        else:
+            start = room.topleft if room else (box.left, first - (_ABOVE if picking else 0.0))
+            _write_parts(canvas, told, start, box.width)
         if isinstance(focused, Knob | SeedKnob):
             _draw_marks(canvas, box, focused, controls)
 

@@ -4,31 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from functools import partial
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import pygame
 
 from ai.agent.schedule import InForce
 from ai.training.sabotage import MEASURED
 from game.core import texts
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE, Colour
+from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, SMALL, TEXT, TITLE
 from game.panels import knob_foot
-from game.panels.knob import MARGIN, Knob, SliderKnob, SwitchKnob, WordsKnob
+from game.panels.knob import Knob
+from game.panels.knob_rows import Deeds, KnobRows
+from game.panels.knob_words import BASELINE, Title, Word, make_words, word_width
+from game.panels.lab import TOP
 from game.panels.seed_knob import SeedKnob
-from game.training.knob_descriptions import Configuration, label, pages
+from game.training.knob_descriptions import Configuration
 from game.training.run_settings import LANDER, SEED, Named, RunKind, RunSettings
 from game.ui.form import Form
 from game.ui.widget import Widget
-from game.ui.widgets import Choice, TextButton
+from game.ui.widgets import TextButton
 
-_KINDS: Final[dict[str, type[Knob]]] = {"slider": SliderKnob, "switch": SwitchKnob, "words": WordsKnob}
-_HEAD: Final = 34  # from the top to the line under the presets
-_BASELINE: Final = 21.5  # of the presets
-_TABS: Final = 36  # from there to the first row: the tabs are in between
-_PITCH: Final = 26  # of the rows, where there is room
-_TAB_GAP: Final = 13.0
+View = Literal["few", "all", "knob", "picks", "guess", "result"]
+
+Section = tuple[Hashable, Callable[[], list[Widget]]]  # made again when the first changes
+_PICK: Final = 26  # points from one sabotage to the next
 
 
 class KnobsPanel:
@@ -61,12 +61,28 @@ class KnobsPanel:
     ) -> None:
         self._form, self._box, self._run_kind = form, pygame.Rect(box), run_kind
         self._run_settings = RunSettings(config, seed, on_change, on_restart, run_kind)
-        self._pages = pages(self._run_settings.knob_descriptions.values())
         self._page = 0
-        self._picking = False
+        self._rows = KnobRows(form.manager, self._box, self._run_settings, self._deeds)
+        self._view: View = self._home
+        self._opened = ""  # the knob whose page is open
         self._sections: dict[str, tuple[Hashable, list[Widget]]] = {}
         self._widgets: list[Widget] = []
         self._lay()
+
+    @property
+    def _home(self) -> View:
+        """The view of the knobs."""
+        return "all"
+
+    @property
+    def _deeds(self) -> Deeds:
+        """What knobs ask for."""
+        return Deeds(self.turn, self._seek)
+
+    @property
+    def view(self) -> View:
+        """What is shown: knobs, the list of sabotages, a guess, or what came of an experiment."""
+        return self._view
 
     @property
     def config(self) -> Configuration:
@@ -108,7 +124,8 @@ class KnobsPanel:
     def set_config(self, config: Configuration, seed: int) -> None:
         """Show a configuration from elsewhere, such as a loaded run, without calling `on_change` or `on_restart`."""
         self._run_settings.set_config(config, seed)
-        self._picking = False
+        if self._view in ("picks", "guess"):
+            self._view = self._home
         self._lay()
 
     def turn(self, name: str, value: Any) -> None:
@@ -118,19 +135,34 @@ class KnobsPanel:
 
     def draw(self, canvas: Canvas) -> None:
         """Draw all but the widgets, which the form draws."""
-        box, y = self._box, self._box.top + _HEAD
+        box, y = self._box, self._box.top + TOP
         canvas.line((box.left, y), (box.right, y), LINE, 1)
         if self.changed:
             self._draw_changed(canvas)
-        if self._picking:
+        if self._view == "picks":
             heading = texts.SABOTAGE_HEADING.format(name=self._run_kind.word((self._run_settings.named[0], ""))).upper()
             canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
+        self._draw_page(canvas)
+
+    def _draw_page(self, canvas: Canvas) -> None:
+        """Draw what is written beside the widgets of the page."""
+        self._draw_foot(canvas, None)
+
+    def _draw_foot(self, canvas: Canvas, room: pygame.Rect | None) -> None:
         focused = self._form.focused if self._form.focused in self._widgets else None
-        knob_foot.draw_foot(canvas, self._box, self._run_settings, focused, self._form.controls, picking=self._picking)
+        knob_foot.draw_foot(
+            canvas,
+            self._box,
+            self._run_settings,
+            getattr(focused, "knob", focused),
+            self._form.controls,
+            picking=self._view == "picks",
+            room=room,
+        )
 
     def _draw_changed(self, canvas: Canvas) -> None:
         """Mark that knobs were changed: by a word, or by a dot where there is no room for it."""
-        left, baseline = self._box.left + canvas.text_width(self.name, size=TITLE) + 9, self._box.top + _BASELINE
+        left, baseline = self._box.left + canvas.text_width(self.name, size=TITLE) + 9, self._box.top + BASELINE
         room = self._sections["head"][1][1].box.left - left - 9
         if canvas.text_width(texts.KNOBS_CHANGED, size=LABEL) <= room:
             canvas.text(texts.KNOBS_CHANGED, (left, baseline), size=LABEL, colour=HUMAN)
@@ -141,12 +173,13 @@ class KnobsPanel:
 
     def _lay(self) -> None:
         """Lay out the widgets of the current page, and show the current values in them."""
-        run_settings, picking = self._run_settings, self._picking
+        run_settings, view = self._run_settings, self._view
         answer = "apply" if run_settings.waiting else "undo" if run_settings.put_aside else ""
-        sections: dict[str, tuple[Hashable, Callable[[], list[Widget]]]] = {
-            "head": ((run_settings.holds, picking), self._make_head),
-            "tabs": (picking, lambda: [] if picking else [self._make_tabs()]),
-            "body": ((picking, self._page), self._make_picks if picking else self._make_rows),
+        sections: dict[str, Section] = {
+            "head": ((run_settings.holds, self._lab_word()[0]), self._make_head),
+            "tabs": (view, lambda: [self._rows.tabs(self._page, self._turn_page)] if view == "all" else []),
+            "body": ((view, self._page, self._opened), self._bodies[view]),
+            **self._more_sections(),
             "answers": (answer, lambda: self._make_answers(answer)),
         }
         for name, (key, make) in sections.items():
@@ -174,58 +207,32 @@ class KnobsPanel:
         """Make the head: the chosen preset large on the left (a press restores it), the others on the right."""
         box, named, manager = self._box, self._run_settings.holds, self._form.manager
         top = box.top + 5
-        chosen = _Title(
-            manager, (box.left, top - 1, _width(self.name, TITLE), 28), self.name, self._loads(named), size=TITLE
+        chosen = Title(
+            manager, (box.left, top - 1, word_width(self.name, TITLE), 28), self.name, self._loads(named), size=TITLE
         )
-        others: list[tuple[str, Callable[[], None]]] = [
+        others: list[Word] = [
             (self._run_kind.word((base, "")), self._loads((base, "")))
             for base in self._run_kind.presets
             if (base, "") != named
         ]
         if self._run_kind.sabotages:
-            word, section = (texts.SABOTAGE_LEAVE, "head") if self._picking else (texts.SABOTAGE, "body")
-            others.append((word, partial(self._go, section, picking=not self._picking)))
-        return [chosen, *self._make_words(others, box.right, pygame.Rect(0, top, 14, 24), SMALL)]
+            others.append(self._lab_word())
+        return [chosen, *make_words(manager, others, box.right, pygame.Rect(0, top, 14, 24), SMALL)]
 
-    def _make_words(
-        self,
-        words: Sequence[tuple[str, Callable[[], None]]],
-        right: float,
-        row: pygame.Rect,
-        size: float,
-        colour: Colour = MUTE,
-    ) -> list[Widget]:
-        """Make buttons in a row that ends at `right`; the row's width is the gap between them, in points."""
-        made: list[Widget] = []
-        for name, press in reversed(words):
-            width = _width(name, size)
-            box = (right - width, row.top, width, row.height)
-            made.insert(0, TextButton(self._form.manager, box, name, press, size=size, colour=colour))
-            right -= width + row.width
-        return made
+    def _lab_word(self) -> Word:
+        """Return the word that leads to the laboratory, or back from there."""
+        if self._view in ("picks", "guess"):
+            return texts.SABOTAGE_LEAVE, self._leave_lab
+        return texts.SABOTAGE, partial(self._show, "picks")
 
-    def _make_tabs(self) -> Choice:
-        words = [texts.KNOB_PAGES.get(page, page.capitalize()) for page in self._pages]
-        box = (self._box.left, self._box.top + _HEAD + 8, self._box.width, 22)
-        return Choice(self._form.manager, box, "", words, self._page, self._turn_page, size=LABEL, gap=_TAB_GAP)
+    @property
+    def _bodies(self) -> dict[View, Callable[[], list[Widget]]]:
+        """What makes the widgets of each view."""
+        return {"all": lambda: self._rows.page(self._page), "picks": self._make_picks}
 
-    def _make_rows(self) -> list[Widget]:
-        page, manager = self._pages[self._page], self._form.manager
-        rows: list[Widget] = []
-        for description in self._run_settings.knob_descriptions.values():
-            if description.page == page:
-                kind, box = _KINDS[description.kind], self._row(len(rows))
-                rows.append(kind(manager, box, description, self.turn, self._seek))
-        if page == self._run_kind.seed_page:
-            rows.append(SeedKnob(manager, self._row(len(rows)), label(SEED), partial(self.turn, SEED)))
-        return rows
-
-    def _row(self, number: int) -> pygame.Rect:
-        """Return the box of a row; the longest page sets the distance between rows."""
-        box, knob_descriptions = self._box, self._run_settings.knob_descriptions.values()
-        longest = max(sum(description.page == page for description in knob_descriptions) for page in self._pages)
-        pitch = min(_PITCH, (box.height - _HEAD - _TABS - knob_foot.HEIGHT) // longest)
-        return pygame.Rect(box.left - MARGIN, box.top + _HEAD + _TABS + number * pitch, box.width + MARGIN, pitch)
+    def _more_sections(self) -> dict[str, Section]:
+        """Return further sections of widgets, after the body."""
+        return {}
 
     def _make_picks(self) -> list[Widget]:
         """Make the list of sabotages, in two columns."""
@@ -233,24 +240,29 @@ class KnobsPanel:
         sabotages = self._run_kind.sabotages
         half = (len(sabotages) + 1) // 2
         picks: list[Widget] = []
-        for number, name in enumerate(sabotages):
+        for number, (name, (word, *said)) in enumerate(sabotages.items()):
             column, row = divmod(number, half)
-            box = (left + column * self._box.width // 2, top + _HEAD + 38 + row * _PITCH, 160, _PITCH)
-            pick = TextButton(
-                self._form.manager, box, self._run_kind.word((base, name)), self._loads((base, name)), size=SMALL + 1
-            )
-            told = sabotages[name][1:] if base == MEASURED else sabotages[name][1:2]
-            pick.help = "\n".join(told)
+            box = (left + column * self._box.width // 2, top + TOP + 38 + row * _PICK, 160, _PICK)
+            pick = TextButton(self._form.manager, box, word, self._picks((base, name)), size=SMALL + 1)
+            pick.help = "\n".join(self._told(base, said))
             picks.append(pick)
         return picks
+
+    def _picks(self, named: Named) -> Callable[[], None]:
+        """Return what a sabotage of the list does at a press."""
+        return self._loads(named)
+
+    def _told(self, base: str, said: Sequence[str]) -> Sequence[str]:
+        """Return what the list says of a sabotage of a preset: what was measured holds for one of them."""
+        return said if base == MEASURED else said[:1]
 
     def _make_answers(self, answer: str) -> list[Widget]:
         """Make the buttons that apply or undo."""
         undo = (texts.KNOBS_UNDO, partial(self._settle, self._run_settings.undo))
         apply = (texts.KNOBS_APPLY, partial(self._settle, self._run_settings.apply))
-        words = {"apply": [apply, undo], "undo": [undo]}
+        words: dict[str, list[Word]] = {"apply": [apply, undo], "undo": [undo]}
         row = pygame.Rect(0, self._box.bottom - knob_foot.ANSWERS, 18, 28)
-        return self._make_words(words.get(answer, []), self._box.right - 14.0, row, TEXT, HUMAN)
+        return make_words(self._form.manager, words.get(answer, []), self._box.right - 14.0, row, TEXT, HUMAN)
 
     # What the widgets ask for
 
@@ -264,40 +276,34 @@ class KnobsPanel:
 
     def _seek(self) -> None:
         """Move the focus to the buttons that apply and undo, if there are any."""
-        self._go("answers", picking=self._picking)
+        self._go("answers")
 
-    def _go(self, section: str, *, picking: bool = False) -> None:
-        """Show the list of sabotages, or else the knobs, and move the focus to the first widget of a section."""
-        self._picking = picking
+    def _go(self, section: str) -> None:
+        """Lay out the widgets, and move the focus to the first widget of a section."""
         self._lay()
         if widgets := self._sections[section][1]:
             self._form.focus(widgets[0])
+
+    def _show(self, view: View) -> None:
+        self._view = view
+        self._go("body")
+
+    def _leave_lab(self) -> None:
+        """Go back from the list of sabotages to the knobs."""
+        self._show(self._home)
 
     def _loads(self, named: Named) -> Callable[[], None]:
         def load() -> None:
             self._run_settings.load(named)
             picking = bool(named[1] and self._run_settings.waiting)  # a sabotage's help stays as long as it waits
-            self._go("answers" if picking else "head", picking=picking)
+            self._view = "picks" if picking else self._home
+            self._go("answers" if picking else "head")
 
         return load
 
     def _settle(self, deed: Callable[[], None]) -> None:
         """Apply or undo the changes that wait, and leave the list of sabotages."""
-        self._picking = False
+        if self._view in ("picks", "guess"):
+            self._view = self._home
         deed()
-        self._go("tabs")
-
-
-class _Title(TextButton):
-    """Name of the chosen preset: large, with a line under it."""
-
-    def paint(self, canvas: Canvas) -> None:
-        """Draw the word and its line."""
-        Widget.paint(self, canvas)
-        box = self.box
-        canvas.text(self.label, (box.left, box.top - 4 + _BASELINE), size=TITLE, colour=INK)
-        canvas.line((box.left, box.top + 30), (box.left + box.width, box.top + 30), NET, 2)
-
-
-def _width(text: str, size: float) -> float:
-    return typeface.width(text, size, "regular")
+        self._go("tabs" if self._view == "all" else "body")

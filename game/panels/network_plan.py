@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
@@ -83,11 +83,17 @@ class NetworkPlan:
     """Snapshot of a network for drawing: columns of shown units, and the weights of the links between them.
 
     At most `most` units of a layer are shown: the most important by their weights and recent activity, with a
-    preference for those of the plan `before`. Everything is copied, so the network may change afterwards.
+    preference for those of the plan `before`; the units `pinned`, by stage and number, come first. Everything is
+    copied, so the network may change afterwards.
     """
 
     def __init__(
-        self, network: NeuralNetwork, observation: npt.ArrayLike | None, most: int, before: NetworkPlan | None = None
+        self,
+        network: NeuralNetwork,
+        observation: npt.ArrayLike | None,
+        most: int,
+        before: NetworkPlan | None = None,
+        pinned: Collection[tuple[int, int]] = (),
     ) -> None:
         found = links(network)
         sizes = [len(found[0].weights), *(len(link.bias) for link in found)] if found else []
@@ -101,7 +107,9 @@ class NetworkPlan:
             strength = _strength(found, stage)
             if 0 < stage < len(sizes) - 1:
                 strength = strength * _liveliness(self._activity[stage])
-            units = steady_choice(strength, most, old.columns[stage].units if old else None)
+            wanted = strength.copy()
+            wanted[[unit for at, unit in pinned if at == stage and unit < size]] = np.inf
+            units = steady_choice(wanted, most, old.columns[stage].units if old else None)
             shown = values[stage][units].astype(float)
             damaged = ~np.isfinite(strength[units]) | (~np.isfinite(shown) if known else False)
             bias = found[stage - 1].bias[units].astype(float) if stage else None
@@ -110,6 +118,15 @@ class NetworkPlan:
         for link, left, right in zip(found, self.columns[:-1], self.columns[1:], strict=True):
             part = np.ix_(left.units, right.units)
             self._links.append((link.weights[part], link.gradient[part]))
+
+    def weight(self, layer: int, start: int, end: int) -> float:
+        """Return the weight of the link between two shown units, by their numbers; 0 if one is not shown."""
+        if layer >= len(self._links):
+            return 0.0
+        rows, columns = (
+            np.flatnonzero(self.columns[stage].units == unit) for stage, unit in ((layer, start), (layer + 1, end))
+        )
+        return float(self._links[layer][0][rows[0], columns[0]]) if len(rows) and len(columns) else 0.0
 
     def edges(self, show: Show, most: int) -> list[Edge]:
         """Return the `most` strongest links between each two columns, the faintest first."""

@@ -43,6 +43,7 @@ class NetworkView:
         self.edges: list[Edge] = []
         self.reads_out = True  # whether a unit's value is written beside it while it is highlighted
         self.redraws = 0  # number of times that the sheets were painted
+        self.pinned: frozenset[tuple[int, int]] = frozenset()  # stage and number of units to be shown in any case
         self._show: Show = "weights"
         self._given: tuple[NeuralNetwork, npt.ArrayLike | None] | None = None
         self.hovered: tuple[int, int] | None = None  # column and place in it of the highlighted unit
@@ -77,7 +78,7 @@ class NetworkView:
     def set(self, network: NeuralNetwork, observation: npt.ArrayLike | None = None) -> None:
         """Show a network's current state, and its activations for an observation (inputs,) already normalised."""
         self._given = network, observation
-        self.plan = NetworkPlan(network, observation, self._most_units, self.plan)
+        self.plan = NetworkPlan(network, observation, self._most_units, self.plan, self.pinned)
         self.centres = self._lay_out()
         if self.hovered and self.hovered not in self._places():
             self.hovered = None
@@ -113,10 +114,14 @@ class NetworkView:
             return None
         away = {(i, j): math.dist(point, self.centres[i][j]) for i, j in self._places()}
         nearest = min(away, key=away.__getitem__)
-        return nearest if away[nearest] <= max(10.0, 2.2 * self._radius) else None
+        return nearest if away[nearest] <= max(10.0, 2.2 * self.radius) else None
 
     def _places(self) -> list[tuple[int, int]]:
         return [(number, place) for number, column in enumerate(self.centres) for place in range(len(column))]
+
+    def weight(self, layer: int, start: int, end: int) -> float:
+        """Return the weight between two units of the network as it is shown, by their numbers; 0 if there is none."""
+        return self.plan.weight(layer, start, end) if self.plan else 0.0
 
     def name(self, number: int, place: int) -> str:
         """Return the name of a unit, given its column and its place in it."""
@@ -181,13 +186,14 @@ class NetworkView:
         return left, right
 
     @property
-    def _radius(self) -> float:
+    def radius(self) -> float:
+        """Radius of a unit, in points."""
         crowd = max((len(column.units) for column in self.columns), default=1)
         return min(max(0.24 * (self.box.height - self._foot) / crowd, 2.0), 7.0)
 
     def _lay_out(self) -> list[list[Point]]:
         """Return the places of each column's units, in points."""
-        (left, right), box, radius = self._sides, self.box, self._radius
+        (left, right), box, radius = self._sides, self.box, self.radius
         across = (box.width - left - right - 2 * radius) / max(len(self.columns) - 1, 1)
         high = box.height - self._foot - 2 * radius - 4
         centres = []
@@ -233,7 +239,7 @@ class NetworkView:
             self.plan, self.edges, self._show, self.hovered,
             centres=[[self._on_sheet(centre) for centre in column] for column in self.centres],
             names=[self._names(number) for number in range(last + 1)],
-            output_scale=self.output_scale, size=self.box.size, radius=self._radius,
+            output_scale=self.output_scale, size=self.box.size, radius=self.radius,
             name_size=self._name_size, large=self._large,
         ).paint(*self._blank(canvas))  # fmt: skip
 
@@ -242,7 +248,7 @@ class NetworkView:
 
     def _draw_pulses(self, canvas: Canvas) -> None:
         """Draw pulses that run backwards along the edges with the largest gradients."""
-        radius = max(1.4, 0.4 * self._radius)
+        radius = max(1.4, 0.4 * self.radius)
         for number, edge in enumerate(self.edges[-_MOST_PULSES:]):
             along = (self._phase * (1.0, 1.5, 1.0)[number % 3] + _GOLDEN * number) % 1.0
             (x0, y0), (x1, y1) = self.centres[edge.column][edge.start], self.centres[edge.column + 1][edge.end]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -82,8 +83,11 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
     canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
     canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)
     canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
+    canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_EXPECTED)
     for action in range(len(ACTION_NAMES)):
         _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
+        box = (left, top + _FIRST + _ROW * (action - 0.5), width, _ROW)
+        canvas.explain(box, texts.EXPLAIN_VALUE, partial(value_words, values, action))
     _draw_axis(canvas, left, top + _AXIS, width)
     if values.allowed is not None and values.allowed < SPAN:
         x, y = track[0] + values.fraction(values.allowed) * track[1], top + _FIRST
@@ -129,6 +133,7 @@ def _draw_axis(canvas: Canvas, left: float, y: float, width: float) -> None:
     canvas.line((x, y - 13), (end, y - 13), LINE)
     for place in (x, (x + end) / 2, end):
         canvas.line((place, y - 16), (place, y - 12), MUTE)
+    canvas.explain((left, y - 16, width, 22), texts.EXPLAIN_ADVANTAGE.format(span=SPAN))
     canvas.text(texts.Q_ADVANTAGE, (left, y), size=LABEL, colour=MUTE, room=_NAME - 6)
     canvas.text(f"−{SPAN:g}", (x, y), size=LABEL, colour=MUTE, align="centre")
     canvas.text("0", (end, y), size=LABEL, colour=MUTE, align="centre")
@@ -146,6 +151,21 @@ def decision_words(decision: Decision) -> Sequence[str]:
     kept, best = (texts.said(ACTION_NAMES[int(action[0])]) for action in (decision.action, decision.best))
     names = {"kept": kept.capitalize(), "best": best}
     return [line.format(margin=f"{decision.margin:.3g}", **names) for line in texts.Q_KEPT]
+
+
+def value_words(values: QValues, action: int) -> str:
+    """Say what the value of an action means now."""
+    name = texts.said(ACTION_NAMES[action]).capitalize()
+    if not values.readable:
+        return texts.EXPLAIN_VALUE_NONE.format(name=name)
+    loss, points = values.loss(action), signed(values.points[action])
+    best = texts.EXPLAIN_VALUE_BEST.format(name=name, points=points)
+    said = [texts.EXPLAIN_VALUE_LESS.format(name=name, points=points, loss=behind(loss).lstrip("−")) if loss else best]
+    if loss > SPAN:
+        said.append(texts.EXPLAIN_VALUE_OUTSIDE)
+    if action == values.flown:
+        said.append(texts.EXPLAIN_VALUE_FLOWN)
+    return " ".join(said)
 
 
 def signed(points: float) -> str:

@@ -1,52 +1,72 @@
-"""Training charts of a run, with other runs for comparison; a marker chooses one of its checkpoints."""
+"""Training charts of a run, with other runs for comparison; a marker chooses a moment of it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 import pygame
 
 from ai.common.decision import in_points
 from ai.common.environment import Doubles
-from ai.training.history import REVERTED, Checkpoint, History, SettingChange
+from ai.training.edits import EDITED
+from ai.training.history import REVERTED, History, SettingChange
 from ai.training.session import TAUGHT
-from game.charts.chart import RUN_STYLES, Chart, Series, Tick, draw_legend
+from game.charts.chart import Chart, Series, Tick
 from game.charts.charts import Charts
 from game.charts.scrubber import Scrubber
+from game.charts.series import run_style
 from game.core import texts
+from game.core.scene import Transition
+from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import SMALL
+from game.drawing.paint import mix
+from game.drawing.tokens import NIGHT0, SMALL
+from game.panels.run_legend import RunLegend
 from game.training.knob_descriptions import told
 from game.training.training_run import EarlierRun
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widget import OnPress, PointsManager, Widget
-from game.ui.widgets import Choice
+from game.ui.widgets import Choice, TextButton
 
 _TURNS: Final = 12  # frames in a round: in every second one, one chart reads the history, which spreads the load
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
-_LEGEND: Final = (40.0, 450.0)
-_AXES: Final = pygame.Rect(560, 436, 260, 20)  # by what the charts are measured, while runs are compared
+_LEGEND: Final = (40, 436, 416, 20)
+_DIMMED: Final = 0.68  # of the other runs' lines, while one is emphasised
+_ZOOM_RIGHT: Final = 820.0
+_AXES: Final = pygame.Rect(470, 436, 262, 20)  # by what the charts are measured, while runs are compared
+BY_DECISIONS: Final = 1  # of the ways to measure the horizontal axis: see texts.TRAIN_AXES
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
-    ("success", (40, 456, 360, 128), (0.0, 100.0), "{:.0f}"),
-    ("mean_return", (436, 456, 360, 128), None, "{:.0f}"),
-    ("loss", (40, 594, 172, 112), None, "{:.3g}"),
-    ("mean_q", (234, 594, 172, 112), None, "{:.1f}"),
-    ("epsilon", (428, 594, 172, 112), (0.0, 1.0), "{:.2f}"),
-    ("stage", (622, 594, 174, 112), (0.0, 3.0), "{:.0f}"),
+    ("success", (40, 456, 360, 112), (0.0, 100.0), "{:.0f}"),
+    ("mean_return", (436, 456, 360, 112), None, "{:.0f}"),
+    ("loss", (40, 592, 172, 92), None, "{:.3g}"),
+    ("mean_q", (234, 592, 172, 92), None, "{:.1f}"),
+    ("epsilon", (428, 592, 172, 92), (0.0, 1.0), "{:.2f}"),
+    ("stage", (622, 592, 174, 92), (0.0, 3.0), "{:.0f}"),
 )
+
+
+class Seeks(Protocol):
+    """Goes to a moment of a run."""
+
+    def seek(self, decisions: float) -> None:
+        """Go to the moment in decisions."""
+
+    def shift(self, direction: int) -> None:
+        """Go a step back (-1) or on (1)."""
 
 
 class TrainingCharts:
     """Six charts over one axis: seconds, decisions, or each run from its beginning to its end.
 
     Attributes:
-        chosen: the checkpoint under the marker; None without one.
+        moment: the moment under the marker, in decisions; None for now.
         axis: index into `texts.TRAIN_AXES`.
 
     """
@@ -58,42 +78,53 @@ class TrainingCharts:
             for name, box, limits, form in _CHARTS
         ])  # fmt: skip
         self._turn = self.axis = 0
+        self._legend: RunLegend | None = None
+        self._zoom_word: TextButton | None = None
         self.clear()
 
     def clear(self) -> None:
         """Reset for another run, or for other runs beside it."""
         self._history = History()
-        self.chosen: Checkpoint | None = None
+        self.moment: int | None = None
         self.charts.mark(None)
-        self._told = [-1] * len(_CHARTS)  # points of the history shown in each chart
-        self._legend: list[Series] = []
+        self.charts.zoom.reset()
+        self._told: list[object] = [None] * len(_CHARTS)  # what is shown in each chart
 
     def measure_by(self, axis: int) -> None:
         """Switch the charts to another horizontal axis."""
         self.axis = axis
         for chart in self.charts.charts:
             chart.read_x = texts.TRAIN_AXIS[axis].format
-        self._told = [-1] * len(_CHARTS)
-        self._mark()
+        self.charts.zoom.reset()
 
     def look(self, history: History, beside: Sequence[EarlierRun[History]]) -> None:
         """Read new points of the current run and of those beside it; call it once a frame."""
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
-        self._history, points = history, len(history)
-        if odd or number >= len(_CHARTS) or self._told[number] == points:
-            return
-        self._told[number] = points
+        self._history = history
+        self._mark()
         runs = [EarlierRun(texts.TRAIN_THIS, history, 0), *beside]
-        series = [self._series(_CHARTS[number][0], each) for each in runs if len(each.run)]
-        end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
+        shown = [(each.name, each.style) for each in runs if len(each.run)]
+        if self._legend is not None:
+            self._legend.names = shown
+        if self._zoom_word is not None:
+            self._zoom_word.label = zoom_word(self.charts.zoom.factor)
+        if odd or number >= len(_CHARTS):
+            return
+        emphasised = self._legend.emphasised if self._legend is not None else None
+        told = (len(history), shown, emphasised, self.axis, self.charts.zoom.shown)
+        if self._told[number] == told:
+            return
+        self._told[number] = told
+        series = [self._series(_CHARTS[number][0], each, emphasised) for each in runs if len(each.run)]
+        self.charts.zoom.end = max([_SHORTEST[self.axis], *(float(np.max(each.x)) for each in series)])
         ticks = [Tick(self._place(tick.x), tick.text, tick.kind) for tick in ticks_of(history)] if number == 0 else ()
-        self.charts.charts[number].set(series, (0.0, end), ticks)
-        if number == 0:
-            self._legend = series if len(series) > 1 else []
+        self.charts.charts[number].set(series, self.charts.zoom.shown, ticks)
 
-    def _series(self, name: str, beside: EarlierRun[History]) -> Series:
-        run, (colour, dash) = beside.run, RUN_STYLES[beside.style]
+    def _series(self, name: str, beside: EarlierRun[History], emphasised: int | None) -> Series:
+        run, (colour, dash) = beside.run, run_style(beside.style)
+        if emphasised not in (None, beside.style):
+            colour = mix(colour, NIGHT0, _DIMMED)
         x = run["decisions" if self.axis == 1 else "seconds"]
         if self.axis == 2:
             x = 100.0 * x / max(float(x[-1]), 1e-9)
@@ -109,47 +140,72 @@ class TrainingCharts:
         return 100.0 * seconds / max(float(history["seconds"][-1]), 1e-9)
 
     def _mark(self) -> None:
-        if self.chosen is not None:
-            caption = texts.TRAIN_CHECKPOINT.format(seconds=self.chosen.seconds)
-            self.charts.mark(self._place(self.chosen.seconds), caption)
-
-    def choose(self, place: float | int, checkpoints: Sequence[Checkpoint]) -> None:
-        """Choose the checkpoint at a place on the axis (float), or the one to the left or right (int -1 or 1)."""
-        if not checkpoints:
+        """Put the marker at the moment that is shown."""
+        if self.moment is None or not len(self._history):
+            self.charts.mark(None)
             return
-        if isinstance(place, int):
-            places = [each.decisions for each in checkpoints]
-            last = (
-                places.index(self.chosen.decisions) if self.chosen and self.chosen.decisions in places else len(places)
-            )
-            self.chosen = checkpoints[min(max(last + place, 0), len(checkpoints) - 1)]
-        else:
-            self.chosen = min(checkpoints, key=lambda each: abs(self._place(each.seconds) - place))
-        self._mark()
+        seconds = float(np.interp(self.moment, self._history["decisions"], self._history["seconds"]))
+        place = self._place(seconds)
+        if place != self.charts.charts[0].marker:
+            self.charts.zoom.reach(place)
+        self.charts.mark(place, texts.REWIND_MARK.format(seconds=seconds))
 
-    def widgets(self, manager: PointsManager, duel: OnPress, *, compared: bool) -> list[Widget]:
-        """Return a pointer for the charts, the scrubber of checkpoints and, beside earlier runs, the choice of axis.
+    def decisions_at(self, place: float) -> float:
+        """Return the moment of the current run, in decisions, at a place on the axis; infinite beyond its end."""
+        history = self._history
+        if not len(history) or place >= self._place(float(history["seconds"][-1])):
+            return math.inf
+        if self.axis == 1:
+            return place
+        seconds = place if self.axis == 0 else place / 100.0 * float(history["seconds"][-1])
+        return float(np.interp(seconds, history["seconds"], history["decisions"]))
 
-        `duel` is called when the chosen checkpoint is pressed.
+    def widgets(
+        self,
+        manager: PointsManager,
+        duel: OnPress,
+        rewind: Seeks,
+        *,
+        compared: bool,
+        choose: Callable[[int], Transition | None] = lambda _: None,
+    ) -> list[Widget]:
+        """Return a pointer for the charts, their scrubber, the zoom and, beside earlier runs, a legend and the axes.
+
+        The scrubber rewinds the run; `duel` is called when it is pressed, and `choose` with the line style of the run
+        that is pressed in the legend.
         """
 
         def scrub(place: float | int) -> None:
-            self.choose(place, self._history.checkpoints)
+            if isinstance(place, int):
+                rewind.shift(place)
+            else:
+                rewind.seek(self.decisions_at(place))
 
         found: list[Widget] = [
             VirtualPointer(manager, self.charts.box, self.charts.follow),
-            Scrubber(manager, self.charts, scrub, duel),
+            Scrubber(manager, self.charts, scrub, duel, self.charts.zoom_by),
         ]
-        if compared:
+        self._legend = RunLegend(manager, _LEGEND, choose) if compared else None
+        if self._legend is not None:
+            found.append(self._legend)
             axes = Choice(manager, _AXES, "", texts.TRAIN_AXES, self.axis, self.measure_by, size=SMALL, gap=14)
             found.append(axes)
-        return found
+        width = max(typeface.width(zoom_word(factor), SMALL, "regular") for factor in (1.0, 8.0))
+        box = (_ZOOM_RIGHT - width, _AXES.top, width, _AXES.height)
+        self._zoom_word = TextButton(manager, box, zoom_word(self.charts.zoom.factor), self._double, size=SMALL)
+        return [*found, self._zoom_word]
+
+    def _double(self) -> None:
+        self.charts.zoom.double(self.charts.charts[0].marker)
 
     def draw(self, canvas: Canvas) -> None:
-        """Draw the charts and their legend."""
-        if self._legend:
-            draw_legend(canvas, self._legend, _LEGEND)
+        """Draw the charts."""
         self.charts.draw(canvas)
+
+
+def zoom_word(factor: float) -> str:
+    """Return the word of the zoom, with its factor unless the whole axis is shown."""
+    return texts.COMPARE_ZOOM if factor == 1.0 else texts.COMPARE_ZOOMED.format(factor=factor)
 
 
 def _shown(run: History, name: str) -> Doubles:
@@ -180,6 +236,8 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _told(turn: SettingChange) -> str:
+    if turn.name == EDITED:
+        return texts.EDIT_TICK.format(count=turn.after) if turn.after else texts.EDIT_TICK_BACK
     if turn.name == TAUGHT:
         return texts.TRAIN_TAUGHT_TICK.format(count=turn.after)
     return texts.TRAIN_REVERTED if turn.name == REVERTED else told({turn.name: turn.after})

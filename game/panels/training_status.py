@@ -19,15 +19,20 @@ class TrainingStatus(NamedTuple):
     words: str
 
 
-def lander_status(lander_run: LanderRun) -> TrainingStatus:
-    """Return the landers, the time and the decisions so far, and the share that lands."""
+def lander_status(lander_run: LanderRun, moment: int | None = None, row: int = -1) -> TrainingStatus:
+    """Return the landers, the time and the decisions so far, and the share that lands.
+
+    `moment`, in decisions, and the `row` of the history say so of an earlier moment.
+    """
     history, swarm_state = lander_run.history, lander_run.swarm_state
     if swarm_state is None or not lander_run.measured:
         return TrainingStatus(texts.TRAIN_BEGINS if lander_run.alive else texts.TRAIN_LINE, "", texts.TRAIN_LANDED)
     line = texts.TRAIN_FIGURES.format(
-        landers=len(swarm_state.outcome), seconds=history.points[-1][0], count=int(swarm_state.decisions)
+        landers=len(swarm_state.outcome),
+        seconds=history["seconds"][row],
+        count=int(swarm_state.decisions) if moment is None else moment,
     )
-    landed = history["success"][-1]
+    landed = history["success"][row]
     return TrainingStatus(line, "" if np.isnan(landed) else f"{100 * landed:.0f}", texts.TRAIN_LANDED)
 
 

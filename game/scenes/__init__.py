@@ -14,10 +14,13 @@ ROUTES: Final = {
     "menu": "menu.MenuScene", "play": "play.PlayScene", "missions": "missions.MissionsScene",
     "watch": "watch.WatchScene", "train": "train.TrainScene", "runs": "runs.NetworksScene",
     "digits": "digits.DigitsScene", "digit_training": "digit_training.DigitTrainingScene",
+    "digit_inside": "digit_inside.DigitInsideScene", "why_not": "why_not.WhyNotScene",
     "dream": "dream.DreamScene", "quiz": "quiz.QuizScene", "physics": "physics.PhysicsScene",
+    "physics_step": "physics_step.PhysicsStepScene",
     "logbook": "logbook.LogbookScene", "replay": "replay.ReplayScene", "settings": "settings.SettingsScene",
     "bindings": "bindings.BindingsScene", "choices": "choices.ChoicesScene", "pause": "pause.PauseScene",
-    "error_screen": "error_screen.ErrorScene", "lesson": "lesson.LessonScene",
+    "learn": "learn.LearnScene", "chapter": "chapter.ChapterScene", "lesson": "lesson.LessonScene",
+    "error_screen": "error_screen.ErrorScene",
 }  # fmt: skip
 
 

@@ -9,8 +9,10 @@ import pygame
 
 from ai.agent.schedule import InForce
 from ai.digits.config import DIGIT_PRESETS, DigitConfig
+from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.scene import Push, Transition, push
+from game.digits.filter_film import FilterFilm
 from game.digits.matrix import ConfusionMatrix
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -30,8 +32,8 @@ from game.training.run_settings import RunKind
 from game.ui.context import Context
 from game.ui.hints import HintRow
 from game.ui.virtual_pointer import VirtualPointer
-from game.ui.widget import OnPress
-from game.ui.widgets import TextButton
+from game.ui.widget import OnPress, Widget
+from game.ui.widgets import Choice, TextButton
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
@@ -41,13 +43,20 @@ DIGITS: Final = RunKind(tuple(knob_descriptions(DigitConfig)), _OFFERED, texts.D
 _KNOBS: Final = pygame.Rect(868, 20, 384, 436)
 _MATRIX: Final = pygame.Rect(70, 372, 320, 320)
 _CELL: Final = pygame.Rect(440, 346, 372, 346)
+_VIEWS: Final = pygame.Rect(440, 690, 372, 24)  # what is misread, or the filters
 _SAID: Final = 500.0  # baseline of a problem's message
 _HINT: Final = pygame.Rect(868, 548, 384, 60)
 _EVERY: Final = 12  # frames between two drawings of the charts
 
 
 class DigitTrainingScene(TrainingScene[DigitRun]):
-    """Digit training scene: charts, confusion matrix and knobs."""
+    """Digit training scene: charts, knobs, and the confusion matrix or the filters as they form.
+
+    Attributes:
+        film: the filters of the moment that is chosen on the charts.
+        views: the choice between the matrix, 0, and the filters, 1.
+
+    """
 
     def __init__(self, context: Context) -> None:
         self._frame = 0
@@ -66,7 +75,12 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self.knobs = KnobsPanel(
             self.form, _KNOBS, DIGIT_PRESETS["classic"], 0, self.digit_run.change, self._begin, DIGITS
         )
+        self.film = FilterFilm(self.charts)
         self.matrix = self.form.add(ConfusionMatrix(self.form.manager, _MATRIX))
+        self._shown: Widget = self.matrix
+        self.views = self.form.add(
+            Choice(self.form.manager, _VIEWS, "", texts.DIGIT_RUN_VIEWS, 0, self._change_view, size=SMALL)
+        )
         self._way_back = WayBack(self.form, _HINT, self.digit_run)
         self.form.focus(self.start_button)
 
@@ -93,6 +107,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self._follow_run()
         if self.matrix.confusion is not self.digit_run.confusion:
             self.matrix.set(self.digit_run.confusion)
+        self.film.follow(self.digit_run.curves)
         if self.digit_run.alive:
             self.knobs.show_in_force(self._in_force())
         self._way_back.follow()
@@ -190,6 +205,21 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
             self.context.note(str(error))
             return None
 
+    # Matrix or filters
+
+    def _change_view(self, index: int) -> None:
+        """Show what is misread, or the filters with a scrubber over the charts."""
+        self.film.release()
+        manager, old = self.form.manager, self._shown
+        if index:
+            self._shown = Scrubber(manager, self.charts, self.film.choose, lambda: None, self.charts.zoom_by)
+        else:
+            cell = self.matrix.cell
+            self._shown = self.matrix = ConfusionMatrix(manager, _MATRIX)
+            self.matrix.set(self.digit_run.confusion)
+            self.matrix.cell = cell
+        self.form.replace([old], [self._shown])
+
     # The picture
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -198,10 +228,17 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self.charts.draw(canvas)
 
     def _draw_display(self, canvas: Canvas, alpha: float) -> None:
-        """Draw the figures, and the headings of the matrix."""
+        """Draw the figures, and what is misread or the filters."""
         self._sky.draw(canvas)
         self._draw_title(canvas)
         canvas.line((LEFT, 318), (DISPLAY_WIDTH - 24, 318), LINE)
+        if self.views.index:
+            self.film.draw(canvas)
+        else:
+            self._draw_misread(canvas)
+
+    def _draw_misread(self, canvas: Canvas) -> None:
+        """Draw the headings of the matrix, and the chosen cell's digits."""
         heading = canvas.text(texts.MATRIX_TITLE, (LEFT, 340), size=LABEL, colour=MUTE, weight="medium")
         shown = canvas.text(texts.MATRIX_AXES, (heading.right + 12, 340), size=LABEL, colour=MUTE)
         if self.digit_run.test is not None and self.digit_run.kept_epoch is not None:

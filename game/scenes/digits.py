@@ -13,39 +13,36 @@ import pygame
 from game.core import texts
 from game.core.scene import Push, Transition, push
 from game.digits.answer import FIX_TOP, LEFT, DigitRow, draw_answer, draw_fix
+from game.digits.before_after import BeforeAfter
 from game.digits.explanation import LEFT as EXPLANATION_LEFT
 from game.digits.explanation import STEPS, ExplanationView, StageSwitch
 from game.digits.fixing import FixRunner
 from game.digits.live_reading import LiveReading
 from game.digits.measuring import AccuracyMeasurement
+from game.digits.network_tabs import draw_problems, network_tabs
 from game.digits.pad import DrawingPad
+from game.digits.pad_words import add_below, add_row, draw_keys
 from game.digits.pen import make_pen
 from game.digits.reader import Numbers, Reading, Verdict
-from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
-from game.drawing.tokens import LABEL, MUTE, SMALL, TEXT, TITLE
+from game.drawing.tokens import LABEL, MUTE, SMALL, TITLE
 from game.input.controls import Command
 from game.training.digit_models import NAMES, called
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.form_scene import FOOT, FormScene
 from game.ui.hints import HintRow
-from game.ui.pick import ChoiceOrList
 from game.ui.widgets import Choice, TextButton
 
 if TYPE_CHECKING:
     from ai.digits.classifier import DigitClassifier
 
 PAD: Final = pygame.Rect(40, 70, 520, 520)
-_TABS: Final = (LEFT, 26, 252, 24)  # the row of networks, above the chosen one's answer
-_LONGEST_TAB: Final = 16  # letters
-_GAP: Final = 26.0  # between the links to other screens
 _BELOW: Final = 602  # top of the buttons under the pad
 _RIGHT: Final = 1244.0
-_PROBLEMS: Final = 650.0  # baseline of the problems of networks that can't be loaded, bottom line first
-_PROBLEM_LINES: Final = 4
+_WHY_NOT: Final = (LEFT, 233, 120, 20)  # of the word below the answer
 _DIGITS: Final = {
     **{pygame.K_0 + digit: digit for digit in range(10)},
     **{pygame.K_KP1 + digit - 1: digit for digit in range(1, 10)},
@@ -59,6 +56,7 @@ class DigitsScene(FormScene):
     Attributes:
         pad: the drawing pad.
         live: reads and explains the drawing.
+        before_after: what a switch has changed.
         fixing: teaches a network a drawing that it misreads.
         measuring: measures what each step of the preprocessing is worth.
 
@@ -69,6 +67,7 @@ class DigitsScene(FormScene):
         self.pad = DrawingPad(PAD)
         self.live = LiveReading(self.pad, chosen, self._show_bars)
         self._explanation = ExplanationView()
+        self.before_after = BeforeAfter()
         self._unfix: TextButton | None = None
         self._fix_of = -1  # revision of the drawing that was fixed last
         self._sky = NightSky(np.random.default_rng(11), ember=0.2, stars=40)
@@ -137,7 +136,7 @@ class DigitsScene(FormScene):
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
             self.form.goes_back(texts.HINT_BACK),
             *self._gamepad_actions,
-            *(Action(key, self._clear) for key in (Command.RETRY, pygame.K_DELETE)),
+            *(Action(key, self.pad.clear) for key in (Command.RETRY, pygame.K_DELETE)),
             *(Action(key, partial(self._correct, digit)) for key, digit in _DIGITS.items()),
         ]
 
@@ -148,13 +147,15 @@ class DigitsScene(FormScene):
     @property
     def _gamepad_actions(self) -> tuple[Action, Action]:
         """Undo and clear, which buttons below the pad do as well."""
-        return Action(pygame.K_z, self._undo, gamepad=Command.HANDOVER), Action(Command.CHOICES, self._clear)
+        return Action(pygame.K_z, self._undo, gamepad=Command.HANDOVER), Action(Command.CHOICES, self.pad.clear)
 
     def update(self) -> Transition | None:
         """Read the drawing if it changed, and receive finished measurements."""
         self.live.update()
         self.measuring.listen()
         self._follow_fix()
+        held = any(each.focused and (each.ringed or each.mouse_x is not None) for each in self._switches)
+        self.before_after.update(self.pad.revision, held=held)
         return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -165,7 +166,9 @@ class DigitsScene(FormScene):
         if self.chosen in self.reading.probabilities:
             draw_answer(canvas, self.reading, self.chosen)
         steps = list(asdict(self.live.switches).values())
-        self._explanation.draw(canvas, self.reading, self.chosen, self.live.why, steps)
+        compares = self.before_after.compared is not None
+        self._explanation.draw(canvas, self.reading, self.chosen, self.live.why, steps, aside=compares)
+        self.before_after.draw(canvas)
         self.form.draw(canvas)
         self._draw_words(canvas)
 
@@ -183,8 +186,11 @@ class DigitsScene(FormScene):
     # Preprocessing steps and their measured effect
 
     def _switch(self, step: str, on: bool) -> None:
+        self.live.catch_up()
+        before = self.reading
         self.live.switches = replace(self.live.switches, **{step: on})
         self.live.anew()
+        self.before_after.begin(step, on, self.chosen, before, self.reading, self.pad.revision)
         self.measuring.ask(self.live.switches)
 
     # Fixing a wrong answer
@@ -227,33 +233,24 @@ class DigitsScene(FormScene):
 
     def _add_words(self) -> None:
         manager, add = self.form.manager, self.form.add
-        self._under = [
-            add(TextButton(manager, (PAD.left + 80 * number, _BELOW, 56, 24), word, press, size=SMALL + 1))
-            for number, (word, press) in enumerate(((texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self._clear)))
-        ]
-        elsewhere = (
+        below = (texts.DIGITS_UNDO, self._undo), (texts.DIGITS_CLEAR, self.pad.clear)
+        self._under = add_below(self.form, below, PAD.left, _BELOW)
+        above = (
             (texts.DIGITS_QUIZ, self._quiz),
-            (texts.DIGITS_TRAIN, self._train),
+            (texts.DIGITS_TRAIN, partial(push, "digit_training")),
             (texts.DIGITS_DREAM, self._dream),
         )
-        widths = [typeface.width(word, TEXT, "medium") for word, _ in elsewhere]
-        left = PAD.right - sum(widths) - _GAP * (len(widths) - 1)
-        for (word, press), width in zip(elsewhere, widths, strict=True):
-            add(TextButton(manager, (left, 24, width, 28), word, press, size=TEXT, weight="medium"))
-            left += width + _GAP
+        add_row(self.form, above, PAD.right, 24)
+        add_row(self.form, [(texts.PATCH_WORD, partial(self._ask, "digit_inside"))], _RIGHT, 24)
+        why = self.form.manager, _WHY_NOT, texts.WHY_NOT_WORD, partial(self._ask, "why_not")
+        add(TextButton(*why, size=SMALL + 1))
         self._rows = [add(DigitRow(manager, digit, self._correct)) for digit in range(10)]
-        for number, step in enumerate(STEPS):
-            add(StageSwitch(manager, number, partial(self._switch, step)))
+        self._switches = [
+            add(StageSwitch(manager, number, partial(self._switch, step))) for number, step in enumerate(STEPS)
+        ]
 
     def _make_tabs(self) -> Choice:
-        """Return the row of networks; with networks of the player's own, it also leads to a list of all."""
-        names = list(self.fixing.networks)
-        words = [word if len(word) <= _LONGEST_TAB else word[:_LONGEST_TAB] + "…" for word in map(called, names)]
-        index = names.index(self.chosen) if self.chosen in names else 0
-        if len(names) == len(NAMES):
-            return Choice(self.form.manager, _TABS, "", words, index, self._choose)
-        everything = texts.DIGITS_ALL.format(count=len(names))
-        return ChoiceOrList(self.form.manager, _TABS, "", words, index, self._choose, self._pick, everything, size=TEXT)
+        return network_tabs(self.form.manager, list(self.fixing.networks), self.chosen, self._choose, self._pick)
 
     def _choose(self, index: int) -> None:
         """Choose another network; if it can't be loaded, say so and keep the last one."""
@@ -291,14 +288,18 @@ class DigitsScene(FormScene):
     def _quiz(self) -> Transition | None:
         return self._with_chosen(partial(push, "quiz"))
 
-    def _train(self) -> Transition:
-        return push("digit_training")
-
     def _dream(self) -> Transition | None:
         """Open the dream scene with the drawing."""
         seen = self.probabilities
         digit = 0 if seen is None else int(seen.argmax())
         return self._with_chosen(lambda classifier: push("dream", classifier, digit, self.reading.stages.centred))
+
+    def _ask(self, route: str) -> Transition | None:
+        """Open a scene about what the chosen network makes of the drawing."""
+        if self.probabilities is None:
+            self.context.note(texts.DIGITS_EMPTY)
+            return None
+        return self._with_chosen(lambda classifier: push(route, classifier, self.reading.stages.centred))
 
     def _with_chosen(self, lead: Callable[[DigitClassifier], Transition]) -> Transition | None:
         """Open a scene about the chosen network, if it could be loaded."""
@@ -308,24 +309,12 @@ class DigitsScene(FormScene):
     def _undo(self) -> None:
         self.pad.undo()
 
-    def _clear(self) -> None:
-        self.pad.clear()
-
     def _draw_words(self, canvas: Canvas) -> None:
         if self.reading.verdict(self.chosen) is not Verdict.EMPTY:
             draw_fix(canvas, self.fixing, same=self._fix_of == self.pad.revision)
         measured = self.measuring.words(self.live.switches)
         place, width = (EXPLANATION_LEFT, 184), _RIGHT - EXPLANATION_LEFT
         draw_wrapped(canvas, measured, place, width, size=LABEL, colour=MUTE, leading=15)
-        problems = [
-            texts.DIGITS_PROBLEM.format(name=called(name), problem=problem)
-            for name, problem in self.live.reader.problems.items()
-        ]
-        y: float = _PROBLEMS
-        for words in reversed(problems):
-            most = _PROBLEM_LINES - round((y - _PROBLEMS) / 17)
-            y = draw_wrapped(canvas, words, (LEFT, y), _TABS[2], colour=canvas.palette.warn, leading=17, most=most)
-        for action, widget in zip(self._gamepad_actions, self._under, strict=True):
-            left = widget.box.left + canvas.text_width(widget.label, size=SMALL + 1) + 8
-            canvas.text(action.key_word(self.context.controls), (left, widget.baseline), size=SMALL, weight="medium")
+        draw_problems(canvas, self.live.reader.problems)
+        draw_keys(canvas, self._under, [each.key_word(self.context.controls) for each in self._gamepad_actions])
         self.draw_hints(canvas)

@@ -18,12 +18,13 @@ from game.ui.widgets import TextButton
 
 _TITLE_SIZE: Final = 88.0
 _WORD_SIZE: Final = 22.0
-_FIRST_WORD: Final = 300
-_LINE: Final = 38
+_FIRST_WORD: Final = 284
+_LINE: Final = 36
+_HALVES: Final = 12  # points between the two halves of the column
 
 
 # Entries: the route of a screen and its key in `texts.MENU`; the last one closes the game.
-ROWS: Final = ("play", "missions", "watch", "train", "digits", "physics", "logbook", "settings", "quit")
+ROWS: Final = ("play", "missions", "watch", "train", "digits", "learn", "physics", "logbook", "settings", "quit")
 
 
 class MenuScene(FormScene):
@@ -35,7 +36,8 @@ class MenuScene(FormScene):
         self._lines: list[tuple[TextButton, str]] = []
         for number, name in enumerate(ROWS):
             label, line = texts.MENU[name]
-            box = (MARGIN, _FIRST_WORD + number * _LINE, 160, _LINE)
+            lower = number >= len(ROWS) // 2
+            box = (MARGIN, _FIRST_WORD + number * _LINE + lower * _HALVES, 160, _LINE)
             word = TextButton(self.form.manager, box, label, partial(_open, name), size=_WORD_SIZE, weight="light")
             self._lines.append((self.form.add(word), line))
 

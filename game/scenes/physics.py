@@ -21,7 +21,9 @@ from game.drawing.canvas import Canvas
 from game.drawing.figures import write_figures
 from game.drawing.sky import NightSky
 from game.drawing.tokens import FAINT, HUMAN, INK, MARGIN, MUTE, NIGHT0, SMALL, TEXT, VIEW_SIZE
-from game.exhibits import EXHIBITS, Label
+from game.exhibits import EXHIBITS
+from game.exhibits.bench import Bench
+from game.exhibits.labels import draw_label
 from game.input.controls import Command
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -30,7 +32,7 @@ from game.ui.hints import HintRow
 from game.ui.playback import LABEL_WIDTH, Playback
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widgets import Choice
-from game.world.bodies import Outlines, draw_contacts, draw_grip
+from game.world.bodies import Outlines, draw_contacts, draw_force_scale, draw_grip
 from game.world.camera import POINTS_PER_METRE, WORLD_WIDTH, View
 from game.world.grip import Grip
 
@@ -44,7 +46,8 @@ _GAP: Final = 24.0
 _ROOM: Final = (16.0, 152.0, VIEW_SIZE[0] - 32.0, 444.0)
 _COLUMNS: Final = (758.0, 880.0, 1002.0, 1124.0)
 _REACH: Final = 8.0  # points by which the mouse may miss a body
-_GAUGE: Final = 64.0
+_HINTS: Final = 960.0
+_SCALE: Final = (330.0, 702.0)  # left end of the forces' legend, on its baseline
 _SMOOTHING: Final = 0.05
 
 
@@ -66,6 +69,7 @@ class PhysicsScene(FormScene):
         manager = self.form.manager
         tabs = pygame.Rect(*_TABS, math.ceil(_width(words, TEXT)), 24)
         self._tabs = self.form.add(Choice(manager, tabs, "", words, self._chosen, self._choose_exhibit))
+        self.bench = Bench(self.form, self.restart, self._open_step, now)
         self._hand = self.form.add(VirtualPointer(manager, _ROOM, self._point, hold=texts.POINTER_GRIP))
         self._gravities: list[Choice] = []  # one, or none where there is no gravity
         speeds = self.playback.row(manager, _row_box(1, self.playback.words))
@@ -79,7 +83,8 @@ class PhysicsScene(FormScene):
 
     def restart(self) -> None:
         """Rebuild the exhibit."""
-        self.exhibit = EXHIBITS[self.chosen](GRAVITIES[self._gravity])
+        self.exhibit = EXHIBITS[self.chosen](GRAVITIES[self._gravity], self.bench.values_of(self.chosen))
+        self.bench.show(self.exhibit)
         self._outlines = Outlines(self.exhibit.sprites)
         self._poses = self._poses_before = self.exhibit.poses
         self._clock.begin()
@@ -103,6 +108,7 @@ class PhysicsScene(FormScene):
             step,
             Action(Command.NEXT, lambda: self._turn(1), texts.HINT_NEXT_EXHIBIT),
             Action(Command.CHOICES, lambda: self._contacts.choose(1 - self._contacts.index), texts.HINT_CONTACTS),
+            Action(Command.MODE, self.bench.toggle, texts.HINT_LAW),
             Action(Command.RETRY, self.restart, texts.HINT_RESTART_EXHIBIT),
             Action(Command.PAUSE, self._pause, texts.HINT_PAUSE),
             Action(Command.PREVIOUS, lambda: self._turn(-1)),
@@ -111,15 +117,16 @@ class PhysicsScene(FormScene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints in the upper right corner."""
-        return [HintRow(self.hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True)]
+        return [HintRow(self.hints, (VIEW_SIZE[0] - MARGIN, 38), from_right=True, room=_HINTS)]
 
     def _turn(self, direction: int) -> None:
         self._tabs.choose((self._chosen + direction) % len(self._names))
 
     def update(self) -> Transition | None:
         """Take as many steps as the chosen speed makes due."""
-        for _ in range(self.playback.steps()):
+        for _ in range(self.playback.steps() if self.bench.measuring is None else 0):
             self._step()
+        self.bench.update()
         return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -132,9 +139,9 @@ class PhysicsScene(FormScene):
         lit = self.grip.body.index if self.grip else self._hovered()
         self._outlines.draw(canvas, view, poses, lit, held=self.grip is not None)
         if self.contacts_drawn:
-            draw_contacts(canvas, view, self.exhibit.world, self.exhibit.gravity or GRAVITIES[0])
+            draw_contacts(canvas, view, self.exhibit.world, self._weight)
         for label in self.exhibit.labels():
-            _draw_label(canvas, view, label, poses)
+            draw_label(canvas, view, label, poses)
         if self.grip:
             place = self.grip.place(poses[self.grip.body.index])
             x, y = view.points(place).tolist()
@@ -149,6 +156,11 @@ class PhysicsScene(FormScene):
         spent = self._now() - before
         self.step_time += (spent - self.step_time) * (_SMOOTHING if self.step_time else 1.0)
         self._poses_before, self._poses = self._poses, self.exhibit.poses
+
+    @property
+    def _weight(self) -> float:
+        """Weight of a kilogram, in newtons; the moon's where there is no gravity."""
+        return self.exhibit.gravity or GRAVITIES[0]
 
     @property
     def chosen(self) -> str:
@@ -167,18 +179,21 @@ class PhysicsScene(FormScene):
         """Index of the body under the mouse, if that is in use, or under the virtual pointer."""
         if not self.context.controls.mouse_in_use and not self._hand.typing:
             return None
+        if self.bench.covers(self._mouse):
+            return None
         body = self._outlines.body_at(self._poses, self._place(self._mouse), 0.0)
         return body.index if body else None
 
     def _point(self, event: pygame.event.Event) -> bool:
         """Grip, pull or release a body; return False if the event means something else."""
         self._mouse = (float(event.pos[0]), float(event.pos[1]))
+        self.bench.hover(self._mouse)
         if self.grip:
             self.grip.target = self._place(self._mouse)
             if event.type == pygame.MOUSEBUTTONUP and event.button == 1:
                 self.grip = None
             return True
-        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1:
+        if event.type != pygame.MOUSEBUTTONDOWN or event.button != 1 or self.bench.covers(self._mouse):
             return False
         if any(widget.hover_point(*event.pos) for widget in self.form.widgets if widget is not self._hand):
             return False
@@ -188,6 +203,9 @@ class PhysicsScene(FormScene):
         if body:
             self.grip = Grip(body, place)
         return body is not None
+
+    def _open_step(self) -> Transition:
+        return push("physics_step", self.exhibit, self.grip)
 
     def _pause(self) -> Transition:
         return push("pause", self, retry=self.restart)
@@ -239,6 +257,9 @@ class PhysicsScene(FormScene):
             for part, left in ((texts.PHYSICS_GRAVITY, x), (texts.PHYSICS_WEIGHTLESS, x + LABEL_WIDTH)):
                 canvas.text(part, (left, y + _ROW_HEIGHT // 2 + 0.36 * SMALL), size=SMALL, colour=MUTE)
         hud.draw_readouts(canvas, self._readouts(), _COLUMNS)
+        if self.contacts_drawn:
+            draw_force_scale(canvas, _SCALE, self._weight, _COLUMNS[0] - _SCALE[0] - 16)
+        self.bench.draw(canvas)
         self.form.draw(canvas)
         self.draw_hints(canvas)
         self._draw_state(canvas)
@@ -270,22 +291,3 @@ def _width(words: Sequence[str], size: float) -> float:
 def _row_box(row: int, words: Sequence[str]) -> pygame.Rect:
     x, y, pitch = _ROWS
     return pygame.Rect(x, y + row * pitch, math.ceil(LABEL_WIDTH + _width(words, SMALL)), _ROW_HEIGHT)
-
-
-def _draw_label(canvas: Canvas, view: View, label: Label, poses: Array) -> None:
-    place = np.asarray(label.place)
-    if label.body is not None:
-        place = place + poses[label.body.index, :2]
-    x, y = view.points(place).tolist()
-    left, _ = write_figures(canvas, label.text, (x, y + 4), size=SMALL, centred=True)
-    palette = canvas.palette
-    if label.within is not None:
-        if label.within:
-            canvas.dot((left - 10, y), 2.5, palette.good)
-        else:
-            canvas.marker("triangle", (left - 10, y), 9, palette.warn)
-    if label.fill is not None:
-        canvas.bar((x - _GAUGE / 2, y + 11, _GAUGE, 2), label.fill, INK)
-    if label.limit is not None:
-        tick = x - _GAUGE / 2 + label.limit * _GAUGE
-        canvas.line((tick, y + 8), (tick, y + 16), INK)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from pathlib import Path
 from typing import Final
 
 import pygame
 
-from ai.agent.config import PRESETS, Config
+from ai.agent.config import Config
 from ai.training.checkpoints import agent_of
 from game.core import texts
 from game.core.names import LibraryError
@@ -20,15 +21,19 @@ from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.lesson.door import LessonDoor
 from game.panels.advice import Advice
-from game.panels.knobs import KnobsPanel
+from game.panels.chart_captions import ChartCaptions
 from game.panels.network_panel import NetworkPanel
+from game.panels.rewind import Rewind
 from game.panels.run_status import draw_run_status
 from game.panels.training_charts import TrainingCharts
 from game.panels.training_status import lander_status
-from game.scenes.dialog import ListDialog, QuestionDialog
-from game.scenes.training_scene import DISPLAY_WIDTH, LEFT, TrainingScene
-from game.training.lander_run import PACES, LanderRun
+from game.scenes.comparing import Comparing
+from game.scenes.dialog import QuestionDialog
+from game.scenes.split_scene import SplitTrainingScene
+from game.scenes.training_scene import DISPLAY_WIDTH, LEFT
+from game.training.lander_run import PACES
 from game.training.library import Library, SavedRun
+from game.training.split_run import SplitRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
 from game.ui.hints import HintRow
@@ -38,33 +43,36 @@ from game.ui.widgets import Choice, TextButton
 from game.world.swarm import LearningSwarm
 
 _FLOOR: Final = 434.0  # where the charts begin
-_KNOBS: Final = pygame.Rect(868, 20, 384, 404)
 _SAID: Final = pygame.Rect(868, 612, 384, 60)
 _TITLE: Final = pygame.Rect(24, 16, 350, 124)
 _COVER: Final = 0.88  # of the panels over the swarm: its landers are many, and bright
+_BEHIND: Final = 0.72  # cover of the swarm behind an edited network
 _WORDS: Final = pygame.Rect(684, 16, 136, 154)  # beside the swarm
 _SWARM: Final = pygame.Rect(16, 176, 804, 246)  # where keys can point at a lander
 _CONTROLS: Final = pygame.Rect(868, 676, 384, 28)
 
 
-class TrainScene(TrainingScene[LanderRun]):
+class TrainScene(SplitTrainingScene):
     """Train scene: swarm, charts and knobs. With `resume`, a saved run continues at once."""
 
     def __init__(self, context: Context, resume: Path | None = None) -> None:
         self._resume = resume
         self._compared = False
-        self.lander_run = LanderRun(Library(context.user_dir))
+        self.lander_run = SplitRun(Library(context.user_dir))
         super().__init__(context, self.lander_run, self.lander_run.library, ((_SAID.left, _SAID.top + 17.0), 3))
 
     def _build(self) -> None:
         left = self.lander_run.library.claim()  # the run left unnamed by the last visit
         self.swarm = LearningSwarm(DISPLAY_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
-        self.lessons = LessonDoor(self.lander_run, self.swarm, self.context.note, lambda: self.training_charts.chosen)
+        self.captions = ChartCaptions()
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
-        self.inside = NetworkPanel(self.form, self._look_closer)
-        self.knobs = KnobsPanel(self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin)
+        self.inside = NetworkPanel(self.form, self._look_closer, self.lander_run)
+        self._add_knobs()
+        self._comparing = Comparing(self, self.lander_run, self._ask)
+        self.rewind = Rewind(self.form, self.lander_run, DISPLAY_WIDTH / VIEW_SIZE[0])
+        self.lessons = LessonDoor(self.lander_run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
         self._lay_beside()
         if self._resume:
@@ -105,15 +113,18 @@ class TrainScene(TrainingScene[LanderRun]):
         lander_run = self.lander_run
         looked = self._listen()
         self._follow_run()
-        self._advice.hush(bool(self.knobs.waiting))
+        self._advice.hush(bool(self.knobs.waiting) or self.split_view.shown)
         if lander_run.alive:
             self.knobs.show_in_force(lander_run.in_force)
         still = self._settings.reduced_motion
-        self.training_charts.look(lander_run.history, lander_run.earlier)
-        if bool(lander_run.earlier) != self._compared:
-            self._compared = bool(lander_run.earlier)
-            self._lay_beside(self.inside.large)
+        self._show_moment()
+        beside = self.split_view.beside
+        self.training_charts.look(lander_run.history, beside)
+        if bool(beside) is not self._compared and not self.inside.large:
+            self._compared = bool(beside)
+            self._lay_again()
         self.swarm.update(still)
+        self.split_view.update(still, self.moment)
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
         self.training_charts.charts.update(at_once=still, turn=not (looked or self.inside.busy))
@@ -127,15 +138,40 @@ class TrainScene(TrainingScene[LanderRun]):
             self.context.note(note)
         if lander_run.swarm_state is not None and lander_run.swarm_state is not swarm_state:
             self.swarm.take(lander_run.swarm_state)
-        if len(lander_run.history) != points:
+        if len(lander_run.history) != points and self.moment is None:
             self.inside.pay(lander_run.history)
         if lander_run.network_state is None or lander_run.network_state is network_state:
             return False
-        self.inside.take(lander_run.network_state, lander_run.config)
+        if self.moment is None:
+            self.inside.take(lander_run.network_state, lander_run.config)
         if lander_run.alive and len(lander_run.history):
             health = self.inside.health
             self._advice.follow(lander_run.history, lander_run.config, health.dead_share, health.clipped_share)
+            self.captions.follow(lander_run.history, lander_run.config, self._advice.hint)
         return True
+
+    @property
+    def moment(self) -> int | None:
+        """Moment of the run that is shown, in decisions; None for now."""
+        return self.rewind.moment
+
+    @property
+    def shown_swarm(self) -> LearningSwarm:
+        """The landers of the moment that is shown."""
+        return self.swarm if self.moment is None else self.rewind.swarm
+
+    def _show_moment(self) -> None:
+        """Put all of the screen at the moment that was chosen, or back to now."""
+        lander_run, moment = self.lander_run, self.moment
+        self.rewind.update()
+        if moment == self.training_charts.moment:
+            return
+        self.training_charts.moment, self.inside.editing.past = moment, moment is not None
+        network = lander_run.network_state if moment is None else self.rewind.network_state
+        if network is not None:
+            self.inside.show(network, lander_run.config)
+        if len(lander_run.history):
+            self.inside.pay(lander_run.history, self.rewind.row)
 
     # The run
 
@@ -151,9 +187,12 @@ class TrainScene(TrainingScene[LanderRun]):
         self._start(Config(), 0, folder)
 
     def _clear(self) -> None:
+        self.split_view.clear()
         self.swarm.clear()
+        self.rewind.clear()
         self._advice.clear()
         self.training_charts.clear()
+        self.captions.clear()
         self.inside.clear()
 
     def _clear_advice(self) -> None:
@@ -208,16 +247,8 @@ class TrainScene(TrainingScene[LanderRun]):
         else:
             self.context.note(texts.RUN_DELETED.format(name=name))
 
-    def _compare(self) -> Transition:
-        """Ask for a saved run whose curves shall be seen beside these."""
-        runs = self.lander_run.library.runs()
-
-        def put(number: int) -> None:
-            if note := self.lander_run.compare(runs[number].name, runs[number].folder):
-                self.context.note(note)
-            self.training_charts.clear()
-
-        return Push(ListDialog(self, texts.TRAIN_COMPARE_WITH, [(run.name,) for run in runs], put))
+    def _ask(self, question: Transition) -> None:
+        self._question = question
 
     # Checkpoints
 
@@ -228,9 +259,8 @@ class TrainScene(TrainingScene[LanderRun]):
             self.lander_run.revert(checkpoint)
 
     def _duel(self) -> Transition | None:
-        """Fly against the chosen checkpoint, or the latest."""
-        found = self.lander_run.history.checkpoints
-        checkpoint = self.training_charts.chosen or (found[-1] if found else None)
+        """Fly against the checkpoint of the moment that is shown."""
+        checkpoint = self.lander_run.history.checkpoint_at(math.inf if self.moment is None else self.moment)
         if checkpoint is None:
             self.context.note(texts.TRAIN_NO_CHECKPOINT)
             return None
@@ -259,12 +289,12 @@ class TrainScene(TrainingScene[LanderRun]):
 
     def _lay_beside(self, large: bool = False) -> None:
         """Add the widgets of the large network, or of the swarm and the charts."""
-        beside = self.inside.place(large)
-        if not beside:
+        beside = self.inside.place(large) + self.rewind.place(large)
+        if not large:
             words = (
                 (texts.TRAIN_RUNS, self._open_runs),
                 (texts.TRAIN_DUEL, self._duel),
-                (texts.TRAIN_COMPARE, self._compare),
+                (texts.TRAIN_COMPARE, self._comparing.add),
                 (texts.TRAIN_TEACH, self._teach),
                 (texts.LESSON_WHY, self.lessons.open),
             )
@@ -272,33 +302,55 @@ class TrainScene(TrainingScene[LanderRun]):
             beside = [pointer] + [
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
-            beside += self.training_charts.widgets(self.form.manager, self._duel, compared=self._compared)
+            beside += self.training_charts.widgets(
+                self.form.manager, self._duel, self.rewind, compared=self._compared, choose=self._comparing.choose
+            )
         self.form.replace(self._beside, beside)
         self._beside = beside
+
+    def _lay_again(self) -> None:
+        self._lay_beside(self.inside.large)
 
     def _look_closer(self) -> None:
         self._lay_beside(large=not self.inside.large)
         self.training_charts.charts.hover(None)
 
+    @property
+    def _back_hint(self) -> str:
+        return texts.HINT_BACK if self.moment is None else texts.REWIND_BACK
+
     def _back(self) -> Transition | None:
-        if not self.inside.large:
+        if self.inside.large:
+            self._look_closer()
+        elif self.moment is not None:
+            self.rewind.clear()
+        else:
             return super()._back()
-        self._look_closer()
         return None
 
     def _draw_display(self, canvas: Canvas, alpha: float) -> None:
         """Draw the swarm and the charts, or the ground of the large network."""
         if self.inside.large:
-            canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0)
+            edited = self.lander_run.edits.holds and self.moment is None  # then the swarm is seen behind the network
+            if edited:
+                self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
+            canvas.fill(canvas.rect(0, 0, DISPLAY_WIDTH, VIEW_SIZE[1]), NIGHT0, _BEHIND if edited else 1.0)
             return
-        self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
+        if self.split_view.shown:
+            self.split_view.draw(canvas, alpha)
+        elif self.moment is not None:
+            self.rewind.swarm.draw(canvas, alpha, paused=True)
+        else:
+            self.swarm.draw(canvas, alpha, paused=self.lander_run.state is WorkerState.PAUSED)
         canvas.fill(canvas.rect(0, _FLOOR, DISPLAY_WIDTH, VIEW_SIZE[1] - _FLOOR), NIGHT0)
         canvas.line((0, _FLOOR), (DISPLAY_WIDTH, _FLOOR), LINE)
         self._draw_title(canvas)
         self.training_charts.draw(canvas)
+        self.captions.draw(canvas, self.training_charts.charts.charts)
 
     def _draw_panel(self, canvas: Canvas) -> None:
         self.inside.draw(canvas)
+        self.rewind.draw(canvas)
         super()._draw_panel(canvas)
 
     def _draw_advice(self, canvas: Canvas) -> None:
@@ -308,6 +360,6 @@ class TrainScene(TrainingScene[LanderRun]):
         height = _TITLE.height if self.lander_run.measured else 66
         for box in ((*_TITLE.topleft, _TITLE.width, height), _WORDS):  # landers fly behind
             canvas.panel(box, _COVER)
-        status = lander_status(self.lander_run)
+        status = lander_status(self.lander_run, self.moment, self.rewind.row)
         draw_run_status(canvas, (LEFT, 46), texts.TRAIN_TITLE, *status, drop=76, room=_TITLE.width - 32)
         self.draw_hints(canvas)

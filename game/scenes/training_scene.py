@@ -77,6 +77,11 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
     def _learnt(self) -> bool:
         """Whether the run has learnt anything yet."""
 
+    @property
+    def _back_hint(self) -> str:
+        """What Escape does, in a word."""
+        return texts.HINT_BACK
+
     @abstractmethod
     def _begin(self, config: Any, seed: int) -> None:
         """Start a run, once the player is content with what becomes of an earlier one."""
@@ -121,7 +126,7 @@ class TrainingScene(FormScene, ABC, Generic[Run]):
     def actions(self) -> Table:
         """Go back; step, start or pause, as the buttons say."""
         return [
-            self.form.goes_back(texts.HINT_BACK),
+            self.form.goes_back(self._back_hint),
             Action(Command.STEP, self._run.step),
             Action(Command.HANDOVER, self._toggle),
         ]

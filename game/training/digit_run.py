@@ -9,17 +9,17 @@ from typing import Final
 
 from ai.digits.checkpoints import LAST_FILE, read_summary
 from ai.digits.config import DigitConfig
+from ai.digits.filters import FilterMoment
 from ai.digits.session import (
-    Confusion,
     DigitPoint,
     DigitRunSaved,
     DigitRunStarted,
     DigitSettingChanged,
     Finish,
-    HeldOutScore,
     RestoreBest,
     live_digits,
 )
+from ai.digits.validation import Confusion, HeldOutScore
 from ai.nn.files import brief
 from ai.nn.folder import CONFIG
 from ai.training.history import REVERTED, TURNING_SECONDS
@@ -28,8 +28,9 @@ from game.core import texts
 from game.core.names import LONGEST_NAME, LibraryError
 from game.core.worker import Worker
 from game.training.digit_models import PATIENCE, DigitModels
-from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
+from game.training.training_run import EarlierRun, TrainingRun, put_beside
 
+CurveMessage = DigitPoint | FilterMoment | HeldOutScore | DigitSettingChanged
 FALLEN: Final = 0.15  # drop of validation accuracy below its best at which a return to the best is offered
 _MOST_POINTS: Final = 4000
 
@@ -41,6 +42,7 @@ class DigitCurves:
     points: list[DigitPoint] = field(default_factory=list)
     scores: list[HeldOutScore] = field(default_factory=list)
     turns: list[DigitSettingChanged] = field(default_factory=list)
+    filters: list[FilterMoment] = field(default_factory=list)
 
     @property
     def fallen(self) -> tuple[float, float] | None:
@@ -50,13 +52,16 @@ class DigitCurves:
         best = max((score.accuracy for score in self.scores), default=0.0)
         return (best, read[-1]) if read and best - read[-1] > FALLEN else None
 
-    def append(self, told: DigitPoint | HeldOutScore | DigitSettingChanged) -> None:
+    def append(self, told: CurveMessage) -> None:
         """Append a message; beyond a limit, every other point is dropped.
 
         Changes of one knob in quick succession count as one, with the last value.
         """
         if isinstance(told, HeldOutScore):
             self.scores.append(told)
+            return
+        if isinstance(told, FilterMoment):
+            self.filters.append(told)
             return
         if isinstance(told, DigitSettingChanged):
             last = self.turns[-1] if self.turns else None
@@ -146,17 +151,14 @@ class DigitRun(TrainingRun):
         `name` is the name of its settings. Returns a note for the player, or ""; for a run that must wait, the note
         comes from `poll`.
         """
-        note = ""
         if self.curves.points:
-            gone = put_beside(self.earlier, self.name, self.curves)
-            note = texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
+            put_beside(self.earlier, self.name, self.curves)
         self.curves, self.confusion, self.test, self.kept_epoch = DigitCurves(), None, None, None
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
         self.call(name)
-        started = self._start(lambda: self._begin(config, seed, resume))
-        return " ".join(filter(None, [note, started]))
+        return self._start(lambda: self._begin(config, seed, resume))
 
     def _begin(self, config: DigitConfig, seed: int, resume: bool) -> str:
         notes = self._name_ended()
@@ -204,7 +206,7 @@ class DigitRun(TrainingRun):
             if self.waiting and not isinstance(told, DigitRunSaved):  # from the previous run, only where it was saved
                 continue
             match told:
-                case DigitPoint() | HeldOutScore() | DigitSettingChanged():
+                case DigitPoint() | FilterMoment() | HeldOutScore() | DigitSettingChanged():
                     self.curves.append(told)
                     self.config = _turned(self.config, told)
                 case Confusion():
@@ -250,7 +252,7 @@ class DigitRun(TrainingRun):
         return ""
 
 
-def _turned(config: DigitConfig, told: DigitPoint | HeldOutScore | DigitSettingChanged) -> DigitConfig:
+def _turned(config: DigitConfig, told: CurveMessage) -> DigitConfig:
     """Return the configuration of a run after one of its messages."""
     if not isinstance(told, DigitSettingChanged) or told.name == REVERTED:
         return config

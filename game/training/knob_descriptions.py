@@ -34,6 +34,7 @@ class KnobDescription:
         page: group of knobs it is shown in.
         live: whether it may change during a run.
         stops: its possible values, from left to right on its track, or those of its words.
+        advice: what comes of too little and of too much of it, and what to watch; empty for some.
 
     """
 
@@ -45,6 +46,7 @@ class KnobDescription:
     live: bool
     kind: KnobKind
     stops: tuple[Any, ...]
+    advice: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -72,7 +74,8 @@ def knob_descriptions(of: type[Configuration] = Config) -> list[KnobDescription]
         elif stops := _stops(item):
             described = item.metadata
             made.append(KnobDescription(item.name, "", label(item.name), texts.said(described["help"]),
-                             described["group"], described["live"], _kind(item), stops))  # fmt: skip
+                             described["group"], described["live"], _kind(item), stops,
+                             texts.KNOB_ADVICE.get(item.name, ()) if of is Config else ()))  # fmt: skip
     return made
 
 
@@ -114,8 +117,8 @@ def _kind(item: Field[Any]) -> KnobKind:
 def _weight(part: Field[Any], live: bool) -> KnobDescription:
     default = float(getattr(RewardWeights(), part.name))
     stops = tuple(_rounded(share * default) for share in _SHARES) if default else _COSTS
-    words = texts.KNOB_WEIGHTS.get(part.name, (part.name.capitalize(), ""))
-    return KnobDescription(WEIGHTS, part.name, *words, REWARD, live, "slider", stops)
+    word, said, *advice = texts.KNOB_WEIGHTS.get(part.name, (part.name.capitalize(), ""))
+    return KnobDescription(WEIGHTS, part.name, word, said, REWARD, live, "slider", stops, tuple(advice))
 
 
 def _stops(item: Field[Any]) -> tuple[Any, ...]:

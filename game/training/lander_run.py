@@ -9,6 +9,7 @@ from ai.agent.config import Config
 from ai.agent.lesson import Lesson
 from ai.agent.schedule import InForce
 from ai.nn import ModelFormatError
+from ai.training.edits import EditCommand, NetworkEdits
 from ai.training.history import Checkpoint, History, Point, SettingChange, Validation
 from ai.training.messages import (
     AddDemonstrations,
@@ -26,10 +27,13 @@ from game.core import texts
 from game.core.names import LibraryError
 from game.core.worker import Worker
 from game.training.library import Library
-from game.training.training_run import EARLIER, EarlierRun, TrainingRun, put_beside
+from game.training.record import Record
+from game.training.training_run import EarlierRun, TrainingRun, put_beside
 
 # Decisions of all landers per second; one takes 1/15 s of simulated time. None is as fast as possible.
 PACES: Final[tuple[float | None, ...]] = (15.0, 60.0, None)
+SWARM_BYTES: Final = 8 << 20  # of landers' states kept to rewind to
+NETWORK_BYTES: Final = 16 << 20  # of networks
 
 
 class LanderRun(TrainingRun):
@@ -40,6 +44,8 @@ class LanderRun(TrainingRun):
     Attributes:
         history: history of the current or last run.
         swarm_state, network_state, in_force, lesson: the latest message of each kind; None before the first.
+        swarms, networks: those of the whole run, as far as they were kept.
+        edits: what was edited of its network by hand.
         earlier: the runs shown beside it, the latest first.
 
     """
@@ -53,8 +59,10 @@ class LanderRun(TrainingRun):
         self.history = History()
         self.swarm_state: SwarmState | None = None
         self.network_state: NetworkState | None = None
+        self.swarms, self.networks = Record[SwarmState](SWARM_BYTES), Record[NetworkState](NETWORK_BYTES)
         self.in_force: InForce | None = None
         self.lesson: Lesson | None = None
+        self.edits = NetworkEdits()
         self.earlier: list[EarlierRun[History]] = []
         self.begun = False  # whether a run has reported its configuration since this was last set to False
         self.pace = len(PACES) - 1
@@ -70,16 +78,19 @@ class LanderRun(TrainingRun):
         `name` is the name of its settings; a run that was saved under a name keeps that. Returns a note for the
         player, or ""; for a run that must wait, the note comes from `poll`.
         """
-        note = self._put_beside(self.name, self.history) if len(self.history) else ""
+        if len(self.history):
+            self._put_beside(self.name, self.history)
         self.history = History()
         self.config, self.seed = config, seed
         self.swarm_state = self.network_state = self.in_force = self.lesson = None
+        self.edits = NetworkEdits()
+        self.swarms.clear()
+        self.networks.clear()
         self.runs += 1
         self._named = resume is not None and resume != self.library.unsaved
         self.name = resume.name if resume else ""
         self.call(name)
-        started = self._start(lambda: self._begin(config, seed, resume))
-        return " ".join(filter(None, [note, started]))
+        return self._start(lambda: self._begin(config, seed, resume))
 
     def _begin(self, config: Config, seed: int, resume: Path | None) -> str:
         note = ""
@@ -123,6 +134,10 @@ class LanderRun(TrainingRun):
         """Ask for the lesson of a lander's latest memory, now or at a time in the past; `poll` puts it in `lesson`."""
         self._send(Explain(slot, decisions))
 
+    def edit(self, command: EditCommand) -> None:
+        """Edit the run's network by hand, or take an edit back; its `edits` say how it stands then."""
+        self._send(command)
+
     def save(self, name: str) -> str:
         """Name the run in the library; raises LibraryError if that fails.
 
@@ -147,8 +162,12 @@ class LanderRun(TrainingRun):
         match message:
             case SwarmState():
                 self.swarm_state = message
+                self.swarms.append(message)
             case NetworkState():
                 self.network_state = message
+                self.networks.append(message)
+            case NetworkEdits():
+                self.edits = message
             case InForce():
                 self.in_force = message
             case Lesson():
@@ -179,11 +198,12 @@ class LanderRun(TrainingRun):
             return str(error)
         if not len(history):
             return texts.TRAIN_NO_CURVES.format(name=name)
-        return self._put_beside(name, history)
+        self._put_beside(name, history)
+        return ""
 
-    def _put_beside(self, name: str, history: History) -> str:
-        gone = put_beside(self.earlier, name, history)
-        return texts.TRAIN_MADE_ROOM.format(name=gone, count=EARLIER) if gone else ""
+    def _put_beside(self, name: str, history: History) -> None:
+        history.checkpoints.clear()  # only its curves are shown, and there may be many such runs
+        put_beside(self.earlier, name, history)
 
 
 def _turned(config: Config, name: str, value: Any) -> Config:

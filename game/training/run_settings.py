@@ -32,6 +32,7 @@ class RunKind:
         sabotages: the same for each part that can be taken away from a preset.
         idle: returns which settings of a configuration have no effect in a new run, each with the one that causes it.
         seed_page: the page of knobs that shows the seed.
+        first: names of the few knobs to begin with; without them, all are shown.
 
     """
 
@@ -41,6 +42,7 @@ class RunKind:
     seed_page: str
     sabotages: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     idle: Callable[[Any], Mapping[str, str]] = Knobs.unused
+    first: tuple[str, ...] = ()
 
     def config_of(self, named: Named) -> Configuration:
         """Return the configuration of a preset or a sabotage."""
@@ -76,6 +78,7 @@ LANDER: Final = RunKind(
     "lander",
     {name: texts.SABOTAGES[name] for name in SABOTAGES},
     idle,
+    ("learning_rate", "epsilon_end", "discount"),
 )
 
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Final, Generic, TypeVar
+from dataclasses import dataclass, replace
+from itertools import count
+from typing import Any, Generic, TypeVar
 
 from ai.training.messages import ChangeSetting
 from game.core import texts
 from game.core.worker import Worker, WorkerState
 
 Kind = TypeVar("Kind")
-
-EARLIER: Final = 3  # earlier runs shown beside the current one, at most
 
 
 @dataclass(frozen=True)
@@ -21,16 +20,27 @@ class EarlierRun(Generic[Kind]):
 
     name: str
     run: Kind
-    style: int  # index into game.charts.series.RUN_STYLES; 0 is the current run's
+    style: int  # number for game.charts.series.run_style; 0 is the current run's
 
 
-def put_beside(runs: list[EarlierRun[Kind]], name: str, run: Kind) -> str:
-    """Add an earlier run, in place of one of its name or of the oldest; return the name of one dropped, or ""."""
+def put_beside(runs: list[EarlierRun[Kind]], name: str, run: Kind) -> None:
+    """Add an earlier run, in place of one of its name, with the first line style that is free."""
     runs[:] = [each for each in runs if each.name != name]
-    gone = runs.pop().name if len(runs) >= EARLIER else ""
-    style = next(style for style in range(1, EARLIER + 1) if style not in {each.style for each in runs})
-    runs.insert(0, EarlierRun(name, run, style))
-    return gone
+    taken = {each.style for each in runs}
+    runs.insert(0, EarlierRun(name, run, next(style for style in count(1) if style not in taken)))
+
+
+def rename_beside(runs: list[EarlierRun[Kind]], style: int, name: str) -> str:
+    """Rename the earlier run of a line style; return why that cannot be, or ""."""
+    if not name or any(each.name == name and each.style != style for each in runs):
+        return texts.COMPARE_NAME_TAKEN if name else texts.COMPARE_NAME_EMPTY
+    runs[:] = [replace(each, name=name) if each.style == style else each for each in runs]
+    return ""
+
+
+def take_away(runs: list[EarlierRun[Kind]], style: int) -> None:
+    """Take away the earlier run of a line style; the others keep theirs."""
+    runs[:] = [each for each in runs if each.style != style]
 
 
 class TrainingRun:

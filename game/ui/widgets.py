@@ -130,7 +130,7 @@ class Slider(Widget):
         colour: Colour = NET,
     ) -> None:
         super().__init__(manager, box, label)
-        self.value, self._limits, self._on_change = value, limits, on_change
+        self.value, self.limits, self._on_change = value, limits, on_change
         self._step, self._logarithmic = step, logarithmic
         self._figure, self._colour = figure, colour
         self._track = (self.box.left + label_width, self.box.right - figure_width)
@@ -138,12 +138,12 @@ class Slider(Widget):
     @property
     def fraction(self) -> float:
         """Position of the handle on its track, 0 to 1."""
-        low, high, value = map(self._scale, (*self._limits, self.value))
+        low, high, value = map(self._scale, (*self.limits, self.value))
         return min(max((value - low) / (high - low), 0.0), 1.0)
 
     def set(self, value: float) -> None:
         """Set the value, clipped to the limits and rounded to a step."""
-        low, high = self._limits
+        low, high = self.limits
         if self._step:
             value = low + round((value - low) / self._step) * self._step
         value = min(max(value, low), high)
@@ -165,7 +165,7 @@ class Slider(Widget):
         self._set_fraction((x - left) / (right - left))
 
     def _set_fraction(self, fraction: float) -> None:
-        low, high = map(self._scale, self._limits)
+        low, high = map(self._scale, self.limits)
         value = low + min(max(fraction, 0.0), 1.0) * (high - low)
         self.set(math.exp(value) if self._logarithmic else value)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from typing import Final
@@ -85,6 +86,11 @@ class TextButtonRow:
             box = canvas.text(self.words[number], (left, baseline), size=size, colour=colour)
             if number == chosen:
                 canvas.line((left, baseline + drop), (left + box.width, baseline + drop), line, thickness)
+
+
+def row_width(words: Sequence[str], size: float, gap: float = GAP) -> int:
+    """Return the width that a row of words takes on one page, in whole points."""
+    return math.ceil(sum(typeface.width(word, size, "regular") + gap for word in words) - gap)
 
 
 def _pages(widths: Sequence[float], room: float, gap: float) -> list[range]:

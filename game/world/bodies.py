@@ -13,20 +13,22 @@ import pygame
 
 from engine import DT, Body, Circle, Polygon, Shape, Sprite, World
 from engine.vector import Array, dot, right_of, rotate
+from game.core import texts
 from game.drawing import shapes
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, MUTE, NET, NIGHT1, Colour
+from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, MUTE, NET, NIGHT1, SMALL, Colour
 from game.world.camera import View
 
 _MARK: Final = (0.45, 0.82)  # start and end of the mark that shows a disc's rotation, in shares of its radius
 _EDGE: Final = 1.2  # points
 _FILL: Final = 0.26
 _LIT: Final = 0.45
-# Length of a drawn normal, in points: the least, and what each kilogram carried adds.
-_NORMAL: Final = 6.0
-_PER_WEIGHT: Final = 4.0
-_LONGEST: Final = 64.0
+# Length of a line that shows a force, in points: for the weight of a kilogram, and of the longest.
+_PER_WEIGHT: Final = 6.0
+_LONGEST: Final = 72.0
+_SCALE: Final = (24.0, 60.0)  # length in points of the line in the legend
+_RUB: Final = mix(NIGHT1, NET, 0.6)
 _Colours = tuple[Colour, Colour, Colour]  # of the edge, the inside, and the mark that shows the turning
 _Shades = Callable[[int, _Colours], _Colours]  # of a body, by its index
 _Paint = Callable[[tuple[int, int]], pygame.Surface]
@@ -152,9 +154,10 @@ class _Layer:
 
 
 def draw_contacts(canvas: Canvas, view: View, world: World, weight: float) -> None:
-    """Draw the last step's contacts: a dot for a point, a line along the normal, as long as its impulse.
+    """Draw the last step's contacts: a dot for a point, and a line along the normal, its length the force there.
 
-    `weight` in newtons is that of one kilogram; friction is a fainter line along the surface.
+    `weight` in newtons is that of one kilogram; friction is a fainter line along the surface. `draw_force_scale` draws
+    the legend.
     """
     contacts = world.contacts
     if contacts is None:
@@ -164,8 +167,7 @@ def draw_contacts(canvas: Canvas, view: View, world: World, weight: float) -> No
     row, which = manifold.valid.nonzero()
     points = view.points(manifold.points[row, which])
     normal = manifold.normal[row] * (1, -1)
-    reach = np.minimum(_NORMAL + _PER_WEIGHT * units[which, row], _LONGEST)[:, None] / 2 * normal
-    faint = mix(NIGHT1, NET, 0.6)
+    reach = np.minimum(_PER_WEIGHT * units[which, row], _LONGEST)[:, None] / 2 * normal
     rubbing = np.flatnonzero(np.abs(units[2]) > 0.05)
     middle = manifold.points[rubbing, 0]
     both = manifold.valid[rubbing].all(axis=1)
@@ -173,10 +175,29 @@ def draw_contacts(canvas: Canvas, view: View, world: World, weight: float) -> No
     along = right_of(manifold.normal[rubbing]) * (1, -1)
     rub = np.clip(_PER_WEIGHT * units[2, rubbing], -_LONGEST, _LONGEST)[:, None] / 2 * along
     middle = view.points(middle)
-    _draw_lines(canvas, middle - rub, middle + rub, faint)
+    _draw_lines(canvas, middle - rub, middle + rub, _RUB)
     _draw_lines(canvas, points - reach, points + reach, NET)
     dot = partial(shapes.shape, "circle", round(4 * 1.6 * canvas.scale) / 4, NET)
     _stamp(canvas.surface, points * canvas.scale, repeat(dot))
+
+
+def scale_force(weight: float) -> tuple[float, float]:
+    """Return a round force in newtons, and how long, in points, `draw_contacts` draws it for that `weight`."""
+    per_newton = _PER_WEIGHT / weight
+    force = next(each for each in (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0) if each * per_newton > _SCALE[0])
+    return force, force * per_newton
+
+
+def draw_force_scale(canvas: Canvas, start: tuple[float, float], weight: float, room: float) -> None:
+    """Draw the legend of `draw_contacts` from the left end of its baseline on, in `room` points."""
+    x, y = start
+    force, length = scale_force(weight)
+    normal, friction = texts.FORCE_SCALE
+    canvas.line((x, y - 4), (x + length, y - 4), NET)
+    words = normal.format(force=force, most=_LONGEST / _PER_WEIGHT * weight)
+    after = canvas.text(words, (x + length + 8, y), size=SMALL, colour=MUTE, room=0.66 * room - length).right + 18
+    canvas.line((after, y - 4), (after + 16, y - 4), _RUB)
+    canvas.text(friction, (after + 24, y), size=SMALL, colour=MUTE, room=start[0] + room - after - 24)
 
 
 def draw_grip(canvas: Canvas, start: tuple[float, float], end: tuple[float, float]) -> None:

@@ -64,6 +64,10 @@ class Trails:
         self._stride = stride
         self._step = 0
 
+    def begin(self, slot: int) -> None:
+        """Begin the trail of a slot anew, because its lander has been put elsewhere."""
+        self._open[slot] = []
+
     def follow(self, position: Doubles, outcome: Ints, fresh: Bools, ended: Bools) -> None:
         """Note positions (n, 2) and outcomes (n,); `fresh` slots (n,) began a new flight, `ended` ones just ended."""
         for slot in np.flatnonzero(fresh):

@@ -102,7 +102,7 @@ class LearningSwarm:
     def draw(self, canvas: Canvas, alpha: float, paused: bool = False) -> None:
         """Draw the moon, the pad and the landers."""
         view = View(canvas.scale, self._centre, self._share)
-        moon = _moon(canvas.surface.get_size(), self._share)
+        moon = _moon(canvas.size, self._share)
         canvas.surface.blit(moon, (0, 0))
         draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, self._time)
         if self.swarm_state is None:

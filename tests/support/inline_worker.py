@@ -10,7 +10,8 @@ from typing import Any
 from game.core.worker import Worker, WorkerState
 from game.core.worker_process import Function, MessageQueue
 from game.digits import fixing, measuring
-from game.training import digit_run, lander_run
+from game.learn import pay, runs
+from game.training import digit_run, lander_run, split_run
 
 TURNS = 40  # taken for each poll: some 10 ms of a small training
 
@@ -22,6 +23,7 @@ class InlineWorker(Worker):
         function, args, kwargs = pickle.loads(pickle.dumps((function, args, kwargs)))  # nothing is shared
         self.problem, self._ended, self._polled_once = "", False, False
         self._paused, self._per_poll = False, TURNS
+        self._taken, self._limit = 0, None
         self._waiting = MessageQueue()
         self._turns = function(*args, **kwargs)
         self._take(lambda: next(self._turns))
@@ -42,7 +44,9 @@ class InlineWorker(Worker):
         if not self._ended:
             self._polled_once = True
             for _ in range(0 if self._paused else self._per_poll):
-                self._take(lambda: next(self._turns))
+                if self._limit is None or self._taken < self._limit:
+                    self._taken += 1
+                    self._take(lambda: next(self._turns))
         told: list[Any] = pickle.loads(pickle.dumps(self._waiting.take()))
         return told
 
@@ -59,6 +63,8 @@ class InlineWorker(Worker):
             self._take(lambda: self._turns.send(value))
         elif name == "step":
             self._take(lambda: next(self._turns))
+        elif name == "limit":
+            self._limit = value
         elif name == "pace":
             self._per_poll = 1 if value else TURNS
 
@@ -76,5 +82,5 @@ class InlineWorker(Worker):
 
 def install(patch: Callable[[object, str, object], None]) -> None:
     """Let runs, fixes and measurements work without a process; `patch` sets an attribute, as `setattr` does."""
-    for module in (lander_run, digit_run, fixing, measuring):
+    for module in (lander_run, split_run, digit_run, fixing, measuring, pay, runs):
         patch(module, "Worker", InlineWorker)

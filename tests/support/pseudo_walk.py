@@ -108,6 +108,23 @@ def told(driver: Driver) -> None:
     driver.frames(2)
 
 
+def touched(driver: Driver) -> None:
+    """Take the lander of Watch in the hand, under a map of actions."""
+    driver.frames(3)
+    driver.keys(pygame.K_m, pygame.K_g)
+    driver.post(pygame.KEYDOWN, key=pygame.K_LEFT, mod=0, unicode="", scancode=0)
+    driver.frames(20)
+
+
+def explained(driver: Driver) -> None:
+    """Have something explained in Watch, under a map of scores."""
+    driver.frames(3)
+    driver.keys(pygame.K_m, pygame.K_m, pygame.K_SPACE)
+    driver.frames(30)
+    driver.keys(*[pygame.K_F1] * 5)
+    driver.frames(2)
+
+
 class Blank(Scene):
     """Nothing, for a dialog to stand over."""
 
@@ -137,6 +154,8 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "a digit": ("DigitsScene", {}, drawn),
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
+    "Watch, touched": ("WatchScene", {}, touched),
+    "Watch, explained": ("WatchScene", {}, explained),
     "a swarm": ("swarm", {}, lambda driver: driver.skip(400)),
 }
 

@@ -2,28 +2,37 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 
+import numpy as np
 import pygame
 
 from ai.digits.classifier import DigitClassifier
+from ai.digits.preprocessing import Image, preprocess_strokes
 from ai.lander.missions import MISSIONS
 from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
+from game.exhibits import EXHIBITS, Exhibit
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
+from game.learn.path import PATH
 from game.play.challenge import FlownMission
 from game.scenes.bindings import BindingsScene
+from game.scenes.chapter import ChapterScene
 from game.scenes.choices import ChoicesScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
+from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.digit_training import DigitTrainingScene
 from game.scenes.digits import DigitsScene
 from game.scenes.dream import DreamScene
+from game.scenes.learn import LearnScene
 from game.scenes.lesson import LessonScene
 from game.scenes.logbook import LogbookScene
 from game.scenes.menu import MenuScene
 from game.scenes.missions import MissionsScene
 from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
+from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
 from game.scenes.quiz import QuizScene
 from game.scenes.replay import ReplayScene
@@ -31,6 +40,7 @@ from game.scenes.runs import NetworksScene
 from game.scenes.settings import SettingsScene
 from game.scenes.train import TrainScene
 from game.scenes.watch import WatchScene
+from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.driver import Driver
 from tests.support.flights import kept, play, scripted
@@ -45,9 +55,14 @@ SCREENS: dict[str, Make] = {
     "TrainScene": TrainScene,
     "DigitsScene": DigitsScene,
     "DigitTrainingScene": DigitTrainingScene,
+    "DigitInsideScene": lambda context: DigitInsideScene(context, reader(), seven()),
+    "WhyNotScene": lambda context: WhyNotScene(context, reader(), seven()),
     "DreamScene": lambda context: DreamScene(context, reader()),
     "QuizScene": lambda context: QuizScene(context, reader()),
     "PhysicsScene": PhysicsScene,
+    "PhysicsStepScene": lambda context: PhysicsStepScene(context, fallen()),
+    "LearnScene": LearnScene,
+    **{f"Chapter, {key}": partial(ChapterScene, key=key) for key in PATH},
     "LessonScene": lambda context: LessonScene(context, lesson_of("modern")),
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
@@ -72,6 +87,19 @@ OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
 def reader() -> DigitClassifier:
     """A network that reads digits."""
     return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
+
+
+def fallen(steps: int = 100) -> Exhibit:
+    """An exhibit in which much touches and overlaps."""
+    heap = EXHIBITS["heap"](9.81, {"count": 40.0})
+    for _ in range(steps):
+        heap.step()
+    return heap
+
+
+def seven() -> Image:
+    """A seven as networks read it."""
+    return preprocess_strokes([np.array([(0.2, 0.2), (0.8, 0.2), (0.4, 0.9)]) * 500])
 
 
 def flown(context: Context) -> Record:

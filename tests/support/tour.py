@@ -13,6 +13,7 @@ from shutil import copytree
 
 import game.scenes
 from ai.digits.classifier import DigitClassifier
+from ai.digits.preprocessing import preprocess_strokes
 from ai.lander.missions import MISSIONS
 from ai.lander.pilots import ScriptedPilot
 from game.core.names import name_problem
@@ -23,13 +24,16 @@ from game.flight.logbook import Records
 from game.play.challenge import DailyStart, FlownMission
 from game.play.race import race
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
+from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.dream import DreamScene
 from game.scenes.lesson import LessonScene
 from game.scenes.physics import PhysicsScene
+from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
 from game.scenes.quiz import QuizScene
 from game.scenes.replay import ReplayScene
 from game.scenes.watch import COUNTS, WatchScene
+from game.scenes.why_not import WhyNotScene
 from game.ui.context import Context
 from tests.support.lessons import lesson_of
 
@@ -87,6 +91,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         **plain,
         "WatchScene": lambda: WatchScene(context, int(rng.choice(COUNTS))),
         "PhysicsScene": lambda: PhysicsScene(context, str(rng.choice(list(EXHIBITS)))),
+        "PhysicsStepScene": lambda: PhysicsStepScene(context, EXHIBITS[str(rng.choice(list(EXHIBITS)))](9.81)),
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1))),
         "race": lambda: replayed(lambda _, record: PlayScene(context, record.recording.seed, challenge=race(record))),
@@ -94,7 +99,15 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
         "ReplayScene": lambda: replayed(ReplayScene),
         "DreamScene": lambda: of_digits(DreamScene),
         "QuizScene": lambda: of_digits(QuizScene),
+        "DigitInsideScene": lambda: of_digits(partial(_of_a_digit, DigitInsideScene)),
+        "WhyNotScene": lambda: of_digits(partial(_of_a_digit, WhyNotScene)),
     }
+
+
+def _of_a_digit(make: Callable[..., Scene], context: Context, classifier: DigitClassifier) -> Scene:
+    """Make a scene about a digit with a few strokes."""
+    points = context.rng.random((4, 2)) * 400 + 50
+    return make(context, classifier, preprocess_strokes([points]))
 
 
 def dialogs(below: Scene) -> dict[str, Callable[[], Scene]]:

@@ -5,19 +5,19 @@ from ai.digits import session as digit_live
 from ai.digits.checkpoints import resume_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS
+from ai.digits.filters import FilterMoment, first_filters, next_moment
 from ai.digits.mnist import load_part
 from ai.digits.session import (
-    Confusion,
     DigitPoint,
     DigitRunSaved,
     DigitRunStarted,
     DigitSettingChanged,
     Finish,
-    HeldOutScore,
     RestoreBest,
     live_digits,
 )
 from ai.digits.training import DigitTraining, confusion
+from ai.digits.validation import EXAMPLES, Confusion, HeldOutScore
 from ai.training.history import REVERTED
 from ai.training.messages import ChangeSetting, Refused, Save
 
@@ -54,7 +54,7 @@ def test_a_run_tells_how_it_begins_how_it_stands_and_what_it_misreads(data):
     for row, column in {tuple(cell) for cell in confusion.cells.tolist()}:
         shown = (confusion.cells == (row, column)).all(axis=1).sum()
         assert row != column
-        assert shown == min(confusion.table[row, column], digit_live.EXAMPLES)
+        assert shown == min(confusion.table[row, column], EXAMPLES)
 
 
 def test_the_network_is_that_of_a_run_without_a_window(data, tmp_path):
@@ -81,7 +81,7 @@ def test_a_run_that_is_closed_can_be_gone_on_with(data, tmp_path):
     run.close()
     assert resume_digit_run(tmp_path / "run", data=data).step == 7
     again = live_digits(DIGIT_PRESETS["modern"], 0, resume=tmp_path / "run", data=data)
-    assert [next(again), next(again)] == [[], [DigitRunStarted(SMALL, 4, 7, 30)]]
+    assert [next(again), next(again)[0]] == [[], DigitRunStarted(SMALL, 4, 7, 30)]
 
 
 def test_a_run_that_is_asked_to_finish_is_kept_measured_and_can_be_gone_on_with(data, tmp_path):
@@ -203,3 +203,28 @@ def test_a_last_network_that_is_the_best_needs_no_word(data):
             improved = training.history[-1]["held_out"] == training.best
             assert (training.best_epoch is None) == improved
     assert training.best is not None
+
+
+@pytest.mark.parametrize("filters", [(3,), ()], ids=["convolution", "connected"])
+def test_the_filters_of_the_run_are_told_from_its_first_moment_on(data, filters):
+    config = SMALL.changed(convolutions=True, filters=filters) if filters else SMALL
+    told = [each for turn in live_digits(config, 4, data=data) for each in turn]
+    moments = kinds(told, FilterMoment)
+    plain = DigitTraining(config, 4, data)
+    assert (moments[0].step, moments[0].seconds) == (0, 0.0)
+    for moment in moments:
+        while plain.step < moment.step:
+            plain.advance()
+        ours = first_filters(plain.classifier.network)
+        assert moment.images.shape == ours.shape == ((3, 5, 5) if filters else (16, 28, 28))
+        np.testing.assert_array_equal(moment.images, ours.astype(np.float16))
+    assert len(moments) < 30
+
+
+def test_moments_of_filters_become_rarer_and_a_long_run_has_some_hundreds():
+    at, count = 0.0, 0
+    while at < 3600:
+        later = next_moment(at)
+        assert later > at
+        at, count = later, count + 1
+    assert 200 < count < 500

@@ -295,3 +295,71 @@ def test_wrong_actions_are_refused(actions):
 def test_stepping_before_a_reset_says_so():
     with pytest.raises(RuntimeError, match="reset"):
         LanderEnv(1).step(np.array([0]))
+
+
+def test_what_is_observed_at_a_place_is_what_a_lander_put_there_observes():
+    rng = np.random.default_rng(2)
+    env = LanderEnv(3, seed=4)
+    env.reset()
+    for _ in range(20):
+        env.fly(np.array([3, 1, 5]))
+    places = np.stack([rng.uniform(-20, 20, 12), rng.uniform(4, 24, 12)], axis=1)
+    velocity, angle, spin = env.velocity[1], env.angle[1], env.angular_velocity[1]
+    there = env.observe_at(1, places)
+    for place, seen in zip(places, there, strict=True):
+        env.begin_at(1, np.array([*place, *velocity, angle, spin]))
+        assert np.array_equal(env.observe()[1], seen)
+
+
+def test_a_flight_begun_at_a_state_flies_from_there_and_leaves_the_others_alone():
+    env, twin = (LanderEnv(2, seed=4, frame_skip=1) for _ in range(2))
+    for each in (env, twin):
+        each.reset()
+        for _ in range(30):
+            each.fly(np.array([3, 0]))
+    start = np.array([-3.0, 9.0, 1.5, -2.0, 0.3, -0.2])
+    env.begin_at(1, start)
+    assert np.array_equal(np.concatenate([env.position[1], env.velocity[1]]), start[:4])
+    assert env.outcome[1] == Outcome.FLYING
+    assert env.steps.tolist() == [30, 0]
+    alone = LanderEnv(1, frame_skip=1)
+    alone.place(np.ones(1, bool), start[None])
+    for _ in range(40):
+        env.fly(np.array([3, 4]))
+        twin.fly(np.array([3, 4]))
+        alone.fly(np.array([4]))
+    assert np.array_equal(env.observe()[0], twin.observe()[0])
+    assert np.array_equal(env.observe()[1], alone.observe()[0])
+
+
+@pytest.mark.parametrize(
+    ("start", "how"),
+    [
+        ((0.0, np.nan, 0, 0, 0, 0), "finite"),
+        ((0.0, 9.0, np.inf, 0, 0, 0), "finite"),
+        ((0.0, 9.0, 0, 0, 0), "six"),
+        ((22.5, 9.0, 0, 0, 0, 0), "inside"),
+        ((0.0, 26.5, 0, 0, 0, 0), "inside"),
+        ((0.0, 2.5, 0, 0, 0, 0), "above"),  # in the pad
+        ((9.0, 2.1, 0, 0, 0.8, 0), "above"),  # a foot in the plain
+    ],
+)
+def test_a_flight_does_not_begin_at_just_any_state(start, how):
+    env = LanderEnv(1, seed=1)
+    env.reset()
+    before = env.observe()
+    with pytest.raises(ValueError, match=how):
+        env.begin_at(0, np.array(start))
+    assert np.array_equal(env.observe(), before)
+
+
+def test_the_lowest_height_clears_the_ground_and_no_more():
+    rng = np.random.default_rng(2)
+    for x, angle in rng.uniform((-6.0, -3.0), (6.0, 3.0), (40, 2)):
+        for above, touches in ((0.05, False), (-0.1, True)):
+            env = LanderEnv(1, frame_skip=1)
+            low = env.lowest(x, angle)
+            env.gravity = 0.0
+            env.place(np.ones(1, bool), np.array([[x, low + above, 0, 0, angle, 0]]))
+            env.fly(np.zeros(1, np.intp))
+            assert (env.world.contacts is not None) == touches

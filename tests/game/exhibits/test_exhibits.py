@@ -61,7 +61,7 @@ def test_a_heap_only_ever_loses_energy_and_comes_to_rest():
 def test_those_boxes_slide_whose_friction_is_less_than_the_slope(gravity: float):
     slopes = after_five_seconds("slopes", gravity)
     tangent = np.tan(np.radians(slopes.degrees))
-    assert slopes.slid == {friction for friction in slopes.frictions if friction < tangent}
+    assert slopes.slid == {number for number, friction in enumerate(slopes.frictions) if friction < tangent}
 
 
 @pytest.mark.parametrize("gravity", GRAVITIES)

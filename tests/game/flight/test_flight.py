@@ -9,9 +9,10 @@ from ai.lander.pilots import ScriptedPilot
 from game.core import texts
 from game.core.assets import MODELS_DIR
 from game.flight import networks
-from game.flight.flight import DECISION_STEPS, Flight, StickHolder, Swarm
+from game.flight.flight import DECISION_STEPS, Flight, StickHolder
 from game.flight.forecast import Forecast, coast_path
 from game.flight.outcomes import outcome_card
+from game.flight.swarm import Swarm
 
 STANDING = PARAMS.pad_top + PARAMS.stand
 

@@ -1,14 +1,16 @@
 """Runs side by side: their names, their lines, and the axis they are measured by."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from ai.training.history import Checkpoint, History
+from ai.training.history import History
+from game.charts.series import run_style
 from game.core import texts
 from game.panels.training_charts import TrainingCharts
-from game.training.training_run import EARLIER, EarlierRun, put_beside
+from game.training.training_run import EarlierRun, put_beside, rename_beside, take_away
 from tests.ai.training.test_hints import HEALTHY
 
 
@@ -22,16 +24,42 @@ def run_of(seconds: float, decisions: float) -> History:
 
 def test_a_run_keeps_its_style_as_others_come_and_go():
     runs: list[EarlierRun[str]] = []
-    for name in ("a", "b", "c"):
-        assert put_beside(runs, name, name) == ""
+    for number in range(12):
+        put_beside(runs, f"run {number}", "curves")
     styles = {each.name: each.style for each in runs}
-    assert len(set(styles.values())) == 3
+    assert len(set(styles.values())) == 12
     assert 0 not in styles.values(), "that is the run that goes on"
-    assert put_beside(runs, "d", "d") == "a", "who makes room is told"
-    assert len(runs) == EARLIER
-    assert {each.name: each.style for each in runs} == {"b": styles["b"], "c": styles["c"], "d": styles["a"]}
-    assert put_beside(runs, "c", "again") == ""
-    assert next(each.style for each in runs if each.name == "c") == styles["c"]
+    take_away(runs, styles["run 3"])
+    assert {each.name: each.style for each in runs} == {
+        name: style for name, style in styles.items() if name != "run 3"
+    }
+    put_beside(runs, "new", "curves")
+    assert runs[0] == EarlierRun("new", "curves", styles["run 3"])
+    put_beside(runs, "run 7", "again")
+    assert runs[0] == EarlierRun("run 7", "again", styles["run 7"])
+    assert len(runs) == 12
+
+
+def test_a_run_beside_is_renamed_but_not_to_the_name_of_another():
+    runs: list[EarlierRun[str]] = []
+    for name in ("a", "b"):
+        put_beside(runs, name, name)
+    style = runs[0].style
+    assert rename_beside(runs, style, "a") == texts.COMPARE_NAME_TAKEN
+    assert rename_beside(runs, style, "") == texts.COMPARE_NAME_EMPTY
+    assert rename_beside(runs, style, "b") == ""
+    assert rename_beside(runs, style, "bold") == ""
+    assert [(each.name, each.run) for each in runs] == [("bold", "b"), ("a", "a")]
+
+
+def test_lines_of_many_runs_differ_in_colour_or_dashes_and_neighbours_in_both():
+    styles = [run_style(number) for number in range(1, 25)]
+    assert len(set(styles)) == 24
+    for (colour, dash), (other, dashes) in pairwise(styles):
+        assert colour != other
+        assert dash != dashes
+    assert run_style(0)[1] == ()
+    assert run_style(25) == run_style(1)
 
 
 def look(training_charts: TrainingCharts, history: History, beside: list[EarlierRun[History]]) -> None:
@@ -51,11 +79,14 @@ def test_a_short_run_beside_a_long_one_can_be_measured_so_that_it_is_seen(axis: 
         assert chart.read_x(end) == texts.TRAIN_AXIS[axis].format(end)
 
 
-def test_a_checkpoint_is_chosen_where_it_stands_on_the_axis():
+@pytest.mark.parametrize(("axis", "place"), [(0, 50.0), (1, 500_000.0), (2, 50.0)])
+def test_a_place_on_the_axis_is_a_moment_of_the_run(axis: int, place: float):
     training_charts, run = TrainingCharts(), run_of(100.0, 1e6)
-    checkpoints = [Checkpoint(25.0 * number, 250_000 * number, 0.0, np.zeros(1, np.float32)) for number in range(5)]
-    for axis, place in ((0, 51.0), (1, 510_000.0), (2, 51.0)):
-        training_charts.measure_by(axis)
-        look(training_charts, run, [])
-        training_charts.choose(place, checkpoints)
-        assert training_charts.chosen is checkpoints[2]
+    training_charts.measure_by(axis)
+    look(training_charts, run, [])
+    assert training_charts.decisions_at(place) == pytest.approx(500_000)
+    assert training_charts.decisions_at(2e6) == np.inf, "beyond its end is now"
+    training_charts.moment = 500_000
+    look(training_charts, run, [])
+    for chart in training_charts.charts.charts:
+        assert chart.marker == pytest.approx(place)

@@ -40,6 +40,7 @@ STATES: dict[str, Callable[[Open], Driver]] = {
     **{name: partial(opened, name=name) for name in (*SCREENS, *OVER_OTHERS)},
     "swarm": after(partial(WatchScene, count=16, seed=2)),
     "stopped": after(partial(WatchScene, seed=2), pygame.K_SPACE),
+    "touched": after(partial(WatchScene, seed=2), pygame.K_SPACE, pygame.K_q, pygame.K_m),
     "flight": after(FLIGHT),
     "network": after(FLIGHT, pygame.K_TAB),
     "card": after(FLIGHT, pygame.K_UP, frames=1300),

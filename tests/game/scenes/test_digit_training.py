@@ -13,8 +13,8 @@ import pytest
 from ai.digits.checkpoints import save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
-from ai.digits.session import Confusion
 from ai.digits.training import DigitTraining
+from ai.digits.validation import Confusion
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.dialog import NameDialog, QuestionDialog

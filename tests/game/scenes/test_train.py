@@ -30,6 +30,7 @@ from game.scenes.dialog import NameDialog, QuestionDialog
 from game.scenes.menu import MenuScene
 from game.scenes.play import PlayScene
 from game.scenes.train import TrainScene
+from game.training.knob_descriptions import knob_descriptions
 from game.training.lander_run import LanderRun
 from game.training.library import Library
 from game.ui import focus
@@ -57,6 +58,10 @@ def train(beside: Driver, monkeypatch: pytest.MonkeyPatch) -> Driver:
     """The screen, with a run within this process."""
     inline_worker.install(monkeypatch.setattr)
     return beside
+
+
+def all_knobs() -> str:
+    return texts.KNOBS_ALL.format(count=len(knob_descriptions()))
 
 
 def start(driver: Driver) -> None:
@@ -282,6 +287,7 @@ KEYS = {
 def test_every_widget_can_be_reached_by_directions_alone(train: Driver) -> None:
     scene = train.top
     form = scene.form
+    train.press_on(all_knobs())
     for page, word in enumerate(train.choice(KNOB_PAGE).options):
         train.choice(KNOB_PAGE).choose(page)
         boxes = [widget.box for widget in form.widgets]

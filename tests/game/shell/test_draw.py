@@ -51,6 +51,19 @@ def test_drawing_changes_no_state(open_game: Callable[..., Driver], context: Con
     assert (pictures[0] == pictures[1]).all()
 
 
+@pytest.mark.parametrize("keys", [(pygame.K_m,), (pygame.K_SPACE, pygame.K_g, pygame.K_UP, pygame.K_F1)])
+def test_neither_does_it_while_watch_is_touched_and_explained(
+    open_game: Callable[..., Driver], context: Context, keys: tuple[int, ...]
+):
+    settle(context)
+    driver = opened(open_game, "WatchScene")
+    driver.keys(*keys)
+    for frames in (1, 3, 15):
+        driver.frames(frames)
+        driver.app.scenes.update()
+        assert not changed(driver)
+
+
 def test_neither_does_it_while_one_scene_gives_way_to_another(open_game: Callable[..., Driver], context: Context):
     driver = open_game(SCREENS["MenuScene"])
     driver.frames(5)

@@ -1,0 +1,238 @@
+"""Small runs of deep Q-learning, a few seconds long: one-engine landers, looked into after every decision."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.agent.replay import MemoryCell, PrioritisedReplayBuffer, ReplayBuffer
+from ai.agent.schedule import exploration
+from ai.common.decision import in_points
+from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.lander.environment import Outcome
+from ai.lander.one_engine import OneEngineEnv
+from ai.lander.rewards import RewardWeights
+
+# Plain deep Q-learning: a hard copy of the target network every 100 gradient steps, as Mnih et al. 2015 had it.
+SMALL_RUN: Final = Config(
+    learning_rate=3e-3, final_learning_rate=3e-3, discount=0.99, n_step=1, batch_size=64, gradient_steps=4, cost="mse",
+    hidden=(32, 32), layer_normalisation=False, replay_size=20_000, learning_starts=300, mirror=False, double=False,
+    target_update_interval=100, tau=1.0, fly_target=False, epsilon_decisions=8_000, epsilon_spread=0.0, num_envs=16,
+    steadiness=0.0, reward_weights=RewardWeights(),
+)  # fmt: skip
+RECENT: Final = 40  # latest flights whose share of landings is told
+TESTED: Final = 12  # landers that are tested
+RECENT_TESTS: Final = 24
+
+
+@dataclass(frozen=True)
+class Flown:
+    """Landers of a small run after a decision, all (n,).
+
+    Attributes:
+        height, speed: of the feet above the pad, and upwards; metres and m/s.
+        main: whether the main engine burns.
+        outcome: an `Outcome` each.
+
+    """
+
+    height: Doubles
+    speed: Doubles
+    main: Bools
+    outcome: Ints
+
+
+@dataclass(frozen=True)
+class Memory:
+    """Replay buffer of a small run after a decision. Memories are counted from 0 as they come, for ever.
+
+    Attributes:
+        cells: the newest memories, as the buffer holds them.
+        first: number of the first of them.
+        oldest: number of the oldest memory that is still held.
+        drawn: numbers of those drawn in this decision's learning step; empty before the first.
+
+    """
+
+    cells: MemoryCell
+    first: int
+    oldest: int
+    drawn: Ints
+
+
+@dataclass(frozen=True)
+class SmallState:
+    """State of a small run after one decision.
+
+    Attributes:
+        decisions: decisions so far, of all landers together as one.
+        flights: flights that have ended.
+        landed: share that landed of the latest `RECENT` flights; None before the first has ended.
+        value: what the network expects of its landers' present moments, in points; the mean of all.
+        epsilon: share of random actions.
+        tested: landers that fly the present network without random actions, and teach it nothing; None without tests.
+        passed: share that landed of the latest `RECENT_TESTS` tests; None before the first has ended.
+        problem: why it cannot go on; empty while it can.
+
+    """
+
+    decisions: int
+    flights: int
+    landed: float | None
+    value: float
+    epsilon: float
+    flown: Flown
+    memory: Memory
+    tested: Flown | None = None
+    passed: float | None = None
+    problem: str = ""
+
+
+class Plan(NamedTuple):
+    """Heights, in metres above the pad, at which the flights of a small run begin.
+
+    With `change`, flights begin within `later` after so many decisions, and with `keep` only so many memories are held
+    from then on. With `tested`, there are tests that begin there.
+    """
+
+    heights: tuple[float, float] = (1.0, 8.0)
+    change: int | None = None
+    later: tuple[float, float] = (0.3, 1.0)
+    keep: int | None = None
+    tested: tuple[float, float] | None = None
+
+
+class WatchedReplay(ReplayBuffer):
+    """Replay buffer that keeps which rows were drawn last."""
+
+    drawn: Ints = np.zeros(0, dtype=np.intp)
+
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[MemoryCell, Ints, Floats]:
+        """Draw as the buffer does, and keep the rows."""
+        cells, self.drawn, weights = super().sample(count, rng)
+        return cells, self.drawn, weights
+
+
+class WatchedPrioritisedReplay(WatchedReplay, PrioritisedReplayBuffer):
+    """The same, prioritised."""
+
+
+class SmallRun:
+    """Small run, the same for the same configuration, seed and plan."""
+
+    def __init__(self, config: Config, seed: int, plan: Plan | None = None) -> None:
+        agent_rng, env_rng, test_rng = np.random.default_rng(seed).spawn(3)
+        self.config, self.plan = config, plan or Plan()
+        self.env = OneEngineEnv(config.num_envs, env_rng, self.plan.heights, config.reward_weights)
+        self.replay: WatchedReplay = (WatchedPrioritisedReplay if config.prioritised else WatchedReplay)(
+            config.replay_size, self.env.num_features, config.replay_prune
+        )
+        self.agent = DeepQAgent(self.env.num_features, self.env.num_actions, config, agent_rng, replay=self.replay)
+        self._begin()
+        self._ended: deque[bool] = deque(maxlen=RECENT)
+        self._decisions = self._flights = 0
+        self._tests = _Tests(self.plan.tested, test_rng, config) if self.plan.tested else None
+        self.state = self._look(self.env.lander.outcome)
+
+    def _begin(self) -> None:
+        self._observation = self.env.reset()
+        self._held: Ints = np.zeros(self.config.num_envs, dtype=np.intp)
+
+    def _change(self) -> None:
+        """Begin flights elsewhere, and drop all but the newest memories if so planned."""
+        self.env.heights = self.plan.later
+        self._begin()
+        if self.plan.keep is not None and len(self.replay):
+            old, count = self.replay, min(self.plan.keep, len(self.replay))
+            self.replay = self.agent.replay = WatchedReplay(self.plan.keep, self.env.num_features)
+            self.replay.add(old.at((old.start + len(old) - count + np.arange(count)) % old.capacity))
+            self.replay.added = old.added
+
+    @np.errstate(over="ignore", invalid="ignore")
+    def advance(self) -> SmallState:
+        """Let every lander take one decision, and learn; return the state. A run that has diverged stays as it is."""
+        if self.state.problem:
+            return self.state
+        if self._decisions == self.plan.change:
+            self._change()
+        epsilon = exploration(self.config, self.agent.decisions, self._flights)
+        try:
+            actions, result = self.agent.train_step(self.env, self._observation, epsilon, self._held)
+        except FloatingPointError as error:
+            self.state = replace(self.state, problem=str(error))
+            return self.state
+        self._decisions += 1
+        ended, outcome = result.ended, result.outcome
+        self._flights += int(ended.sum())
+        self._ended.extend((outcome[ended] == Outcome.LANDED).tolist())
+        self._observation = result.observation
+        if self._tests:
+            self._tests.advance(self.agent)
+        self.state = self._look(outcome, epsilon)
+        if ended.any():
+            self._observation = self.env.reset(ended)
+        self._held = np.where(ended, 0, actions)
+        return self.state
+
+    def _look(self, outcome: Ints, epsilon: float = 1.0) -> SmallState:
+        values = in_points(self.agent.q_values(self._observation).max(axis=1), self.config.reward_scale)
+        tests = self._tests
+        return SmallState(
+            self._decisions, self._flights, _share(self._ended), float(values.mean()), epsilon,
+            _flown(self.env, outcome), self._memory(), tests.flown if tests else None, tests.passed if tests else None,
+        )  # fmt: skip
+
+    def _memory(self) -> Memory:
+        replay = self.replay
+        count = min(self.config.num_envs, len(replay))
+        newest = (replay.start + len(replay) - count + np.arange(count)) % replay.capacity
+        oldest = replay.added - len(replay)
+        drawn = oldest + (replay.drawn - replay.start) % replay.capacity
+        return Memory(replay.at(newest), replay.added - count, oldest, drawn)
+
+
+class _Tests:
+    """Landers that fly the network of a small run as it is, without random actions; nothing is learned from them."""
+
+    def __init__(self, heights: tuple[float, float], rng: np.random.Generator, config: Config) -> None:
+        self._env = OneEngineEnv(TESTED, rng, heights, config.reward_weights)
+        self._observation = self._env.reset()
+        self._ended: deque[bool] = deque(maxlen=RECENT_TESTS)
+        self.flown = _flown(self._env, self._env.lander.outcome)
+
+    @property
+    def passed(self) -> float | None:
+        """Share of the latest that landed; None before the first has ended."""
+        return _share(self._ended)
+
+    def advance(self, agent: DeepQAgent) -> None:
+        """Fly one decision."""
+        result = self._env.step(agent.act(self._observation))
+        self.flown = _flown(self._env, result.outcome)
+        self._ended.extend((result.outcome[result.ended] == Outcome.LANDED).tolist())
+        self._observation = self._env.reset(result.ended) if result.ended.any() else result.observation
+
+
+def _share(flights: deque[bool]) -> float | None:
+    return sum(flights) / len(flights) if flights else None
+
+
+def _flown(env: OneEngineEnv, outcome: Ints) -> Flown:
+    lander = env.lander
+    return Flown(env.height, lander.velocity[:, 1].copy(), lander.actions >= 3, outcome.copy())
+
+
+def small_runs(
+    configs: Sequence[Config], seed: int, plan: Plan | None = None
+) -> Generator[tuple[tuple[SmallState, ...]], None, None]:
+    """Run some configurations side by side from the same seed, without end; each turn yields their states."""
+    runs = [SmallRun(config, seed, plan) for config in configs]
+    yield (tuple(run.state for run in runs),)
+    while True:
+        yield (tuple(run.advance() for run in runs),)

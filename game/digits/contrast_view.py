@@ -1,0 +1,170 @@
+"""View of a contrast: which ink speaks for another digit and which against it, in pictures, words and units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ai.digits.contrast import SQUARE, Contrast, InkChange
+from ai.digits.preprocessing import SIDE
+from game.core import texts
+from game.digits.patch_sums import figure
+from game.digits.pictures import SIGNED, Numbers, mosaic, picture, tiling
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import LABEL, LINE, MUTE, NET, SMALL, Colour
+
+LEFT: Final = 900.0
+_WIDTH: Final = 344.0
+_SAID: Final = 122.0  # first baseline of the sentences
+_LEADING: Final = 18.0
+_MAPS: Final = (LEFT, 266.0, 160.0)
+_SECOND_MAP: Final = 184.0  # from the left of the first map
+_UNITS: Final = (LEFT, 496.0, _WIDTH, 56.0)
+_FEW: Final = 3  # units that are written out
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """What is shown of a contrast for one asked digit.
+
+    Attributes:
+        asked, answer: the two digits.
+        take, put: the ink to take away and to put that brings the asked digit nearest; None if none does.
+        there, missing: (28, 28) in -1 to 1, of ink that is there and that is not, what it says for the asked digit.
+        units: (n,) in -1 to 1, what each unit says for it.
+        unit_lines: the units with the largest shares, in words, and the sum of all.
+        measured: whether all has been measured.
+
+    """
+
+    asked: int
+    answer: int
+    take: InkChange | None
+    put: InkChange | None
+    there: Numbers
+    missing: Numbers
+    units: Numbers
+    unit_lines: tuple[str, ...]
+    measured: bool
+
+
+def shown(contrast: Contrast, asked: int) -> Shown:
+    """Return what is to be shown of a contrast as far as it is measured."""
+    between = [each[..., asked] - each[..., contrast.answer] for each in (contrast.taken, contrast.put)]
+    taken, put = (np.nan_to_num(each) for each in between)
+    scale = max(float(np.abs(taken).max()), float(np.abs(put).max()), 1e-9)
+    return Shown(asked, contrast.answer, contrast.best(asked, 0), contrast.best(asked, 1), _clear(-taken / scale),
+                 _clear(put / scale), *_units(contrast, asked), contrast.done)  # fmt: skip
+
+
+def _clear(parts: npt.NDArray[np.floating[Any]]) -> Numbers:
+    """Return signed square roots, so that small values are visible too."""
+    return np.asarray(np.sign(parts) * np.sqrt(np.abs(parts)), np.float32)
+
+
+def _units(contrast: Contrast, asked: int) -> tuple[Numbers, tuple[str, ...]]:
+    """Return the units' shares in -1 to 1, and the largest of them in words."""
+    evidence = contrast.units(asked)
+    shares = evidence.shares
+    lines = [
+        texts.WHY_NOT_UNIT.format(unit=unit + 1, value=figure(float(evidence.values[unit])),
+                                  weight=figure(float(evidence.weights[unit])), share=figure(float(shares[unit])))
+        for unit in np.argsort(-np.abs(shares), kind="stable")[:_FEW].tolist()
+    ]  # fmt: skip
+    total = float(shares.sum(dtype=np.float64))
+    lines.append(texts.WHY_NOT_UNITS_SUM.format(count=len(shares), total=figure(total), bias=figure(evidence.bias)))
+    return _clear(shares / max(float(np.abs(shares).max()), 1e-9)), tuple(lines)
+
+
+def sentences(seen: Shown) -> list[str]:
+    """Return in words which ink the asked digit would not need, and which it would."""
+    if not seen.measured:
+        return [texts.WHY_NOT_MEASURING]
+    if seen.asked == seen.answer:
+        return [texts.WHY_NOT_SAME]
+    nothing = texts.WHY_NOT_NOTHING_TAKEN, texts.WHY_NOT_NOTHING_PUT
+    words = texts.WHY_NOT_TAKE, texts.WHY_NOT_PUT
+    return [
+        none.format(asked=seen.asked) if change is None else said.format(
+            asked=seen.asked, where=texts.WHY_NOT_PLACES[_region(change)], before=figure(change.before),
+            after=figure(change.after))
+        for change, said, none in zip((seen.take, seen.put), words, nothing, strict=True)
+    ]  # fmt: skip
+
+
+def _region(change: InkChange) -> int:
+    """Return the ninth of the digit's box, row by row, in which a change lies."""
+    margin, third = 4, 20 / 3  # ink lies in the 20 pixels in the middle
+    row, column = (min(max(int((at - margin) / third), 0), 2) for at in (change.row, change.column))
+    return 3 * row + column
+
+
+class ContrastView:
+    """Draws what is shown of a contrast; pictures are kept until that changes."""
+
+    def __init__(self) -> None:
+        self._painted = PaintCache()
+
+    def draw(self, canvas: Canvas, seen: Shown) -> None:
+        """Draw sentences, both maps and the units."""
+        self._painted.draw(canvas, (LEFT, 0, _WIDTH + 30, 720), seen, lambda sheet: _paint(sheet, seen))
+
+    def draw_marks(self, canvas: Canvas, seen: Shown, box: tuple[float, float, float, float]) -> None:
+        """Mark both squares in a picture of the digit."""
+        if not seen.measured or seen.asked == seen.answer:
+            return
+        pixel = box[2] / SIDE
+        for change, colour in ((seen.take, canvas.palette.warn), (seen.put, NET)):
+            if change:
+                left, top = (
+                    box[0] + (change.column - SQUARE // 2) * pixel,
+                    box[1] + (change.row - SQUARE // 2) * pixel,
+                )
+                canvas.outline((left, top, SQUARE * pixel, SQUARE * pixel), 3, colour, 2)
+                sign = "+" if change.ink else "−"
+                canvas.text(sign, (left + SQUARE * pixel + 6, top + 14), colour=colour)
+
+
+def _paint(sheet: Canvas, seen: Shown) -> None:
+    y = _SAID
+    colours: tuple[Colour, ...] = (sheet.palette.warn, NET)
+    for words, colour in zip(sentences(seen), colours, strict=False):
+        if seen.measured and seen.asked != seen.answer:
+            sheet.rounded((0, y - 8, 8, 8), 2, colour)
+        y = draw_wrapped(sheet, words, (16, y), _WIDTH - 16, size=SMALL, leading=_LEADING, most=4) + 6
+    if seen.asked != seen.answer:
+        _paint_maps(sheet, seen)
+        _paint_units(sheet, seen)
+
+
+def _paint_maps(sheet: Canvas, seen: Shown) -> None:
+    left, top, size = _MAPS
+    for number, (values, words) in enumerate(((seen.there, texts.WHY_NOT_INK), (seen.missing, texts.WHY_NOT_ROOM))):
+        x = left - LEFT + number * _SECOND_MAP
+        area = sheet.rect(x, top, size, size)
+        sheet.surface.blit(picture(values, area.size, SIGNED), area)
+        sheet.outline((x, top, size, size), 0, LINE)
+        sheet.text(words, (x, top - 10), size=LABEL, colour=MUTE, weight="medium", room=size)
+    x, y = 0.0, top + size + 18
+    for words, colour in zip(texts.WHY_NOT_LEGEND, (NET, sheet.palette.warn), strict=True):
+        sheet.rounded((x, y - 7, 7, 7), 1.5, colour)
+        x += 12 + sheet.text(words.format(asked=seen.asked), (x + 12, y), size=LABEL, colour=MUTE).width + 12
+
+
+def _paint_units(sheet: Canvas, seen: Shown) -> None:
+    _, top, width, most = _UNITS
+    words = texts.WHY_NOT_UNITS.format(asked=seen.asked, answer=seen.answer)
+    sheet.text(words, (0, top - 10), size=LABEL, colour=MUTE, weight="medium", room=width)
+    columns, size = tiling(len(seen.units), (1, 1), (width, most), 2.0)
+    area = sheet.rect(0, top, *size)
+    sheet.surface.blit(mosaic(seen.units[:, None, None], columns, area.size, 2.0 * sheet.scale), area)
+    y = top + size[1] + 22
+    for line in seen.unit_lines:
+        sheet.text(line, (0, y), size=LABEL, tabular=True,
+                   room=width)  # fmt: skip
+        y += 18

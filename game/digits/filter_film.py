@@ -1,0 +1,108 @@
+"""First filters of a run as they form: those of the newest moment, or of the one that is chosen on the charts."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ai.digits.filters import FilterMoment
+from game.charts.charts import Charts
+from game.core import texts
+from game.digits.answer import percent
+from game.digits.pictures import mosaic
+from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import LABEL, MUTE, SMALL
+from game.training.digit_run import DigitCurves
+
+_LEFT, _TOP = 40.0, 358.0
+_ROOM: Final = (600.0, 320.0)
+_GAP: Final = 6.0
+_SAID: Final = (664.0, 148.0)  # left and width of the words beside the filters
+
+
+class FilterFilm:
+    """Filters at one moment of a run.
+
+    Attributes:
+        curves: the run's curves, with all moments that it has told of.
+        at: number of the chosen moment; None for the newest, whichever that is.
+
+    """
+
+    def __init__(self, charts: Charts) -> None:
+        self.curves = DigitCurves()
+        self.at: int | None = None
+        self._charts = charts
+        self._painted = PaintCache()
+
+    @property
+    def moment(self) -> FilterMoment | None:
+        """The moment that is shown; None before the first."""
+        moments = self.curves.filters
+        return moments[-1 if self.at is None else min(self.at, len(moments) - 1)] if moments else None
+
+    def choose(self, place: float | int) -> None:
+        """Choose the moment nearest to a place on the charts (float), or the one before or after (int -1 or 1)."""
+        moments = self.curves.filters
+        if not moments:
+            return
+        last = len(moments) - 1
+        if isinstance(place, int):
+            at = min(max((last if self.at is None else self.at) + place, 0), last)
+        else:
+            at = min(range(len(moments)), key=lambda number: abs(moments[number].seconds - place))
+        self.at = None if at == last else at
+        self._mark()
+
+    def follow(self, curves: DigitCurves) -> None:
+        """Follow a run; another one begins with its newest moment."""
+        if curves is not self.curves:
+            self.curves = curves
+            self.release()
+
+    def release(self) -> None:
+        """Show the newest moment again."""
+        self.at = None
+        self._mark()
+
+    def _mark(self) -> None:
+        moment = self.moment if self.at is not None else None
+        if moment is None:
+            self._charts.mark(None)
+        else:
+            self._charts.mark(moment.seconds, texts.DIGIT_RUN_MOMENT.format(seconds=moment.seconds))
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the filters, when they were so, and how well the network read then."""
+        moment = self.moment
+        if moment is None or not len(moment.images):
+            words = texts.DIGIT_RUN_FILTERS_NONE if moment is None else texts.DIGIT_RUN_FILTERS_NO_IMAGE
+            draw_wrapped(canvas, words, (_LEFT, _TOP), _ROOM[0], size=SMALL, colour=MUTE)
+            return
+        words = texts.DIGIT_RUN_FILTERS_AT.format(seconds=f"{moment.seconds:.1f}", steps=moment.step)
+        canvas.text(words, (_LEFT, _TOP - 18), size=LABEL, colour=MUTE, weight="medium", tabular=True)
+        self._painted.draw(canvas, (_LEFT, _TOP, *_ROOM), moment, lambda sheet: _paint(sheet, moment))
+        scores = [score.accuracy for score in self.curves.scores if score.seconds <= moment.seconds]
+        left, width = _SAID
+        y = _TOP + 14
+        if scores:
+            words = texts.DIGIT_RUN_FILTERS_READ.format(percent=percent(scores[-1]))
+            y = draw_wrapped(canvas, words, (left, y), width, size=SMALL, leading=18) + 14
+        draw_wrapped(canvas, texts.DIGIT_RUN_FILTERS_HOW, (left, y), width, size=SMALL, colour=MUTE, leading=18)
+
+
+def _paint(sheet: Canvas, moment: FilterMoment) -> None:
+    images = moment.images.astype(np.float32)
+    images = np.nan_to_num(images / np.abs(images).max(axis=(1, 2), keepdims=True).clip(1e-9))
+
+    def tile(columns: int) -> float:
+        """Return how large the square of each filter can be."""
+        return min((_ROOM[0] + _GAP) / columns, (_ROOM[1] + _GAP) / -(-len(images) // columns)) - _GAP
+
+    columns = max(range(1, len(images) + 1), key=tile)
+    pitch = tile(columns) + _GAP
+    size = sheet.rect(0, 0, columns * pitch - _GAP, -(-len(images) // columns) * pitch - _GAP).size
+    sheet.surface.blit(mosaic(images, columns, size, _GAP * sheet.scale), (0, 0))

@@ -1,0 +1,82 @@
+"""The code that computes a stage, beside the stage's numbers: from the running source, its line of the sum lit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any, Final
+
+import pygame
+
+from ai.digits.classifier import DigitClassifier
+from ai.nn import ActivationLayer, ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
+from ai.nn.correlation import Correlation
+from game.core import texts
+from game.core.source import Source, source_of
+from game.digits.unit_walk import UnitWalk
+from game.drawing.canvas import Canvas
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import MUTE, SMALL
+from game.panels.code_listing import draw_listing
+
+_BOX: Final = pygame.FRect(844, 150, 396, 420)
+_BELOW: Final = 600.0  # first baseline of what the case at hand is
+
+
+def code_of(walk: UnitWalk) -> tuple[Source, int] | None:
+    """Return the code of the stage looked at, and the number of its line that computes the sum; None without source."""
+    function, line = _function(walk)
+    source = source_of(function)
+    if source is None:
+        return None
+    return source, next((number for number, text in source.lines if line in text), source.lines[0][0])
+
+
+def _function(walk: UnitWalk) -> tuple[Callable[..., Any], str]:
+    """Return the function that computes a stage, and a part of the line in which it does."""
+    if walk.at_answer:
+        return DigitClassifier.probabilities, "softmax(outputs)" if walk.logits else "bounded.sum"
+    match walk.stage.layer:
+        case ConvolutionLayer(forward=Correlation(shifts=1)):
+            return Correlation.correlate, "out=part.reshape"
+        case ConvolutionLayer():
+            return Correlation.correlate, "out=products.reshape"
+        case MaxPoolingLayer():
+            return MaxPoolingLayer._maximum, "np.maximum(output"
+        case FullyConnectedLayer():
+            return FullyConnectedLayer.predict, ".dot("
+        case ActivationLayer(activation=activation):
+            own = activation.function
+            if isinstance(own, FunctionType) and own.__name__ != "<lambda>":
+                return own, "return"
+            return ActivationLayer.predict, "return"
+    return type(walk.stage.layer).predict, "def "
+
+
+def draw_code(canvas: Canvas, walk: UnitWalk) -> None:
+    """Draw the code of the stage looked at, and which of its numbers are on the left."""
+    found = code_of(walk)
+    if found is None:
+        draw_wrapped(canvas, texts.PATCH_NO_CODE, (_BOX.left, 176), _BOX.width, size=SMALL, colour=MUTE)
+        return
+    source, line = found
+    draw_listing(canvas, _BOX, source, line)
+    if words := _said(walk):
+        draw_wrapped(canvas, words, (_BOX.left, _BELOW), _BOX.width, size=SMALL, colour=MUTE, most=4)
+
+
+def _said(walk: UnitWalk) -> str:
+    """Return what the lit line's arrays are in the case at hand."""
+    match walk.stage.layer:
+        case _ if walk.at_answer:
+            return ""
+        case ConvolutionLayer(forward=Correlation(shifts=1) as forward, filters=filters, outputs=outputs):
+            return texts.PATCH_CODE["convolution"].format(
+                filters=filters, rows=forward.rows, windows=outputs[0] * outputs[1], number=walk.place[2] + 1
+            )
+        case ConvolutionLayer(forward=forward, kernel=kernel):
+            return texts.PATCH_CODE["columns"].format(kernel=kernel, rows=forward.rows)
+        case FullyConnectedLayer() as layer:
+            inputs, units = layer.weights.shape
+            return texts.PATCH_CODE["connected"].format(inputs=inputs, units=units, number=walk.place[2] + 1)
+    return ""

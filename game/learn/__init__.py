@@ -1,0 +1,4 @@
+"""The path: ten short chapters, each one question and one thing to touch, with the real network, engine and agent.
+
+May be imported by `export`, `shell` and `scenes`.
+"""

@@ -1,0 +1,198 @@
+"""Chapter 1, one neuron steers: three weights, set by hand, decide which jet fires."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from ai.common.environment import Floats
+from ai.lander.environment import LIMITS, LanderEnv, Outcome
+from ai.nn import ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
+from engine import DT
+from game.core import texts
+from game.core.scene import Route
+from game.drawing.canvas import Canvas
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
+from game.learn.chapter import STAGE, Chapter, Code
+from game.learn.small_flight import DrawnLander, inside, view_in
+from game.ui.context import Context
+from game.ui.widget import PointsManager, Widget
+from game.ui.widgets import Slider, TextButton
+
+# What the neuron senses: indices of sin of the tilt, spin and sideways speed in an observation.
+SENSES: Final = (4, 6, 2)
+HINT: Final = (-4.0, -4.0, 2.0)  # weights that fly
+DECISION: Final = 4  # physics steps with one action, as a network flies
+GOAL: Final = 10.0  # seconds to stay upright and in sight
+_FIRES: Final = 0.5  # output beyond which a jet fires
+_HEIGHT: Final = 12.0  # metres at which the main engine's rule holds it
+_SIGHT: Final = 12.0  # metres to either side
+_FALLEN: Final = np.radians(60.0)
+_LEANS: Final = np.radians((22.0, -30.0, 35.0, -15.0))  # of the flights, in turn
+_SHOVE: Final = (1.2, 0.8)  # m/s and rad/s that a push adds
+_REST: Final = 50  # updates between a flight and the next
+_WORLD: Final = STAGE.height - 164  # height of the picture of the flight
+_MOST: Final = 6.0
+
+
+class NeuronChapter(Chapter):
+    """One fully connected layer of three inputs and one output, tanh, decides: left jet, none, right jet.
+
+    Attributes:
+        seconds: how long the present flight has been upright and in sight.
+        sensed: what the neuron was given for its latest decision, (1, 3).
+        output: what it answered, from -1 to 1.
+        best: the longest such time, with the weights of then.
+
+    """
+
+    key = "neuron"
+    door = Route("watch")
+
+    def __init__(self, context: Context, manager: PointsManager) -> None:
+        super().__init__(context, manager)
+        self.layer = FullyConnectedLayer(len(SENSES), 1)
+        self.network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(self.layer)
+        self.network.add_layer(ActivationLayer(*ActivationFunctions.use_tanh()))
+        self.env = LanderEnv(1, seed=0, spawn="fixed", frame_skip=1, limits=replace(LIMITS, time=1e9))
+        self.env.reset()
+        self._lander = DrawnLander(self.env)
+        self.restart()
+
+    def restart(self) -> None:
+        """Set all weights to 0, and begin the first flight."""
+        self.network.values[:] = 0.0
+        self.best: tuple[float, tuple[float, ...]] = (0.0, (0.0, 0.0, 0.0))
+        self._flights, self.tried = 0, False
+        self._begin()
+
+    @property
+    def weights(self) -> tuple[float, ...]:
+        """The three weights."""
+        return tuple(self.layer.weights[:, 0].tolist())
+
+    def widgets(self) -> list[Widget]:
+        """Return a slider for each weight, and two buttons."""
+        made: list[Widget] = [
+            Slider(self.manager, self.row(number), name, self.weights[number], (-_MOST, _MOST),
+                   partial(self.set, number), step=0.5, figure="{:+.1f}".format, label_width=150, colour=HUMAN)
+            for number, name in enumerate(texts.LEARN_NEURON_INPUTS)
+        ]  # fmt: skip
+        push = TextButton(self.manager, self.row(4), texts.LEARN_NEURON_PUSH, self.push)
+        hint = TextButton(self.manager, self.row(5), texts.LEARN_NEURON_HINT, self.hint)
+        return [*made, push, hint]
+
+    def set(self, number: int, weight: float) -> None:
+        """Set one weight."""
+        self.layer.weights[number, 0] = weight
+        self.seconds = 0.0
+
+    def hint(self) -> None:
+        """Set weights that fly."""
+        for number, weight in enumerate(HINT):
+            self.set(number, weight)
+        self.changed = True
+
+    def push(self) -> None:
+        """Push the lander, sideways and into a spin, to one side and then the other."""
+        side = 1 - 2 * (self._pushes % 2)
+        self._pushes += 1
+        body, flying = self.env.lander, self.env.outcome == Outcome.FLYING
+        body.set(velocity=body.velocity + np.array([side * _SHOVE[0], 0.0]), mask=flying)
+        body.set(angular_velocity=body.angular_velocity - side * _SHOVE[1], mask=flying)
+
+    # The flight
+
+    def _begin(self) -> None:
+        lean = _LEANS[self._flights % len(_LEANS)]
+        self._flights += 1
+        self.env.place(np.array([True]), np.array([[0.0, _HEIGHT, 0.0, 0.0, lean, 0.0]]))
+        self._lander.begin()
+        self._age = self._pushes = self._over = 0
+        self.seconds = 0.0
+        self._decide()
+
+    def _decide(self) -> None:
+        """Let the neuron choose the jet; a fixed rule fires the main engine when the lander sinks."""
+        self.sensed: Floats = self.env.observe()[:, SENSES]
+        self.output = float(self.network.predict(self.sensed)[0, 0])
+        self.steer = 1 if self.output > _FIRES else 2 if self.output < -_FIRES else 0
+        sinking = self.env.velocity[0, 1] + 0.5 * (self.env.position[0, 1] - _HEIGHT) < 0
+        self.action = np.array([3 * int(sinking) + self.steer])
+
+    def update(self) -> None:
+        """Fly one physics step; after a fall, begin anew."""
+        if self._over:
+            self._over -= 1
+            if not self._over:
+                self._begin()
+            return
+        if self._age % DECISION == 0:
+            self._decide()
+        self.env.fly(self.action)
+        self._lander.follow()
+        self._age += 1
+        self._judge()
+
+    def _judge(self) -> None:
+        self.seconds += DT
+        flying = self.env.outcome[0] == Outcome.FLYING and abs(self.env.position[0, 0]) < _SIGHT
+        if self.seconds > self.best[0] and any(self.weights):
+            self.best = (self.seconds, self.weights)
+        if not flying or self.env.tilt[0] > _FALLEN:
+            self._over = _REST
+            self.tried = self.tried or any(self.weights)
+        self.tried = self.tried or self.best[0] >= GOAL
+
+    # What it tells
+
+    def why(self, guess: int | None) -> str:  # noqa: ARG002
+        """Return for how long the best flight lasted, and with which weights."""
+        seconds, (tilt, spin, speed) = self.best
+        told = texts.LEARN_NEURON_WHY["flew" if seconds >= GOAL else "fell"]
+        return told.format(seconds=seconds, tilt=tilt, spin=spin, speed=speed)
+
+    def code(self) -> Sequence[Code]:
+        """Return the layer's sum, with the numbers of this decision."""
+        inputs, weights = self.sensed[0], self.layer.weights[:, 0]
+        total = " ".join(f"{value:+.2f}·{weight:+.1f}" for value, weight in zip(inputs, weights, strict=True))
+        sums = {"input_data.dot": total, "output += bias": f"{float(self.layer.bias[0]):+.1f}"}
+        return [Code(FullyConnectedLayer.predict, "input_data.dot", sums)]
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the flight, and the neuron below it."""
+        world = STAGE.copy()
+        world.height = _WORLD
+        view = view_in(world, (0.0, _HEIGHT - 0.5), 2 * _SIGHT + 2, canvas.scale)
+        with inside(canvas, world):
+            ((x, y),) = view.points([(0.0, _HEIGHT)]).tolist()
+            canvas.line((world.left, y), (world.right, y), LINE)
+            canvas.line((x, world.top), (x, world.bottom), LINE)
+            self._lander.draw(canvas, view, alpha)
+        told = texts.LEARN_NEURON_OVER if self._over else texts.LEARN_NEURON_SECONDS
+        canvas.text(told.format(seconds=self.seconds), (STAGE.left + 4, STAGE.top + 18), colour=MUTE, tabular=True)
+        self._draw_neuron(canvas)
+
+    def _draw_neuron(self, canvas: Canvas) -> None:
+        top, left = STAGE.top + _WORLD + 24, STAGE.left
+        canvas.line((left, top - 16), (STAGE.right, top - 16), FAINT)
+        shares = self.sensed[0] * self.layer.weights[:, 0]
+        for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
+            y = top + 14 + 32 * number
+            told = texts.LEARN_NEURON_PRODUCT.format(
+                value=self.sensed[0, number], weight=self.weights[number], product=shares[number]
+            )
+            canvas.text(name, (left + 4, y), size=SMALL, colour=MUTE, room=140)
+            canvas.text(told, (left + 330, y), size=SMALL, align="right", tabular=True, room=180)
+            canvas.line((left + 340, y - 4), (left + 400, top + 42), NET, 1 + min(abs(float(shares[number])), 3.0), 0.6)
+        canvas.dot((left + 416, top + 42), 16, NET, 0.25 + 0.75 * abs(self.output))
+        total = texts.LEARN_NEURON_SUM.format(total=float(shares.sum()), output=self.output)
+        canvas.text(total, (left + 446, top + 36), size=SMALL, tabular=True, room=STAGE.right - left - 446)
+        canvas.text(texts.LEARN_NEURON_ACTIONS[self.steer], (left + 446, top + 60), size=TEXT,
+                    colour=NET if self.steer else INK, room=STAGE.right - left - 446)  # fmt: skip
+        canvas.text(texts.LEARN_NEURON_RULE, (left + 446, top + 100), size=LABEL, colour=MUTE,
+                    room=STAGE.right - left - 446)  # fmt: skip

@@ -1,0 +1,106 @@
+"""Explanations: every word and bar says what it is, its unit, and what it means now.
+
+Whoever draws something notes its area with `Canvas.explain`. The mouse, at rest over an area, shows a tooltip; by keys
+and gamepad, F1 or the gamepad's Back button explains one area after the other.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pygame
+
+from game.charts.tooltip import TooltipRow, draw_tooltip
+from game.core import texts
+from game.drawing.canvas import Canvas, Explanation, Point
+from game.drawing.prose import wrapped
+from game.drawing.tokens import INK, LABEL, VIEW_SIZE
+from game.input.controls import Command, translate
+from game.ui.actions import Action
+
+_REST: Final = 24  # updates for which the mouse rests before a tooltip is shown
+_AGAIN: Final = 6  # and before the next one
+_WIDTH: Final = 250.0  # points of a line
+_WITHIN: Final = pygame.Rect(8, 8, VIEW_SIZE[0] - 16, VIEW_SIZE[1] - 16)
+_HEAD, _FOOT = 72.0, 600.0  # rows of points above and below which an area stands at the head or foot
+_ASIDE: Final = 12.0
+_BEFORE: Final = frozenset({Command.LEFT, Command.UP, Command.PREVIOUS})
+_AFTER: Final = frozenset({Command.RIGHT, Command.DOWN, Command.NEXT})
+_LEAVE: Final = frozenset({Command.BACK, Command.PAUSE, Command.UNPLUGGED})
+_MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN)
+
+
+class Explained:
+    """Tooltips of one scene: pass it every event before the scene's own, `update` it, and draw it last.
+
+    Attributes:
+        stepping: whether areas are explained one after the other, without a mouse.
+
+    """
+
+    def __init__(self) -> None:
+        self.stepping = False
+        self._number = self._rest = 0
+        self._ready = False  # whether the mouse has rested for long enough
+
+    def action(self) -> Action:
+        """Return the action that explains the first area; to be the last of a table, as F1 can be bound otherwise."""
+        return Action(pygame.K_F1, self._begin, texts.HINT_EXPLAIN, gamepad=Command.CHOICES)
+
+    def handle_event(self, event: pygame.event.Event) -> bool:
+        """Go on to another area, or end; false for an event that is the scene's."""
+        if event.type in _MOUSE:
+            self._rest = (_REST - _AGAIN if self._ready else 0) if event.type == pygame.MOUSEMOTION else 0
+            self.stepping = self._ready = False
+            return False
+        command = translate(event)
+        if not self.stepping:
+            return False
+        if command in _AFTER or self.action().answers(event):
+            self._number += 1
+        elif command in _BEFORE:
+            self._number -= 1
+        elif command in _LEAVE:
+            self.stepping = False
+        else:
+            return False
+        return True
+
+    def update(self) -> None:
+        """Advance by 1/60 s."""
+        self._rest += not self._ready
+        self._ready = self._rest >= _REST
+
+    def draw(self, canvas: Canvas) -> None:
+        """Draw the tooltip of the area that is pointed at, or that is the next to be explained."""
+        areas = canvas.explained
+        if self.stepping and areas:
+            area = areas[self._number % len(areas)]
+            canvas.outline(area.box.inflate(8, 6), 6, INK, 1, 0.8)
+            _draw(canvas, area)
+        elif self._ready and canvas.pointer is not None:
+            under = [area for area in areas if area.box.collidepoint(canvas.pointer)]
+            if under:
+                smallest = min(under, key=lambda area: area.box.width * area.box.height)
+                _draw(canvas, smallest)
+
+    def _begin(self) -> None:
+        self.stepping, self._number = True, 0
+
+
+def _draw(canvas: Canvas, area: Explanation) -> None:
+    """Draw the tooltip beside its area, or below it at the head of the screen and above it at the foot."""
+    what = wrapped(canvas, area.what, LABEL, _WIDTH)
+    now = wrapped(canvas, area.now(), LABEL, _WIDTH)
+    rows = [TooltipRow(line, "") for line in now if line]
+    box, within = area.box, pygame.FRect(_WITHIN)
+    place: Point = (box.right, box.centery)
+    if box.bottom < _HEAD:
+        within.height -= box.bottom + 6 - within.top
+        within.bottom, place = _WITHIN.bottom, (box.left - _ASIDE, 0)
+    elif box.top > _FOOT:
+        within.height, place = box.top - 6 - within.top, (box.left - _ASIDE, VIEW_SIZE[1])
+    elif box.right + _WIDTH + 40 > within.right:
+        within.width, place = box.left - 6 - within.left, (box.left, box.centery)
+    with canvas.unnoted():
+        draw_tooltip(canvas, place, within, what, rows)

@@ -1,0 +1,105 @@
+"""Split view of Train: the swarm of a healthy run, and beside it that of an experiment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from ai.training.history import History
+from ai.training.verdict import Flown
+from game.charts.series import RUN_STYLES
+from game.core import texts
+from game.core.worker import WorkerState
+from game.drawing.canvas import Canvas
+from game.drawing.prose import draw_wrapped
+from game.drawing.tokens import LINE, MUTE, NET, NIGHT0, SMALL, TEXT, VIEW_SIZE, Colour
+from game.panels.lab import Laboratory, listed_differences
+from game.training.lander_run import LanderRun
+from game.training.training_run import EarlierRun
+from game.world.swarm import LearningSwarm
+
+_WIDTH: Final = 418.0  # of each half, in points
+_TOP: Final = 146.0
+_HEIGHT: Final = round(_WIDTH * VIEW_SIZE[1] / VIEW_SIZE[0])
+_FLOOR: Final = 434.0
+_MARGIN: Final = 40.0, 22.0  # from the left of each half to its words
+_STEP: Final = (400.0, 98.0)  # where it is said that both are in step
+_STEP_WIDTH: Final = 268.0
+_STYLE: Final = 1  # of the experiment's curves: see RUN_STYLES
+
+
+class SplitView:
+    """Two swarms side by side, each with its name, the flights it lands and what is different in it."""
+
+    def __init__(self, laboratory: Laboratory) -> None:
+        self._laboratory, self._split = laboratory, laboratory.split
+        self.swarms = tuple(LearningSwarm(_WIDTH / VIEW_SIZE[0]) for _ in range(2))
+        self._points = -1  # of both histories, when they were judged last
+        self._moment: int | None = None
+
+    @property
+    def shown(self) -> bool:
+        """Whether there is an experiment to show beside the run."""
+        return self._split.twin is not None
+
+    @property
+    def beside(self) -> Sequence[EarlierRun[History]]:
+        """The runs whose curves are shown beside the run's: its experiment, or else earlier ones."""
+        twin, chosen = self._split.twin, self._laboratory.chosen
+        if twin is None:
+            return self._split.earlier
+        return [EarlierRun(chosen.name if chosen else texts.LAB_HEADING, twin.history, _STYLE)]
+
+    def clear(self) -> None:
+        """Empty both halves, for other runs."""
+        self._points = -1
+        for swarm in self.swarms:
+            swarm.clear()
+
+    def update(self, still: bool, moment: int | None = None) -> None:
+        """Take the latest snapshots, judge the runs when there is news, and advance by 1/60 s.
+
+        `moment`, in decisions, is that which is shown instead of now.
+        """
+        twin = self._split.twin
+        if twin is None:
+            return
+        for run, swarm in zip((self._split, twin), self.swarms, strict=True):
+            state = run.swarm_state if moment is None else run.swarms.nearest(moment)
+            if state is not None and state is not swarm.swarm_state:
+                if moment != self._moment:
+                    swarm.clear()
+                swarm.take(state)
+            swarm.update(still)
+        self._moment = moment
+        points = len(self._split.history) + len(twin.history) + bool(twin.problem)
+        if points != self._points:
+            self._points = points
+            self._laboratory.follow()
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw both halves."""
+        twin, chosen = self._split.twin, self._laboratory.chosen
+        if twin is None or chosen is None:
+            return
+        canvas.fill(canvas.rect(0, 0, 2 * _WIDTH, _FLOOR), NIGHT0)
+        paused = self._split.state is WorkerState.PAUSED
+        for number, swarm in enumerate(self.swarms):
+            swarm.draw(canvas.part(number * _WIDTH, _TOP, _WIDTH, _HEIGHT), alpha, paused=paused)
+        canvas.line((_WIDTH, _TOP), (_WIDTH, _FLOOR - 8), LINE)
+        changed = listed_differences(self._split.config, twin.config)
+        self._write(canvas, 0, texts.SPLIT_HEALTHY, texts.SPLIT_ALIKE, self._split, NET)
+        self._write(canvas, 1, chosen.name, changed, twin, RUN_STYLES[_STYLE][0])
+        draw_wrapped(canvas, texts.SPLIT_STEP, _STEP, _STEP_WIDTH, colour=MUTE, most=3)
+
+    def _write(self, canvas: Canvas, half: int, name: str, told: str, run: LanderRun, colour: Colour) -> None:
+        left, right = half * _WIDTH + _MARGIN[half], (half + 1) * _WIDTH - _MARGIN[1 - half]
+        y = _TOP + _HEIGHT + 20
+        figure = ""
+        if len(run.history):
+            figure = texts.SPLIT_LANDED.format(percent=100 * Flown(run.history, run.config).landed)
+        taken = canvas.text(figure, (right, y), size=TEXT, align="right", tabular=True, colour=colour).width
+        canvas.text(name, (left, y), size=TEXT, colour=colour, room=right - left - taken - 12)
+        ended = run.state in (WorkerState.FAILED, WorkerState.ENDED)
+        canvas.text(texts.SPLIT_ENDED if ended else told, (left, y + 20), size=SMALL,
+                    colour=canvas.palette.warn if ended else MUTE, room=right - left)  # fmt: skip

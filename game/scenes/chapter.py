@@ -1,0 +1,235 @@
+"""Chapter scene: one chapter of the path, in four pages: predict, try, see why, in the code."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Final
+
+import pygame
+
+from game.core import texts
+from game.core.scene import Push, Replace, Route, Transition
+from game.core.source import Source, source_of
+from game.drawing.canvas import Canvas
+from game.drawing.prose import draw_wrapped
+from game.drawing.sky import NightSky
+from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
+from game.input.controls import Command
+from game.learn.chapter import STAGE, Code
+from game.learn.path import FIRST, PATH, chapter_type, following
+from game.learn.progress import PAGES, Progress
+from game.panels.code_listing import draw_listing
+from game.ui.actions import Action, Table
+from game.ui.context import Context
+from game.ui.form_scene import FormScene
+from game.ui.widget import Widget
+from game.ui.widgets import Choice, TextButton
+from game.ui.words import row_width
+
+_PREDICT, _TRY, _WHY, _CODE = range(len(PAGES))
+_COLUMN: Final = (MARGIN, 188.0, 344.0)  # left, first baseline and width of the text
+_TABS: Final = (MARGIN, 120)
+_BODY, _LEADING = SMALL + 1.5, 20.0
+_ANSWER: Final = 38  # points from one answer to the next
+_NOTES: Final = 230.0  # width of what stands beside lines of code
+_FOOT: Final = 628
+_OPEN: Final = (190, 198, 214)  # an answer that was not given
+
+
+class ChapterScene(FormScene):
+    """Chapter scene.
+
+    Attributes:
+        chapter: the chapter that is shown.
+        page: which of `PAGES` is shown, by its index.
+
+    """
+
+    def __init__(self, context: Context, key: str = FIRST) -> None:
+        super().__init__(context)
+        self._progress = Progress(context.settings)
+        self._sky = NightSky(context.rng, ember=0.4, stars=60)
+        self.chapter = chapter_type(key)(context, self.form.manager)
+        self.page, self._function, self._told = self._progress.page(key), 0, ""
+        tabs = (*_TABS, row_width(texts.LEARN_PAGES, TEXT), 26)
+        self._tabs = self.form.add(Choice(self.form.manager, tabs, "", texts.LEARN_PAGES, self.page, self.turn_to))
+        self._widgets: list[Widget] = []
+        context.settings.chapter = key
+        self._progress.note(key, page=self.page)
+        self._offer()
+        self.form.focus(self._widgets[0])
+
+    def close(self) -> None:
+        """Save the progress, and let the chapter release what it holds."""
+        self.chapter.close()
+        self.context.apply_settings()
+
+    @property
+    def key(self) -> str:
+        """Key of the chapter."""
+        return self.chapter.key
+
+    def turn_to(self, page: int) -> None:
+        """Show another page, and keep that it was opened."""
+        self.page = self._tabs.index = page
+        self._progress.note(self.key, page=page)
+        if page == _WHY and self.chapter.tried:
+            self._progress.note(self.key, done=True)
+        self._told = self.chapter.why(self._progress.guess(self.key)) if self.chapter.tried else ""
+        self.context.apply_settings()
+        self._offer()
+
+    def restart(self) -> None:
+        """Begin the chapter's picture anew."""
+        self.chapter.restart()
+        self._offer()
+
+    def actions(self) -> Table:
+        """Move, press, turn the page; the chapter's own keys; go back."""
+        own = self.chapter.actions() if self.page == _TRY else ()
+        again = [Action(Command.RETRY, self.restart, texts.LEARN_AGAIN)] if self.page == _TRY else []
+        last = self.page == len(PAGES) - 1
+        return [
+            self.form.moves,
+            self.form.changes,
+            *own,
+            *again,
+            Action(Command.NEXT, self._go_on, texts.LEARN_NEXT_CHAPTER if last else texts.LEARN_NEXT_PAGE),
+            Action(Command.PREVIOUS, partial(self._turn, -1)),
+            self.form.goes_back(texts.HINT_BACK),
+        ]
+
+    def handle_event(self, event: pygame.event.Event) -> Transition | None:
+        """Offer a mouse event over the picture to the chapter first."""
+        mouse = event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
+        if mouse and self.page != _CODE and self.chapter.handle_event(event):
+            return None
+        return super().handle_event(event)
+
+    def update(self) -> Transition | None:
+        """Advance the chapter, unless its question still stands."""
+        if self.page != _PREDICT:
+            self.chapter.update()
+        if self.chapter.changed:
+            self.chapter.changed = False
+            self._offer()
+        return self.form.update()
+
+    # What can be pressed
+
+    def _offer(self) -> None:
+        pages = {_PREDICT: self._answers, _TRY: self.chapter.widgets, _CODE: self._functions}
+        new = [*(pages[self.page]() if self.page in pages else ()), *self._foot()]
+        self.form.replace(self._widgets, new)
+        self._widgets = new
+
+    def _answers(self) -> list[Widget]:
+        guess = self._progress.guess(self.key)
+        answers = [answer for answer in texts.LEARN_ANSWERS[self.key] if answer]
+        left, _, width = _COLUMN
+        top = STAGE.bottom - _ANSWER * len(answers)
+        return [
+            TextButton(self.form.manager, (left, top + _ANSWER * number, width, _ANSWER), answer,
+                       partial(self._guess, number), colour=HUMAN if number == guess else _OPEN)
+            for number, answer in enumerate(answers)
+        ]  # fmt: skip
+
+    def _functions(self) -> list[Widget]:
+        codes = self.chapter.code()
+        left, _, width = _COLUMN
+        top = STAGE.bottom - 30 * len(codes)
+        return [
+            TextButton(self.form.manager, (left, top + 30 * number, width, 30), code.function.__qualname__,
+                       partial(self._show_function, number), size=SMALL,
+                       colour=NET if number == self._function else MUTE)
+            for number, code in enumerate(codes)
+        ]  # fmt: skip
+
+    def _foot(self) -> list[Widget]:
+        manager, after = self.form.manager, following(self.key)
+        labels = (*texts.LEARN_ON, texts.LEARN_TO_CHAPTER if after else texts.LEARN_TO_LIST)
+        foot: list[Widget] = [TextButton(manager, (MARGIN, _FOOT, 344, 30), labels[self.page], self._go_on, colour=INK)]
+        if self.page >= _WHY:
+            label = self.chapter.words["door"]
+            foot.append(TextButton(manager, (STAGE.left, _FOOT, STAGE.width, 30), label, self._through_door))
+        return foot
+
+    def _guess(self, number: int) -> None:
+        self._progress.note(self.key, guess=number)
+        self.turn_to(_TRY)
+        self.form.focus(self._widgets[0])
+
+    def _show_function(self, number: int) -> None:
+        self._function = number
+        self._offer()
+
+    def _turn(self, pages: int) -> None:
+        if 0 <= self.page + pages < len(PAGES):
+            self.turn_to(self.page + pages)
+
+    def _go_on(self) -> Transition | None:
+        if self.page < len(PAGES) - 1:
+            self._turn(1)
+            return None
+        after = following(self.key)
+        return Replace(Route("chapter", (after,))) if after else self.form.goes_back("").run()
+
+    def _through_door(self) -> Transition:
+        return Push(self.chapter.door)
+
+    # The picture
+
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the page."""
+        self._sky.draw(canvas)
+        number = list(PATH).index(self.key) + 1
+        canvas.text(texts.LEARN_PLACE.format(number=number, count=len(PATH)), (MARGIN, 38), size=SMALL, colour=MUTE)
+        canvas.text(self.chapter.words["title"], (MARGIN, 76), size=30, weight="light")
+        canvas.text(self.chapter.words["question"], (MARGIN, 104), colour=MUTE, room=VIEW_SIZE[0] - 2 * MARGIN)
+        if self.page == _CODE:
+            self._draw_code(canvas)
+        else:
+            self.chapter.draw(canvas, alpha)
+            [self._draw_predict, self._draw_try, self._draw_why][self.page](canvas)
+        self.form.draw(canvas)
+        self.draw_hints(canvas)
+
+    def _write(self, canvas: Canvas, text: str, y: float, colour: Colour = INK, size: float = _BODY) -> float:
+        left, _, width = _COLUMN
+        return draw_wrapped(canvas, text, (left, y), width, size=size, colour=colour, leading=_LEADING)
+
+    def _draw_predict(self, canvas: Canvas) -> None:
+        y = self._write(canvas, self.chapter.words["lead"], _COLUMN[1], MUTE)
+        self._write(canvas, self.chapter.words["predict"], y + 12, size=TEXT)
+
+    def _draw_try(self, canvas: Canvas) -> None:
+        self._write(canvas, self.chapter.words["task"], _COLUMN[1])
+
+    def _draw_why(self, canvas: Canvas) -> None:
+        y = _COLUMN[1]
+        if guess := self._progress.answer(self.key):
+            y = self._write(canvas, texts.LEARN_GUESSED.format(guess=guess), y, HUMAN) + 10
+        told = self._told or texts.LEARN_TRY_FIRST
+        y = self._write(canvas, told, y) + 10
+        self._write(canvas, self.chapter.words["why"], y, MUTE)
+
+    def _draw_code(self, canvas: Canvas) -> None:
+        self._write(canvas, self.chapter.words["code"], _COLUMN[1])
+        code = self.chapter.code()[self._function]
+        source = source_of(code.function)
+        if source is None:
+            canvas.text(texts.LEARN_NO_SOURCE, (STAGE.left, _COLUMN[1]), size=_BODY, colour=MUTE, room=STAGE.width)
+            return
+        current, notes = placed(source, code)
+        draw_listing(canvas, STAGE, source, current, notes, notes_width=_NOTES if notes else 0.0)
+
+
+def placed(source: Source, code: Code) -> tuple[int | None, Mapping[int, str]]:
+    """Return the number of the lit line, and what stands beside lines by their numbers."""
+
+    def number(part: str) -> int | None:
+        return next((number for number, line in source.lines if part in line), None) if part else None
+
+    notes = {found: note for part, note in code.notes.items() if (found := number(part)) is not None}
+    return number(code.current), notes

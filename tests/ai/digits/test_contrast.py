@@ -1,0 +1,100 @@
+"""Why not another digit: what is said of ink and of units is what the network itself answers."""
+
+import numpy as np
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.digits.contrast import Contrast
+from ai.digits.mnist import load_part
+from ai.nn import CostFunctions, FullyConnectedLayer, LayerNormalisation, NeuralNetwork
+from game.core.assets import MODELS_DIR
+
+EPSILON = float(np.finfo(np.float32).eps)
+
+
+@pytest.fixture(scope="module", params=["modern", "classic"])
+def classifier(request):
+    return DigitClassifier.load(MODELS_DIR / "digits" / request.param)
+
+
+def measured(classifier, image):
+    contrast = Contrast(classifier, image)
+    while not contrast.done:
+        contrast.advance()
+    return contrast
+
+
+def scores(classifier, image):
+    network = classifier.network
+    at = max(number for number, layer in enumerate(network.layers) if layer.parameters)
+    return network.activations(classifier.shaped(image))[at][0]
+
+
+def test_ink_that_is_named_really_raises_the_score_when_it_is_taken_away_or_put_there(classifier):
+    images, _ = load_part("test")
+    named = 0
+    for image in images[[0, 3, 8, 61]]:
+        contrast = measured(classifier, image)
+        assert contrast.answer == int(classifier.predict(image).argmax())
+        for asked in set(range(10)) - {contrast.answer}:
+            for ink in (0, 1):
+                change = contrast.best(asked, ink)
+                if change is None:
+                    continue
+                named += 1
+                other = contrast.changed(change.row, change.column, ink)
+                before, after = scores(classifier, image), scores(classifier, other)
+                assert after[asked] > before[asked]
+                assert change.before == pytest.approx(before[asked], abs=1e-4)
+                assert change.after == pytest.approx(after[asked], abs=1e-4)
+                assert change.answer_after == pytest.approx(after[contrast.answer], abs=1e-4)
+                assert (other != image).sum() <= 9
+                assert other.sum() > image.sum() if ink else other.sum() < image.sum()
+    assert named > 40
+
+
+def test_no_other_square_would_do_more(classifier):
+    image = load_part("test")[0][2]
+    contrast = measured(classifier, image)
+    asked = (contrast.answer + 3) % 10
+    best = contrast.best(asked, 0)
+    gain = best.after - best.before - (best.answer_after - best.answer_before)
+    before = scores(classifier, image)
+    for row in range(28):
+        for column in range(28):
+            change = scores(classifier, contrast.changed(row, column, 0)) - before
+            if change[asked] > 1e-4 and not np.isnan(contrast.taken[row, column, 0]):
+                assert change[asked] - change[contrast.answer] <= gain + 1e-4
+
+
+def test_the_units_shares_add_up_to_the_difference_of_the_scores(classifier):
+    for image in load_part("test")[0][:5]:
+        contrast = Contrast(classifier, image)
+        for asked in range(10):
+            units = contrast.units(asked)
+            difference = float(contrast.scores[asked] - contrast.scores[contrast.answer])
+            size = np.abs(units.values).sum() * np.abs(units.weights).max() + np.abs(contrast.scores).sum() + 1
+            total = float(units.shares.sum(dtype=np.float64)) + units.bias
+            assert abs(total - difference) <= (len(units.values) + 3) * EPSILON * size
+
+
+def test_what_is_named_early_is_true_before_all_is_measured(classifier):
+    image = load_part("test")[0][4]
+    contrast = Contrast(classifier, image)
+    assert contrast.best(7, 0) is None
+    contrast.advance()
+    assert not contrast.done
+    measured_now = int(np.isfinite(contrast.taken[..., 0]).sum())
+    assert measured_now == contrast.batch
+    if change := contrast.best(7, 0):
+        assert scores(classifier, contrast.changed(change.row, change.column, 0))[7] > scores(classifier, image)[7]
+
+
+def test_an_empty_image_has_nothing_to_say_and_a_strange_network_is_refused(classifier):
+    empty = Contrast(classifier, np.zeros((28, 28), np.float32))
+    assert empty.done
+    assert empty.best(3, 0) is None
+    network = NeuralNetwork(*CostFunctions.use_mse()).add_layer(FullyConnectedLayer(784, 10))
+    network.add_layer(LayerNormalisation(10))
+    with pytest.raises(ValueError, match="ten outputs"):
+        Contrast(DigitClassifier(network), np.ones((28, 28), np.float32))

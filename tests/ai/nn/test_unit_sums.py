@@ -1,0 +1,164 @@
+"""A forward pass written out: the sums of its products are what the layers gave."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from ai.digits.classifier import DigitClassifier
+from ai.digits.config import DIGIT_PRESETS, build_digit_network
+from ai.digits.mnist import load_part
+from ai.nn import (
+    ActivationFunctions,
+    ActivationLayer,
+    ConvolutionLayer,
+    CostFunctions,
+    FlattenLayer,
+    FullyConnectedLayer,
+    LayerNormalisation,
+    MaxPoolingLayer,
+    NeuralNetwork,
+)
+from ai.nn.unit_sums import receptive_field, stages
+from game.core.assets import MODELS_DIR
+
+EPSILON = float(np.finfo(np.float32).eps)
+
+
+def strange_network():
+    """Padding, strides, a pooling that leaves a row out, and an activation between flattening and the sum."""
+    network = NeuralNetwork(*CostFunctions.use_mse(), rng=np.random.default_rng(3))
+    first = ConvolutionLayer((11, 9, 2), 5, 4, stride=2, padding=3)
+    second = ConvolutionLayer(first.outputs, 4, 3, padding=1)
+    pooling = MaxPoolingLayer(second.outputs, 3)
+    flatten = FlattenLayer(pooling.outputs)
+    tanh, relu = ActivationLayer(*ActivationFunctions.use_tanh()), ActivationLayer(*ActivationFunctions.use_relu())
+    connected = FullyConnectedLayer(flatten.outputs, 7), LayerNormalisation(7), FullyConnectedLayer(7, 3)
+    for layer in (first, tanh, second, pooling, flatten, relu, *connected):
+        network.add_layer(layer)
+    network.values = np.random.default_rng(4).normal(size=network.values.size)
+    return network, np.random.default_rng(5).random((11, 9, 2), dtype=np.float32)
+
+
+def shipped(name):
+    images, _ = load_part("test")
+    return DigitClassifier.load(MODELS_DIR / "digits" / name).network, images[7][:, :, None]
+
+
+def narrow():
+    config = DIGIT_PRESETS["modern"].changed(filters=(8,), kernel=9, hidden=(5,), activation="leaky_relu")
+    return build_digit_network(config, np.random.default_rng(2)), load_part("test")[0][1][:, :, None]
+
+
+CASES = {"strange": strange_network, "modern": lambda: shipped("modern"), "classic": lambda: shipped("classic"),
+         "narrow": narrow}  # fmt: skip
+
+
+def places(stage, rng, most=150):
+    found = list(np.ndindex(stage.outputs.shape))
+    return found if len(found) <= most else [found[number] for number in rng.choice(len(found), most, replace=False)]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_sum_of_a_units_products_is_what_its_layer_gave(case):
+    network, example = CASES[case]()
+    rng = np.random.default_rng(1)
+    for stage in stages(network, example):
+        for place in places(stage, rng):
+            if stage.kind == "other":
+                with pytest.raises(ValueError, match="LayerNormalisation"):
+                    stage.unit(place)
+                continue
+            unit = stage.unit(place)
+            assert unit.output == stage.outputs[place]
+            if stage.kind == "pooling":
+                assert unit.output == unit.patch.max()
+            elif stage.kind == "activation":
+                assert unit.output == stage.layer.activation.function(unit.patch)[0, 0, 0]
+            else:
+                size = float(np.abs(unit.products).sum()) + abs(unit.bias)
+                assert abs(unit.total - unit.output) <= (unit.products.size + 1) * EPSILON * size
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_last_stage_is_the_networks_own_answer_and_each_reads_the_one_before(case):
+    network, example = CASES[case]()
+    found = stages(network, example)
+    given = example if isinstance(network.layers[0].inputs, tuple) else example.reshape(-1)
+    assert found[-1].outputs.ravel().tobytes() == network.activations(given[None])[-1].tobytes()
+    for before, after in pairwise(found):
+        assert after.inputs is before.outputs
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_patch_is_what_the_unit_depends_on(case):
+    """Other inputs of the layer change nothing; those of the patch that have a weight do."""
+    network, example = CASES[case]()
+    rng = np.random.default_rng(2)
+    for stage in stages(network, example):
+        if stage.kind not in ("convolution", "pooling") or stage.inputs.shape[0] == 1:
+            continue
+        for place in places(stage, rng, 12):
+            unit = stage.unit(place)
+            changed = stage.inputs + 10 * rng.random(stage.inputs.shape, dtype=np.float32)
+            (top, left), (height, width, _) = unit.corner, unit.patch.shape
+            rows, columns = slice(max(top, 0), top + height), slice(max(left, 0), left + width)
+            channels = slice(None) if stage.kind == "convolution" else [place[2]]
+            changed[rows, columns, channels] = stage.inputs[rows, columns, channels]
+            assert stage.layer.predict(changed)[place] == pytest.approx(unit.output, abs=1e-5)
+
+
+def test_a_receptive_field_holds_all_pixels_that_matter_and_no_row_that_does_not():
+    network, example = strange_network()
+    found = stages(network, example)
+    rng = np.random.default_rng(6)
+    for number, stage in enumerate(found[:4]):
+        for place in places(stage, rng, 6):
+            top, left, bottom, right = receptive_field(found[: number + 1], place)
+            outside = example + rng.random(example.shape, dtype=np.float32)
+            outside[top:bottom, left:right] = example[top:bottom, left:right]
+            again = stages(network, outside)[number].outputs[place]
+            assert again == pytest.approx(stage.outputs[place], abs=1e-5)
+    assert receptive_field(found, (0, 0, 1)) == (0, 0, 11, 9)
+    first = stages(*shipped("modern"))
+    assert receptive_field(first[:1], (3, 4, 0)) == (3, 4, 8, 9)
+    assert receptive_field(first[:4], (0, 0, 0)) == (0, 0, 14, 14)
+
+
+@pytest.mark.parametrize("case", ["modern", "classic", "narrow", "strange"])
+def test_the_strongest_reader_has_the_largest_product(case):
+    network, example = CASES[case]()
+    rng = np.random.default_rng(3)
+    found = stages(network, example)
+    for before, stage in pairwise(found):
+        for place in places(before, rng, 4):
+            reader = stage.strongest_reader(place)
+            if stage.kind == "activation":
+                assert reader == place
+            if stage.kind not in ("convolution", "connected"):
+                continue
+            shares = {}
+            for each in np.ndindex(stage.outputs.shape):
+                unit = stage.unit(each)
+                inside = place[0] - unit.corner[0], place[1] - unit.corner[1], place[2]
+                if all(0 <= at < size for at, size in zip(inside, unit.patch.shape, strict=True)):
+                    shares[each] = float(unit.products[inside])
+            assert (reader is None) == (not shares)
+            if shares:
+                assert shares[reader] == max(shares.values())
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_strongest_input_has_the_largest_product(case):
+    network, example = CASES[case]()
+    rng = np.random.default_rng(7)
+    for stage in stages(network, example):
+        for place in places(stage, rng, 20) if stage.kind != "other" else ():
+            found, unit = stage.strongest_input(place), stage.unit(place)
+            if stage.kind == "pooling":
+                assert stage.inputs[found] == unit.output
+            elif stage.kind == "activation":
+                assert found == place
+            else:
+                inside = found[0] - unit.corner[0], found[1] - unit.corner[1], found[2]
+                assert unit.products[inside] == unit.products.max() or min(inside) < 0 or unit.products.max() == 0

@@ -1,0 +1,84 @@
+"""Captions of charts, on recordings of real runs."""
+
+import pytest
+
+from ai.training.captions import ABOUT, CAPTION_RULES, CHARTS, captions
+from ai.training.hints import RULES, Adviser, RecentCurves
+from ai.training.history import History
+from tests.support.recordings import growing, names, recorded
+
+EACH = 8  # points between two looks
+
+
+def seen(name: str) -> dict[str, list[str]]:
+    """The captions that each chart of a recording had, in order, beside the hints that were shown."""
+    found: dict[str, list[str]] = {chart: [] for chart in CHARTS}
+    adviser = None
+    for number, run in enumerate(growing(name)):
+        adviser = adviser or Adviser(run.config)
+        hint = adviser.advise(run.history, run.config, run.dead_share, run.clipped_share)
+        if number % EACH:
+            continue
+        for chart, caption in captions(RecentCurves(run.history, run.config), hint.name if hint else "").items():
+            rule = next(rule for rule in CAPTION_RULES[chart] if rule.name == caption.name)
+            assert not (hint and chart in ABOUT[hint.name] and rule.praises), (name, hint, chart, caption)
+            if found[chart][-1:] != [caption.name]:
+                found[chart].append(caption.name)
+    return found
+
+
+def test_a_healthy_run_crashes_then_lands_more_and_then_nearly_always():
+    charts = seen("modern healthy")
+    assert charts["success"][:2] == ["unknown", "crashes"]
+    assert charts["success"].index("crashes") < charts["success"].index("rises")
+    assert charts["success"][-1] == "high"
+    assert charts["loss"][0] == "unknown"
+    assert charts["mean_q"][:2] == ["unknown", "hopes"], "values begin at 0, and flights cost points"
+    assert "runs_away" not in charts["mean_q"]
+    assert charts["mean_return"][-1] == "earns"
+    assert "falls" in charts["epsilon"]
+    assert charts["epsilon"][-1] == "spread"
+
+
+def test_a_run_that_breaks_is_said_to_have_landed_more_before():
+    charts = seen("modern rates to 1 and back, late")
+    assert charts["success"][-1] == "collapsed"
+    assert charts["mean_return"][-1] in ("falls", "costs")
+
+
+@pytest.mark.parametrize("name", ["classic rates 1", "classic rates 0.3"])
+def test_values_that_run_away_are_named(name: str):
+    assert seen(name)["mean_q"][-1] == "runs_away"
+
+
+@pytest.mark.parametrize("name", ["modern sabotage rate_times_100", "modern rates 1"])
+def test_a_run_that_only_crashes_is_never_praised_for_landing(name: str):
+    assert not {"rises", "high"} & set(seen(name)["success"])
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in names() if "sabotage" in name or "healthy" in name or "back" in name]
+)
+def test_no_caption_speaks_against_a_hint(name: str):
+    assert seen(name)
+
+
+def test_every_hint_says_which_charts_it_is_about():
+    assert ABOUT.keys() == {rule.name for rule in RULES}
+    assert all(set(charts) <= set(CHARTS) for charts in ABOUT.values())
+
+
+def test_a_hint_on_the_screen_silences_praise_of_its_charts():
+    run = recorded("modern healthy")
+    praised = captions(RecentCurves(run.history, run.config))["success"].name
+    beside = captions(RecentCurves(run.history, run.config), "plateau")["success"].name
+    assert (praised, beside) == ("high", "steady")
+
+
+def test_a_curriculum_and_a_run_without_chance_have_captions_of_their_own():
+    run = recorded("modern healthy", until=60_000)
+    history, config = run.history, run.config.changed(spawn="curriculum", epsilon_spread=0.0)
+    stage = captions(RecentCurves(history, config))["stage"]
+    assert (stage.name, dict(stage.values)) == ("grows", {"stage": 0.0})
+    assert captions(RecentCurves(history, config))["epsilon"].name in ("falls", "steady")
+    assert captions(RecentCurves(History(), config)) == {}

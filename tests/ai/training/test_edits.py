@@ -1,0 +1,239 @@
+"""A network edited by hand: what an edit changes, what is refused, and the way back, bit for bit."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import PRESETS, Config
+from ai.nn import NeuralNetwork
+from ai.nn.inspection import links
+from ai.training.edits import (
+    EDITED,
+    MOST_WEIGHT,
+    Edit,
+    EditNetwork,
+    LearnOn,
+    NetworkEditor,
+    NetworkEdits,
+    SetWeight,
+    SilenceUnit,
+    UndoEdit,
+)
+from ai.training.history import History, Point, SettingChange
+from ai.training.messages import NetworkState, Refused, RestoreCheckpoint
+from ai.training.session import live
+from tests.support.small import LANDERS
+
+SENSED = np.linspace(-1, 1, 18, dtype=np.float32).reshape(2, 9)
+
+
+def agent_of(**options: object) -> DeepQAgent:
+    agent = DeepQAgent(config=PRESETS["modern"].changed(hidden=(5, 4), **options))
+    agent.target.values = agent.online.values * np.float32(0.9)  # they differ while it learns
+    return agent
+
+
+def both(agent: DeepQAgent) -> tuple[bytes, bytes]:
+    return agent.online.values.tobytes(), agent.target.values.tobytes()
+
+
+EDITS: st.SearchStrategy[Edit] = st.one_of(
+    st.builds(SilenceUnit, st.integers(0, 2), st.integers(0, 3)),
+    st.builds(
+        SetWeight,
+        st.integers(0, 2),
+        st.integers(0, 3),
+        st.integers(0, 3),
+        st.floats(-MOST_WEIGHT, MOST_WEIGHT, width=32),
+    ),
+)
+
+
+@given(st.lists(st.tuples(EDITS, st.booleans()), min_size=1, max_size=25))
+def test_each_step_is_undone_bit_for_bit(edits: list[tuple[Edit, bool]]) -> None:
+    agent = agent_of()
+    editor = NetworkEditor(agent)
+    before, was = [both(agent)], 0
+    for edit, amends in edits:
+        now = both(agent)
+        editor.apply(edit, amends=amends)
+        if editor.edits.steps > was:
+            before.append(now)
+        was = editor.edits.steps
+        assert agent.held
+    while editor.edits.steps:
+        editor.undo()
+        assert both(agent) == before.pop()
+    assert both(agent) == before.pop()
+    assert not before
+    assert editor.edits == NetworkEdits()
+    assert not agent.held
+
+
+@given(st.lists(EDITS, min_size=1, max_size=25))
+def test_all_are_undone_at_once_bit_for_bit(edits: list[Edit]) -> None:
+    agent = agent_of()
+    editor, before, optimizer = NetworkEditor(agent), both(agent), agent.optimizer
+    for edit in edits:
+        editor.apply(edit)
+    editor.restore()
+    assert both(agent) == before
+    assert agent.optimizer is optimizer, "it has not learnt meanwhile"
+    assert editor.edits == NetworkEdits()
+
+
+@pytest.mark.parametrize("options", [{}, {"dueling": True}, {"layer_normalisation": False, "activation": "tanh"}])
+def test_a_silenced_unit_makes_no_difference_any_more(options: dict[str, object]) -> None:
+    agent = agent_of(**options)
+    NetworkEditor(agent).apply(SilenceUnit(0, 2))
+    other = SENSED.copy()
+    other[:, 2] = 9.0
+    for network in (agent.online, agent.target):
+        assert np.array_equal(network.predict(SENSED), network.predict(other))
+    NetworkEditor(agent).apply(SilenceUnit(2, 1))
+    assert not links(agent.online)[2].weights[1].any()
+
+
+def test_a_weight_is_set_and_no_other_changes() -> None:
+    agent = agent_of()
+    before = [link.weights.copy() for link in links(agent.online)]
+    NetworkEditor(agent).apply(SetWeight(1, 4, 3, 0.75))
+    before[1][4, 3] = 0.75
+    for network in (agent.online, agent.target):
+        assert links(network)[1].weights[4, 3] == np.float32(0.75)
+    for weights, link in zip(before, links(agent.online), strict=True):
+        assert np.array_equal(weights, link.weights)
+
+
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        (SilenceUnit(0, 9), "no unit 9"),
+        (SilenceUnit(0, -1), "no unit -1"),
+        (SilenceUnit(3, 0), "no outgoing weights"),
+        (SilenceUnit(7, 0), "no layer 7"),
+        (SetWeight(-1, 0, 0, 1.0), "no layer -1"),
+        (SetWeight(0, 0, 5, 1.0), "no weight 0, 5"),
+        (SetWeight(0, 0, 0, np.nan), "not nan"),
+        (SetWeight(0, 0, 0, np.inf), "not inf"),
+        (SetWeight(0, 0, 0, 101.0), "at most 100"),
+    ],
+)
+def test_what_cannot_be_edited_is_refused_and_nothing_changes(edit: Edit, said: str) -> None:
+    agent = agent_of()
+    editor, before = NetworkEditor(agent), both(agent)
+    with pytest.raises(ValueError, match=said):
+        editor.apply(edit)
+    assert both(agent) == before
+    assert not agent.held
+
+
+def test_a_weight_of_a_dueling_layer_is_refused_with_the_reason() -> None:
+    editor = NetworkEditor(agent_of(dueling=True))
+    with pytest.raises(ValueError, match="dueling"):
+        editor.apply(SetWeight(2, 0, 0, 0.0))
+    editor.apply(SetWeight(1, 0, 0, 0.0))
+
+
+def told_of(told: tuple[object, ...], kind: type) -> list[object]:
+    return [message for message in told if isinstance(message, kind)]
+
+
+def state(told: tuple[object, ...]) -> bytes:
+    [state] = told_of(told, NetworkState)
+    return state.values.tobytes()  # type: ignore[attr-defined]
+
+
+def weights_of(config: Config, values: bytes) -> list[np.ndarray]:
+    agent = DeepQAgent(config=config)
+    agent.online.values = np.frombuffer(values, np.float32)
+    return [link.weights.copy() for link in links(agent.online)]
+
+
+def test_a_live_run_is_edited_flies_on_without_learning_and_is_as_it_was() -> None:
+    run = live(LANDERS, 3)
+    next(run)
+    for _ in range(60):
+        next(run)
+    before = state(run.send(UndoEdit()))  # there is nothing to undo: it only says how things stand
+    told = run.send(EditNetwork(SilenceUnit(1, 3)))
+    assert not weights_of(LANDERS, state(told))[1][3].any()
+    assert told_of(told, NetworkEdits) == [NetworkEdits(((1, 3),), (), 1, True, True)]
+    [change] = told_of(told, SettingChange)
+    assert (change.name, change.before, change.after) == (EDITED, 0, 1)  # type: ignore[attr-defined]
+    edited = state(told)
+    flown = [message for _ in range(200) for message in next(run)]
+    assert {state.values.tobytes() for state in flown if isinstance(state, NetworkState)} <= {edited}
+    points = [message for message in flown if isinstance(message, Point)]
+    assert points
+    assert all(np.isnan(point.loss) for point in points)
+    told = run.send(UndoEdit(all=True))
+    assert state(told) == before
+    assert told_of(told, NetworkEdits) == [NetworkEdits()]
+    for _ in range(10):
+        next(run)
+    assert state(run.send(UndoEdit())) != before, "it learns again"
+    run.close()
+
+
+def test_it_learns_on_from_an_edit_and_can_still_go_back() -> None:
+    run = live(LANDERS, 3)
+    for _ in range(60):
+        next(run)
+    before = state(run.send(UndoEdit()))
+    edited = state(run.send(EditNetwork(SetWeight(0, 1, 2, 3.0))))
+    [edits] = told_of(run.send(LearnOn()), NetworkEdits)
+    assert edits == NetworkEdits(way_back=True)
+    for _ in range(10):
+        next(run)
+    assert state(run.send(UndoEdit())) not in (before, edited)
+    assert state(run.send(UndoEdit(all=True))) == before
+    run.close()
+
+
+def test_what_is_refused_is_told_by_a_live_run() -> None:
+    run = live(LANDERS, 3)
+    next(run)
+    command = EditNetwork(SetWeight(0, 0, 99, 0.0))
+    [refused] = run.send(command)
+    assert refused == Refused(command, "there is no weight 0, 99 of 9 x 8")
+    run.close()
+
+
+def test_an_edit_that_is_dragged_is_one_step_and_one_change() -> None:
+    run = live(LANDERS, 3, clock=lambda: 0.0)
+    next(run)
+    history = History()
+    for number in range(5):
+        for message in run.send(EditNetwork(SetWeight(0, 0, 0, 0.1 * number), amends=number > 0)):
+            if isinstance(message, SettingChange):
+                history.append(message)
+    assert [(each.name, each.after) for each in history.setting_changes] == [(EDITED, 1)]
+    [edits] = told_of(run.send(UndoEdit()), NetworkEdits)
+    assert edits == NetworkEdits()
+    run.close()
+
+
+def test_a_checkpoint_replaces_an_edited_network_and_it_learns() -> None:
+    run = live(LANDERS, 3)
+    next(run)
+    run.send(EditNetwork(SilenceUnit(0, 0)))
+    run.send(RestoreCheckpoint(0))
+    [edits] = told_of(run.send(UndoEdit()), NetworkEdits)
+    assert edits == NetworkEdits()
+    run.close()
+
+
+def test_a_run_that_ends_while_it_is_edited_is_saved_as_it_was(tmp_path: Path) -> None:
+    run = live(LANDERS, 3, keep=tmp_path / "run")
+    for _ in range(60):
+        next(run)
+    before = state(run.send(UndoEdit()))
+    run.send(EditNetwork(SilenceUnit(0, 0)))
+    next(run)
+    run.close()
+    assert NeuralNetwork.load(tmp_path / "run" / "last" / "online").values.tobytes() == before

@@ -1,0 +1,91 @@
+"""Experiments on one knob, and what comes of one beside its healthy twin: as recorded of real runs."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from ai.agent.config import PRESETS, Config
+from ai.training.experiments import differences, experiment_of, experiments
+from ai.training.loop import Training
+from ai.training.sabotage import SABOTAGES, sabotaged
+from ai.training.verdict import Flown, verdict
+from tests.support.recordings import recorded
+from tests.support.small import LANDERS
+
+MODERN = PRESETS["modern"]
+KNOBS = [item.name for item in fields(Config) if item.name not in ("env", "reward_weights")] + [
+    f"reward_weights.{part}" for part in vars(MODERN.reward_weights)
+]
+
+
+@pytest.mark.parametrize("base", PRESETS)
+def test_only_the_knob_differs_or_what_its_sabotage_takes_away(base: str):
+    config, found = PRESETS[base], 0
+    for name in KNOBS:
+        for experiment in experiments(config, name):
+            differing = set(differences(config, experiment.applied(config)))
+            assert name in differing
+            found += 1
+            if experiment.sabotage:
+                assert experiment.applied(config) == sabotaged(config, experiment.sabotage)
+            else:
+                assert differing == {name}
+    assert found > 50
+
+
+def test_a_hundred_times_more_or_less_where_the_scale_is_logarithmic_and_the_ends_elsewhere():
+    rate = {each.kind: each for each in experiments(MODERN, "learning_rate")}
+    assert rate["times"].sabotage == "rate_times_100"
+    assert rate["divided"].changes == {"learning_rate": 2e-5}
+    assert [each.amount for each in experiments(MODERN, "discount")] == [0.8, 0.9999]
+    assert [each.changes["batch_size"] for each in experiments(MODERN, "batch_size")] == [8, 1024]
+    assert [each.sabotage for each in experiments(MODERN, "epsilon_end")] == ["no_exploration", ""]
+    assert all(each.amount <= MODERN.num_envs for each in experiments(MODERN, "num_envs")), "no slower machine"
+
+
+def test_of_a_knob_that_has_no_effect_there_is_nothing_to_try():
+    assert "priority_exponent" in MODERN.unused()
+    assert experiments(MODERN, "priority_exponent") == []
+    assert experiments(MODERN.changed(prioritised=True), "priority_exponent")
+
+
+@pytest.mark.parametrize("name", SABOTAGES)
+def test_a_sabotage_is_an_experiment_too(name: str):
+    assert experiment_of(MODERN, name).applied(MODERN) == sabotaged(MODERN, name)
+
+
+def test_both_begin_with_the_same_decisions():
+    other = experiments(LANDERS, "learning_rate")[0].applied(LANDERS)
+    twins = [Training(config, 5, evaluate_every=0) for config in (LANDERS, other)]
+    for _ in range(10):  # before the first learning step
+        for twin in twins:
+            twin.advance()
+        assert np.array_equal(*(twin.env.actions for twin in twins))
+        assert np.array_equal(*(twin.env.position for twin in twins))
+
+
+HEALTHY = recorded("modern healthy")
+
+
+@pytest.mark.parametrize(
+    ("name", "came"),
+    [
+        ("modern healthy, another seed", "as_well"),
+        ("modern sabotage rate_times_100", "never"),
+        ("modern sabotage plain_steps", "never"),
+        ("modern sabotage short_sight", "never"),
+        ("modern sabotage no_shaping", "later"),
+        ("classic rates 1", "runs_away"),
+    ],
+)
+def test_what_came_of_recorded_runs(name: str, came: str):
+    run = recorded(name)
+    assert verdict(Flown(HEALTHY.history, HEALTHY.config), Flown(run.history, run.config)) == came
+
+
+def test_before_its_twin_lands_it_is_too_early_to_say():
+    young, run = recorded("modern healthy", until=60_000), recorded("modern sabotage rate_times_100", until=60_000)
+    flown = Flown(young.history, young.config), Flown(run.history, run.config)
+    assert verdict(*flown) is None
+    assert verdict(*flown, failed=True) == "runs_away"

@@ -1,0 +1,138 @@
+"""Words and bars explain themselves: to the mouse, to keys and to a gamepad."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.lander.environment import ACTION_NAMES
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.panels.q_values import QValues, value_words
+from game.scenes.watch import WatchScene
+from tests.support.driver import Driver
+
+Open = Callable[..., Driver]
+
+
+@pytest.fixture
+def watching(open_game: Open) -> Driver:
+    driver = open_game(WatchScene, seed=2)
+    driver.frames(10)
+    return driver
+
+
+@pytest.fixture
+def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    strings: list[str] = []
+    text = Canvas.text
+
+    def note(self: Canvas, string: str, *args: object, **words: object) -> pygame.FRect:
+        strings.append(string)
+        return text(self, string, *args, **words)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Canvas, "text", note)
+    return strings
+
+
+def shows(driver: Driver, written: list[str], sentence: str) -> bool:
+    """Whether a sentence is on the screen, however it is broken into lines."""
+    written.clear()
+    driver.app.draw()
+    return sentence in " ".join(written)
+
+
+def areas(driver: Driver) -> dict[str, pygame.FRect]:
+    driver.app.draw()
+    return {area.what: area.box for area in driver.app.canvas.explained}
+
+
+def test_everything_in_watch_is_explained(watching: Driver):
+    watching.key(pygame.K_SPACE)
+    watching.keys(pygame.K_m)
+    watching.frames(12)
+    told = areas(watching)
+    inputs = [
+        what for what in told if what in {text.format(unit=u) for text in texts.EXPLAIN_INPUTS for u in (10 / 3, 2)}
+    ]
+    assert len(inputs) == 9
+    for what in (
+        texts.EXPLAIN_WATCH, texts.EXPLAIN_FLIES, texts.EXPLAIN_EXPECTED, texts.EXPLAIN_VALUE, texts.EXPLAIN_WHY,
+        *texts.EXPLAIN_READOUTS[:4], *texts.EXPLAIN_CHOICES, *texts.EXPLAIN_TOUCH, texts.EXPLAIN_MAP[0],
+    ):  # fmt: skip
+        assert what in told
+    assert all(area.now() == area.now() for area in watching.app.canvas.explained)
+
+
+def test_a_mouse_at_rest_is_told_what_it_points_at(watching: Driver, written: list[str]):
+    watching.key(pygame.K_SPACE)
+    place = areas(watching)[texts.EXPLAIN_READOUTS[1]].center
+    watching.move(place)
+    assert not shows(watching, written, texts.EXPLAIN_READOUTS[1])
+    watching.frames(40)
+    assert shows(watching, written, texts.EXPLAIN_READOUTS[1])
+    env = scene(watching).swarm.env
+    sinking = -float(env.velocity[0, 1])
+    now = texts.EXPLAIN_READOUTS_NOW[1].format(value=sinking, limit=env.limits.touch_speed)
+    if sinking < 0:
+        now = texts.EXPLAIN_CLIMBING.format(value=-sinking)
+    assert shows(watching, written, now)
+    watching.move((640, 300))
+    assert not shows(watching, written, texts.EXPLAIN_READOUTS[1])
+    watching.frames(40)
+    assert not shows(watching, written, texts.EXPLAIN_READOUTS[1])
+
+
+def scene(driver: Driver) -> WatchScene:
+    assert isinstance(driver.top, WatchScene)
+    return driver.top
+
+
+@pytest.mark.parametrize("device", ["keys", "gamepad"])
+def test_one_key_goes_from_area_to_area(watching: Driver, written: list[str], device: str):
+    scene(watching).playback.stopped = True
+
+    def press(key: int, button: int) -> None:
+        if device == "keys":
+            watching.key(key)
+        else:
+            watching.button(button)
+
+    order = list(areas(watching))
+    press(pygame.K_F1, pygame.CONTROLLER_BUTTON_BACK)
+    assert shows(watching, written, order[0])
+    press(pygame.K_F1, pygame.CONTROLLER_BUTTON_BACK)
+    assert shows(watching, written, order[1])
+    press(pygame.K_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    press(pygame.K_LEFT, pygame.CONTROLLER_BUTTON_DPAD_LEFT)
+    assert shows(watching, written, order[1])
+    press(pygame.K_LEFT, pygame.CONTROLLER_BUTTON_DPAD_LEFT)
+    press(pygame.K_LEFT, pygame.CONTROLLER_BUTTON_DPAD_LEFT)
+    assert shows(watching, written, order[-1])
+    press(pygame.K_ESCAPE, pygame.CONTROLLER_BUTTON_B)
+    assert watching.top_name == "WatchScene"
+    assert not shows(watching, written, order[-1])
+    press(pygame.K_ESCAPE, pygame.CONTROLLER_BUTTON_START)
+    assert watching.top_name == "PauseScene"
+
+
+def test_explaining_stops_nothing(watching: Driver):
+    watching.key(pygame.K_F1)
+    before = scene(watching).swarm.steps
+    watching.frames(10)
+    assert scene(watching).swarm.steps > before
+    watching.key(pygame.K_PERIOD)  # and other keys do what they do
+    assert scene(watching).playback.stopped
+
+
+def test_a_value_says_how_far_below_the_best_it_lies():
+    values = QValues((10.0, 8.0, -20.0, 9.5, 10.0, 3.0), flown=3)
+    words = [value_words(values, action) for action in range(6)]
+    names = [texts.said(name).capitalize() for name in ACTION_NAMES]
+    assert words[0] == texts.EXPLAIN_VALUE_BEST.format(name=names[0], points="+10.0")
+    assert words[1] == texts.EXPLAIN_VALUE_LESS.format(name=names[1], points="+8.0", loss="2.0")
+    assert words[2].endswith(texts.EXPLAIN_VALUE_OUTSIDE)
+    assert words[3].endswith(texts.EXPLAIN_VALUE_FLOWN)
+    damaged = QValues((np.nan, *[0.0] * 5), flown=0)
+    assert value_words(damaged, 1) == texts.EXPLAIN_VALUE_NONE.format(name=names[1])

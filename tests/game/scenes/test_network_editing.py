@@ -1,0 +1,220 @@
+"""The large network of a live run, edited by mouse, by keys and by gamepad, and the way back."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.nn.inspection import links
+from ai.training.edits import NetworkEdits, UndoEdit
+from game.core import texts
+from game.core.worker import WorkerState
+from game.drawing.canvas import Point
+from game.panels.network_editing import NetworkEditing
+from game.panels.network_picking import Link, Unit, part_at
+from game.scenes.train import TrainScene
+from game.ui.virtual_pointer import VirtualPointer
+from game.ui.widgets import Slider
+from tests.support import inline_worker
+from tests.support.driver import Driver
+from tests.support.small import LANDERS as SMALL
+
+
+def opened(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch, **options: object) -> Driver:
+    """A run within this process, paused, with its network large."""
+    inline_worker.install(monkeypatch.setattr)
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    driver.top.knobs.set_config(SMALL.changed(**options), 3)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: len(driver.top.lander_run.history) >= 2)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
+    driver.press_on(texts.TRAIN_CLOSER)
+    driver.top.lander_run.edit(UndoEdit())  # of nothing: the answer is the network as it is now
+    driver.frames(3)
+    return driver
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
+    return opened(open_game, monkeypatch)
+
+
+def editing(driver: Driver) -> NetworkEditing:
+    found: NetworkEditing = driver.top.inside.editing
+    return found
+
+
+def edits(driver: Driver) -> NetworkEdits:
+    found: NetworkEdits = driver.top.lander_run.edits
+    return found
+
+
+def values(driver: Driver) -> bytes:
+    found: bytes = driver.top.inside.network.values.tobytes()
+    return found
+
+
+def weight(driver: Driver, link: Link) -> float:
+    return float(links(driver.top.inside.network)[link.layer].weights[link.start, link.end])
+
+
+def on_a_link(driver: Driver, layer: int = 0) -> Point:
+    """A place on a drawn link of a layer at which that link is meant."""
+    view = driver.top.inside.view
+    for edge in reversed(view.edges):
+        (x0, y0), (x1, y1) = view.centres[edge.column][edge.start], view.centres[edge.column + 1][edge.end]
+        for share in (0.5, 0.3, 0.7):
+            place = (round(x0 + share * (x1 - x0)), round(y0 + share * (y1 - y0)))
+            if edge.column == layer and isinstance(part_at(view, place), Link):
+                return place
+    raise AssertionError("no link is drawn")
+
+
+def words(driver: Driver) -> list[str]:
+    return [widget.label for widget in driver.form.widgets]
+
+
+def test_a_unit_is_silenced_by_the_mouse_and_is_as_it_was_bit_for_bit(train: Driver) -> None:
+    before, view = values(train), train.top.inside.view
+    train.click(view.centres[1][2])
+    unit = int(view.columns[1].units[2])
+    assert editing(train).picked == Unit(1, unit)
+    train.frames(2)
+    train.click(train.widget(texts.EDIT_SILENCE).box.center)
+    train.frames(3)
+    assert edits(train) == NetworkEdits(((1, unit),), (), 1, True, True)
+    assert not links(train.top.inside.network)[1].weights[unit].any()
+    assert texts.EDIT_SILENCE not in words(train), "that is done"
+    train.click(train.widget(texts.EDIT_RESTORE).box.center)
+    train.frames(3)
+    assert edits(train) == NetworkEdits()
+    assert values(train) == before
+    assert not {texts.EDIT_UNDO, texts.EDIT_RESTORE, texts.EDIT_LEARN_ON} & set(words(train))
+
+
+def test_a_link_is_pulled_turned_by_the_wheel_cut_and_undone_step_by_step(train: Driver) -> None:
+    x, y = on_a_link(train)
+    seen = [values(train)]
+    train.move((x, y))
+    train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
+    link = editing(train).picked
+    assert isinstance(link, Link)
+    first = weight(train, link)
+    for pulled in (10, 20, 30):
+        train.move((x, y - pulled))
+        train.frames(2)
+    train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((x, y - 30)), button=1)
+    train.frames(2)
+    assert weight(train, link) > first
+    assert edits(train).steps == 1, "a pull is one step"
+    assert edits(train).weights == ((link.layer, link.start, link.end),)
+    pulled_to = weight(train, link)
+    train.post(pygame.MOUSEWHEEL, x=0, y=-2)
+    train.frames(2)
+    assert weight(train, link) < pulled_to
+    seen.append(values(train))
+    train.press_on(texts.EDIT_CUT)
+    train.frames(2)
+    assert weight(train, link) == 0
+    assert train.the(Slider).value == 0
+    steps = edits(train).steps
+    for _ in range(steps):
+        train.press_on(texts.EDIT_UNDO)
+        train.frames(2)
+        assert values(train) == seen.pop()
+    assert not seen
+    assert not edits(train).holds
+
+
+KEYS = {"confirm": pygame.K_RETURN, "left": pygame.K_LEFT, "right": pygame.K_RIGHT, "back": pygame.K_ESCAPE}
+PAD = {
+    "confirm": pygame.CONTROLLER_BUTTON_A,
+    "left": pygame.CONTROLLER_BUTTON_DPAD_LEFT,
+    "right": pygame.CONTROLLER_BUTTON_DPAD_RIGHT,
+    "back": pygame.CONTROLLER_BUTTON_B,
+}
+
+
+@pytest.mark.parametrize("device", ["keys", "pad"])
+def test_a_link_is_picked_and_changed_without_a_mouse(train: Driver, device: str) -> None:
+    def press(name: str) -> None:
+        train.key(KEYS[name]) if device == "keys" else train.button(PAD[name])
+
+    pointer = next(each for each in train.form.widgets if isinstance(each, VirtualPointer) and each.box.height > 300)
+    train.form.focus(pointer)
+    press("confirm")
+    pointer.place.update(on_a_link(train))
+    press("confirm")
+    link = editing(train).picked
+    assert isinstance(link, Link)
+    press("back")
+    train.frames(2)
+    before = weight(train, link)
+    train.form.focus(train.the(Slider))
+    press("right")
+    train.frames(3)
+    assert weight(train, link) > before
+    press("left")
+    press("left")
+    train.frames(3)
+    assert weight(train, link) < before
+    train.form.focus(train.widget(texts.EDIT_RESTORE))
+    press("confirm")
+    train.frames(3)
+    assert weight(train, link) == before
+
+
+def test_it_learns_on_when_it_is_told_to_and_the_swarm_says_how_it_stands(train: Driver) -> None:
+    scene = train.top
+    train.click(scene.inside.view.centres[0][1])
+    train.frames(2)
+    train.press_on(texts.EDIT_SILENCE)
+    train.press_on(texts.TRAIN_RESUME)
+    train.frames(3)
+    edited = values(train)
+    flown = scene.lander_run.swarm_state.decisions
+    train.wait(lambda: scene.lander_run.swarm_state.decisions > flown + 400)
+    assert values(train) == edited, "it flies, and does not learn"
+    train.key(pygame.K_ESCAPE)
+    train.frames(3)
+    assert not scene.inside.large
+    train.press_on(texts.EDIT_LEARN_ON)
+    train.wait(lambda: values(train) != edited)
+    assert edits(train) == NetworkEdits(way_back=True)
+    assert texts.EDIT_RESTORE in words(train)
+    [change] = [each for each in scene.lander_run.history.setting_changes if each.name == "network"]
+    assert change.after == 1
+
+
+def test_an_earlier_moment_cannot_be_edited_nor_a_run_that_has_ended(train: Driver) -> None:
+    scene = train.top
+    scene.rewind.seek(scene.lander_run.history["decisions"][-1] / 2)
+    train.frames(2)
+    train.click(scene.inside.view.centres[1][2])
+    assert editing(train).picked is None
+    scene.rewind.clear()
+    train.frames(2)
+    train.click(scene.inside.view.centres[1][2])
+    train.frames(2)
+    assert texts.EDIT_SILENCE in words(train)
+    scene.lander_run.close()
+    train.frames(3)
+    assert texts.EDIT_SILENCE not in words(train)
+
+
+def test_what_cannot_be_edited_says_why(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> None:
+    train = opened(open_game, monkeypatch, dueling=True)
+    before = values(train)
+    train.click(on_a_link(train, 1))
+    train.frames(2)
+    assert isinstance(editing(train).picked, Link)
+    assert texts.EDIT_CUT not in words(train)
+    train.post(pygame.MOUSEWHEEL, x=0, y=1)
+    train.click(train.top.inside.view.centres[2][0])
+    train.frames(2)
+    assert texts.EDIT_SILENCE not in words(train), "an action's value leads nowhere"
+    assert np.array_equal(values(train), before)
+    assert edits(train) == NetworkEdits()

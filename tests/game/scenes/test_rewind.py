@@ -1,0 +1,239 @@
+"""Train at an earlier moment of its run: chosen by mouse, keys and gamepad, all of the screen, and back to now."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.training.history import PARTS
+from game.charts.scrubber import Scrubber
+from game.core import texts
+from game.core.worker import WorkerState
+from game.panels.run_timeline import RunTimeline
+from game.panels.training_status import lander_status
+from game.scenes.train import TrainScene
+from tests.support import inline_worker
+from tests.support.driver import Driver
+from tests.support.small import LANDERS as SMALL
+
+POINTS = 8
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
+    """A run within this process that has learnt for a while, and is paused."""
+    inline_worker.install(monkeypatch.setattr)
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    driver.top.knobs.set_config(SMALL, 3)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: len(driver.top.lander_run.history) >= POINTS)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: driver.top.lander_run.state is WorkerState.PAUSED)
+    driver.frames(14)
+    return driver
+
+
+def halfway(driver: Driver, chart: int = 0) -> tuple[float, float]:
+    """The place on a chart of the moment halfway through the run, by the clock."""
+    seconds = float(driver.top.lander_run.history["seconds"][-1])
+    shown = driver.top.training_charts.charts.charts[chart]
+    return shown.place(seconds / 2, 0.0)[0], shown.plot.centery
+
+
+def scrubber(driver: Driver) -> Scrubber:
+    return driver.the(Scrubber)
+
+
+def assert_all_of_it_is_at(driver: Driver, moment: int) -> None:
+    scene = driver.top
+    run, history = scene.lander_run, scene.lander_run.history
+    assert scene.moment == moment
+    # Everything is one of the messages of the run, the nearest that was kept.
+    assert scene.rewind.swarm.swarm_state is run.swarms.nearest(moment)
+    assert scene.rewind.swarm.swarm_state.decisions == moment
+    assert scene.rewind.network_state is run.networks.nearest(moment)
+    assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
+    row = int(np.abs(history["decisions"] - moment).argmin())
+    assert scene.rewind.row == row
+    shown = {piece.name: piece.value for piece in scene.inside.reward_bar.pieces()}
+    assert shown == pytest.approx(dict(zip(PARTS, history.parts[row].tolist(), strict=True)))
+    line = lander_status(run, scene.moment, scene.rewind.row).line
+    assert f"{moment:,}" in line
+    seconds = float(np.interp(moment, history["decisions"], history["seconds"]))
+    assert scene.training_charts.charts.charts[0].marker == pytest.approx(seconds)
+
+
+@pytest.mark.parametrize("chart", [0, 4])
+def test_a_click_on_any_chart_goes_to_that_moment_while_it_learns_on(train: Driver, chart: int) -> None:
+    scene = train.top
+    train.click(halfway(train, chart))
+    train.frames(2)
+    moment = scene.moment
+    assert moment is not None
+    assert 0.2 < moment / scene.lander_run.history["decisions"][-1] < 0.8
+    assert_all_of_it_is_at(train, moment)
+    points = len(scene.lander_run.history)
+    train.press_on(texts.TRAIN_RESUME)
+    train.wait(lambda: len(scene.lander_run.history) > points + 3)
+    assert scene.lander_run.state is WorkerState.RUNNING
+    assert scene.moment == moment
+    assert_all_of_it_is_at(train, moment)
+
+
+def test_a_drag_stays_with_its_chart_and_ends_at_now(train: Driver) -> None:
+    scene = train.top
+    x, y = halfway(train, 2)
+    train.move((x, y))
+    train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
+    first = scene.moment
+    train.move((x - 20, y - 120))
+    assert scene.moment is not None
+    assert first is not None
+    assert scene.moment < first
+    train.move((x + 600, y))
+    assert scene.moment is None
+    train.post(pygame.MOUSEBUTTONUP, pos=train.to_window((x, y)), button=1)
+
+
+def keys(driver: Driver) -> dict[str, Callable[[], object]]:
+    return {
+        "left": lambda: driver.key(pygame.K_LEFT),
+        "right": lambda: driver.key(pygame.K_RIGHT),
+        "back": lambda: driver.key(pygame.K_ESCAPE),
+    }
+
+
+def gamepad(driver: Driver) -> dict[str, Callable[[], object]]:
+    return {
+        "left": lambda: driver.button(pygame.CONTROLLER_BUTTON_DPAD_LEFT),
+        "right": lambda: driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT),
+        "back": lambda: driver.button(pygame.CONTROLLER_BUTTON_B),
+    }
+
+
+@pytest.mark.parametrize("device", [keys, gamepad])
+@pytest.mark.parametrize("large", [False, True])
+def test_left_and_right_step_through_the_run_and_back_leads_to_now(
+    train: Driver, device: Callable[[Driver], dict[str, Callable[[], object]]], large: bool
+) -> None:
+    scene, press = train.top, device(train)
+    if large:
+        train.press_on(texts.TRAIN_CLOSER)
+    train.form.focus(train.the(RunTimeline) if large else scrubber(train))
+    moments = []
+    for _ in range(4):
+        press["left"]()
+        moments.append(scene.moment)
+    assert None not in moments
+    assert sorted(set(moments), reverse=True) == moments
+    assert_all_of_it_is_at(train, moments[-1])
+    press["right"]()
+    assert scene.moment == moments[-2]
+    if large:
+        press["back"]()
+        assert not scene.inside.large
+        assert scene.moment == moments[-2]
+    press["back"]()
+    train.frames(2)
+    assert train.top is scene
+    assert scene.moment is None
+    assert np.array_equal(scene.inside.network.values, scene.lander_run.network_state.values)
+    assert scene.training_charts.charts.charts[0].marker is None
+
+
+def test_the_word_leads_back_to_now_and_goes_away(train: Driver) -> None:
+    scene = train.top
+    train.click(halfway(train))
+    train.frames(2)
+    train.click(train.widget(texts.REWIND_NOW).box.center)
+    assert scene.moment is None
+    assert texts.REWIND_NOW not in [widget.label for widget in scene.form.widgets]
+
+
+def test_the_timeline_of_the_large_network_is_dragged(train: Driver) -> None:
+    scene = train.top
+    train.press_on(texts.TRAIN_CLOSER)
+    box = train.the(RunTimeline).box
+    train.click(box.center)
+    assert scene.rewind.share == pytest.approx(0.5, abs=0.1)
+    train.frames(2)
+    assert np.array_equal(scene.inside.network.values, scene.rewind.network_state.values)
+    train.click((box.right - 2, box.centery))
+    assert scene.moment is None
+
+
+def test_a_run_that_has_ended_is_rewound_too_and_the_next_begins_at_now(train: Driver) -> None:
+    scene, ended = train.top, train.top.lander_run.swarms.moments[-1]
+    scene.lander_run.close()
+    train.frames(5)
+    train.click(halfway(train))
+    train.frames(2)
+    assert scene.moment is not None
+    assert_all_of_it_is_at(train, scene.moment)
+    assert texts.REWIND_AT.split("{")[0] in scene.rewind.words
+    train.press_on(texts.TRAIN_START)
+    train.frames(2)
+    assert scene.moment is None
+    assert scene.lander_run.swarms.moments[-1] < ended
+
+
+def test_a_resumed_run_has_its_curves_and_the_networks_of_its_checkpoints(
+    train: Driver, tmp_path: Path, open_game: Callable[..., Driver]
+) -> None:
+    decisions = train.top.lander_run.history["decisions"][-1]
+    train.app.close()
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    driver.key(pygame.K_RETURN)
+    scene = driver.top
+    driver.wait(lambda: scene.lander_run.history and scene.lander_run.history["decisions"][-1] > decisions + 500)
+    driver.frames(14)
+    scene.rewind.seek(decisions / 2)
+    driver.frames(2)
+    assert not scene.rewind.swarm_kept
+    assert scene.rewind.swarm.swarm_state is None
+    checkpoint = scene.lander_run.history.checkpoint_at(scene.moment)
+    assert np.array_equal(scene.inside.network.values, checkpoint.values)
+    began = scene.lander_run.swarms.begins
+    assert began is not None
+    scene.rewind.seek(began + 100)
+    assert scene.rewind.swarm_kept
+
+
+def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Driver]) -> None:
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    scene = driver.top
+    driver.click((200, 540))
+    driver.form.focus(scrubber(driver))
+    driver.keys(pygame.K_LEFT, pygame.K_RIGHT)
+    assert scene.moment is None
+    scene.rewind.seek(100)
+    scene.rewind.seek_share(0.5)
+    assert scene.moment is None
+
+
+def test_the_charts_are_zoomed_by_wheel_keys_and_word(train: Driver) -> None:
+    scene = train.top
+    zoom = scene.training_charts.charts.zoom
+    train.move(halfway(train))
+    train.post(pygame.MOUSEWHEEL, x=0, y=2)
+    assert zoom.factor > 1
+    train.frames(30)
+    for chart in scene.training_charts.charts.charts:
+        assert chart.x_range[1] - chart.x_range[0] < zoom.end
+    train.form.focus(scrubber(train))
+    train.key(pygame.K_0)
+    assert zoom.factor == 1
+    train.key(pygame.K_PLUS)
+    assert zoom.factor > 1
+    train.key(pygame.K_MINUS)
+    assert zoom.factor == 1
+    train.form.focus(train.widget(texts.COMPARE_ZOOM))
+    train.button(pygame.CONTROLLER_BUTTON_A)
+    train.frames(2)
+    assert zoom.factor == 2
+    assert train.widget(texts.COMPARE_ZOOMED.format(factor=2))

@@ -1,0 +1,285 @@
+"""Watch can be touched: by mouse, keys and gamepad; the decision shown is the one that is flown; and the way back."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.lander.environment import Outcome
+from game.cockpit.touch import FASTEST, NOTCH, PLACE, SPEED, TILT, Hand
+from game.core import texts
+from game.flight.flight import DECISION_STEPS
+from game.scenes.watch import WatchScene
+from game.ui.context import Context
+from tests.support.drawn import Drawn
+from tests.support.driver import Driver
+
+Open = Callable[..., Driver]
+ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
+CROSS = {
+    pygame.CONTROLLER_BUTTON_DPAD_LEFT: (-1, 0),
+    pygame.CONTROLLER_BUTTON_DPAD_RIGHT: (1, 0),
+    pygame.CONTROLLER_BUTTON_DPAD_UP: (0, 1),
+    pygame.CONTROLLER_BUTTON_DPAD_DOWN: (0, -1),
+}
+
+
+@pytest.fixture(params=["modern", "scripted"])
+def watching(request: pytest.FixtureRequest, open_game: Open, context: Context) -> Driver:
+    context.settings.model = request.param
+    context.settings_file.save(context.settings)
+    driver = open_game(WatchScene, seed=2)
+    driver.frames(10)
+    return driver
+
+
+def scene(driver: Driver) -> WatchScene:
+    assert isinstance(driver.top, WatchScene)
+    return driver.top
+
+
+def hand(driver: Driver) -> Hand:
+    return scene(driver).hand
+
+
+def state(driver: Driver) -> np.ndarray:
+    env, slot = scene(driver).swarm.env, scene(driver).shown
+    return np.array([*env.position[slot], *env.velocity[slot], env.angle[slot], env.angular_velocity[slot]])
+
+
+def check_decision(driver: Driver) -> None:
+    """The decision shown is the policy's own, on what the lander senses now; and it is flown."""
+    watch = scene(driver)
+    slot, swarm, shown = watch.shown, watch.swarm, watch.decision
+    assert np.array_equal(shown.observation[0], swarm.env.observe()[slot])
+    policy = watch.network.policy
+    assert policy is not None
+    assert shown.action[0] == policy.act(shown.observation)[0]
+    if shown.points is not None:
+        assert shown.values == pytest.approx(policy.q_values(shown.observation), abs=1e-5)  # type: ignore[attr-defined]
+    swarm.step()
+    assert swarm.env.actions[slot] == shown.action[0]
+
+
+def drag(driver: Driver, start: tuple[float, float], end: tuple[float, float]) -> None:
+    driver.move(start)
+    driver.post(pygame.MOUSEBUTTONDOWN, pos=driver.to_window(start), button=1)
+    for share in (0.3, 0.7, 1.0):
+        driver.move((start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])))
+    driver.post(pygame.MOUSEBUTTONUP, pos=driver.to_window(end), button=1)
+
+
+def test_the_mouse_puts_the_lander_elsewhere(watching: Driver):
+    watching.key(pygame.K_SPACE)
+    before, first = state(watching), scene(watching).decision
+    middle = hand(watching).middle
+    drag(watching, middle, (middle[0] - 200, middle[1] - 60))
+    after = state(watching)
+    assert hand(watching).middle == pytest.approx((middle[0] - 200, middle[1] - 60), abs=2)
+    assert np.array_equal(after[2:], before[2:])
+    assert scene(watching).decision.observation[0, 0] < first.observation[0, 0]
+    check_decision(watching)
+
+
+def test_the_mouse_tilts_by_the_dot_and_by_the_wheel(watching: Driver):
+    watching.key(pygame.K_SPACE)
+    before = state(watching)
+    (x, y), size = hand(watching).middle, hand(watching).radius
+    drag(watching, hand(watching).tilt_knob, (x + size, y))  # lies on its right side
+    after = state(watching)
+    assert after[4] == pytest.approx(-math.pi / 2, abs=0.06)
+    assert after[5] == 0
+    assert np.array_equal(after[:4], before[:4])
+    watching.post(pygame.MOUSEWHEEL, x=0, y=2)
+    assert state(watching)[4] == pytest.approx(after[4] + 2 * NOTCH)
+    check_decision(watching)
+
+
+def test_the_mouse_throws_by_the_arrow_whose_length_is_the_speed(watching: Driver, monkeypatch: pytest.MonkeyPatch):
+    watching.key(pygame.K_SPACE)
+    before = state(watching)
+    (x, y), (tail, tip) = hand(watching).middle, hand(watching).arrow
+    none = math.dist(tail, (x, y))
+    per_speed = math.dist(tail, tip) / np.hypot(*before[2:4])
+    drag(watching, tip, (x - none - 3 * per_speed, y))
+    after = state(watching)
+    assert after[2:4] == pytest.approx((-3, 0), abs=0.1)
+    assert np.array_equal(after[[0, 1, 4, 5]], before[[0, 1, 4, 5]])
+    drag(watching, hand(watching).arrow[1], (x - 900, y))
+    assert np.hypot(*state(watching)[2:4]) == pytest.approx(FASTEST)
+    drawn = Drawn(monkeypatch)
+    watching.app.draw()
+    assert texts.TOUCH_SPEED.format(speed=FASTEST) in drawn.words
+    drag(watching, hand(watching).arrow[1], (x, y))
+    assert np.hypot(*state(watching)[2:4]) == 0
+    check_decision(watching)
+
+
+def test_a_lander_that_flies_cannot_be_dragged(watching: Driver):
+    middle = hand(watching).middle
+    drag(watching, middle, (middle[0] - 200, middle[1]))
+    assert not scene(watching).world.touched
+    watching.post(pygame.MOUSEWHEEL, x=0, y=2)
+    watching.key(pygame.K_q)
+    assert not scene(watching).world.touched
+
+
+def test_no_hand_puts_it_into_the_ground_or_out_of_sight(watching: Driver):
+    watching.key(pygame.K_SPACE)
+    for place in ((700, 719), (3, 719), (3, 3), (1279, 3), (1279, 719)):
+        drag(watching, hand(watching).middle, place)
+        x, y = state(watching)[:2]
+        env = scene(watching).swarm.env
+        assert abs(x) <= env.limits.half_width
+        assert env.lowest(x, float(env.angle[0])) <= y <= env.limits.ceiling
+        assert 0 < hand(watching).middle[0] < 950
+    watching.keys(*[pygame.K_q] * 20)
+    check_decision(watching)
+
+
+@pytest.mark.parametrize("device", ["keys", "gamepad"])
+def test_keys_and_gamepad_move_tilt_and_throw(watching: Driver, device: str):
+    keys = device == "keys"
+    press = watching.key if keys else watching.button
+    press(pygame.K_g if keys else pygame.CONTROLLER_BUTTON_LEFTSTICK)
+    assert scene(watching).playback.stopped
+    confirm = pygame.K_RETURN if keys else pygame.CONTROLLER_BUTTON_A
+
+    def hold(code: int, frames: int = 12) -> np.ndarray:
+        before = state(watching)
+        if keys:
+            watching.post(pygame.KEYDOWN, key=code, mod=0, unicode="", scancode=0)
+            watching.frames(frames)
+            watching.post(pygame.KEYUP, key=code, mod=0, unicode="", scancode=0)
+        else:
+            watching.post(pygame.CONTROLLERBUTTONDOWN, instance_id=0, button=code)
+            watching.frames(frames)
+            watching.post(pygame.CONTROLLERBUTTONUP, instance_id=0, button=code)
+        return state(watching) - before
+
+    ways = ARROWS if keys else CROSS
+    for part, places in ((PLACE, (0, 1)), (SPEED, (2, 3))):
+        while hand(watching).part != part:
+            press(confirm)
+        for code, way in ways.items():
+            moved = hold(code)
+            assert np.sign(np.round(moved[list(places)], 3)).tolist() == list(way)
+            others = [number for number in range(6) if number not in places]
+            assert not moved[others].any()
+    while hand(watching).part != TILT:
+        press(confirm)
+    assert hold(next(iter(ways)))[4] > 0.1  # to the left
+    assert hold([*ways][1])[4] < -0.1
+    press(pygame.K_q if keys else pygame.CONTROLLER_BUTTON_LEFTSHOULDER)
+    before = state(watching)[4]
+    press(pygame.K_e if keys else pygame.CONTROLLER_BUTTON_RIGHTSHOULDER)
+    assert state(watching)[4] == pytest.approx(before - NOTCH)
+    check_decision(watching)
+    press(pygame.K_z if keys else pygame.CONTROLLER_BUTTON_X)
+    assert not scene(watching).world.touched
+    press(pygame.K_BACKSPACE if keys else pygame.CONTROLLER_BUTTON_B)
+    assert not hand(watching).typing
+    assert watching.top_name == "WatchScene"
+
+
+def test_the_stick_moves_it_and_going_on_lets_go(watching: Driver):
+    watching.button(pygame.CONTROLLER_BUTTON_LEFTSTICK)
+    before = state(watching)
+    watching.axis(pygame.CONTROLLER_AXIS_LEFTX, -30000)
+    watching.frames(10)
+    watching.axis(pygame.CONTROLLER_AXIS_LEFTX, 0)
+    assert state(watching)[0] < before[0] - 0.3
+    watching.button(pygame.CONTROLLER_BUTTON_Y)
+    watching.frames(2)
+    assert not scene(watching).playback.stopped
+    assert not hand(watching).typing
+
+
+def test_the_way_back_leads_to_the_very_moment_before_the_hand_came(watching: Driver):
+    twin = scene(watching).swarm
+    watching.key(pygame.K_SPACE)
+    before, decision = state(watching), scene(watching).decision
+    assert pygame.K_z not in {action.key for action in scene(watching).actions()}
+    middle = hand(watching).middle
+    drag(watching, middle, (middle[0] - 150, middle[1]))
+    watching.key(pygame.K_q)
+    watching.key(pygame.K_SPACE)
+    watching.frames(30)  # and flies on, before it is undone
+    watching.key(pygame.K_z)
+    assert scene(watching).playback.stopped
+    assert np.array_equal(state(watching), before)
+    assert scene(watching).decision.action == decision.action
+    assert not scene(watching).world.touched
+    flown = []
+    for _ in range(2):  # and as if nobody had ever touched it
+        moment = twin.snapshot()
+        for _ in range(60):
+            twin.step()
+        flown.append(state(watching))
+        twin.restore(moment)
+    assert np.array_equal(*flown)
+    watching.key(pygame.K_z)
+    assert np.array_equal(state(watching), before)
+
+
+def test_a_touched_flight_is_not_counted_and_says_so(open_game: Open, context: Context, tmp_path, monkeypatch):
+    context.models_dir = tmp_path  # only the scripted pilot is here
+    driver = open_game(WatchScene, seed=2)
+    driver.frames(5)
+    driver.keys(pygame.K_SPACE, pygame.K_q)
+    watch = scene(driver)
+    watch.problem = ""
+    drawn = Drawn(monkeypatch)
+    driver.app.draw()
+    assert texts.TOUCH_COUNTS in drawn.words
+    while watch.swarm.since_end[0] == 0:
+        watch.swarm.step()
+    assert watch.swarm.landed + watch.swarm.lost == 0
+    while watch.swarm.since_end[0] > 0:
+        watch.swarm.step()
+    assert not watch.world.touched
+    while watch.swarm.since_end[0] == 0:
+        watch.swarm.step()
+    assert watch.swarm.landed + watch.swarm.lost == 1
+
+
+def test_a_wreck_flies_again_and_only_the_shown_one_of_a_swarm_is_touched(open_game: Open, context: Context):
+    driver = open_game(WatchScene, 16, seed=2)
+    watch = scene(driver)
+    while not (watch.swarm.env.outcome != Outcome.FLYING).any():
+        watch.swarm.step()
+    watch.world.shown = int(np.flatnonzero(watch.swarm.env.outcome != Outcome.FLYING)[0])
+    driver.key(pygame.K_SPACE)
+    others = np.arange(16) != watch.shown
+    before = watch.swarm.env.observe()[others]
+    driver.key(pygame.K_g)
+    driver.post(pygame.KEYDOWN, key=pygame.K_UP, mod=0, unicode="", scancode=0)
+    driver.frames(60)
+    assert watch.swarm.env.outcome[watch.shown] == Outcome.FLYING
+    assert np.array_equal(watch.swarm.env.observe()[others], before)
+    assert watch.swarm.touched.sum() == 1
+    check_decision(driver)
+
+
+def test_one_step_after_a_touch_flies_the_decision_shown_and_then_shows_the_next(watching: Driver):
+    watching.keys(pygame.K_SPACE, pygame.K_q)
+    watch = scene(watching)
+    shown, steps = watch.decision, watch.swarm.steps
+    watching.key(pygame.K_PERIOD)
+    assert DECISION_STEPS <= watch.swarm.steps - steps <= DECISION_STEPS + 1
+    assert watch.decision.observation[0].tolist() != shown.observation[0].tolist()
+
+
+def test_a_broken_network_can_be_touched_as_well(open_game: Open):
+    driver = open_game(WatchScene, seed=2)
+    policy = scene(driver).network.policy
+    assert isinstance(policy, DeepQAgent)
+    policy.online.values = policy.target.values = np.full_like(policy.online.values, np.nan)
+    driver.keys(pygame.K_SPACE, pygame.K_q, pygame.K_m)
+    driver.frames(20)
+    driver.key(pygame.K_m)
+    driver.frames(20)
+    assert driver.top_name == "WatchScene"

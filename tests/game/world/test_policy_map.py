@@ -1,0 +1,230 @@
+"""The map of a policy shows what a lander would do, or expect, if it were really put there."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.config import Config
+from ai.lander.environment import LanderEnv
+from ai.lander.pilots import ScriptedPilot
+from game.core import texts
+from game.drawing.canvas import Canvas
+from game.flight import networks
+from game.flight.networks import Policy
+from game.scenes.watch import WatchScene
+from game.ui.context import Context
+from game.world.camera import View
+from game.world.policy_map import ACTION, COLOURS, OFF, SCORE, PolicyMap
+from tests.support.driver import Driver
+
+MODELS = Path(__file__).parents[3] / "models" / "lander"
+Open = Callable[..., Driver]
+
+
+@pytest.fixture(params=["modern", "classic", "scripted"])
+def policy(request: pytest.FixtureRequest) -> Policy:
+    return ScriptedPilot() if request.param == "scripted" else DeepQAgent.load(MODELS / request.param)
+
+
+@pytest.fixture
+def env() -> LanderEnv:
+    env = LanderEnv(2, seed=3, frame_skip=1)
+    env.reset()
+    for _ in range(40):
+        env.fly(np.array([4, 3]))
+    return env
+
+
+def whole(policy_map: PolicyMap, env: LanderEnv, policy: Policy, most: int = 200) -> int:
+    """Compute a whole map; return in how many updates."""
+    before = policy_map.cells
+    for update in range(1, most):
+        policy_map.follow(env, 1, policy)
+        if policy_map.cells is not before:
+            return update
+    raise AssertionError("no whole map")
+
+
+@pytest.mark.parametrize("kind", [ACTION, SCORE])
+def test_a_cell_is_the_decision_of_a_lander_that_is_really_there(env: LanderEnv, policy: Policy, kind: int):
+    policy_map = PolicyMap()
+    policy_map.kind = kind
+    whole(policy_map, env, policy)
+    cells = policy_map.cells
+    assert cells is not None
+    state = [*env.velocity[1], env.angle[1], env.angular_velocity[1]]
+    places = cells.places.reshape(-1, 2)
+    compared = 0
+    for number in range(0, len(places), 53):
+        x, y = places[number]
+        if y < env.lowest(x, float(env.angle[1])):
+            continue
+        env.begin_at(1, np.array([x, y, *state]))
+        decided = networks.decide(policy, env.observe()[[1]])
+        assert np.array_equal(decided.observation[0], cells.decision.observation[number])
+        if decided.points is None:
+            assert decided.action[0] == cells.decision.action[number]
+        else:
+            values = np.sort(decided.points[0])
+            if values[-1] - values[-2] > 1e-3:  # else a batch may round the other way
+                assert decided.action[0] == cells.decision.action[number]
+            assert cells.scores is not None
+            assert cells.scores.ravel()[number] == pytest.approx(values[-1], abs=1e-3)
+        compared += 1
+    assert compared > 25
+
+
+def test_it_is_computed_in_pieces_and_only_when_something_has_changed(env: LanderEnv):
+    policy, policy_map = DeepQAgent.load(MODELS / "modern"), PolicyMap()
+    asked: list[int] = []
+
+    class Counted:
+        network = policy.network
+
+        def act(self, observation, *, held=None):
+            raise NotImplementedError
+
+        def q_values(self, observation):
+            raise NotImplementedError
+
+        def decide(self, observation, *, held=None):
+            asked.append(len(observation))
+            return policy.decide(observation, held=held)
+
+    policy_map.follow(env, 1, Counted())
+    assert not asked  # while it is off
+    policy_map.kind = ACTION
+    updates = whole(policy_map, env, Counted())
+    assert updates == len(asked) > 4
+    assert max(asked) < 300
+    for _ in range(50):
+        policy_map.follow(env, 1, Counted())
+    assert len(asked) == updates  # a lander that stands still needs no new map
+    env.fly(np.array([0, 0]))
+    assert whole(policy_map, env, Counted()) <= updates + 1
+
+
+@pytest.mark.parametrize(("hidden", "most"), [((4,), 3), ((128, 128), 12), ((1024, 1024), 140), ((1024,) * 9, 400)])
+def test_large_networks_have_coarser_maps_more_seldom(env: LanderEnv, hidden: tuple[int, ...], most: int):
+    agent = DeepQAgent(config=Config(hidden=hidden), rng=np.random.default_rng(1))
+    work = agent.network.values.size
+    policy_map = PolicyMap()
+    policy_map.kind = ACTION
+    rows: list[int] = []
+
+    class Light:
+        """As large as that network, and as quick as none."""
+
+        network = agent.network
+
+        def act(self, observation, *, held=None):
+            rows.append(len(observation))
+            return np.zeros(len(observation), np.intp)
+
+    assert whole(policy_map, env, Light(), 500) <= most
+    assert max(rows) == 1 or max(rows) * work < 5_000_000
+
+
+def test_the_scale_of_scores_holds_what_it_has_held(env: LanderEnv):
+    policy, policy_map = DeepQAgent.load(MODELS / "modern"), PolicyMap()
+    policy_map.kind = SCORE
+    whole(policy_map, env, policy)
+    first = policy_map.scale
+    assert first is not None
+    assert first[0] < first[1]
+    assert all(end % 10 == 0 for end in first)
+    env.begin_at(1, np.array([0, 12, 6, -6, 2.0, 3.0]))
+    whole(policy_map, env, policy)
+    assert policy_map.scale is not None
+    assert policy_map.scale[0] <= first[0]
+    assert policy_map.scale[1] >= first[1]
+    policy_map.forget()
+    assert policy_map.scale is None
+
+
+def test_a_place_has_the_colour_of_its_action(env: LanderEnv):
+    canvas = Canvas(pygame.Surface((1280, 720)))
+    policy_map = PolicyMap()
+    policy_map.kind = ACTION
+    whole(policy_map, env, DeepQAgent.load(MODELS / "modern"))
+    policy_map.draw(canvas, View(1.0))
+    cells = policy_map.cells
+    assert cells is not None
+    actions = cells.decision.action.reshape(cells.places.shape[:2])
+    seen = set()
+    for row in range(6, 26, 2):
+        for column in range(8, 58, 2):
+            around = actions[row - 1 : row + 2, column - 1 : column + 2]
+            if (around != around[0, 0]).any():
+                continue
+            x, y = View(1.0).points(cells.places[row, column]).tolist()
+            shown = np.array(canvas.surface.get_at((round(x), round(y)))[:3])
+            away = [np.abs(shown - 0.5 * np.array(colour)).max() for colour in COLOURS]
+            assert int(np.argmin(away)) == around[0, 0]
+            seen.add(int(around[0, 0]))
+    assert len(seen) >= 4
+
+
+def test_the_six_colours_stay_apart_for_every_eye():
+    # Viénot, Brettel and Mollon 1999: what is left of a colour without the red, or without the green cones.
+    lessened = np.array([[0.11238, 0.88762, 0.0], [0.11238, 0.88762, 0.0], [0.00401, -0.00401, 1.0]])
+    without_green = np.array([[0.29275, 0.70725, 0.0], [0.29275, 0.70725, 0.0], [-0.02234, 0.02234, 1.0]])
+    for sight in (np.eye(3), lessened, without_green):
+        seen = np.array(COLOURS) @ sight.T
+        apart = np.linalg.norm(seen[:, None] - seen[None], axis=-1)
+        assert apart[~np.eye(6, dtype=bool)].min() > 40
+
+
+def scene(driver: Driver) -> WatchScene:
+    assert isinstance(driver.top, WatchScene)
+    return driver.top
+
+
+def test_a_key_a_button_and_the_row_choose_the_map(open_game: Open, context: Context):
+    driver = open_game(WatchScene, seed=2)
+    assert scene(driver).network.name == "modern"
+    kinds = []
+    for press in (driver.key, driver.key, driver.key):
+        press(pygame.K_m)
+        kinds.append(scene(driver).world.policy_map.kind)
+    assert kinds == [ACTION, SCORE, OFF]
+    row = driver.widget(texts.WATCH_MAP)
+    for _ in range(3):
+        driver.button(pygame.CONTROLLER_BUTTON_DPAD_DOWN)
+    assert driver.form.focused is row
+    driver.button(pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    driver.frames(20)
+    assert scene(driver).world.policy_map.kind == ACTION
+    assert scene(driver).world.policy_map.cells is not None
+    driver.click((row.row.lefts[SCORE] + 4, row.box.centery))
+    assert scene(driver).world.policy_map.kind == SCORE
+    driver.key(pygame.K_m)
+    assert scene(driver).world.policy_map.kind == OFF
+
+
+def test_written_rules_have_no_map_of_scores(open_game: Open, context: Context):
+    driver = open_game(WatchScene, seed=2)
+    driver.keys(pygame.K_m, pygame.K_m)
+    assert scene(driver).world.policy_map.kind == SCORE
+    driver.keys(pygame.K_RIGHT, pygame.K_RIGHT)
+    assert scene(driver).network.name == "scripted"
+    driver.frames(12)
+    assert scene(driver).world.policy_map.kind == ACTION
+    assert driver.widget(texts.WATCH_MAP).options == texts.MAP_KINDS[:2]
+    driver.key(pygame.K_LEFT)
+    assert driver.widget(texts.WATCH_MAP).options == texts.MAP_KINDS
+
+
+def test_another_window_and_reduced_motion_show_it_as_well(open_game: Open, context: Context):
+    context.settings.reduced_motion = True
+    context.settings_file.save(context.settings)
+    driver = open_game(WatchScene, 16, seed=2)
+    driver.key(pygame.K_m)
+    for size in ((960, 640), (1280, 720)):
+        driver.resize(size)
+        driver.frames(12)
+    assert driver.top_name == "WatchScene"
