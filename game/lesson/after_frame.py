@@ -9,7 +9,7 @@ import pygame
 
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import EMBER, FAINT, HUMAN, LABEL, LINE, MUTE, NET
+from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
 from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.pulls import Pulls
@@ -18,7 +18,8 @@ from game.lesson.step import LearningStep
 _WEIGHTS: Final = 8
 _ROW: Final = 25.0
 _NAME, _BEFORE, _AFTER, _STEP = 0.0, 470.0, 590.0, 752.0  # the last three are right ends
-_VALUE: Final = 276.0  # first baseline of the second half
+_VALUE: Final = 270.0  # first baseline of the second half
+_LINE: Final = _VALUE + 36.0  # height of the line of values
 _PULLS: Final = (0.0, 160.0, 210.0)  # name, right end of the figure, left end of the bars
 
 
@@ -80,12 +81,10 @@ class AfterFrame(Frame):
         before, after, target = self._values
         write = points if self._in_points else number
         closer = abs(before - target) - abs(after - target)
-        self.label(
-            telling[closer <= 0].format(
-                before=write(before), after=write(after), target=write(target), by=number(abs(closer))
-            ),
-            0, _VALUE, room=PICTURE.width,
-        )  # fmt: skip
+        sentence = telling[closer <= 0].format(
+            before=write(before), after=write(after), target=write(target), by=number(abs(closer))
+        )
+        self.prose(sentence, 0, _VALUE, PICTURE.width, INK)
         low, high = min(self._values), max(self._values)
         around = max(0.1 * (high - low), 1e-9)
         self._ends = [30 + 692 * (each - low + around) / (high - low + 2 * around) for each in self._values]
@@ -93,10 +92,10 @@ class AfterFrame(Frame):
             rows = rows_of((texts.LESSON_OWN_SCALE, number(value * self.step.scale)))
             if self._in_points:
                 rows += rows_of((texts.LESSON_IN_POINTS.format(scale=f"{self.step.scale:g}"), points(value, 3)))
-            self.spots.append(Spot(pygame.FRect(x - 6, _VALUE + 18, 12, 12), Explanation((word,), rows)))
+            self.spots.append(Spot(pygame.FRect(x - 6, _LINE - 6, 12, 12), Explanation((word,), rows)))
 
     def _write_pulls(self) -> None:
-        y = _VALUE + 62
+        y = _LINE + 32
         self.heading(texts.LESSON_PULLS, 0, y, 720)
         if self.pulls is None:
             self.label(texts.LESSON_NO_PULL, 0, y + 24, colour=MUTE, room=PICTURE.width)
@@ -118,7 +117,7 @@ class AfterFrame(Frame):
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the line of values with an arrow from before to after, and the bars of the pulls."""
-        y = _VALUE + 24
+        y = _LINE
         before, after, target = self._ends
         canvas.line((0, y), (PICTURE.width, y), LINE)
         canvas.line((before, y), (after, y), NET, 2.5)
@@ -126,7 +125,7 @@ class AfterFrame(Frame):
         canvas.dot((after, y), 5, NET)
         canvas.marker("ring", (target, y), 12, HUMAN)
         if self._bars:
-            canvas.line((560, _VALUE + 72), (560, _VALUE + 154), LINE)
+            canvas.line((560, _LINE + 42), (560, _LINE + 124), LINE)
         for box, towards in self._bars:
             canvas.fill(canvas.rect(*box), NET if towards else EMBER)
         canvas.line((0, _VALUE - 22), (PICTURE.width, _VALUE - 22), LINE)

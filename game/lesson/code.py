@@ -24,7 +24,7 @@ _LISTING: Final = 24.0
 _VALUES: Final = 308.0  # below the corner of the box
 _ROW: Final = 18.0
 _MOST: Final = 7  # values of a line that are shown
-_FEW: Final = 4  # numbers of an array that are written out
+_FEW: Final = 3  # numbers of an array that are written out
 
 
 class CodeWalk:
@@ -93,18 +93,10 @@ class CodeWalk:
         for row, value in enumerate(line.values[:_MOST]):
             y = _VALUES + 12 + _ROW * (row + 1)
             shape = " × ".join(map(str, value.shape)) if value.shape else texts.LESSON_NUMBER
-            sheet.text(value.name, (0, y), size=LABEL, weight="code", colour=INK, room=150)
-            sheet.text(shape, (158, y), size=LABEL, colour=MUTE, tabular=True, room=80)
-            sheet.text(
-                case_of(value),
-                (CODE.width, y),
-                size=LABEL,
-                colour=NET,
-                align="right",
-                weight="code",
-                tabular=True,
-                room=170,
-            )
+            sheet.text(value.name, (0, y), size=LABEL, weight="code", colour=INK, room=120)
+            sheet.text(shape, (128, y), size=LABEL, colour=MUTE, tabular=True, room=76)
+            right = (CODE.width, y)
+            sheet.text(case_of(value), right, size=LABEL, weight="code", colour=NET, align="right", room=204)
         more = len(line.values) - _MOST
         if more > 0:
             y = _VALUES + 12 + _ROW * (_MOST + 1)

@@ -9,6 +9,7 @@ import numpy as np
 import pygame
 
 from ai.common.environment import Floats
+from ai.digits.classifier import DigitClassifier
 from ai.digits.config import build_digit_network
 from ai.digits.lesson import DigitLesson, digit_functions
 from game.core import texts
@@ -26,7 +27,7 @@ from game.lesson.step import LearningStep
 _SIDE: Final = 28
 _PIXEL: Final = 14.0  # points
 _ROW: Final = 36.0
-_COLUMN: Final = 176.0
+_NUMBERS: Final = 80.0  # left end of the columns of numbers
 _NETWORK: Final = (0.0, 8.0, 752.0, 426.0)
 _COST: Final = ("<locals>.function", "<locals>.derivative")
 _OUTPUT, _PROBABILITY, _TARGET, _BACK = 1, 2, 3, 4  # columns, by their texts
@@ -75,10 +76,11 @@ class DigitFrame(Frame):
         self.heading(texts.LESSON_DIGIT_COLUMNS[0], 0, 14, 70)
         for each in range(10):
             self.label(str(each), 0, 48 + _ROW * each, colour=INK if each == digit else MUTE)
+        room = (PICTURE.width - _NUMBERS) / len(columns)
         for place, (kind, values) in enumerate(columns):
-            x = 80 + _COLUMN * place
+            x, wide = _NUMBERS + place * room, room - 106
             title, help_ = texts.LESSON_DIGIT_COLUMNS[kind], texts.LESSON_DIGIT_HELP[kind]
-            self.label(title, x, 14, size=LABEL, colour=MUTE, explanation=Explanation((help_,)), room=_COLUMN - 12)
+            self.label(title, x, 14, size=LABEL, colour=MUTE, explanation=Explanation((help_,)), room=room - 12)
             most = max(float(np.abs(values).max()), 1e-9)
             for each, value in enumerate(values.tolist()):
                 y = 48 + _ROW * each
@@ -86,7 +88,7 @@ class DigitFrame(Frame):
                 told = Explanation((help_,), rows_of((str(each), text)))
                 tone = INK if each == digit else MUTE
                 self.label(text, x + 74, y, align="right", colour=tone, explanation=told, room=74)
-                self._bars.append((pygame.FRect(x + 82, y - 6, 72 * abs(value) / most, 3), each == digit))
+                self._bars.append((pygame.FRect(x + 82, y - 6, wide * abs(value) / most, 3), each == digit))
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the bars and the lines between the digits."""
@@ -108,13 +110,12 @@ def digit_step(lesson: DigitLesson) -> LearningStep:
     convolutions = lesson.config.convolutions
     observation = lesson.image.reshape(_SIDE, _SIDE, 1) if convolutions else lesson.image.ravel()
 
-    def feature(unit: int) -> str:
-        return texts.LESSON_FEATURE.format(number=unit + 1)
-
-    return LearningStep(
-        network, lesson.step, observation, (), tuple(map(str, range(10))), 1.0, lesson.config.optimizer,
-        len(lesson.labels), feature if convolutions else pixel_name,
-    )  # fmt: skip
+    units = next(layer.inputs for layer in network.layers if isinstance(layer.inputs, int))
+    features = (texts.LESSON_FEATURE.format(number=unit + 1) for unit in range(units))
+    inputs = features if convolutions else map(pixel_name, range(units))
+    outputs = (texts.LESSON_DIGIT.format(digit=digit) for digit in range(10))
+    return LearningStep(network, lesson.step, observation, tuple(inputs), tuple(outputs), 1.0, lesson.config.optimizer,
+                        len(lesson.labels))  # fmt: skip
 
 
 def digit_frames(lesson: DigitLesson) -> list[Part]:
@@ -136,7 +137,7 @@ def digit_frames(lesson: DigitLesson) -> list[Part]:
         ImageFrame(lesson, digit, words["image"], ("DigitTraining.advance",)),
         NetworkFrame(words["values"][0], number(value), sentence, FORWARD, step, _NETWORK, "activations",
                      lesson.step.gradient),
-        DigitFrame(words["answer"], str(answer), ("NeuralNetwork.predict",), digit, (output, probability)),
+        DigitFrame(words["answer"], str(answer), (), digit, (output, probability)),
         DigitFrame(words["target"], str(digit), ("DigitTraining.advance",), digit, (output, target)),
         DigitFrame(words["error"], signed(float(lesson.derivative[digit])), _COST, digit, (output, target, back)),
         gradient,
@@ -144,4 +145,4 @@ def digit_frames(lesson: DigitLesson) -> list[Part]:
                    texts.LESSON_DIGIT_NEARER),
     ]  # fmt: skip
     known = digit_functions(lesson.config)
-    return [Part.of(frame, lesson.step, known) for frame in frames]
+    return [Part.of(frame, lesson.step, known, DigitClassifier.probabilities) for frame in frames]

@@ -24,6 +24,8 @@ def points(value: float, digits: int = 2) -> str:
 def number(value: float) -> str:
     """Write a number of a network with the digits that tell it from its neighbours; never as a power of ten."""
     size = abs(value)
+    if 0 < size < 10.0**-_MOST_DIGITS:
+        return "~0"
     if math.isfinite(value) and 0 < size < _SMALL:
         digits = min(1 - math.floor(math.log10(size)), _MOST_DIGITS)
         return f"{value:.{digits}f}".replace("-", "−")

@@ -19,6 +19,8 @@ __all__ = ["PICTURE", "Explanation", "Frame", "Label", "Spot", "rows_of"]
 
 PICTURE: Final = pygame.Rect(40, 216, 752, 440)  # of the current frame, in points
 _WITHIN: Final = pygame.Rect(12, 160, 1256, 520)  # where explanations may stand
+_LEADING: Final = 19.0
+_DIGITS: Final = 12.0  # points by which figures of one width may be wider than plain ones
 _AROUND: Final = 3.0  # points by which the pointer may miss a number
 
 
@@ -119,18 +121,18 @@ class Frame:
         """Add a small heading in capitals' place: muted, above what it names."""
         self.label(text, x, y, size=LABEL, colour=MUTE, room=room)
 
-    def prose(self, text: str, x: float, y: float, width: float, leading: float = 19.0) -> float:
-        """Add a muted sentence on as many lines as it needs; return the baseline after the last one."""
+    def prose(self, text: str, x: float, y: float, width: float, colour: Colour = MUTE) -> float:
+        """Add a sentence on as many lines as it needs; return the baseline after the last one."""
         line = ""
         for word in text.split():
             longer = f"{line} {word}".strip()
-            if line and typeface.width(longer, SMALL, "regular") > width:
-                self.label(line, x, y, colour=MUTE)
-                line, y = word, y + leading
+            if line and typeface.width(longer, SMALL, "regular") > width - _DIGITS:
+                self.label(line, x, y, colour=colour)
+                line, y = word, y + _LEADING
             else:
                 line = longer
-        self.label(line, x, y, colour=MUTE)
-        return y + leading
+        self.label(line, x, y, colour=colour)
+        return y + _LEADING
 
     def follow(self, point: Point | None) -> None:
         """Point at a place of the view; None for none."""

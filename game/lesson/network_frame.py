@@ -21,6 +21,8 @@ from game.panels.network_plan import Show
 from game.panels.network_view import NetworkView
 
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
+_MOST_NAMED: Final = 12  # inputs up to which their names stand beside them
+_UNNAMED: Final = (" " * 20,)  # keeps the room of a name free, for the legend below
 _REACH: Final = 5.0  # points from an edge within which it is pointed at
 
 
@@ -40,7 +42,8 @@ class NetworkFrame(Frame):
     ) -> None:
         super().__init__(name, figure, sentence, functions)
         self.step = step
-        self.view = NetworkView(pygame.FRect(box).move(PICTURE.topleft), step.inputs, step.outputs)
+        names = step.inputs if len(step.inputs) <= _MOST_NAMED else _UNNAMED
+        self.view = NetworkView(pygame.FRect(box).move(PICTURE.topleft), names, step.outputs)
         self.view.reads_out, self.view.show, self.view.output_scale = False, show, step.scale
         self._pointed_link: tuple[Point, Point] | None = None
         self._network = step.network.copy()
@@ -104,8 +107,6 @@ class NetworkFrame(Frame):
 
     def unit_name(self, column: int, unit: int) -> str:
         """Return the name of a unit of a column, by its number in the layer."""
-        if column == 0 and self.step.input_name is not None:
-            return self.step.input_name(unit)
         names = self.step.inputs if column == 0 else self.step.outputs if column == len(self.step.weights) else ()
         return names[unit] if unit < len(names) else texts.NETWORK_VIEW_UNIT.format(layer=column, unit=unit + 1)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -41,7 +40,6 @@ class LearningStep:
         scale: size of one shown unit in the unit of the network's outputs: one point of reward, or 1.
         optimizer: name of the optimizer.
         examples: number of examples in the batch.
-        input_name: names the inputs, by their numbers, where there are too many for `inputs`.
 
     """
 
@@ -53,7 +51,6 @@ class LearningStep:
     scale: float
     optimizer: str
     examples: int
-    input_name: Callable[[int], str] | None = None
 
     @cached_property
     def stages(self) -> list[list[tuple[str, Array]]]:

@@ -34,6 +34,7 @@ from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import QuestionDialog
 from game.scenes.error_screen import ErrorScene
+from game.scenes.lesson import LessonScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
 from game.training.training_run import TrainingRun
@@ -41,6 +42,7 @@ from game.ui.context import Context
 from game.ui.widgets import Choice
 from tests.support import inline_worker
 from tests.support.driver import Driver
+from tests.support.lessons import digit_lesson_of
 from tests.support.pen import SEVEN, stroke
 from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, settle, shared
 from tests.support.small import DIGITS, LANDERS
@@ -188,6 +190,7 @@ class Blank(Scene):
 
 OTHERS: dict[str, Make] = {
     "tutorial": PlayScene,
+    "a digit's lesson": lambda context: LessonScene(context, digit_lesson_of("modern")),
     "error": lambda context: ErrorScene(context, ValueError(), Path("/home/somebody/log")),
 }
 # What happens in a scene: its name, settings, and what is done there.
@@ -208,6 +211,7 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     **{f"frame {number + 1}": ("LessonScene", {}, frame(number)) for number in range(7)},
     "a law": ("PhysicsScene", {}, measured),
     "a step": ("PhysicsStepScene", {}, taken_apart),
+    **{f"frame {number + 1} of a digit": ("a digit's lesson", {}, frame(number)) for number in range(7)},
     "a digit": ("DigitsScene", {}, drawn),
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),

@@ -105,7 +105,7 @@ def test_a_lander_is_chosen_by_keys_alone(train: Driver) -> None:
     assert train.top.lesson.flown.slot == 3
 
 
-def test_the_mark_on_the_charts_is_the_moment_until_another_is_meant(train: Driver) -> None:
+def test_the_moment_on_the_charts_is_explained_and_then_the_present_again(train: Driver) -> None:
     toggle(train)
     scene = train.top
     train.wait(lambda: len(scene.lander_run.history.checkpoints) >= 3)
@@ -113,19 +113,19 @@ def test_the_mark_on_the_charts_is_the_moment_until_another_is_meant(train: Driv
     train.wait(lambda: scene.lander_run.state is WorkerState.PAUSED)
     train.frames(30)
     scene.form.focus(next(each for each in scene.form.widgets if isinstance(each, Scrubber)))
-    train.keys(pygame.K_LEFT, pygame.K_LEFT)
-    marked = scene.training_charts.chosen.decisions
+    train.keys(*[pygame.K_LEFT] * 4)
+    moment, now = scene.moment, scene.lander_run.swarm_state.decisions
+    assert moment is not None
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
-    now = scene.lander_run.swarm_state.decisions
-    assert abs(train.top.lesson.decisions - marked) < abs(train.top.lesson.decisions - now)
-    train.key(pygame.K_ESCAPE)
-    train.key(pygame.K_PERIOD)
-    train.wait(lambda: scene.lander_run.swarm_state.decisions > now)
+    assert abs(train.top.lesson.decisions - moment) < abs(train.top.lesson.decisions - now)
+    train.frames(3)
+    train.keys(pygame.K_ESCAPE, pygame.K_ESCAPE)
+    assert scene.moment is None
     train.frames(3)
     train.press_on(texts.LESSON_WHY)
     train.wait(lambda: isinstance(train.top, LessonScene))
-    assert train.top.lesson.decisions == scene.lander_run.swarm_state.decisions, "after a step, now is meant"
+    assert train.top.lesson.decisions == scene.lander_run.swarm_state.decisions
 
 
 def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
