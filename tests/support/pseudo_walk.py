@@ -9,6 +9,7 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -30,6 +31,7 @@ from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.scenes import scene_of
+from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
@@ -39,7 +41,7 @@ from game.ui.widgets import Choice
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.pen import SEVEN, stroke
-from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, settle, shared
+from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, reader, settle, seven, shared
 from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
 from tests.support.written import Written, misplaced
@@ -96,6 +98,25 @@ def told(driver: Driver) -> None:
     driver.frames(2)
 
 
+def switched(driver: Driver) -> None:
+    """Draw a seven, and switch the last step of its preprocessing off."""
+    drawn(driver)
+    driver.click(driver.widget(texts.DIGITS_STAGES[4]).box.center)
+    driver.frames(2)
+
+
+def inside(steps: int, driver: Driver) -> None:
+    """Follow a unit some steps on."""
+    driver.keys(*[pygame.K_n] * steps)
+    driver.frames(5)
+
+
+def in_code(driver: Driver) -> None:
+    """Look at the code of a convolution."""
+    driver.key(pygame.K_c)
+    driver.frames(5)
+
+
 class Blank(Scene):
     """Nothing, for a dialog to stand over."""
 
@@ -106,6 +127,7 @@ class Blank(Scene):
 
 OTHERS: dict[str, Make] = {
     "tutorial": PlayScene,
+    "modern inside": lambda context: DigitInsideScene(context, reader("modern"), seven()),
     "error": lambda context: ErrorScene(context, ValueError(), Path("/home/somebody/log")),
 }
 # What happens in a scene: its name, settings, and what is done there.
@@ -120,6 +142,11 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "training": ("TrainScene", {}, trained),
     "training to read": ("DigitTrainingScene", {}, taught_to_read),
     "a digit": ("DigitsScene", {}, drawn),
+    "a switch": ("DigitsScene", {}, switched),
+    **{f"inside, {steps}": ("DigitInsideScene", {}, partial(inside, steps)) for steps in (1, 6, 20)},
+    "inside, modern": ("modern inside", {}, partial(inside, 3)),
+    "inside, code": ("modern inside", {}, in_code),
+    "why not": ("WhyNotScene", {}, lambda driver: driver.skip(120)),
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
     "a swarm": ("swarm", {}, lambda driver: driver.skip(400)),
