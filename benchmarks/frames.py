@@ -29,6 +29,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -37,6 +38,8 @@ from typing import Any
 import numpy as np
 import pygame
 
+from ai.digits.classifier import DigitClassifier
+from ai.digits.preprocessing import preprocess_strokes
 from ai.lander.missions import MISSIONS
 from game.core.scene import Scene
 from game.core.settings import Settings
@@ -46,6 +49,7 @@ from game.play.challenge import FlownMission
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
+from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.menu import MenuScene
 from game.scenes.pause import PauseScene
@@ -53,6 +57,7 @@ from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
 from game.scenes.watch import COUNTS, WatchScene
+from game.scenes.why_not import WhyNotScene
 from game.shell.app import App
 from game.ui.context import Context
 from game.world.landscape.backdrop import Backdrop, landscape
@@ -133,6 +138,9 @@ def rows() -> dict[str, Row]:
             name.removesuffix("Scene").lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN))
             for name in sorted(others)
         },
+        "inside, modern": Row(partial(_of_seven, DigitInsideScene), (pygame.K_SPACE, pygame.K_n, pygame.K_c)),
+        "inside, classic": Row(partial(_of_seven, DigitInsideScene, name="classic"), (pygame.K_n,)),
+        "whynot, modern": Row(partial(_of_seven, WhyNotScene), (pygame.K_3, pygame.K_r)),
         "menu": Row(MenuScene),
         "train": Row(of_tour("TrainScene"), (pygame.K_RETURN,)),
         "digittraining": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
@@ -146,6 +154,12 @@ def plotted(context: Context, exhibit: str, *, measuring: bool = False) -> Physi
     if measuring:
         scene.bench.measure()
     return scene
+
+
+def _of_seven(make: Callable[..., Scene], context: Context, name: str = "modern") -> Scene:
+    """Make a scene about a seven and a shipped network."""
+    strokes = [np.array([(100.0, 100.0), (400.0, 100.0), (200.0, 450.0)])]
+    return make(context, DigitClassifier.load(context.models_dir / "digits" / name), preprocess_strokes(strokes))
 
 
 def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:

@@ -16,6 +16,7 @@ from game.digits.contrast_view import ContrastView, Shown, shown
 from game.digits.pictures import picture
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
+from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, LINE, MUTE, SMALL, TEXT, TITLE
@@ -34,6 +35,7 @@ _DIGITS: Final = 10
 _FRAME: Final = pygame.Rect(40, 86, 504, 504)  # eighteen points to a pixel
 _BELOW: Final = 604
 _WIDTH: Final = 344.0
+_EVERY: Final = 8  # updates from one picture of what is being measured to the next
 
 
 class WhyNotScene(FormScene):
@@ -51,7 +53,8 @@ class WhyNotScene(FormScene):
         super().__init__(context)
         self._classifier, self._first = classifier, np.asarray(image, np.float32)
         self._sky = NightSky(np.random.default_rng(15), ember=0.2, stars=24)
-        self._view = ContrastView()
+        self._view, self._painted = ContrastView(), PaintCache()
+        self._steps = 0
         self._rows = [self.form.add(DigitRow(self.form.manager, digit, self.ask)) for digit in range(_DIGITS)]
         self._add_words()
         self.asked = best_two(classifier.predict(self._first)[0])[1]
@@ -84,7 +87,9 @@ class WhyNotScene(FormScene):
         """Measure the effect of the next squares of ink."""
         if self.contrast and not self.contrast.done:
             self.contrast.advance()
-            self._show()
+            self._steps += 1
+            if self._steps % _EVERY == 0 or self.contrast.done:
+                self._show()
         return self.form.update()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -92,9 +97,7 @@ class WhyNotScene(FormScene):
         self._sky.draw(canvas)
         canvas.text(texts.WHY_NOT_TITLE.format(digit=self.asked), (_FRAME.left, 45), size=TITLE)
         draw_wrapped(canvas, texts.WHY_NOT_LINE, (_FRAME.left, 70), 790, size=SMALL, colour=MUTE, most=1)
-        area = canvas.rect(*_FRAME)
-        canvas.surface.blit(picture(self.image, area.size), area)
-        pygame.draw.rect(canvas.surface, LINE, area, 1)
+        self._painted.draw(canvas, _FRAME, self.image.tobytes(), self._paint_image)
         if self.seen:
             self._view.draw(canvas, self.seen)
             self._view.draw_marks(canvas, self.seen, (*_FRAME.topleft, *_FRAME.size))
@@ -105,6 +108,11 @@ class WhyNotScene(FormScene):
             self._draw_answer(canvas)
         self.form.draw(canvas)
         self.draw_hints(canvas)
+
+    def _paint_image(self, sheet: Canvas) -> None:
+        area = sheet.rect(0, 0, *_FRAME.size)
+        sheet.surface.blit(picture(self.image, area.size), area)
+        pygame.draw.rect(sheet.surface, LINE, area, 1)
 
     def _draw_answer(self, canvas: Canvas) -> None:
         answer, probability = int(self.probabilities.argmax()), float(self.probabilities.max())

@@ -9,6 +9,7 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -33,6 +34,7 @@ from game.learn import pay
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import QuestionDialog
+from game.scenes.digit_inside import DigitInsideScene
 from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
 from game.scenes.play import PlayScene
@@ -44,7 +46,7 @@ from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
 from tests.support.pen import SEVEN, stroke
-from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, settle, shared
+from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, reader, settle, seven, shared
 from tests.support.small import DIGITS, LANDERS
 from tests.support.tour import stock
 from tests.support.written import Written, misplaced
@@ -180,6 +182,25 @@ def tried(*labels: str, steps: int) -> Happens:
     return try_it
 
 
+def switched(driver: Driver) -> None:
+    """Draw a seven, and switch the last step of its preprocessing off."""
+    drawn(driver)
+    driver.click(driver.widget(texts.DIGITS_STAGES[4]).box.center)
+    driver.frames(2)
+
+
+def inside(steps: int, driver: Driver) -> None:
+    """Follow a unit some steps on."""
+    driver.keys(*[pygame.K_n] * steps)
+    driver.frames(5)
+
+
+def in_code(driver: Driver) -> None:
+    """Look at the code of a convolution."""
+    driver.key(pygame.K_c)
+    driver.frames(5)
+
+
 class Blank(Scene):
     """Nothing, for a dialog to stand over."""
 
@@ -191,6 +212,7 @@ class Blank(Scene):
 OTHERS: dict[str, Make] = {
     "tutorial": PlayScene,
     "a digit's lesson": lambda context: LessonScene(context, digit_lesson_of("modern")),
+    "modern inside": lambda context: DigitInsideScene(context, reader("modern"), seven()),
     "error": lambda context: ErrorScene(context, ValueError(), Path("/home/somebody/log")),
 }
 # What happens in a scene: its name, settings, and what is done there.
@@ -213,6 +235,11 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "a step": ("PhysicsStepScene", {}, taken_apart),
     **{f"frame {number + 1} of a digit": ("a digit's lesson", {}, frame(number)) for number in range(7)},
     "a digit": ("DigitsScene", {}, drawn),
+    "a switch": ("DigitsScene", {}, switched),
+    **{f"inside, {steps}": ("DigitInsideScene", {}, partial(inside, steps)) for steps in (1, 6, 20)},
+    "inside, modern": ("modern inside", {}, partial(inside, 3)),
+    "inside, code": ("modern inside", {}, in_code),
+    "why not": ("WhyNotScene", {}, lambda driver: driver.skip(120)),
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
     "Watch, touched": ("WatchScene", {}, touched),

@@ -85,9 +85,9 @@ OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
 }
 
 
-def reader() -> DigitClassifier:
+def reader(name: str = "classic") -> DigitClassifier:
     """A network that reads digits."""
-    return DigitClassifier.load(MODELS_DIR / "digits" / "classic")
+    return DigitClassifier.load(MODELS_DIR / "digits" / name)
 
 
 def fallen(steps: int = 100) -> Exhibit:
