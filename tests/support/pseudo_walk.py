@@ -30,14 +30,16 @@ from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.scenes import scene_of
+from game.scenes.dialog import QuestionDialog
 from game.scenes.error_screen import ErrorScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
-from game.training.training_run import TrainingRun
+from game.training.training_run import TrainingRun, put_beside, rename_beside
 from game.ui.context import Context
 from game.ui.widgets import Choice
 from tests.support import inline_worker
 from tests.support.driver import Driver
+from tests.support.networks import on_a_link
 from tests.support.pen import SEVEN, stroke
 from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, settle, shared
 from tests.support.small import DIGITS, LANDERS
@@ -50,8 +52,42 @@ Happens = Callable[[Driver], object]
 
 def trained(driver: Driver) -> None:
     """Train landers for a moment."""
+    if isinstance(driver.top, QuestionDialog):  # about the run of the visit before
+        driver.key(pygame.K_ESCAPE)
     run = driver.top.lander_run
     learn(driver, run, LANDERS, lambda: len(run.history) >= 2)
+
+
+def rewound(driver: Driver) -> None:
+    """Train landers, with earlier runs beside them, and go back to the middle of the run."""
+    trained(driver)
+    run, rewind = driver.top.lander_run, driver.top.rewind
+    for _ in range(5):
+        put_beside(run.earlier, run.name, run.history.copy())
+        rename_beside(run.earlier, run.earlier[0].style, texts.TRAIN_TAUGHT_NAME.format(preset=len(run.earlier)))
+    driver.frames(20)
+    rewind.seek(run.history["decisions"][-1] / 2)
+    driver.frames(5)
+
+
+def edited(driver: Driver) -> None:
+    """Silence a unit of the large network, and pick a link."""
+    trained(driver)
+    driver.press_on(texts.TRAIN_CLOSER)
+    driver.frames(3)
+    driver.click(driver.top.inside.view.centres[1][2])
+    driver.frames(2)
+    driver.press_on(texts.EDIT_SILENCE)
+    driver.frames(3)
+    driver.click(on_a_link(driver.top.inside.view))
+    driver.frames(3)
+
+
+def edited_and_back(driver: Driver) -> None:
+    """Silence a unit, and go back to the swarm."""
+    edited(driver)
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(3)
 
 
 def taught_to_read(driver: Driver) -> None:
@@ -118,6 +154,9 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "an error": ("error", {}, lambda _: None),
     "a message": ("MenuScene", {}, told),
     "training": ("TrainScene", {}, trained),
+    "an earlier moment": ("TrainScene", {}, rewound),
+    "an edited network": ("TrainScene", {}, edited),
+    "its swarm": ("TrainScene", {}, edited_and_back),
     "training to read": ("DigitTrainingScene", {}, taught_to_read),
     "a digit": ("DigitsScene", {}, drawn),
     "the quiz": ("QuizScene", {}, handed_in),
