@@ -14,7 +14,7 @@ import numpy as np
 import pygame
 
 from game.charts import plotting
-from game.charts.curves import Axes, paint_run, trace_run
+from game.charts.curves import Axes, PaintedRuns, paint_run, trace_run
 from game.charts.plotting import Limits, Numbers
 from game.charts.series import RUN_STYLES, SavedSeries, Series, Tick, draw_legend
 from game.charts.tooltip import TooltipRow, draw_tooltip
@@ -38,6 +38,7 @@ _REST: Final = 6  # steps of 1/60 s between two drawings of new numbers
 _EASE: Final = 0.2
 _REACH: Final = 5.0  # points from a tick within which its caption shows
 _TICK_SPACING: Final = 4.0
+_DOTTED: Final = 4  # runs with a dot at the cursor of a chart that the mouse is not over
 _SLACK: Final = 0.02  # share of the x axis by which the cursor may lie beyond a run's end
 
 
@@ -77,6 +78,7 @@ class Chart:
         self.pointed = False  # whether the mouse is over this one
         self._marker: tuple[float, str] | None = None
         self._painted: Painted | None = None  # until the numbers or the window change
+        self._behind = PaintedRuns()
         self._stale = True
         self._rested = 0
 
@@ -104,14 +106,11 @@ class Chart:
     def set(self, series: Sequence[Series], x_range: Limits, ticks: Sequence[Tick] = ()) -> None:
         """Show these runs, the current one first. Call it when new numbers arrive; unchanged ones cost nothing."""
         runs = [SavedSeries(each, log=self._log) for each in series]
+        if len(runs) == len(self.runs):  # of one that is the same, what was painted stays
+            runs = [old if run.same(old) else run for run, old in zip(runs, self.runs, strict=True)]
         start, end = (float(x) if math.isfinite(x) else 0.0 for x in x_range)
         span = (start, end) if end > start else (start, start + 1.0)
-        if (
-            span == self.x_range
-            and tuple(ticks) == self._ticks
-            and len(runs) == len(self.runs)
-            and all(run.same(old) for run, old in zip(runs, self.runs, strict=True))
-        ):
+        if span == self.x_range and tuple(ticks) == self._ticks and runs == self.runs:
             return
         first = not any(run.last() is not None for run in self.runs)
         self.runs, self.x_range, self._ticks = runs, span, tuple(ticks)
@@ -209,8 +208,9 @@ class Chart:
             self._paint_grid(sheet, plot)
         else:
             self._paint_empty(sheet, plot)
-        for run, values in reversed(list(zip(self.runs, traces, strict=True))):
-            paint_run(sheet, area, run, values, axes)
+        self._behind.lay(sheet, area, self.runs[1:], traces[1:], axes)
+        if self.runs:
+            paint_run(sheet, area, self.runs[0], traces[0], axes)
         self._paint_ticks(sheet, plot)
         return sheet, traces
 
@@ -292,7 +292,7 @@ class Chart:
         canvas.line((across, plot.top), (across, plot.bottom), MUTE, 1, 0.7)
         slack = _SLACK * (self.x_range[1] - self.x_range[0])
         rows = []
-        for run in self.runs:
+        for run in self.runs if self.pointed else self.runs[:_DOTTED]:
             point = run.nearest(x, slack)
             if point:
                 canvas.dot(self.place(*point), 3, run.series.colour)

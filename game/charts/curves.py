@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -40,11 +41,16 @@ class Axes(NamedTuple):
 
 def trace_run(run: SavedSeries, axes: Axes, columns: int) -> Numbers:
     """Return the value of a run's smoothed line in each pixel column (columns,), NaN for no line."""
+    known = run.traced
+    if known is not None and known[0] == (axes.x_range, axes.goal, columns):
+        return known[1]
     low, high = axes.goal
     room = _ROOM * (high - low)
     heights = np.where(np.isfinite(run.y), np.clip(run.y, low - room, high + room), np.nan)
     radius = round(_SMOOTHING * columns) if run.series.smooth else 0
-    return plotting.trace(run.x, heights, axes.x_range, columns, radius)
+    values = plotting.trace(run.x, heights, axes.x_range, columns, radius)
+    run.traced = (axes.x_range, axes.goal, columns), values
+    return values
 
 
 def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Numbers, axes: Axes) -> None:
@@ -71,6 +77,31 @@ def paint_run(sheet: Canvas, area: pygame.Rect, run: SavedSeries, values: Number
     for column in plotting.alone(values):
         sheet.dot(((area.x + column) / scale, (corner[1] + heights[column]) / scale), _LINE_WIDTH, colour)
     _paint_arrows(sheet, area, run, axes)
+
+
+class PaintedRuns:
+    """Curves of the runs behind the current one, painted once and copied until any of them or the axes change."""
+
+    def __init__(self) -> None:
+        self._runs: list[SavedSeries] = []
+        self._key: tuple[object, ...] = ()
+        self._sheet: Canvas | None = None
+
+    def lay(
+        self, sheet: Canvas, area: pygame.Rect, runs: Sequence[SavedSeries], traces: Sequence[Numbers], axes: Axes
+    ) -> None:
+        """Draw runs, the last one first, with their `traces`, into an area of the sheet, in pixels."""
+        if not runs:
+            self._sheet = None
+            return
+        key = (*map(id, runs), axes, tuple(area), sheet.size, sheet.scale)
+        if self._sheet is None or key != self._key:
+            width, height = sheet.size
+            self._runs, self._key = [*runs], key  # kept, so that no other run gets the same id
+            self._sheet = sheet.sheet(width / sheet.scale, height / sheet.scale)
+            for run, values in reversed(list(zip(runs, traces, strict=True))):
+                paint_run(self._sheet, area, run, values, axes)
+        sheet.lay(self._sheet, 0, 0)
 
 
 def _paint_arrows(sheet: Canvas, area: pygame.Rect, run: SavedSeries, axes: Axes) -> None:

@@ -79,6 +79,7 @@ class SavedSeries:
         placed = np.isfinite(x[:length])
         self.x: Numbers = x[:length][placed]
         y = y[:length][placed]
+        self.traced: tuple[object, Numbers] | None = None  # its line in pixels, and for what axes
         self.y: Numbers = np.log10(np.where(y > 0, y, np.nan)) if log else y
 
     def same(self, other: SavedSeries) -> bool:
@@ -90,12 +91,16 @@ class SavedSeries:
     def _finite(self) -> npt.NDArray[np.intp]:
         return np.flatnonzero(np.isfinite(self.y))
 
+    @cached_property
+    def _known(self) -> Numbers:
+        """Return the places of the finite values."""
+        return self.x[self._finite]
+
     def nearest(self, x: float, slack: float) -> tuple[float, float] | None:
         """Return the finite point nearest to x; None if x lies more than `slack` outside the run."""
-        finite = self._finite
+        finite, at = self._finite, self._known
         if not len(finite):
             return None
-        at = self.x[finite]
         if not at[0] - slack <= x <= at[-1] + slack:
             return None
         after = min(int(np.searchsorted(at, x)), len(at) - 1)

@@ -43,7 +43,8 @@ class NetworkPanel:
 
     Attributes:
         large: whether the network is shown large.
-        view, reward_bar: what it shows; `network` is the one in the view, None without a run.
+        view, reward_bar: what it shows; `network` is the one in the view, None without a run,
+            and `shown` the message that it came with.
         health: diagnosis of the network's units and numbers.
         editing: what a player does to the network by hand.
 
@@ -68,6 +69,7 @@ class NetworkPanel:
     def clear(self) -> None:
         """Reset for another run."""
         self.network: NeuralNetwork | None = None
+        self.shown: NetworkState | None = None
         self.health = NetworkHealth()
         self.editing.clear()
 
@@ -108,6 +110,7 @@ class NetworkPanel:
         network = self.network
         if network.values.shape != network_state.values.shape:
             return False  # it belongs to a run that has just been replaced
+        self.shown = network_state
         network.values = network_state.values
         network.gradients[:] = network_state.gradients
         self.view.output_scale = config.reward_scale

@@ -13,7 +13,9 @@ from game.core.worker import WorkerState
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, MUTE, SMALL
+from game.panels.network_panel import NetworkPanel
 from game.panels.run_timeline import RunTimeline
+from game.panels.training_charts import TrainingCharts
 from game.training.lander_run import LanderRun
 from game.ui.form import Form
 from game.ui.widget import Widget
@@ -130,6 +132,19 @@ class Rewind:
 
     # The picture
 
+    def show_in(self, inside: NetworkPanel, charts: TrainingCharts) -> None:
+        """Put the panels at the moment that was chosen, or back to now; call it once a frame."""
+        self._lay()  # the sentence grows as the run goes on
+        run, moment = self._run, self.moment
+        if moment == charts.moment:
+            return
+        charts.moment, inside.editing.past = moment, moment is not None
+        network = run.network_state if moment is None else self.network_state
+        if network is not None and network is not inside.shown:
+            inside.show(network, run.config)
+        if len(run.history):
+            inside.pay(run.history, self.row)
+
     def place(self, large: bool) -> list[Widget]:
         """Lay the words beside the swarm, or the large network; return the timeline that stands beside that."""
         self._large = large
@@ -161,10 +176,6 @@ class Rewind:
         if words or self._words:
             old, self._words = self._words, words
             self._form.replace(old, words)
-
-    def update(self) -> None:
-        """Keep the word beside the sentence, which grows as the run goes on."""
-        self._lay()
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the sentence, and say so where there are no landers to be shown."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -13,7 +12,7 @@ from ai.agent.config import Config
 from ai.training.checkpoints import agent_of
 from game.core import texts
 from game.core.names import LibraryError
-from game.core.scene import Pop, Push, Transition, push
+from game.core.scene import Pop, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, VIEW_SIZE
@@ -27,12 +26,11 @@ from game.panels.rewind import Rewind
 from game.panels.run_status import draw_run_status
 from game.panels.training_charts import TrainingCharts
 from game.panels.training_status import lander_status
-from game.scenes.comparing import Comparing
-from game.scenes.dialog import QuestionDialog
 from game.scenes.split_scene import SplitTrainingScene
+from game.scenes.train_dialogs import TrainDialogs
 from game.scenes.training_scene import DISPLAY_WIDTH, LEFT
 from game.training.lander_run import PACES
-from game.training.library import Library, SavedRun
+from game.training.library import Library
 from game.training.split_run import SplitRun
 from game.ui.actions import Action, Table
 from game.ui.context import Context
@@ -70,7 +68,7 @@ class TrainScene(SplitTrainingScene):
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer, self.lander_run)
         self._add_knobs()
-        self._comparing = Comparing(self, self.lander_run, self._ask)
+        self._dialogs = TrainDialogs(self, self.lander_run, self._ask, self._go_on)
         self.rewind = Rewind(self.form, self.lander_run, DISPLAY_WIDTH / VIEW_SIZE[0])
         self.lessons = LessonDoor(self.lander_run, lambda: self.shown_swarm, lambda: self.moment, self.context.note)
         self._advice = Advice(self.form, _SAID, self.knobs.turn, self._go_back)
@@ -78,7 +76,7 @@ class TrainScene(SplitTrainingScene):
         if self._resume:
             self._go_on(self._resume)
         elif left:
-            self._question = self._ask_what_becomes_of(left)
+            self._question = self._dialogs.ask_what_becomes_of(left)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
         """Handle start, pause, step, knobs and the large network."""
@@ -117,7 +115,7 @@ class TrainScene(SplitTrainingScene):
         if lander_run.alive:
             self.knobs.show_in_force(lander_run.in_force)
         still = self._settings.reduced_motion
-        self._show_moment()
+        self.rewind.show_in(self.inside, self.training_charts)
         beside = self.split_view.beside
         self.training_charts.look(lander_run.history, beside)
         if bool(beside) is not self._compared and not self.inside.large:
@@ -159,19 +157,6 @@ class TrainScene(SplitTrainingScene):
     def shown_swarm(self) -> LearningSwarm:
         """The landers of the moment that is shown."""
         return self.swarm if self.moment is None else self.rewind.swarm
-
-    def _show_moment(self) -> None:
-        """Put all of the screen at the moment that was chosen, or back to now."""
-        lander_run, moment = self.lander_run, self.moment
-        self.rewind.update()
-        if moment == self.training_charts.moment:
-            return
-        self.training_charts.moment, self.inside.editing.past = moment, moment is not None
-        network = lander_run.network_state if moment is None else self.rewind.network_state
-        if network is not None:
-            self.inside.show(network, lander_run.config)
-        if len(lander_run.history):
-            self.inside.pay(lander_run.history, self.rewind.row)
 
     # The run
 
@@ -230,23 +215,6 @@ class TrainScene(SplitTrainingScene):
 
         return push("runs", train=go_on)
 
-    def _ask_what_becomes_of(self, left: SavedRun) -> Transition:
-        """Offer the run that was left without a name by the last visit, or by a game that ended too early."""
-        more = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
-        more = left.problem or more.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
-        answers = [(texts.TRAIN_LEFT_DISCARD, partial(self._discard, left.name))]
-        if left.resumable:
-            answers.insert(0, (texts.TRAIN_LEFT_GO_ON, partial(self._go_on, left.folder)))
-        return Push(QuestionDialog(self, texts.TRAIN_LEFT, more, answers))
-
-    def _discard(self, name: str) -> None:
-        try:
-            self.lander_run.library.discard_rescued()
-        except LibraryError as error:
-            self.context.note(str(error))
-        else:
-            self.context.note(texts.RUN_DELETED.format(name=name))
-
     def _ask(self, question: Transition) -> None:
         self._question = question
 
@@ -294,7 +262,7 @@ class TrainScene(SplitTrainingScene):
             words = (
                 (texts.TRAIN_RUNS, self._open_runs),
                 (texts.TRAIN_DUEL, self._duel),
-                (texts.TRAIN_COMPARE, self._comparing.add),
+                (texts.TRAIN_COMPARE, self._dialogs.add),
                 (texts.TRAIN_TEACH, self._teach),
                 (texts.LESSON_WHY, self.lessons.open),
             )
@@ -303,7 +271,7 @@ class TrainScene(SplitTrainingScene):
                 self._word(_WORDS.left + 16, _WORDS.top + 7 + 28 * row, 104, *word) for row, word in enumerate(words)
             ]
             beside += self.training_charts.widgets(
-                self.form.manager, self._duel, self.rewind, compared=self._compared, choose=self._comparing.choose
+                self.form.manager, self._duel, self.rewind, compared=self._compared, choose=self._dialogs.choose
             )
         self.form.replace(self._beside, beside)
         self._beside = beside

@@ -39,12 +39,13 @@ from game.scenes.error_screen import ErrorScene
 from game.scenes.lesson import LessonScene
 from game.scenes.play import PlayScene
 from game.shell.app import App
-from game.training.training_run import TrainingRun
+from game.training.training_run import TrainingRun, put_beside, rename_beside
 from game.ui.context import Context
 from game.ui.widgets import Choice
 from tests.support import inline_worker
 from tests.support.driver import Driver
 from tests.support.lessons import digit_lesson_of
+from tests.support.networks import on_a_link
 from tests.support.pen import SEVEN, stroke
 from tests.support.screens import FLOWN, OVER_OTHERS, SCREENS, Make, crashed, opened, reader, settle, seven, shared
 from tests.support.small import DIGITS, LANDERS
@@ -58,8 +59,42 @@ Happens = Callable[[Driver], object]
 
 def trained(driver: Driver) -> None:
     """Train landers for a moment."""
+    if isinstance(driver.top, QuestionDialog):  # about the run of the visit before
+        driver.key(pygame.K_ESCAPE)
     run = driver.top.lander_run
     learn(driver, run, LANDERS, lambda: len(run.history) >= 2)
+
+
+def rewound(driver: Driver) -> None:
+    """Train landers, with earlier runs beside them, and go back to the middle of the run."""
+    trained(driver)
+    run, rewind = driver.top.lander_run, driver.top.rewind
+    for _ in range(5):
+        put_beside(run.earlier, run.name, run.history.copy())
+        rename_beside(run.earlier, run.earlier[0].style, texts.TRAIN_TAUGHT_NAME.format(preset=len(run.earlier)))
+    driver.frames(20)
+    rewind.seek(run.history["decisions"][-1] / 2)
+    driver.frames(5)
+
+
+def edited(driver: Driver) -> None:
+    """Silence a unit of the large network, and pick a link."""
+    trained(driver)
+    driver.press_on(texts.TRAIN_CLOSER)
+    driver.frames(3)
+    driver.click(driver.top.inside.view.centres[1][2])
+    driver.frames(2)
+    driver.press_on(texts.EDIT_SILENCE)
+    driver.frames(3)
+    driver.click(on_a_link(driver.top.inside.view))
+    driver.frames(3)
+
+
+def edited_and_back(driver: Driver) -> None:
+    """Silence a unit, and go back to the swarm."""
+    edited(driver)
+    driver.key(pygame.K_ESCAPE)
+    driver.frames(3)
 
 
 def taught_to_read(driver: Driver) -> None:
@@ -229,6 +264,9 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "a guess": ("TrainScene", {}, asked),
     "training": ("TrainScene", {}, trained),
     "an experiment": ("TrainScene", {}, experimented),
+    "an earlier moment": ("TrainScene", {}, rewound),
+    "an edited network": ("TrainScene", {}, edited),
+    "its swarm": ("TrainScene", {}, edited_and_back),
     "training to read": ("DigitTrainingScene", {}, taught_to_read),
     **{f"frame {number + 1}": ("LessonScene", {}, frame(number)) for number in range(7)},
     "a law": ("PhysicsScene", {}, measured),

@@ -10,14 +10,14 @@ from ai.nn.inspection import links
 from ai.training.edits import NetworkEdits, UndoEdit
 from game.core import texts
 from game.core.worker import WorkerState
-from game.drawing.canvas import Point
 from game.panels.network_editing import NetworkEditing
-from game.panels.network_picking import Link, Unit, part_at
+from game.panels.network_picking import Link, Unit
 from game.scenes.train import TrainScene
 from game.ui.virtual_pointer import VirtualPointer
 from game.ui.widgets import Slider
 from tests.support import inline_worker
 from tests.support.driver import Driver
+from tests.support.networks import on_a_link
 from tests.support.small import LANDERS as SMALL
 
 
@@ -61,18 +61,6 @@ def weight(driver: Driver, link: Link) -> float:
     return float(links(driver.top.inside.network)[link.layer].weights[link.start, link.end])
 
 
-def on_a_link(driver: Driver, layer: int = 0) -> Point:
-    """A place on a drawn link of a layer at which that link is meant."""
-    view = driver.top.inside.view
-    for edge in reversed(view.edges):
-        (x0, y0), (x1, y1) = view.centres[edge.column][edge.start], view.centres[edge.column + 1][edge.end]
-        for share in (0.5, 0.3, 0.7):
-            place = (round(x0 + share * (x1 - x0)), round(y0 + share * (y1 - y0)))
-            if edge.column == layer and isinstance(part_at(view, place), Link):
-                return place
-    raise AssertionError("no link is drawn")
-
-
 def words(driver: Driver) -> list[str]:
     return [widget.label for widget in driver.form.widgets]
 
@@ -96,7 +84,7 @@ def test_a_unit_is_silenced_by_the_mouse_and_is_as_it_was_bit_for_bit(train: Dri
 
 
 def test_a_link_is_pulled_turned_by_the_wheel_cut_and_undone_step_by_step(train: Driver) -> None:
-    x, y = on_a_link(train)
+    x, y = on_a_link(train.top.inside.view)
     seen = [values(train)]
     train.move((x, y))
     train.post(pygame.MOUSEBUTTONDOWN, pos=train.to_window((x, y)), button=1)
@@ -146,7 +134,7 @@ def test_a_link_is_picked_and_changed_without_a_mouse(train: Driver, device: str
     pointer = next(each for each in train.form.widgets if isinstance(each, VirtualPointer) and each.box.height > 300)
     train.form.focus(pointer)
     press("confirm")
-    pointer.place.update(on_a_link(train))
+    pointer.place.update(on_a_link(train.top.inside.view))
     press("confirm")
     link = editing(train).picked
     assert isinstance(link, Link)
@@ -208,7 +196,7 @@ def test_an_earlier_moment_cannot_be_edited_nor_a_run_that_has_ended(train: Driv
 def test_what_cannot_be_edited_says_why(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> None:
     train = opened(open_game, monkeypatch, dueling=True)
     before = values(train)
-    train.click(on_a_link(train, 1))
+    train.click(on_a_link(train.top.inside.view, 1))
     train.frames(2)
     assert isinstance(editing(train).picked, Link)
     assert texts.EDIT_CUT not in words(train)

@@ -1,22 +1,31 @@
-"""Runs put beside the one that trains: chosen from those that are saved, renamed, and taken away again."""
+"""Dialogs of the Train scene: on runs beside the one that trains, and on one that the last visit has left."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 from game.core import texts
+from game.core.names import LibraryError
 from game.core.scene import Push, Scene, Transition
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.training.lander_run import LanderRun
+from game.training.library import SavedRun
 from game.training.training_run import rename_beside, take_away
 
 
-class Comparing:
-    """Dialogs over a scene for the runs beside its own; `ask` shows one after another has closed."""
+class TrainDialogs:
+    """Dialogs over a scene; `ask` shows one after another has closed, `go_on` resumes the run of a folder."""
 
-    def __init__(self, scene: Scene, lander_run: LanderRun, ask: Callable[[Transition], None]) -> None:
-        self._scene, self._run, self._ask = scene, lander_run, ask
+    def __init__(
+        self,
+        scene: Scene,
+        lander_run: LanderRun,
+        ask: Callable[[Transition], None],
+        go_on: Callable[[Path], None],
+    ) -> None:
+        self._scene, self._run, self._ask, self._go_on = scene, lander_run, ask, go_on
 
     def add(self) -> Transition:
         """Ask for a saved run whose curves shall be seen beside these."""
@@ -45,3 +54,20 @@ class Comparing:
         return Push(
             NameDialog(self._scene, texts.COMPARE_NAMING, name, partial(rename_beside, self._run.earlier, style))
         )
+
+    def ask_what_becomes_of(self, left: SavedRun) -> Transition:
+        """Offer the run that was left without a name by the last visit, or by a game that ended too early."""
+        more = texts.TRAIN_LEFT_YOUNG if left.success is None else texts.TRAIN_LEFT_FIGURES
+        more = left.problem or more.format(seconds=left.seconds, percent=100 * (left.success or 0.0))
+        answers = [(texts.TRAIN_LEFT_DISCARD, partial(self._discard, left.name))]
+        if left.resumable:
+            answers.insert(0, (texts.TRAIN_LEFT_GO_ON, partial(self._go_on, left.folder)))
+        return Push(QuestionDialog(self._scene, texts.TRAIN_LEFT, more, answers))
+
+    def _discard(self, name: str) -> None:
+        try:
+            self._run.library.discard_rescued()
+        except LibraryError as error:
+            self._scene.context.note(str(error))
+        else:
+            self._scene.context.note(texts.RUN_DELETED.format(name=name))
