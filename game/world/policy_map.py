@@ -164,7 +164,7 @@ class PolicyMap:
         veil.blit(small, (0, 0))
         pygame.surfarray.pixels_alpha(veil)[:] = np.round(255 * _COVER * fade**2 * (3 - 2 * fade)).astype(np.uint8).T
         half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
-        sheet.surface = pygame.transform.scale(pygame.transform.smoothscale(veil, half), sheet.size)
+        pygame.transform.scale(pygame.transform.smoothscale(veil, half), sheet.size, sheet.surface)
 
     def _colours(self, cells: PolicyCells) -> Doubles:
         """Return the colour of every place, (rows, columns, 3); of actions finer, with borders between them."""
