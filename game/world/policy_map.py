@@ -36,7 +36,7 @@ _COVER: Final = 0.5  # opacity of the map over the sky
 _HALF: Final = LIMITS.half_width  # metres to either side
 _TOP: Final = 20.0  # metres; above it stand words
 _FADE, _FADE_LOW = 2.5, 0.5  # metres over which it fades out at its top and sides, and at the ground
-_FINER: Final = 3  # by how much a map of actions is drawn finer than it was computed
+_FINER: Final = 2  # by how much a map of actions is drawn finer than it was computed
 _GRIDS: Final = ((65, 29), (33, 15), (17, 8))  # places across and up: the coarser, the larger the network
 _PIECE: Final = 4_700_000  # multiplications in one update: about a third of a millisecond
 _LONGEST: Final = 120  # updates that one whole map should take at most; a coarser grid is used where it would not
@@ -99,14 +99,15 @@ class PolicyMap:
             self._begin(env, slot, work)
         if self._observations is None:
             return
+        first, most = sum(len(piece.action) for piece in self._pieces), max(1, _PIECE // work)
+        if first == len(self._observations):  # in an update of its own: painting it takes as long as a piece
+            self._finish()
+            return
         self._waited += 1
         if self._waited * _PIECE < work:  # a large network: one place in several updates
             return
         self._waited = 0
-        first, most = sum(len(piece.action) for piece in self._pieces), max(1, _PIECE // work)
         self._pieces.append(decide(policy, self._observations[first : first + most]))
-        if first + most >= len(self._observations):
-            self._finish()
 
     def draw(self, canvas: Canvas, view: View) -> None:
         """Draw the map over the sky."""
@@ -163,7 +164,7 @@ class PolicyMap:
         veil.blit(small, (0, 0))
         pygame.surfarray.pixels_alpha(veil)[:] = np.round(255 * _COVER * fade**2 * (3 - 2 * fade)).astype(np.uint8).T
         half = (max(2, sheet.size[0] // 2), max(2, sheet.size[1] // 2))
-        sheet.surface = pygame.transform.scale(pygame.transform.smoothscale(veil, half), sheet.size)
+        pygame.transform.scale(pygame.transform.smoothscale(veil, half), sheet.size, sheet.surface)
 
     def _colours(self, cells: PolicyCells) -> Doubles:
         """Return the colour of every place, (rows, columns, 3); of actions finer, with borders between them."""

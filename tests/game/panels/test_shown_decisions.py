@@ -76,7 +76,7 @@ def test_watch_draws_the_decision_that_is_flown_and_nothing_else(
     watch = driver.top
     assert isinstance(watch, WatchScene)
     watch.swarm.policy = Witness(agent)
-    watch._show(count - 1)
+    watch.world.shown = count - 1
     slot, env = watch.shown, watch.swarm.env
     drawn = Drawn(monkeypatch)
     kept = longest = steps = 0

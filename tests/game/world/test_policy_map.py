@@ -99,13 +99,13 @@ def test_it_is_computed_in_pieces_and_only_when_something_has_changed(env: Lande
     assert not asked  # while it is off
     policy_map.kind = ACTION
     updates = whole(policy_map, env, Counted())
-    assert updates == len(asked) > 4
+    assert updates - 1 == len(asked) > 4
     assert max(asked) < 300
     for _ in range(50):
         policy_map.follow(env, 1, Counted())
-    assert len(asked) == updates  # a lander that stands still needs no new map
+    assert len(asked) == updates - 1  # a lander that stands still needs no new map
     env.fly(np.array([0, 0]))
-    assert whole(policy_map, env, Counted()) <= updates + 1
+    assert whole(policy_map, env, Counted()) <= updates
 
 
 @pytest.mark.parametrize(("hidden", "most"), [((4,), 3), ((128, 128), 12), ((1024, 1024), 140), ((1024,) * 9, 400)])
