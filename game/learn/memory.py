@@ -168,7 +168,7 @@ class MemoryChapter(RunsChapter):
         self.draw_status(canvas)
 
     def _draw_wall(self, canvas: Canvas) -> None:
-        """Draw the wall; a row is painted anew as its memories come or go, and the light of what is drawn laid over it."""
+        """Draw the wall; rows are painted anew as memories come or go, and the light of what is drawn over them."""
         for row, painted in enumerate(self._painted):
             cells = slice(row * _COLUMNS, (row + 1) * _COLUMNS)
             held = min(max(self._oldest // _EACH, cells.start), cells.stop)

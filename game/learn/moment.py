@@ -16,8 +16,9 @@ from ai.lander.environment import LanderEnv, Outcome
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
+from game.drawing.paint import mix
 from game.drawing.prose import draw_wrapped
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, Colour
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, NIGHT1, SMALL, TEXT, Colour
 from game.flight import networks
 from game.flight.flight import DECISION_STEPS
 from game.learn.chapter import STAGE, Chapter, Code
@@ -40,6 +41,7 @@ SCALE: Final = (-150.0, 200.0)  # points, of the line
 _WORLD: Final = pygame.FRect(STAGE.left, STAGE.top, STAGE.width, 292)
 _MIDDLE: Final = (0.0, 9.4)  # metres, of the picture
 _METRES: Final = 50.0  # across the picture
+_PATH: Final = mix(NIGHT1, NET, 0.6)
 _LINE: Final = STAGE.top + 366  # y of the line of points
 
 
@@ -67,7 +69,7 @@ class MomentChapter(Chapter):
 
     Attributes:
         agent: the network; None if it could not be read, and `problem` then says why.
-        guess: the player's, in points.
+        guess: the player's, in points; `guessed` once it was set.
         value: the network's value of the moment, in points.
         came, plain: pay since the moment, with and without the discount.
         judged: the moments that have been flown to their ends.
@@ -95,6 +97,7 @@ class MomentChapter(Chapter):
     def _freeze(self) -> None:
         """Fly to the moment, and stop there."""
         self.guess = self.came = self.plain = self.value = 0.0
+        self.guessed = False
         self.flying, self._steps = False, 0
         if self.agent is None:
             return
@@ -139,7 +142,7 @@ class MomentChapter(Chapter):
 
     def set_guess(self, points: float) -> None:
         """Set the player's guess."""
-        self.guess = points
+        self.guess, self.guessed = points, True
 
     def go(self) -> None:
         """Let the network fly on."""
@@ -223,7 +226,7 @@ class MomentChapter(Chapter):
             canvas.line((left, pad), (right, pad), MUTE, 3)
             places = view.points(self._path).tolist()
             for a, b in pairwise(places):
-                canvas.line(a, b, NET, 1.5, 0.6)
+                canvas.line(a, b, _PATH, 1.5)
             self._lander.draw(canvas, view, alpha if self.flying and not self.over else 1.0)
             if not self.flying:
                 start = self.env.position[0]
@@ -251,8 +254,10 @@ class MomentChapter(Chapter):
             x = self._x(tick)
             canvas.line((x, _LINE - 4), (x, _LINE + 4), MUTE if tick == 0 else FAINT)
             canvas.text(f"{tick:g}".replace("-", "−"), (x, _LINE + 22), size=LABEL, colour=MUTE, align="centre")
-        figures: list[tuple[str, str, Colour]] = [(texts.LEARN_MOMENT_GUESS, signed(self.guess), HUMAN)]
-        canvas.marker("triangle_down", (self._x(self.guess), _LINE - 12), 11, HUMAN)
+        figures: list[tuple[str, str, Colour]] = []
+        if self.guessed or self.flying:
+            figures.append((texts.LEARN_MOMENT_GUESS, signed(self.guess), HUMAN))
+            canvas.marker("triangle_down", (self._x(self.guess), _LINE - 12), 11, HUMAN)
         if self.flying:
             canvas.marker("triangle", (self._x(self.value), _LINE - 28), 11, NET)
             canvas.line((self._x(self.value), _LINE - 22), (self._x(self.value), _LINE), NET)
