@@ -13,6 +13,7 @@ from ai.nn.costs import COSTS
 from game.charts.tooltip import TooltipRow
 from game.core import texts
 from game.core.source import source_of
+from game.lesson.code import CODE
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
 from game.lesson.frame import PICTURE, Explanation
@@ -148,6 +149,25 @@ def test_lines_and_their_numbers_are_on_the_screen(driver: Driver):
     assert line.values
     for value in line.values:
         assert value.name in words
+
+
+def test_the_numbers_of_a_line_are_listed_under_the_mouse(driver: Driver, lesson: Lesson):
+    driver.top.show(5)
+    code = driver.top.code
+    code.index = next(
+        number_ for number_, line in enumerate(code.lines) if any(each.name == "output_error" for each in line.values)
+    )
+    row = [each.name for each in code.line.values].index("output_error")
+    driver.move((CODE.left + 60, CODE.top + 308 + 18 * row + 26))
+    assert code.pointed is not None
+    assert code.pointed[0].name == "output_error"
+    with pytest.MonkeyPatch.context() as patch:
+        words = words_written(patch)
+        driver.frames(1)
+    assert f"[{int(lesson.cell.action)}]" in words
+    assert number(lesson.derivative) in words
+    driver.key(pygame.K_DOWN)
+    assert code.pointed is None
 
 
 # The numbers are the lesson's
