@@ -9,13 +9,15 @@ import numpy as np
 import pygame
 
 from ai.common.learning_step import Line, Value
+from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.core.source import Source, source_of
-from game.drawing.canvas import Canvas
+from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number
+from game.lesson.frame import WITHIN
 from game.panels.code_listing import draw_listing
 
 CODE: Final = pygame.Rect(824, 216, 416, 448)
@@ -24,6 +26,7 @@ _LISTING: Final = 24.0
 _VALUES: Final = 308.0  # below the corner of the box
 _ROW: Final = 18.0
 _MOST: Final = 7  # values of a line that are shown
+_LISTED: Final = 12  # numbers of a value that are listed under the pointer
 _FEW: Final = 3  # numbers of an array that are written out
 
 
@@ -36,6 +39,7 @@ class CodeWalk:
     Attributes:
         lines: the lines, in the order in which they ran.
         index: number of the current one.
+        pointed: the value that is pointed at, and where to explain it.
 
     """
 
@@ -49,6 +53,7 @@ class CodeWalk:
         # Begin where numbers are set, past the head of the function.
         sets = (number for number, line in enumerate(self.lines[:-1]) if number and line.values)
         self.index = next(sets, 0)
+        self.pointed: tuple[Value, Point] | None = None
         self._functions, self._fallback = functions, fallback
         self._cache = PaintCache()
 
@@ -66,6 +71,29 @@ class CodeWalk:
     def step(self, direction: int) -> None:
         """Go to the line before or after."""
         self.index = min(max(self.index + direction, 0), max(len(self.lines) - 1, 0))
+        self.pointed = None
+
+    def follow(self, point: Point | None) -> None:
+        """Point at a place of the view; None for none."""
+        self.pointed = None
+        values = self.line.values[:_MOST] if self.line else ()
+        for row, value in enumerate(values):
+            box = pygame.FRect(CODE.left, CODE.top + _VALUES + _ROW * row + 17, CODE.width, _ROW)
+            if point is not None and box.collidepoint(point) and value.case is not None:
+                self.pointed = value, (box.left + 90, box.centery)
+
+    def draw_explanation(self, canvas: Canvas) -> None:
+        """Draw the numbers of the value that is pointed at: all of a few, of many the largest, with their places."""
+        if self.pointed is None:
+            return
+        value, place = self.pointed
+        numbers = np.asarray(value.case).ravel()
+        sizes = np.abs(np.nan_to_num(numbers.astype(float)))
+        shown = np.sort(np.argsort(-sizes, kind="stable")[:_LISTED]).tolist()
+        rows = [TooltipRow(f"[{index}]", number(float(numbers[index]))) for index in shown]
+        some = texts.LESSON_LARGEST.format(shown=len(shown), count=len(numbers))
+        lines = (value.name,) if len(shown) == len(numbers) else (value.name, some)
+        draw_tooltip(canvas, place, WITHIN, lines, rows)
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the listing and the values."""

@@ -15,10 +15,10 @@ from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, MUTE, SMALL, Colour
 
-__all__ = ["PICTURE", "Explanation", "Frame", "Label", "Spot", "rows_of"]
+__all__ = ["PICTURE", "WITHIN", "Explanation", "Frame", "Label", "Spot", "rows_of"]
 
 PICTURE: Final = pygame.Rect(40, 216, 752, 440)  # of the current frame, in points
-_WITHIN: Final = pygame.Rect(12, 160, 1256, 520)  # where explanations may stand
+WITHIN: Final = pygame.Rect(12, 160, 1256, 520)  # where explanations may stand
 _LEADING: Final = 19.0
 _DIGITS: Final = 12.0  # points by which figures of one width may be wider than plain ones
 _AROUND: Final = 3.0  # points by which the pointer may miss a number
@@ -174,7 +174,7 @@ class Frame:
             canvas.outline(box.inflate(8, 6), 4, INK if spot.press else FAINT, alpha=0.7)
         if spot.explanation:
             anchor = (min(box.right, box.left + 220), box.centery)
-            draw_tooltip(canvas, anchor, _WITHIN, spot.explanation.lines, spot.explanation.rows)
+            draw_tooltip(canvas, anchor, WITHIN, spot.explanation.lines, spot.explanation.rows)
 
     def _paint(self, sheet: Canvas) -> None:
         self.paint(sheet)

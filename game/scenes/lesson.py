@@ -15,7 +15,7 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import INK, MUTE, NIGHT0, SMALL, TEXT, TITLE
 from game.input.controls import Command
 from game.lesson.agent_frames import agent_frames
-from game.lesson.code import CodeWalk
+from game.lesson.code import CODE, CodeWalk
 from game.lesson.digit_frames import digit_frames
 from game.lesson.frame import PICTURE, Frame
 from game.lesson.strip import STRIP, FilmStrip
@@ -27,7 +27,7 @@ from game.ui.virtual_pointer import VirtualPointer
 
 _LEFT: Final = 40.0
 _SENTENCE: Final = 166.0
-_REACH: Final = STRIP.union(PICTURE)  # of the pointer that keys move
+_REACH: Final = STRIP.unionall([PICTURE, CODE])  # of the pointer that keys move
 
 
 class LessonScene(FormScene):
@@ -82,6 +82,7 @@ class LessonScene(FormScene):
         """Show a frame large."""
         if number != self.current:
             self.frame.follow(None)
+            self.code.follow(None)
             self.current = number
             self.context.sound.play("move")
 
@@ -98,6 +99,7 @@ class LessonScene(FormScene):
         """Follow the mouse or the pointer that keys move; an event's position is in points."""
         if event.type == pygame.MOUSEMOTION:
             self.frame.follow(event.pos)
+            self.code.follow(event.pos)
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
             number = self.strip.at(event.pos)
             if number is not None:
@@ -122,6 +124,7 @@ class LessonScene(FormScene):
         self.code.draw(canvas)
         self.frame.draw(canvas)
         self.frame.draw_explanation(canvas)
+        self.code.draw_explanation(canvas)
         if self.pointer.typing:
             self.form.draw(canvas)
         self.draw_hints(canvas)

@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 
 from ai.agent.config import PRESETS, Config
 from ai.agent.lesson import Lesson
@@ -12,6 +13,9 @@ from ai.digits.lesson import DigitLesson, explain_digit
 from ai.digits.training import DigitTraining
 from ai.training.messages import Explain
 from ai.training.session import live
+from game.lesson.frame import PICTURE
+from tests.support.driver import Driver
+from tests.support.written import words_written
 
 SMALL = {
     "modern": PRESETS["modern"].changed(
@@ -47,3 +51,20 @@ def digit_lesson_of(name: str) -> DigitLesson:
     for _ in range(3):
         training.advance()
     return explain_digit(training, 5)
+
+
+def shown(driver: Driver, frame: int) -> list[str]:
+    """Go to a frame and return what is written on the screen there."""
+    driver.top.show(frame)
+    with pytest.MonkeyPatch.context() as patch:
+        words = words_written(patch)
+        driver.app.canvas.attach(driver.app.window.surface)
+        for part in driver.top.parts:
+            part.frame.changed()
+        driver.frames(2)
+    return words
+
+
+def in_view(place: tuple[float, float]) -> tuple[float, float]:
+    """Return a place of the picture of a frame in points of the view."""
+    return place[0] + PICTURE.x, place[1] + PICTURE.y

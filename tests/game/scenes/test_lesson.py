@@ -8,21 +8,17 @@ import pytest
 
 from ai.agent.lesson import Lesson, functions
 from ai.common.decision import in_points
-from ai.digits.lesson import digit_functions
 from ai.nn.costs import COSTS
-from game.charts.tooltip import TooltipRow
 from game.core import texts
 from game.core.source import source_of
+from game.lesson.code import CODE
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
-from game.lesson.frame import PICTURE, Explanation
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.moment_frame import in_units, sensed
-from game.lesson.network_frame import NetworkFrame
-from game.lesson.step import WeightPlace
 from game.scenes.lesson import LessonScene
 from tests.support.driver import Driver
-from tests.support.lessons import SMALL, digit_lesson_of, lesson_from, lesson_of
+from tests.support.lessons import SMALL, in_view, lesson_from, lesson_of, shown
 from tests.support.written import words_written
 
 Open = Callable[..., Driver]
@@ -39,22 +35,6 @@ def driver(open_game: Open, lesson: Lesson) -> Driver:
     opened = open_game(LessonScene, lesson)
     opened.frames(3)
     return opened
-
-
-def shown(driver: Driver, frame: int) -> list[str]:
-    """Go to a frame and return what is written on the screen there."""
-    driver.top.show(frame)
-    with pytest.MonkeyPatch.context() as patch:
-        words = words_written(patch)
-        driver.app.canvas.attach(driver.app.window.surface)
-        for part in driver.top.parts:
-            part.frame.changed()
-        driver.frames(2)
-    return words
-
-
-def in_view(place: tuple[float, float]) -> tuple[float, float]:
-    return place[0] + PICTURE.x, place[1] + PICTURE.y
 
 
 # The ways through it
@@ -148,6 +128,25 @@ def test_lines_and_their_numbers_are_on_the_screen(driver: Driver):
     assert line.values
     for value in line.values:
         assert value.name in words
+
+
+def test_the_numbers_of_a_line_are_listed_under_the_mouse(driver: Driver, lesson: Lesson):
+    driver.top.show(5)
+    code = driver.top.code
+    code.index = next(
+        number_ for number_, line in enumerate(code.lines) if any(each.name == "output_error" for each in line.values)
+    )
+    row = [each.name for each in code.line.values].index("output_error")
+    driver.move((CODE.left + 60, CODE.top + 308 + 18 * row + 26))
+    assert code.pointed is not None
+    assert code.pointed[0].name == "output_error"
+    with pytest.MonkeyPatch.context() as patch:
+        words = words_written(patch)
+        driver.frames(1)
+    assert f"[{int(lesson.cell.action)}]" in words
+    assert number(lesson.derivative) in words
+    driver.key(pygame.K_DOWN)
+    assert code.pointed is None
 
 
 # The numbers are the lesson's
@@ -273,108 +272,6 @@ def test_after_the_step_the_value_and_its_pulls_are_told(driver: Driver, lesson:
     step = frame.step.strongest(lesson.step.taken, 1)[0]
     assert number(-float(lesson.step.taken[frame.step.index(step)])) in shown_steps
     assert abs(lesson.step.taken[largest]) >= abs(lesson.step.taken[frame.step.index(step)])
-
-
-# Under the pointer
-
-
-def figure(row: TooltipRow) -> float:
-    return float(row.figure.replace("−", "-").replace("k", "e3"))
-
-
-def test_a_units_sum_adds_up_to_its_value(driver: Driver, lesson: Lesson):
-    driver.top.show(1)
-    frame = driver.top.frame
-    assert isinstance(frame, NetworkFrame)
-    for column in range(1, len(frame.view.columns)):
-        for place in range(len(frame.view.columns[column].units)):
-            told: Explanation = frame.unit(column, place)
-            rows = [row.word for row in told.rows]
-            at = rows.index(texts.LESSON_STAGES["sum"])
-            assert sum(map(figure, told.rows[:at])) == pytest.approx(figure(told.rows[at]), rel=0.02, abs=0.005)
-    last = frame.unit(len(frame.view.columns) - 1, int(lesson.cell.action))
-    predicted = float(lesson.predicted[int(lesson.cell.action)]) / lesson.config.reward_scale
-    assert last.rows[-1].figure == points(predicted)
-
-
-def test_every_number_of_every_picture_explains_itself(driver: Driver):
-    for number_, part in enumerate(driver.top.parts):
-        driver.top.show(number_)
-        for label in part.frame.labels:
-            if label.explanation is None:
-                continue
-            driver.move(in_view(label.box.center))
-            assert part.frame.pointed is not None, label.text
-            assert part.frame.pointed.explanation is not None
-
-
-def test_the_link_under_the_mouse_tells_its_weight_and_slope(driver: Driver, lesson: Lesson):
-    driver.top.show(5)
-    frame = driver.top.frame
-    assert isinstance(frame, GradientFrame)
-    place = WeightPlace(1, 2, 3)
-    told = frame.link(place)
-    index = frame.step.index(place)
-    inputs, units = len(lesson.state), lesson.config.hidden[0]
-    norm = 2 * units if lesson.config.layer_normalisation else 0
-    assert index == inputs * units + units + norm + 2 * lesson.config.hidden[1] + 3
-    figures = [row.figure.lstrip("+") for row in told.rows]
-    assert number(float(lesson.step.values_before[index])) in figures
-    assert number(float(lesson.step.gradient[index])) in figures
-    assert number(float(lesson.step.share[index])) in figures
-    assert number(-float(lesson.step.taken[index])) in figures
-
-
-# An image of the digit network
-
-
-@pytest.mark.parametrize("preset", ["classic", "modern"])
-def test_an_image_is_shown_in_seven_frames_as_well(open_game: Open, preset: str):
-    lesson = digit_lesson_of(preset)
-    driver = open_game(LessonScene, lesson)
-    driver.frames(2)
-    digit = int(lesson.labels[lesson.step.row])
-    assert len(driver.top.parts) == FRAMES
-    words = [shown(driver, frame) for frame in range(FRAMES)]
-    assert texts.LESSON_LABEL.format(digit=digit) in words[0]
-    for value in lesson.outputs.tolist():
-        assert f"{value:.2f}".replace("-", "−") in words[1] or lesson.config.dropout
-        assert number(value) in words[2]
-    for value in lesson.probabilities_before.tolist():
-        assert number(value) in words[2]
-    for value in lesson.target.tolist():
-        assert number(value) in words[3]
-    for value in lesson.derivative.tolist():
-        assert any(word.lstrip("+") == number(value) for word in words[4])
-    assert number(lesson.step.gradient_length) in " ".join(words[5])
-    before, after = (float(each[digit]) for each in (lesson.probabilities_before, lesson.probabilities_after))
-    assert any(number(before) in word and number(after) in word for word in words[6])
-    known = digit_functions(lesson.config)
-    for part in driver.top.parts:
-        assert all(line.number in dict(source_of(known[line.function]).lines) for line in part.code.lines)
-
-
-@pytest.mark.parametrize("preset", ["classic", "modern"])
-def test_a_units_sum_of_a_digit_network_adds_up(open_game: Open, preset: str):
-    driver = open_game(LessonScene, digit_lesson_of(preset))
-    driver.top.show(1)
-    driver.frames(2)
-    frame = driver.top.frame
-    assert isinstance(frame, NetworkFrame)
-    for column in range(1, len(frame.view.columns)):
-        told = frame.unit(column, 0)
-        at = [row.word for row in told.rows].index(texts.LESSON_STAGES["sum"])
-        assert sum(map(figure, told.rows[:at])) == pytest.approx(figure(told.rows[at]), rel=0.02, abs=0.005)
-
-
-def test_a_pixel_tells_its_ink(open_game: Open):
-    lesson = digit_lesson_of("classic")
-    driver = open_game(LessonScene, lesson)
-    driver.frames(2)
-    driver.move(in_view((14.0 * 10 + 7, 14.0 * 20 + 7)))
-    told = driver.top.frame.pointed.explanation
-    assert told.lines == (texts.LESSON_PIXEL.format(row=21, column=11),)
-    assert told.rows[0].figure == f"{float(lesson.image[20, 10]):.3f}"
 
 
 # Bad days
