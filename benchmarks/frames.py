@@ -41,8 +41,10 @@ from ai.lander.missions import MISSIONS
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.exhibits import EXHIBITS
+from game.learn.path import PATH
 from game.play.challenge import FlownMission
 from game.scenes import scene_of
+from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.error_screen import ErrorScene
 from game.scenes.menu import MenuScene
@@ -90,6 +92,7 @@ def rows() -> dict[str, Row]:
             "PlayScene",
             "WatchScene",
             "PhysicsScene",
+            "ChapterScene",
             "mission",
         }
     return {
@@ -109,6 +112,10 @@ def rows() -> dict[str, Row]:
         "fault": Row(lambda context: ErrorScene(context, ValueError(), Path("log"))),
         **{f"watch, {number}": Row(lambda context, n=number: WatchScene(context, n, seed=4)) for number in COUNTS},
         **{f"physics, {name}": Row(lambda context, n=name: PhysicsScene(context, n)) for name in EXHIBITS},
+        **{
+            f"chapter, {key}": Row(lambda context, k=key: ChapterScene(context, k), (pygame.K_n, pygame.K_RETURN))
+            for key in PATH
+        },
         "physics, contacts": Row(heap, (pygame.K_c,)),
         **{
             name.removesuffix("Scene").lower(): Row(of_tour(name), (pygame.K_DOWN, pygame.K_RETURN))

@@ -215,7 +215,7 @@ class PayChapter(Chapter):
     def code(self) -> Sequence[Code]:
         """Return the step of the environment that adds up the pay, with this pay's weights."""
         pay = PAYS[self.pay]
-        weights = texts.LEARN_PAY_NOTE.format(time=pay.time, engine=pay.engine, terminal=pay.terminal)
+        weights = texts.LEARN_PAY_NOTE.format(time=pay.time, terminal=pay.terminal)
         return [
             Code(LanderEnv.step, "components = {name", {"components = {name": weights, "reward=sum": f"{len(REWARDS)}"})
         ]

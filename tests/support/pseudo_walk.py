@@ -30,6 +30,9 @@ from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.learn import pay
+from game.learn.daring import DaringChapter
+from game.learn.memory import MemoryChapter
+from game.learn.target import TargetChapter
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
 from game.scenes.error_screen import ErrorScene
@@ -47,6 +50,7 @@ from tests.support.tour import stock
 from tests.support.written import Written, misplaced
 
 SHORT = 2_560  # decisions of a run that shows nothing but its texts
+SHORT_RUN = 60  # decisions of small runs
 SIZES = ("normal", "large", "largest")
 Happens = Callable[[Driver], object]
 
@@ -143,11 +147,11 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
     "the quiz": ("QuizScene", {}, handed_in),
     "the quiz, answered": ("QuizScene", {}, answered),
     "a swarm": ("swarm", {}, lambda driver: driver.skip(400)),
-    "a neuron, tried": ("Chapter, neuron", {}, tried(texts.LEARN_NEURON_HINT, steps=640)),
-    "a plane, tried": ("Chapter, plane", {}, tried(steps=320)),
-    "downhill, tried": ("Chapter, downhill", {}, tried(steps=340)),
+    "a neuron, tried": ("ChapterScene", {}, tried(texts.LEARN_NEURON_HINT, steps=640)),
+    "a plane, tried": ("chapter, plane", {}, tried(steps=320)),
+    "downhill, tried": ("chapter, downhill", {}, tried(steps=340)),
     "backwards, tried": (
-        "Chapter, backwards",
+        "chapter, backwards",
         {},
         tried(
             texts.LEARN_BACKWARDS_BACK,
@@ -158,7 +162,7 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
             steps=2,
         ),
     ),
-    "pay, tried": ("Chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
+    "pay, tried": ("chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
 }
 
 
@@ -230,6 +234,8 @@ def main() -> None:
     """Walk, and write what was seen and what was wrong."""
     inline_worker.install(setattr)
     setattr(pay, "DECISIONS", SHORT)  # noqa: B010 - it is final for all others
+    for chapter in (TargetChapter, MemoryChapter, DaringChapter):
+        chapter.LENGTH = SHORT_RUN
     with TemporaryDirectory() as folder:
         walk = Walk(Path(folder))
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))

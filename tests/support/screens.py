@@ -12,7 +12,7 @@ from game.core.assets import MODELS_DIR
 from game.core.scene import Push, Scene
 from game.flight.flight_file import Record
 from game.flight.skill import Skill
-from game.learn.path import PATH
+from game.learn.path import FIRST, PATH
 from game.play.challenge import FlownMission
 from game.scenes.bindings import BindingsScene
 from game.scenes.chapter import ChapterScene
@@ -51,7 +51,7 @@ SCREENS: dict[str, Make] = {
     "QuizScene": lambda context: QuizScene(context, reader()),
     "PhysicsScene": PhysicsScene,
     "LearnScene": LearnScene,
-    **{f"Chapter, {key}": partial(ChapterScene, key=key) for key in PATH},
+    "ChapterScene": ChapterScene,
     "LogbookScene": LogbookScene,
     "SettingsScene": SettingsScene,
     "BindingsScene": BindingsScene,
@@ -62,6 +62,7 @@ FLOWN: dict[str, Make] = {
     "Play": lambda context: PlayScene(context, 3),
     "swarm": lambda context: WatchScene(context, 16, seed=2),
     "mission": lambda context: PlayScene(context, 0, challenge=FlownMission(MISSIONS["wind"])),
+    **{f"chapter, {key}": partial(ChapterScene, key=key) for key in PATH if key != FIRST},
 }
 OVER_OTHERS: dict[str, Callable[[Scene], Scene]] = {
     "PauseScene": lambda below: PauseScene(below.context, below, retry=lambda: None),

@@ -20,8 +20,10 @@ from game.core.scene import Scene
 from game.exhibits import EXHIBITS
 from game.flight.flight import Flight
 from game.flight.logbook import Records
+from game.learn.path import PATH
 from game.play.challenge import DailyStart, FlownMission
 from game.play.race import race
+from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import ListDialog, NameDialog, QuestionDialog
 from game.scenes.dream import DreamScene
 from game.scenes.physics import PhysicsScene
@@ -84,6 +86,7 @@ def makers(context: Context) -> dict[str, Callable[[], Scene | None]]:
     return {
         **plain,
         "WatchScene": lambda: WatchScene(context, int(rng.choice(COUNTS))),
+        "ChapterScene": lambda: ChapterScene(context, str(rng.choice(list(PATH)))),
         "PhysicsScene": lambda: PhysicsScene(context, str(rng.choice(list(EXHIBITS)))),
         "mission": lambda: PlayScene(context, 0, challenge=FlownMission(missions[rng.integers(len(missions))])),
         "daily": lambda: PlayScene(context, 1, challenge=DailyStart(date(2026, 1, 1))),
