@@ -119,7 +119,10 @@ class MemoryChapter(RunsChapter):
     def finished(self) -> None:
         """Keep the result, to compare it with that of other memories."""
         passed, changed = self.history(0, "passed"), min(YESTERDAY, self.LENGTH)
-        self.results[self._flown] = (float(np.nan_to_num(passed[changed])), float(np.nan_to_num(passed[changed:]).min()))
+        self.results[self._flown] = (
+            float(np.nan_to_num(passed[changed])),
+            float(np.nan_to_num(passed[changed:]).min()),
+        )
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return for each memory that was tried how it flew from high up before and after."""
