@@ -163,6 +163,14 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
         ),
     ),
     "pay, tried": ("chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
+    "a moment, tried": (
+        "chapter, moment",
+        {},
+        tried(texts.LEARN_MOMENT_GO, texts.LEARN_MOMENT_NEXT, texts.LEARN_MOMENT_GO, steps=480),
+    ),
+    "target, tried": ("chapter, target", {}, tried(texts.LEARN_RUNS_START[0], steps=SHORT_RUN + 5)),
+    "memory, tried": ("chapter, memory", {}, tried(texts.LEARN_MEMORY_START, steps=SHORT_RUN + 5)),
+    "daring, tried": ("chapter, daring", {}, tried(texts.LEARN_RUNS_START[0], steps=SHORT_RUN + 5)),
 }
 
 
