@@ -118,8 +118,11 @@ class MemoryChapter(RunsChapter):
 
     def finished(self) -> None:
         """Keep the result, to compare it with that of other memories."""
-        passed = self.history(0, "passed")
-        self.results[self._flown] = (float(np.nan_to_num(passed[YESTERDAY])), float(np.nanmin(passed[YESTERDAY:])))
+        passed, changed = self.history(0, "passed"), min(YESTERDAY, self.LENGTH)
+        self.results[self._flown] = (
+            float(np.nan_to_num(passed[changed])),
+            float(np.nan_to_num(passed[changed:]).min()),
+        )
 
     def why(self, guess: int | None) -> str:  # noqa: ARG002
         """Return for each memory that was tried how it flew from high up before and after."""

@@ -31,6 +31,9 @@ from game.core.settings import Settings
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.learn import pay
+from game.learn.daring import DaringChapter
+from game.learn.memory import MemoryChapter
+from game.learn.target import TargetChapter
 from game.scenes import scene_of
 from game.scenes.chapter import ChapterScene
 from game.scenes.dialog import QuestionDialog
@@ -53,6 +56,7 @@ from tests.support.tour import stock
 from tests.support.written import Written, misplaced
 
 SHORT = 2_560  # decisions of a run that shows nothing but its texts
+SHORT_RUN = 60  # decisions of small runs
 SIZES = ("normal", "large", "largest")
 Happens = Callable[[Driver], object]
 
@@ -299,6 +303,14 @@ STATES: dict[str, tuple[str, dict[str, object], Happens]] = {
         ),
     ),
     "pay, tried": ("chapter, pay", {}, tried(texts.LEARN_PAY_TRAIN, steps=850)),
+    "a moment, tried": (
+        "chapter, moment",
+        {},
+        tried(texts.LEARN_MOMENT_GO, texts.LEARN_MOMENT_NEXT, texts.LEARN_MOMENT_GO, steps=480),
+    ),
+    "target, tried": ("chapter, target", {}, tried(texts.LEARN_RUNS_START[0], steps=SHORT_RUN + 5)),
+    "memory, tried": ("chapter, memory", {}, tried(texts.LEARN_MEMORY_START, steps=SHORT_RUN + 5)),
+    "daring, tried": ("chapter, daring", {}, tried(texts.LEARN_RUNS_START[0], steps=SHORT_RUN + 5)),
 }
 
 
@@ -370,6 +382,8 @@ def main() -> None:
     """Walk, and write what was seen and what was wrong."""
     inline_worker.install(setattr)
     setattr(pay, "DECISIONS", SHORT)  # noqa: B010 - it is final for all others
+    for chapter in (TargetChapter, MemoryChapter, DaringChapter):
+        chapter.LENGTH = SHORT_RUN
     with TemporaryDirectory() as folder:
         walk = Walk(Path(folder))
         stock(Context(Path(folder), Settings(), rng=np.random.default_rng(1)))
