@@ -7,9 +7,10 @@ from typing import Final
 
 import pygame
 
+from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import INK, MUTE, NET, TITLE, Colour
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, TITLE, Colour
 from game.ui.widget import OnPress, PointsManager, Widget
 from game.ui.widgets import TextButton
 
@@ -39,6 +40,15 @@ def make_words(
                                   size=size, colour=colour))  # fmt: skip
         right -= width + row.width
     return made
+
+
+def draw_changed(canvas: Canvas, box: pygame.Rect, name: str, right: float) -> None:
+    """Mark beside the preset's name that knobs were changed: by a word, or by a dot where there is no room for it."""
+    left, baseline = box.left + canvas.text_width(name, size=TITLE) + 9, box.top + BASELINE
+    if canvas.text_width(texts.KNOBS_CHANGED, size=LABEL) <= right - left - 9:
+        canvas.text(texts.KNOBS_CHANGED, (left, baseline), size=LABEL, colour=HUMAN)
+    else:
+        canvas.dot((left, baseline - 5), 2.5, HUMAN)
 
 
 def word_width(text: str, size: float) -> float:

@@ -16,7 +16,7 @@ from game.drawing.tokens import HUMAN, LABEL, LINE, MUTE, SMALL, TEXT, TITLE
 from game.panels import knob_foot
 from game.panels.knob import Knob
 from game.panels.knob_rows import Deeds, KnobRows
-from game.panels.knob_words import BASELINE, Title, Word, make_words, word_width
+from game.panels.knob_words import Title, Word, draw_changed, make_words, word_width
 from game.panels.lab import TOP
 from game.panels.seed_knob import SeedKnob
 from game.training.knob_descriptions import Configuration
@@ -138,7 +138,7 @@ class KnobsPanel:
         box, y = self._box, self._box.top + TOP
         canvas.line((box.left, y), (box.right, y), LINE, 1)
         if self.changed:
-            self._draw_changed(canvas)
+            draw_changed(canvas, box, self.name, self._sections["head"][1][1].box.left)
         if self._view == "picks":
             heading = texts.SABOTAGE_HEADING.format(name=self._run_kind.word((self._run_settings.named[0], ""))).upper()
             canvas.text(heading, (box.left, y + 25), size=LABEL, weight="medium", colour=MUTE)
@@ -159,15 +159,6 @@ class KnobsPanel:
             picking=self._view == "picks",
             room=room,
         )
-
-    def _draw_changed(self, canvas: Canvas) -> None:
-        """Mark that knobs were changed: by a word, or by a dot where there is no room for it."""
-        left, baseline = self._box.left + canvas.text_width(self.name, size=TITLE) + 9, self._box.top + BASELINE
-        room = self._sections["head"][1][1].box.left - left - 9
-        if canvas.text_width(texts.KNOBS_CHANGED, size=LABEL) <= room:
-            canvas.text(texts.KNOBS_CHANGED, (left, baseline), size=LABEL, colour=HUMAN)
-        else:
-            canvas.dot((left, baseline - 5), 2.5, HUMAN)
 
     # Widgets
 
