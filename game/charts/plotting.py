@@ -91,7 +91,7 @@ def decades(low: float, high: float) -> Numbers:
     """Return the grid lines of a logarithmic axis, as logarithms: round numbers around low to high, tens between."""
     low, high = max(low, -300.0), min(max(high, low + 1e-9), 300.0)
     first = max(step for step in _round_logarithms(low) if step <= low + _ROUNDING)
-    last = min(step for step in _round_logarithms(high) if step >= high - _ROUNDING)
+    last = min(step for step in _round_logarithms(high) if step >= high - _ROUNDING and step > first + _ROUNDING)
     tens = np.arange(math.ceil(first + _ROUNDING), last - _ROUNDING)
     return np.array([first, *tens, last])
 

@@ -86,7 +86,7 @@ class NetworkEditing:
 
     @property
     def _weight(self) -> float | None:
-        """Weight of the picked link; None without one, or if it is of another network."""
+        """Weight of the picked link; None without one, if it is of another network, or is not finite."""
         if not isinstance(self.picked, Link) or self._network is None:
             return None
         found, link = links(self._network), self.picked
@@ -94,7 +94,7 @@ class NetworkEditing:
             return None
         weights = found[link.layer].weights
         inside = link.start < weights.shape[0] and link.end < weights.shape[1]
-        return float(weights[link.start, link.end]) if inside else None
+        return float(weights[link.start, link.end]) if inside and np.isfinite(weights[link.start, link.end]) else None
 
     @property
     def _fixed(self) -> bool:

@@ -116,7 +116,8 @@ class Rewind:
     def _moments(self) -> Doubles:
         """Return all moments to be shown, rising: of the landers, and before those were kept, of the curves."""
         swarms, known = self._run.swarms, self._run.history["decisions"]
-        return np.concatenate([known[known < (swarms.begins or 0)], swarms.moments])
+        before = known if swarms.begins is None else known[known < swarms.begins]
+        return np.concatenate([before, swarms.moments])
 
     def _network_at(self, decisions: int) -> NetworkState | None:
         """Return the nearest network: one the run has sent, or before the first of those, that of a checkpoint."""

@@ -7,7 +7,7 @@ import numpy as np
 import pygame
 import pytest
 
-from ai.training.history import PARTS
+from ai.training.history import COLUMNS, PARTS, Checkpoint, Point
 from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.worker import WorkerState
@@ -214,6 +214,31 @@ def test_without_a_run_there_is_nothing_to_rewind(open_game: Callable[..., Drive
     scene.rewind.seek(100)
     scene.rewind.seek_share(0.5)
     assert scene.moment is None
+
+
+@pytest.mark.parametrize("values", [np.zeros(0, np.float32), np.zeros(7, np.float32), None])
+def test_a_short_history_of_which_little_is_known_or_fits_is_rewound(
+    open_game: Callable[..., Driver], values: np.ndarray | None
+) -> None:
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    history = driver.top.lander_run.history
+    for decisions in (300.0, 600.0):
+        history.append(Point(**{**dict.fromkeys(COLUMNS, np.nan), "seconds": decisions / 100, "decisions": decisions}))
+    if values is not None:  # a checkpoint of another network
+        history.append(Checkpoint(1.0, 100, 0.0, values))
+    driver.frames(14)
+    driver.top.rewind.seek(10.0)
+    driver.frames(14)
+    assert driver.top.moment == 300
+    assert not driver.top.rewind.swarm_kept
+    assert driver.top.inside.network is None or driver.top.inside.shown is None
+    driver.press_on(texts.TRAIN_CLOSER)
+    driver.frames(3)
+    driver.form.focus(driver.the(RunTimeline))
+    driver.keys(pygame.K_LEFT, pygame.K_RIGHT, pygame.K_RETURN)
+    assert driver.top.moment is None
+    assert isinstance(driver.top, TrainScene)
 
 
 def test_the_charts_are_zoomed_by_wheel_keys_and_word(train: Driver) -> None:

@@ -1,0 +1,100 @@
+"""Runs beside the current one in Train: their legend, by keys, gamepad and mouse."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pygame
+import pytest
+
+from ai.training.history import History
+from game.core import texts
+from game.panels.run_legend import RunLegend
+from game.scenes.dialog import NameDialog, QuestionDialog
+from game.scenes.train import TrainScene
+from game.training.training_run import put_beside
+from game.ui.entry import Entry
+from tests.ai.training.test_hints import HEALTHY
+from tests.support.driver import Driver
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver]) -> Driver:
+    driver = open_game(TrainScene)
+    driver.frames(2)
+    for name in ("one", "two", "three", "four", "five"):
+        run = History()
+        for second in range(20):
+            run.append(replace(HEALTHY, seconds=second, decisions=100 * second))
+        put_beside(driver.top.lander_run.earlier, name, run)
+    driver.frames(30)
+    return driver
+
+
+def names(driver: Driver) -> list[str]:
+    return [each.name for each in driver.top.lander_run.earlier]
+
+
+@pytest.mark.parametrize("device", ["keys", "pad"])
+def test_a_run_is_renamed_and_taken_away_without_a_mouse(train: Driver, device: str) -> None:
+    def press(key: int, button: int) -> None:
+        train.key(key) if device == "keys" else train.button(button)
+
+    def confirm() -> None:
+        press(pygame.K_RETURN, pygame.CONTROLLER_BUTTON_A)
+
+    scene, legend = train.top, train.the(RunLegend)
+    assert len(scene.training_charts.charts.charts[0].runs) == 5
+    train.form.focus(legend)
+    press(pygame.K_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    train.frames(2)
+    chosen = legend.names[legend.index][0]
+    assert legend.emphasised == legend.names[legend.index][1]
+    confirm()
+    assert isinstance(train.top, QuestionDialog)
+    confirm()
+    train.frames(2)
+    assert isinstance(train.top, NameDialog)
+    train.the(Entry).text = "five"
+    train.key(pygame.K_RETURN)
+    assert isinstance(train.top, NameDialog), "another has that name"
+    train.the(Entry).text = "renamed"
+    train.key(pygame.K_RETURN)
+    assert train.top is scene
+    assert "renamed" in names(train)
+    assert chosen not in names(train)
+    train.frames(30)
+    confirm()
+    press(pygame.K_RIGHT, pygame.CONTROLLER_BUTTON_DPAD_RIGHT)
+    confirm()
+    assert train.top is scene
+    assert len(names(train)) == 4
+    assert "renamed" not in names(train)
+    train.frames(30)
+    assert len(scene.training_charts.charts.charts[0].runs) == 4
+
+
+def test_the_mouse_over_a_name_emphasises_its_line_and_a_click_asks(train: Driver) -> None:
+    legend = train.the(RunLegend)
+    train.move((legend.box.left + 40, legend.box.centery))
+    train.frames(30)
+    assert legend.emphasised == legend.names[0][1]
+    colours = [run.series.colour for run in train.top.training_charts.charts.charts[0].runs]
+    train.move((1100, 300))
+    train.frames(30)
+    assert legend.emphasised is None
+    plain = [run.series.colour for run in train.top.training_charts.charts.charts[0].runs]
+    assert colours[0] == plain[0]
+    assert all(dimmed != colour for dimmed, colour in zip(colours[1:], plain[1:], strict=True))
+    train.click((legend.box.left + 40, legend.box.centery))
+    assert isinstance(train.top, QuestionDialog)
+    train.click(train.widget(texts.COMPARE_REMOVE).box.center)
+    assert len(names(train)) == 4
+
+
+def test_names_that_do_not_fit_are_on_further_pages(train: Driver) -> None:
+    legend = train.the(RunLegend)
+    train.form.focus(legend)
+    for _ in range(20):
+        legend.names = [(f"a long name of a run {number}", number + 1) for number in range(9)]
+        train.key(pygame.K_RIGHT)
+    assert legend.index <= 8
