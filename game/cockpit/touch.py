@@ -17,7 +17,7 @@ from ai.common.environment import Doubles
 from ai.lander.environment import LanderEnv
 from game.core import texts
 from game.drawing.canvas import Align, Canvas, Point
-from game.drawing.tokens import HUMAN, NIGHT0, SMALL
+from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL, VIEW_SIZE
 from game.input.controls import Command, Controls, translate
 from game.ui.hints import Hint
 from game.ui.widget import PointsManager, Widget
@@ -36,6 +36,7 @@ _DEAD: Final = 0.2
 _WAYS: Final = {Command.LEFT: (-1, 0), Command.RIGHT: (1, 0), Command.UP: (0, 1), Command.DOWN: (0, -1)}
 _TURNS: Final = {pygame.K_q: 1, pygame.K_e: -1}
 _SHOULDERS: Final = {Command.PREVIOUS: 1, Command.NEXT: -1}
+_SKY: Final = pygame.Rect(40, 100, VIEW_SIZE[0] - 80, 510)  # where the focus on it is seen
 _STICK: Final = (pygame.CONTROLLER_AXIS_LEFTX, pygame.CONTROLLER_AXIS_LEFTY)
 
 
@@ -78,15 +79,8 @@ class Hand(Widget):
 
     """
 
-    def __init__(
-        self,
-        manager: PointsManager,
-        box: pygame.typing.RectLike,
-        lander: Touched,
-        clear: pygame.Rect,
-        size: Callable[[], float],
-    ) -> None:
-        super().__init__(manager, box, texts.TOUCH_LANDER)
+    def __init__(self, manager: PointsManager, lander: Touched, clear: pygame.Rect, size: Callable[[], float]) -> None:
+        super().__init__(manager, _SKY, texts.TOUCH_LANDER)
         self._lander, self._clear, self._size = lander, clear, size
         self.part, self.dragging = PLACE, False
         self._grip: Point = (0.0, 0.0)  # from the mouse to what it holds, in points
@@ -94,6 +88,12 @@ class Hand(Widget):
         self._stick = [0.0, 0.0]
 
     # Where it is, in points
+
+    @property
+    def box(self) -> pygame.Rect:
+        """The box of the ring, kept where it is seen, for the focus to find."""
+        (x, y), size = self.middle, self.radius
+        return pygame.Rect(x - size, y - size, 2 * size, 2 * size).clamp(_SKY)
 
     @property
     def middle(self) -> Point:
@@ -298,9 +298,9 @@ class Hand(Widget):
 
     def draw(self, canvas: Canvas) -> None:
         """Draw the ring, the dot and the arrow while the lander can be touched; or the focus around it."""
+        if self.ringed and self.warmth > 0.02:
+            canvas.outline(self.box.inflate(10, 10), 8, INK, 1, 0.4 * self.warmth)
         if not self._lander.at_hand:
-            if self.ringed and self.warmth > 0.02:
-                self._draw_ring(canvas, 0.4 * self.warmth)
             return
         self._draw_ring(canvas, 0.9 if self._takes(canvas, PLACE) else 0.45)
         self._draw_tilt(canvas, self._takes(canvas, TILT))

@@ -83,11 +83,12 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
     canvas.text(texts.Q_EXPECTED, (left, top), size=SMALL, colour=MUTE, room=width - _FIGURE - 72)
     canvas.text(signed(values.expected), (track[0] + track[1], top), size=TEXT, align="right", tabular=True)
     canvas.text(texts.Q_UNIT, (left + width, top), size=LABEL, colour=MUTE, align="right", room=_FIGURE - 8)
-    canvas.explain((left, top - 14, width, 20), texts.EXPLAIN_EXPECTED)
+    box, points = (left, top - 14, width, 20), signed(values.expected)
+    canvas.explain(box, texts.EXPLAIN_EXPECTED, lambda: texts.EXPLAIN_EXPECTED_NOW.format(points=points))
     for action in range(len(ACTION_NAMES)):
         _draw_row(canvas, values, action, left, top + _FIRST + _ROW * action, width)
-        box = (left, top + _FIRST + _ROW * (action - 0.5), width, _ROW)
-        canvas.explain(box, texts.EXPLAIN_VALUE, partial(value_words, values, action))
+        row = (left, top + _FIRST + _ROW * (action - 0.5), width, _ROW)
+        canvas.explain(row, texts.EXPLAIN_VALUE, partial(value_words, values, action))
     _draw_axis(canvas, left, top + _AXIS, width)
     if values.allowed is not None and values.allowed < SPAN:
         x, y = track[0] + values.fraction(values.allowed) * track[1], top + _FIRST

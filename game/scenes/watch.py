@@ -45,7 +45,6 @@ _WIDEST: Final = 452.0  # of a row: the pad begins there
 _LONGEST_NAME: Final = 24
 _LONGEST_PROBLEM: Final = 110
 _READOUTS: Final = (758.0, 880.0, 1002.0, 1124.0)  # left ends of the read-outs
-_SKY: Final = pygame.Rect(480, 200, 240, 300)  # where the focus finds the hand
 _TOUCHED: Final = pygame.Rect(40, 108, PANEL.left - 80, 600)  # where the hand can put a lander
 
 
@@ -77,7 +76,7 @@ class WatchScene(FormScene):
         self._speed_choice = self.form.add(self.playback.row(self.form.manager, self._row_box(2, self.playback.words)))
         self._map_choice = self._map_row()
         self.form.add(self._map_choice)
-        self.hand = self.form.add(Hand(self.form.manager, _SKY, self.world, _TOUCHED, lambda: self.world.size))
+        self.hand = self.form.add(Hand(self.form.manager, self.world, _TOUCHED, lambda: self.world.size))
         self._seed = int(context.rng.integers(2**31)) if seed is None else seed
         self._choose_network(wanted)
         if self.problem:

@@ -105,7 +105,7 @@ def test_a_flight_to_its_end_is_heard_and_a_pause_is_silent(sound: Listener, ope
     monkeypatch.setattr(sound, "update", lambda: (asked.append(dict(sound.loops)), sound.loops.clear()))
     game: Driver = open_game(make)
     game.post(pygame.WINDOWMINIMIZED)  # nothing need be drawn
-    game.key(pygame.K_TAB if isinstance(game.top, PlayScene) else pygame.K_F1)
+    game.key(pygame.K_TAB if isinstance(game.top, PlayScene) else pygame.K_F5)
     for _ in range(1500):
         game.frames(1)
         if {"landed", "crash"} & set(sound.played):

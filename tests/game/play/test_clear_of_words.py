@@ -129,14 +129,14 @@ def test_what_is_lost_in_a_swarm_lies_on_no_words_either(open_game: Open, monkey
         swarm.env.place(np.ones(count, bool), lost)
         swarm.since_end[:] = 0
         for _ in range(8):
-            watch._fly()
+            watch.world.fly()
     assert swarm.env.outcome[0] == Outcome.OUT_OF_BOUNDS
     crafts: list[object] = []
-    monkeypatch.setattr(watch.stage, "draw_lander", lambda *args, **_: crafts.append(args))
+    monkeypatch.setattr(watch.world.stage, "draw_lander", lambda *args, **_: crafts.append(args))
     places = drawn(monkeypatch, "marker")
     canvas, view = driver.app.canvas, watch.camera.view(driver.app.canvas.scale)
-    watch.trails.draw(canvas, view, 0, 80.0)
-    watch._draw_shown(canvas, view, swarm.poses.at(1.0)[0])
+    watch.world.trails.draw(canvas, view, 0, 80.0)
+    watch.world._draw_shown(canvas, view, swarm.poses.at(1.0)[0])
     assert not crafts
     assert places
     assert all(80 < y < READ_OUTS for _, y in places)
