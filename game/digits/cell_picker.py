@@ -29,6 +29,7 @@ class CellPicker(Widget):
         count: cells that there are, row by row; the others of the last row are empty.
         cell: row and column of the chosen cell.
         gap: points between two cells.
+        stride: cells that an arrow moves on.
 
     """
 
@@ -44,7 +45,7 @@ class CellPicker(Widget):
         super().__init__(manager, box, label)
         self.rows = self.columns = self.count = 0
         self.cell = (0, 0)
-        self.gap, self._on_choose = gap, on_choose
+        self.gap, self.stride, self._on_choose = gap, 1, on_choose
         self._held: dict[int, Command] = {}
         self._steps = 0
 
@@ -127,7 +128,7 @@ class CellPicker(Widget):
 
     def _move(self, command: Command) -> None:
         down, across = _WAYS[command]
-        row, column = self.cell[0] + down, self.cell[1] + across
+        row, column = self.cell[0] + self.stride * down, self.cell[1] + self.stride * across
         if 0 <= row < self.rows and 0 <= column < self.columns:
             self._choose(row, column)
 

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ai.nn import ConvolutionLayer, FullyConnectedLayer
+from ai.nn import ConvolutionLayer, FullyConnectedLayer, MaxPoolingLayer
 from ai.nn.unit_sums import Place
 from game.core import texts
 from game.digits.cell_picker import CellPicker
@@ -105,6 +105,8 @@ class PatchPictures:
             window = walk.stage.read_by((row, column, row + 1, column + 1))
             label = name.format(number=walk.channel + 1, count=count, height=height, width=width)
             self._reads.show_map(self._inputs[walk.channel], label, window)
+            self._reads.cell = (window[0] + window[2]) // 2, (window[1] + window[3]) // 2
+            self._reads.stride = self._step
         if self._read_maps:
             name = names["maps" if max(height, width) > 1 else "inputs"]
             self._read_maps.show_tiles(walk.channel, name.format(count=count, number=walk.channel + 1))
@@ -179,13 +181,19 @@ class PatchPictures:
 
     def _point_at_input(self, row: int, column: int) -> None:
         """Put the window's middle on a pixel, as nearly as it goes."""
-        stage = self._walk.stage
+        stage, step = self._walk.stage, self._step
         height, width, _ = stage.outputs.shape
-        top, left, bottom, right = stage.read_by((0, 0, 1, 1))
-        down, across = stage.read_by((1, 1, 2, 2))[:2] if min(height, width) > 1 else (0, 0)
-        step = max(down - top, 1), max(across - left, 1)
-        at = (row - (bottom - top) // 2) // step[0], (column - (right - left) // 2) // step[1]
+        _, _, bottom, right = stage.read_by((0, 0, 1, 1))
+        at = (row - bottom // 2) // step, (column - right // 2) // step
         self._look_at((min(max(at[0], 0), height - 1), min(max(at[1], 0), width - 1), self._walk.place[2]))
+
+    @property
+    def _step(self) -> int:
+        """Pixels of the input from one window to the next."""
+        match self._walk.stage.layer:
+            case ConvolutionLayer(stride=step) | MaxPoolingLayer(size=step):
+                return step
+        return 1
 
 
 def _signed(values: Numbers) -> Numbers:

@@ -16,13 +16,13 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
 
 LEFT: Final = 392.0
-TOP: Final = 160.0
-_SIZE: Final = (440.0, 480.0)
+TOP: Final = 148.0
+_SIZE: Final = (440.0, 492.0)
 _MATRIX: Final = (192.0, 140.0)
 _SECOND: Final = 218.0  # left of the second column, from the first one
-_ROWS: Final = (16.0, 190.0)  # tops of the two rows of matrices
+_ROWS: Final = (28.0, 202.0)  # tops of the two rows of matrices
 _MOST_WRITTEN: Final = 7  # cells along a side up to which figures fit into them
-_ALL: Final = (0.0, 362.0, 410.0, 112.0)
+_ALL: Final = (0.0, 374.0, 410.0, 112.0)
 _LEADING: Final = 23.0
 _DIM: Final = 0.45  # of a cell's colour behind its figure
 
@@ -78,7 +78,8 @@ def _paint_products(sheet: Canvas, walk: UnitWalk) -> None:
     _paint_matrix(sheet, products, (0, _ROWS[1]))
     sheet.text("Σ", (_MATRIX[0] + 13, _ROWS[1] + 76), size=TEXT, colour=MUTE, align="centre")
     y, here = _ROWS[1] + 12, float(products.sum(dtype=np.float64))
-    _line(sheet, y, texts.PATCH_SUM.format(count=products.size), here, second)
+    word = texts.PATCH_SUM.format(count=products.size) if products.size > 1 else texts.PATCH_ONE
+    _line(sheet, y, word, here, second)
     if unit.patch.shape[2] > 1:
         y += _LEADING
         others = float(unit.products.sum(dtype=np.float64)) - here

@@ -17,7 +17,6 @@ from game.digits.stage_row import StageRow
 from game.digits.unit_walk import UnitWalk
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
-from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import MUTE, SMALL, TEXT, TITLE
 from game.input.controls import Command
@@ -92,7 +91,7 @@ class DigitInsideScene(FormScene):
         """Draw the stages, the sum of the unit looked at, and the pictures around it."""
         self._sky.draw(canvas)
         canvas.text(texts.PATCH_TITLE, (_LEFT, 45), size=TITLE)
-        draw_wrapped(canvas, self._says(), _SAYS, _RIGHT - _LEFT, size=SMALL, colour=MUTE, most=1)
+        canvas.text(self._says(), _SAYS, size=SMALL, colour=MUTE, room=_RIGHT - _LEFT)
         self._sums.draw(canvas, self.walk)
         if self.in_code:
             draw_code(canvas, self.walk)

@@ -96,7 +96,7 @@ class WhyNotScene(FormScene):
         """Draw the digit, the answer, and the evidence."""
         self._sky.draw(canvas)
         canvas.text(texts.WHY_NOT_TITLE.format(digit=self.asked), (_FRAME.left, 45), size=TITLE)
-        draw_wrapped(canvas, texts.WHY_NOT_LINE, (_FRAME.left, 70), 790, size=SMALL, colour=MUTE, most=1)
+        canvas.text(texts.WHY_NOT_LINE, (_FRAME.left, 70), size=SMALL, colour=MUTE, room=1200)
         self._painted.draw(canvas, _FRAME, self.image.tobytes(), self._paint_image)
         if self.seen:
             self._view.draw(canvas, self.seen)

@@ -13,20 +13,25 @@ import pytest
 from ai.digits.checkpoints import save_digit_run
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DIGIT_PRESETS, DigitConfig, build_digit_network
+from ai.digits.filters import FilterMoment
+from ai.digits.session import DigitPoint
 from ai.digits.training import DigitTraining
-from ai.digits.validation import Confusion
+from ai.digits.validation import Confusion, HeldOutScore
+from game.charts.scrubber import Scrubber
 from game.core import texts
 from game.core.worker import WorkerState
 from game.scenes.dialog import NameDialog, QuestionDialog
 from game.scenes.digit_training import DIGITS, DigitTrainingScene
 from game.scenes.dream import DreamScene
 from game.scenes.quiz import QuizScene
-from game.training.digit_run import DigitRun
+from game.training.digit_run import DigitCurves, DigitRun
 from game.training.knob_descriptions import knob_descriptions
 from game.training.run_settings import RunSettings
 from tests.support import inline_worker
 from tests.support.driver import Driver
+from tests.support.player import Player
 from tests.support.small import DIGITS as SMALL
+from tests.support.written import words_written
 
 
 def wait(driver: Driver, until: Callable[[], object]) -> None:
@@ -265,3 +270,69 @@ def test_the_worst_cell_is_shown_until_another_is_chosen(train: Driver):
     assert scene.form.focused is scene.matrix
     train.keys(*[pygame.K_RIGHT] * 10)
     assert scene.form.focused is not scene.matrix, "beyond the edge the focus goes on"
+
+
+# Filters as they form
+
+
+def run_with_moments(driver: Driver) -> None:
+    """Give the run a few seconds with filters that can be told apart."""
+    curves = driver.top.digit_run.curves
+    for second in range(1, 10):
+        images = np.full((5, 4, 4), 0.01 * second, np.float16)
+        curves.append(FilterMoment(float(second), 10 * second, images))
+        curves.append(HeldOutScore(float(second), second / 10))
+        curves.append(DigitPoint(float(second), 10 * second, 0.1, 1.0, 0.5, 0.001, 100.0))
+    driver.frames(30)
+
+
+@pytest.mark.parametrize("device", ["keys", "pad", "mouse"])
+def test_filters_go_back_to_any_moment_of_the_run(beside: Driver, device: str, monkeypatch):
+    scene, words = beside.top, words_written(monkeypatch)
+    if device == "mouse":
+        views = scene.views
+        beside.click((views.row.lefts[1] + 4, views.box.centery))
+    else:
+        beside.form.focus(scene.views)
+        Player(beside, device).press("right")
+    beside.frames(2)
+    assert texts.DIGIT_RUN_FILTERS_NONE in " ".join(words)
+    run_with_moments(beside)
+    film = scene.film
+    assert film.moment.step == 90
+    scrubber = beside.the(Scrubber)
+    if device == "mouse":
+        chart = scene.charts.charts[0]
+        beside.click(chart.place(3.2, 0.5))
+        assert film.moment.step == 30
+    else:
+        beside.form.focus(scrubber)
+        Player(beside, device).press(*["left"] * 6)
+        assert film.moment.step == 30
+    words.clear()
+    beside.frames(2)
+    said = " ".join(words)
+    assert texts.DIGIT_RUN_FILTERS_AT.format(seconds="3.0", steps=30) in said
+    assert "30 %" in said
+    beside.form.focus(scrubber)
+    beside.keys(*[pygame.K_RIGHT] * 8)
+    assert film.at is None, "at the end it follows the run again"
+    scene.digit_run.curves.append(FilterMoment(10.0, 100, np.ones((5, 4, 4), np.float16)))
+    assert film.moment.step == 100
+    scene.views.choose(0)
+    assert scene.matrix in beside.form.widgets
+    assert scrubber not in beside.form.widgets
+
+
+def test_a_live_run_shows_its_filters_and_the_next_run_its_own(train: Driver):
+    train.key(pygame.K_RETURN)
+    wait(train, lambda: len(train.top.digit_run.curves.filters) > 1)
+    train.top.views.choose(1)
+    train.frames(3)
+    first = train.top.film.moment
+    assert first.images.shape == (8, 28, 28)
+    train.top.film.choose(-1)
+    train.top.film.choose(0.0)
+    assert train.top.film.moment is train.top.digit_run.curves.filters[0]
+    train.top.film.follow(DigitCurves())
+    assert train.top.film.moment is None

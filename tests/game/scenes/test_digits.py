@@ -9,6 +9,7 @@ import pytest
 
 from ai.digits.ablation import stage_accuracy
 from ai.digits.preprocessing import preprocess_strokes
+from game.core import texts
 from game.digits.reader import Switches, Verdict
 from game.drawing.tokens import INK
 from game.scenes.digits import DigitsScene
@@ -16,6 +17,7 @@ from game.ui.context import Context
 from tests.support.chores import biased_fix
 from tests.support.driver import Driver
 from tests.support.pen import draw, guess, strokes
+from tests.support.player import Player
 
 Open = Callable[..., Driver]
 
@@ -181,6 +183,59 @@ def test_a_step_that_is_switched_off_changes_what_is_seen_and_its_price_is_measu
     for name, more in (("modern", 0.2), ("classic", 0.3)):
         assert digits.measuring.found[Switches()].read[name] > digits.measuring.found[off].read[name] + more
     assert np.array_equal(digits.reading.stages.centred, before)
+
+
+@pytest.mark.parametrize("device", ["mouse", "keys", "pad"])
+def test_a_switch_shows_picture_and_answer_before_and_after_for_a_moment(drawing: Driver, device: str):
+    digits = scene(drawing)
+    draw(drawing, strokes(7, 0, 0.3, (0.05, 0.05)))
+    drawing.frames(3)
+    before, switch = digits.reading, drawing.widget("centred")
+    if device == "mouse":
+        drawing.click(switch.box.center)
+    else:
+        drawing.form.focus(switch)
+        Player(drawing, device).press("confirm")
+    compared = digits.before_after.compared
+    assert compared.images[0] is before.stages.centred
+    assert compared.images[1] is digits.reading.stages.centred
+    assert not np.array_equal(*compared.images)
+    for shown, reading in zip(compared.probabilities, (before, digits.reading), strict=True):
+        np.testing.assert_array_equal(shown, reading.probabilities[digits.chosen])
+    drawing.skip(400)
+    assert digits.before_after.compared is compared, "as long as the switch is held, it stays"
+    if device == "mouse":
+        drawing.move((300, 640))
+    else:
+        drawing.form.focus(drawing.widget("Undo"))
+    drawing.skip(310)
+    assert digits.before_after.compared is None
+
+
+def test_another_drawing_ends_the_comparison_and_no_ink_begins_none(drawing: Driver):
+    digits, switch = scene(drawing), drawing.widget("pen")
+    drawing.click(switch.box.center)
+    assert digits.before_after.compared is None
+    draw(drawing, strokes(3))
+    drawing.click(switch.box.center)
+    assert digits.before_after.compared
+    draw(drawing, strokes(1))
+    drawing.frames(2)
+    assert digits.before_after.compared is None
+
+
+@pytest.mark.parametrize(("word", "name"), [("Look inside", "DigitInsideScene"), ("Why not …?", "WhyNotScene")])
+def test_words_lead_further_in_once_there_is_a_drawing(drawing: Driver, word: str, name: str):
+    drawing.press_on(word)
+    assert drawing.top_name == "DigitsScene"
+    drawing.frames(2)
+    assert drawing.said == texts.DIGITS_EMPTY
+    draw(drawing, strokes(6))
+    drawing.click(drawing.widget(word).box.center)
+    assert drawing.top_name == name
+    drawing.frames(3)
+    drawing.key(pygame.K_ESCAPE)
+    assert drawing.top_name == "DigitsScene"
 
 
 def test_a_damaged_network_is_named_and_the_other_one_reads(open_game: Open, context: Context, tmp_path):
