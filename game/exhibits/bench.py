@@ -23,7 +23,7 @@ from game.ui.widgets import TextButton
 _BUTTONS: Final = 128.0  # top of the row of words below the sliders
 _HEIGHT: Final = 20
 _GAP: Final = 22.0
-_BUDGET: Final = 3e-3  # seconds of a frame for measuring
+_BUDGET: Final = 2.5e-3  # seconds of a frame for measuring
 _REST: Final = 6  # steps without a change after which an exhibit of many bodies is made anew
 _MANY: Final = 24
 

@@ -11,7 +11,7 @@ import pygame
 from engine.vector import Array, right_of
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import INK, LINE, MARGIN, MUTE, NET, SMALL, VIEW_SIZE, Colour
+from game.drawing.tokens import INK, LINE, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
 from game.exhibits.step_pieces import Piece, written
 from game.exhibits.step_record import Axis, Pair, StepRecord
 from game.world.bodies import Outlines
@@ -130,7 +130,7 @@ class StepView:
             if not self._record.exhibit.world.params.dynamic[body]:  # its middle may be far away
                 (x, y), (right, up) = view.points(self._middle(pair)).tolist(), way.tolist()
                 x, y = x + _INSIDE * right, y - _INSIDE * up
-            canvas.text(letter, (x - 14, y + 5), size=SMALL + 2, colour=INK, weight="medium", align="centre")
+            canvas.text(letter, (x - 14, y + 5), size=TEXT, colour=INK, align="centre")
 
     def _middle(self, pair: Pair) -> Array:
         """Return the middle of the points of contact, or of the face nearest to the other shape."""

@@ -84,6 +84,8 @@ class HintRow:
             gaps = len(widths) * _GAPS[0] + (len(widths) - 1) * _GAPS[1]  # gaps do not shrink
             for _ in range(2):  # text that is made larger does not shrink in proportion
                 wide = sum(widths) + (len(widths) - 1) * _GAPS[1]
+                if wide <= self.room:
+                    break
                 size *= min(1.0, (self.room - gaps) / max(wide - gaps, 1.0))
                 widths = self._widths(canvas, size)
         return size, widths
