@@ -14,11 +14,12 @@ import numpy as np
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
+from ai.agent.n_step import NStep
 from ai.agent.network import build_network, make_optimizer
 from ai.agent.normalizer import Normalizer
 from ai.agent.replay import MemoryCell, ReplayBuffer
 from ai.common.environment import Floats, Ints
-from ai.common.learning_step import MOST_PARAMETERS, Step, kept_by, network_functions, recorded_step
+from ai.common.learning_step import MOST_PARAMETERS, Line, Step, kept_by, network_functions, recorded_step
 from ai.common.recorder import RETURN, Function, Recorder
 
 
@@ -34,6 +35,7 @@ class Flown:
         rewards: (k,) in points.
         parts: by name, what each part of the reward brought, (k,) in points.
         outcome: how the episode ended with the last of them; 0 if it went on.
+        lines: the lines of `NStep.add` that summed the rewards up, for the last of the decisions.
 
     """
 
@@ -44,6 +46,7 @@ class Flown:
     rewards: Floats
     parts: dict[str, Floats]
     outcome: int
+    lines: tuple[Line, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +184,7 @@ def explain(before: Before, cell: MemoryCell, agent: DeepQAgent, flown: Flown | 
 
 _AGENT: Final = (
     DeepQAgent.learn, DeepQAgent._learn_from, DeepQAgent.targets, DeepQAgent._next_value,
-    DeepQAgent.gradient_step, DeepQAgent._update_target, Normalizer.__call__,
+    DeepQAgent.gradient_step, DeepQAgent._update_target, Normalizer.__call__, NStep.add,
 )  # fmt: skip
 
 

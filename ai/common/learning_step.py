@@ -120,7 +120,7 @@ def recorded_step(
         optimizer_before=optimizer_before,
         optimizer_after=kept_by(optimizer, after),
         taken=optimizer.scratch.copy(),
-        lines=tuple(_line(event, len(errors[id(network)]), len(after), row) for event in recorder.events),
+        lines=tuple(line_of(event, len(errors[id(network)]), len(after), row) for event in recorder.events),
     )
 
 
@@ -141,7 +141,8 @@ def kept_by(optimizer: Optimizer, values: Floats) -> dict[str, Floats]:
     return {name: optimizer.memory.get(name, np.zeros_like(values)).copy() for name in optimizer.remembers}
 
 
-def _line(event: Event, batch: int, parameters: int, row: int) -> Line:
+def line_of(event: Event, batch: int, parameters: int, row: int) -> Line:
+    """Return a recorded line with what of its values belongs to one row of a minibatch of a size."""
     values = (_value(name, value, batch, parameters, row) for name, value in event.values.items())
     return Line(event.function, event.number, tuple(values))
 

@@ -10,6 +10,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 from types import CodeType, FrameType, TracebackType
 from typing import Any, Final, Self
 
@@ -35,9 +36,9 @@ class Event:
     Attributes:
         function: qualified name of the function.
         number: number of the line in its file.
-        values: local variables that the line set or changed, by name: numbers, and copies of arrays, or of a Row of
-            a large one. The parts of a tuple are `name.part`. The first event of a call has its arguments, the last
-            one its result.
+        values: variables that the line set or changed, by name: local numbers, and copies of arrays, or of a Row of
+            a large one. The parts of a tuple are `name.part`, arrays that the function's object keeps `self.name`.
+            The first event of a call has its arguments, the last one its result.
         owner: the `self` of the function, if it has one.
 
     """
@@ -91,15 +92,16 @@ class Recorder:
 
     def _enter_function(self, frame: FrameType, event: str, _: Any) -> Any:
         name = self._codes.get(frame.f_code)
-        return _Call(name, self.events, self._row).follow if name is not None and event == "call" else None
+        return _Call(name, self.events, self._row, frame).follow if name is not None and event == "call" else None
 
 
 class _Call:
     """One call of a recorded function."""
 
-    def __init__(self, function: str, events: list[Event], row: int) -> None:
+    def __init__(self, function: str, events: list[Event], row: int, frame: FrameType) -> None:
         self._function, self._events, self._row = function, events, row
-        self._seen: dict[str, Any] = {}
+        self._seen: dict[str, Any] = {}  # the latest values; at first of the object's arrays, which are no news
+        self._seen = dict(self._attributes(frame))
         self._number = 0  # of the line that runs; 0 before the first
 
     def follow(self, frame: FrameType, event: str, result: Any) -> Any:
@@ -114,13 +116,19 @@ class _Call:
         return self.follow
 
     def _changed(self, frame: FrameType) -> dict[str, Any]:
-        """Return copies of the local variables that are new, or are not what they were."""
+        """Return copies of the variables that are new, or are not what they were."""
         changed = {}
-        for name, held in frame.f_locals.items():
-            for part, value in _parts(name, held, self._row):
-                if part not in self._seen or not _same(self._seen[part], value):
-                    changed[part] = self._seen[part] = value
+        held = (part for name, value in frame.f_locals.items() for part in _parts(name, value, self._row))
+        for name, value in chain(held, self._attributes(frame)):
+            if name not in self._seen or not _same(self._seen[name], value):
+                changed[name] = self._seen[name] = value
         return changed
+
+    def _attributes(self, frame: FrameType) -> Iterator[tuple[str, Any]]:
+        """Yield the arrays that the function's object keeps."""
+        for name, value in getattr(frame.f_locals.get("self"), "__dict__", {}).items():
+            if isinstance(value, np.ndarray):
+                yield from _parts(f"self.{name}", value, self._row)
 
 
 def _parts(name: str, value: Any, row: int) -> Iterator[tuple[str, Any]]:

@@ -5,17 +5,28 @@ from __future__ import annotations
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ai.common.environment import Floats
-from ai.common.learning_step import MOST_PARAMETERS, Step, kept_by, network_functions, of_row, recorded_step
+from ai.common.learning_step import (
+    MOST_PARAMETERS,
+    Line,
+    Step,
+    kept_by,
+    line_of,
+    network_functions,
+    of_row,
+    recorded_step,
+)
 from ai.common.recorder import Function, Recorder
 from ai.digits.classifier import DigitClassifier
 from ai.digits.config import DigitConfig, build_digit_network
 from ai.digits.training import DigitTraining
 from ai.nn import OPTIMIZERS
+from ai.nn.costs import softmax
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +45,7 @@ class DigitLesson:
         derivative: (10,) of the cost by the outputs, divided by the size of the batch already.
         probabilities_before, probabilities_after: (10,) of each digit before and after the step, without dropout.
         step: the step of the optimizer; its row is the image's.
+        lines: the lines of our own code that made probabilities of the outputs, before the step.
 
     """
 
@@ -49,12 +61,13 @@ class DigitLesson:
     probabilities_before: Floats
     probabilities_after: Floats
     step: Step
+    lines: tuple[Line, ...] = ()
 
 
 def digit_functions(config: DigitConfig) -> dict[str, Function]:
     """Return the functions that a lesson of a digit network records, by their qualified names."""
     network, optimizer = build_digit_network(config, np.random.default_rng(0)), OPTIMIZERS[config.optimizer](0.1)
-    return Recorder([DigitTraining.advance, *network_functions(network, optimizer)]).functions
+    return Recorder([DigitTraining.advance, *network_functions(network, optimizer), *_READING]).functions
 
 
 def explain_digit(training: DigitTraining, row: int = 0) -> DigitLesson:
@@ -82,6 +95,8 @@ def explain_digit(training: DigitTraining, row: int = 0) -> DigitLesson:
     image = of_row(last("images"), row)
     after = classifier.predict(image)[0]
     network.values = before
+    with Recorder(_READING) as reading:
+        probabilities = classifier.predict(image)[0]
     return DigitLesson(
         config=training.config,
         taken=training.step,
@@ -92,10 +107,14 @@ def explain_digit(training: DigitTraining, row: int = 0) -> DigitLesson:
         logits=network.cost.logits,
         cost=float(last("loss")),
         derivative=recorder.last("NeuralNetwork.backward_propagate", "output_error")[row],
-        probabilities_before=classifier.predict(image)[0],
+        probabilities_before=probabilities,
         probabilities_after=after,
         step=step,
+        lines=tuple(line_of(event, 1, 0, 0) for event in reading.events),
     )
+
+
+_READING: Final = (DigitClassifier.probabilities, softmax)
 
 
 def _twin(training: DigitTraining) -> DigitTraining:

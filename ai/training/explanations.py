@@ -16,6 +16,8 @@ from ai.agent.lesson import Before, Flown, Lesson, explain
 from ai.agent.n_step import NStep
 from ai.agent.replay import MemoryCell
 from ai.common.environment import Floats, Ints, StepResult
+from ai.common.learning_step import line_of
+from ai.common.recorder import Recorder
 from ai.training.loop import Training
 
 _MOST_KEPT: Final = 40  # moments of a run; with twice as many, every second one is dropped
@@ -108,8 +110,9 @@ def _memory(moment: _Moment, slot: int) -> tuple[MemoryCell, Flown]:
     for each in decided:
         result = each.result
         reward = result.reward[mine] * np.float32(config.reward_scale)
-        cells, _ = n_step.add(each.observation[mine], each.actions[mine], reward, result.observation[mine],
-                              result.terminated[mine], result.ended[mine])  # fmt: skip
+        with Recorder([NStep.add]) as recorder:
+            cells, _ = n_step.add(each.observation[mine], each.actions[mine], reward, result.observation[mine],
+                                  result.terminated[mine], result.ended[mine])  # fmt: skip
     results = [each.result for each in decided]
     flown = Flown(
         slot,
@@ -119,6 +122,7 @@ def _memory(moment: _Moment, slot: int) -> tuple[MemoryCell, Flown]:
         np.array([result.reward[slot] for result in results]),
         {name: np.array([result.components[name][slot] for result in results]) for name in results[0].components},
         int(results[-1].outcome[slot]) if results[-1].ended[slot] else 0,
+        tuple(line_of(event, 1, 0, 0) for event in recorder.events),
     )
     return MemoryCell(*(part[0] for part in cells)), flown
 

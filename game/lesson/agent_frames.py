@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from ai.agent.lesson import Lesson, functions
-from ai.agent.n_step import NStep
 from ai.agent.network import build_network
 from ai.lander.environment import ACTION_NAMES
 from game.core import texts
@@ -50,16 +48,17 @@ def agent_frames(lesson: Lesson) -> list[Part]:
     length = texts.LESSON_LENGTH.format(length=number(step.taken.gradient_length))
     gradient = GradientFrame(name, length, sentence, BACKWARD, step)
     places = step.strongest(step.taken.taken, 8)
-    frames: list[tuple[Frame, Callable[..., Any] | None]] = [
-        (MomentFrame(lesson, words["moment"], ("Agent.learn", "._learn_from", "Normalizer.__call__")), None),
-        (values, None),
-        (HappenedFrame(lesson, words["happened"], ()), NStep.add),
-        (TargetFrame(lesson, words["target"], ("DeepQAgent.targets", "._next_value", "NeuralNetwork.predict")), None),
-        (ErrorFrame(lesson, words["error"], (".gradient_step", "<locals>.function", "<locals>.derivative")), None),
-        (gradient, None),
-        (AfterFrame(words["after"], ("Optimizer.step", "._update_target"), step,
+    frames: list[Frame] = [
+        MomentFrame(lesson, words["moment"], ("Agent.learn", "._learn_from", "Normalizer.__call__")),
+        values,
+        HappenedFrame(lesson, words["happened"], ("NStep.add",)),
+        TargetFrame(lesson, words["target"], ("DeepQAgent.targets", "._next_value", "NeuralNetwork.predict")),
+        ErrorFrame(lesson, words["error"], (".gradient_step", "<locals>.function", "<locals>.derivative")),
+        gradient,
+        AfterFrame(words["after"], ("Optimizer.step", "._update_target"), step,
                     [gradient.weight_name(place) for place in places],
-                    (predicted, after, lesson.target), derivative, texts.LESSON_NEARER), None),
+                    (predicted, after, lesson.target), derivative, texts.LESSON_NEARER),
     ]  # fmt: skip
     known = functions(lesson.config)
-    return [Part.of(frame, lesson.step, known, fallback) for frame, fallback in frames]
+    lines = (*(lesson.flown.lines if lesson.flown else ()), *lesson.step.lines)
+    return [Part.of(frame, lines, known) for frame in frames]

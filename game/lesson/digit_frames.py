@@ -9,7 +9,6 @@ import numpy as np
 import pygame
 
 from ai.common.environment import Floats
-from ai.digits.classifier import DigitClassifier
 from ai.digits.config import build_digit_network
 from ai.digits.lesson import DigitLesson, digit_functions
 from game.core import texts
@@ -29,6 +28,7 @@ _PIXEL: Final = 14.0  # points
 _ROW: Final = 36.0
 _NUMBERS: Final = 80.0  # left end of the columns of numbers
 _NETWORK: Final = (0.0, 8.0, 752.0, 426.0)
+_ANSWER: Final = ("DigitClassifier.probabilities", "softmax")
 _COST: Final = ("<locals>.function", "<locals>.derivative")
 _OUTPUT, _PROBABILITY, _TARGET, _BACK = 1, 2, 3, 4  # columns, by their texts
 
@@ -137,7 +137,7 @@ def digit_frames(lesson: DigitLesson) -> list[Part]:
         ImageFrame(lesson, digit, words["image"], ("DigitTraining.advance",)),
         NetworkFrame(words["values"][0], number(value), sentence, FORWARD, step, _NETWORK, "activations",
                      lesson.step.gradient),
-        DigitFrame(words["answer"], str(answer), (), digit, (output, probability)),
+        DigitFrame(words["answer"], str(answer), _ANSWER, digit, (output, probability)),
         DigitFrame(words["target"], str(digit), ("DigitTraining.advance",), digit, (output, target)),
         DigitFrame(words["error"], signed(float(lesson.derivative[digit])), _COST, digit, (output, target, back)),
         gradient,
@@ -145,4 +145,5 @@ def digit_frames(lesson: DigitLesson) -> list[Part]:
                    texts.LESSON_DIGIT_NEARER),
     ]  # fmt: skip
     known = digit_functions(lesson.config)
-    return [Part.of(frame, lesson.step, known, DigitClassifier.probabilities) for frame in frames]
+    lines = (*lesson.step.lines, *lesson.lines)
+    return [Part.of(frame, lines, known) for frame in frames]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from ai.common.learning_step import Step
+from ai.common.learning_step import Line
 from game.lesson.code import CodeWalk
 from game.lesson.frame import Frame
 
@@ -23,13 +23,11 @@ class Part:
     code: CodeWalk
 
     @classmethod
-    def of(
-        cls,
-        frame: Frame,
-        step: Step,
-        functions: Mapping[str, Callable[..., Any]],
-        fallback: Callable[..., Any] | None = None,
-    ) -> Part:
-        """Return a frame with the lines of a step that ran in its functions; `fallback` is shown without any."""
-        lines = [line for line in step.lines if frame.functions and line.function.endswith(frame.functions)]
-        return cls(frame, CodeWalk(lines, functions, fallback))
+    def of(cls, frame: Frame, lines: Iterable[Line], functions: Mapping[str, Callable[..., Any]]) -> Part:
+        """Return a frame with those of the lines that ran in its functions.
+
+        Where none ran, the first of these functions that is known is shown as it stands.
+        """
+        ran = [line for line in lines if frame.functions and line.function.endswith(frame.functions)]
+        own = (function for name, function in functions.items() if frame.functions and name.endswith(frame.functions))
+        return cls(frame, CodeWalk(ran, functions, next(own, None)))
