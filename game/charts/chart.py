@@ -16,12 +16,12 @@ import pygame
 from game.charts import plotting
 from game.charts.curves import Axes, PaintedRuns, paint_run, trace_run
 from game.charts.plotting import Limits, Numbers
-from game.charts.series import RUN_STYLES, SavedSeries, Series, Tick, draw_legend
+from game.charts.series import RUN_STYLES, SavedSeries, Series, Tick, draw_legend, paint_ticks
 from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT
+from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NIGHT0, SMALL, TEXT
 
 __all__ = ["RUN_STYLES", "Chart", "Series", "Tick", "draw_legend"]
 
@@ -37,7 +37,6 @@ _AXES_SIZE: Final = LABEL - 1.5
 _REST: Final = 6  # steps of 1/60 s between two drawings of new numbers
 _EASE: Final = 0.2
 _REACH: Final = 5.0  # points from a tick within which its caption shows
-_TICK_SPACING: Final = 4.0
 _DOTTED: Final = 4  # runs with a dot at the cursor of a chart that the mouse is not over
 _SLACK: Final = 0.02  # share of the x axis by which the cursor may lie beyond a run's end
 
@@ -211,7 +210,7 @@ class Chart:
         self._behind.lay(sheet, area, self.runs[1:], traces[1:], axes)
         if self.runs:
             paint_run(sheet, area, self.runs[0], traces[0], axes)
-        self._paint_ticks(sheet, plot)
+        paint_ticks(sheet, plot, self._ticks, self.x_range)
         return sheet, traces
 
     def _paint_header(self, sheet: Canvas, box: pygame.FRect) -> None:
@@ -246,19 +245,6 @@ class Chart:
         for (x, align), told in zip(ends, self._told, strict=False):
             place = (x, plot.bottom + 15)
             sheet.text(self.read_x(told), place, size=_AXES_SIZE, colour=_AXES, tabular=True, align=align)
-
-    def _paint_ticks(self, sheet: Canvas, plot: pygame.FRect) -> None:
-        start, end = self.x_range
-        last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
-        for tick in self._ticks:
-            if not start <= tick.x <= end:
-                continue
-            x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
-            if tick.kind == "knob":
-                sheet.marker("diamond", (x, plot.bottom), 8, HUMAN)
-            elif x - last >= _TICK_SPACING:
-                sheet.surface.fill(FAINT, (sheet.px(x), top, max(1, sheet.px(1)), height))
-                last = x
 
     def _value_at(self, x: float) -> float | None:
         """Return the value of the current run's curve at x."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,11 +10,14 @@ from typing import Final, Literal
 
 import numpy as np
 import numpy.typing as npt
+import pygame
 
-from game.charts.plotting import Numbers
+from game.charts.plotting import Limits, Numbers
 from game.charts.tooltip import draw_swatch
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import MUTE, NET, SMALL, Colour
+from game.drawing.tokens import FAINT, HUMAN, MUTE, NET, SMALL, Colour
+
+_TICK_SPACING: Final = 4.0  # points
 
 # Blue is the current run; the others differ from it and from each other in dashes, and in colour, for eyes of
 # every kind: neighbours in both, and no two of them are alike in both.
@@ -120,3 +124,18 @@ def draw_legend(canvas: Canvas, series: Sequence[Series], position: Point) -> fl
         draw_swatch(canvas, (x, y - 4), each.colour, each.dash)
         x = canvas.text(each.name, (x + 27, y), size=SMALL, colour=MUTE).right + 20
     return x - 20
+
+
+def paint_ticks(sheet: Canvas, plot: pygame.FRect, ticks: Sequence[Tick], x_range: Limits) -> None:
+    """Draw the ticks of the shown part of the x axis below a plot, of those too close together only the first."""
+    start, end = x_range
+    last, top, height = -math.inf, sheet.px(plot.bottom + 2), sheet.px(3)
+    for tick in ticks:
+        if not start <= tick.x <= end:
+            continue
+        x = plot.x + min(max((tick.x - start) / (end - start), 0.0), 1.0) * plot.width
+        if tick.kind == "knob":
+            sheet.marker("diamond", (x, plot.bottom), 8, HUMAN)
+        elif x - last >= _TICK_SPACING:
+            sheet.surface.fill(FAINT, (sheet.px(x), top, max(1, sheet.px(1)), height))
+            last = x
