@@ -101,12 +101,12 @@ class Canvas:
         sheet.surface = pygame.Surface(sheet.size, pygame.SRCALPHA)
         return sheet
 
-    def part(self, x: float, y: float, width: float, height: float) -> Canvas:
-        """Return a canvas that draws into a box of this one, in points, with its own origin and at the same scale."""
-        part = copy(self)
-        part._covered = deque(maxlen=0)
-        part.surface = self.surface.subsurface(self.rect(x, y, width, height).clip(self.surface.get_rect()))
-        return part
+    def picture(self, width: float, height: float) -> Canvas:
+        """Return a canvas at the same scale on its own opaque surface, to be copied as often as it is drawn."""
+        picture = copy(self)
+        picture._covered = deque(maxlen=0)
+        picture.surface = pygame.Surface(self.rect(0, 0, width, height).size)
+        return picture
 
     def lay(self, sheet: Canvas, x: float, y: float) -> None:
         """Copy a sheet onto the canvas, with its top left corner at (x, y) in points."""

@@ -16,6 +16,7 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import LABEL, MUTE
 
 STAY: Final = 3.0  # seconds of training for which a caption stays at least, unless a hint speaks against it
+UNKNOWN: Final = "unknown"  # the caption of a curve that has not begun, which stays no longer than that
 _SIZE: Final = LABEL - 1.0
 _LEADING: Final = 12.0
 _DROP: Final = 12.0  # from the bottom of a chart to the first baseline
@@ -46,8 +47,8 @@ class ChartCaptions:
         now = float(history["seconds"][-1])
         for chart, caption in captions(RecentCurves(history, config), hint).items():
             before = self.shown.get(chart)
-            rests = before is not None and before.name != caption.name and now - self._since[chart] < STAY
-            if rests and hint == self._hint:
+            changes = before is not None and before.name not in (caption.name, UNKNOWN)
+            if changes and now - self._since[chart] < STAY and hint == self._hint:
                 continue
             if before is None or before.name != caption.name:
                 self._since[chart] = now

@@ -48,6 +48,7 @@ class Laboratory:
     Attributes:
         came: what has come of the experiment; None while it is too early to say.
         so_far: how many flights both runs land at this moment.
+        differs: the settings that differ, with both values.
 
     Args:
         split: the runs; an experiment flies beside a run of theirs.
@@ -60,7 +61,7 @@ class Laboratory:
         self.split, self._start, self._leave = split, start, leave
         self.chosen: Chosen | None = None
         self.came: Kind | None = None
-        self.so_far = texts.TRAIN_BEGINS
+        self.so_far, self.differs = texts.TRAIN_BEGINS, ""
 
     @property
     def flies(self) -> bool:
@@ -85,6 +86,7 @@ class Laboratory:
     def follow(self) -> None:
         """Judge both runs by their curves; call it when there is news."""
         split, twin = self.split, self.split.twin
+        self.differs = listed_differences(split.config, twin.config) if twin else ""
         if twin is None or not (len(split.history) and len(twin.history)):
             self.came, self.so_far = None, texts.TRAIN_BEGINS
             return
@@ -165,9 +167,7 @@ def draw_result(canvas: Canvas, box: pygame.Rect, laboratory: Laboratory) -> Non
     x, y = box.left, float(box.top + TOP)
     canvas.text(texts.LAB_HEADING, (x, y + 25), size=LABEL, weight="medium", colour=MUTE)
     canvas.text(chosen.name, (x, y + 52), size=TEXT)
-    y = draw_wrapped(
-        canvas, listed_differences(laboratory.split.config, twin.config), (x, y + 74), box.width, colour=MUTE, most=3
-    )
+    y = draw_wrapped(canvas, laboratory.differs, (x, y + 74), box.width, colour=MUTE, most=3)
     y += 10
     for heading, told in _found(laboratory, chosen):
         canvas.text(heading, (x, y), size=SMALL, colour=MUTE, room=_MEANINGS - 8)

@@ -13,7 +13,7 @@ from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.prose import draw_wrapped
 from game.drawing.tokens import LINE, MUTE, NET, NIGHT0, SMALL, TEXT, VIEW_SIZE, Colour
-from game.panels.lab import Laboratory, listed_differences
+from game.panels.lab import Laboratory
 from game.training.lander_run import LanderRun
 from game.training.training_run import EarlierRun
 from game.world.swarm import LearningSwarm
@@ -25,6 +25,7 @@ _FLOOR: Final = 434.0
 _MARGIN: Final = 40.0, 22.0  # from the left of each half to its words
 _STEP: Final = (400.0, 98.0)  # where it is said that both are in step
 _STEP_WIDTH: Final = 268.0
+_JUDGED: Final = 20  # frames after which the runs are judged anew
 _STYLE: Final = 1  # of the experiment's curves: see RUN_STYLES
 
 
@@ -34,7 +35,8 @@ class SplitView:
     def __init__(self, laboratory: Laboratory) -> None:
         self._laboratory, self._split = laboratory, laboratory.split
         self.swarms = tuple(LearningSwarm(_WIDTH / VIEW_SIZE[0]) for _ in range(2))
-        self._points = -1  # of both histories, when they were judged last
+        self._pictures: list[Canvas] = []  # of both halves, each drawn anew in every second frame
+        self._frame = 0
         self._moment: int | None = None
 
     @property
@@ -52,12 +54,12 @@ class SplitView:
 
     def clear(self) -> None:
         """Empty both halves, for other runs."""
-        self._points = -1
+        self._pictures = []
         for swarm in self.swarms:
             swarm.clear()
 
     def update(self, still: bool, moment: int | None = None) -> None:
-        """Take the latest snapshots, judge the runs when there is news, and advance by 1/60 s.
+        """Take the latest snapshots, judge the runs now and then, and advance by 1/60 s.
 
         `moment`, in decisions, is that which is shown instead of now.
         """
@@ -72,9 +74,8 @@ class SplitView:
                 swarm.take(state)
             swarm.update(still)
         self._moment = moment
-        points = len(self._split.history) + len(twin.history) + bool(twin.problem)
-        if points != self._points:
-            self._points = points
+        self._frame += 1
+        if self._frame % _JUDGED == 0:
             self._laboratory.follow()
 
     def draw(self, canvas: Canvas, alpha: float) -> None:
@@ -84,12 +85,16 @@ class SplitView:
             return
         canvas.fill(canvas.rect(0, 0, 2 * _WIDTH, _FLOOR), NIGHT0)
         paused = self._split.state is WorkerState.PAUSED
-        for number, swarm in enumerate(self.swarms):
-            swarm.draw(canvas.part(number * _WIDTH, _TOP, _WIDTH, _HEIGHT), alpha, paused=paused)
+        fresh = not self._pictures or self._pictures[0].scale != canvas.scale
+        if fresh:
+            self._pictures = [canvas.picture(_WIDTH, _HEIGHT) for _ in self.swarms]
+        for number, (swarm, picture) in enumerate(zip(self.swarms, self._pictures, strict=True)):
+            if fresh or self._frame % 2 == number:
+                swarm.draw(picture, alpha, paused=paused)
+            canvas.surface.blit(picture.surface, canvas.rect(number * _WIDTH, _TOP, _WIDTH, _HEIGHT))
         canvas.line((_WIDTH, _TOP), (_WIDTH, _FLOOR - 8), LINE)
-        changed = listed_differences(self._split.config, twin.config)
         self._write(canvas, 0, texts.SPLIT_HEALTHY, texts.SPLIT_ALIKE, self._split, NET)
-        self._write(canvas, 1, chosen.name, changed, twin, RUN_STYLES[_STYLE][0])
+        self._write(canvas, 1, chosen.name, self._laboratory.differs, twin, RUN_STYLES[_STYLE][0])
         draw_wrapped(canvas, texts.SPLIT_STEP, _STEP, _STEP_WIDTH, colour=MUTE, most=3)
 
     def _write(self, canvas: Canvas, half: int, name: str, told: str, run: LanderRun, colour: Colour) -> None:

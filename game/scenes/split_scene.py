@@ -72,6 +72,7 @@ class SplitTrainingScene(TrainingScene[SplitRun]):
             self.context.note(note)
         self._clear()
         self.knobs.set_config(config, seed)
+        self.laboratory.follow()
         self.training_charts.measure_by(BY_DECISIONS)
         self._lay_again()
         self.knobs.show_experiment()

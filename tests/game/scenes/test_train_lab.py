@@ -251,7 +251,7 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str)
     assert laboratory.chosen.guess == "never"
     assert scene.lander_run.twin.config == SMALL.changed(optimizer="sgd")
     train.wait(lambda: len(scene.lander_run.twin.history) >= 2)
-    train.frames(3)
+    train.frames(25)  # they are judged now and then
     assert laboratory.came is None
     assert laboratory.so_far != texts.TRAIN_BEGINS
     press(texts.LAB_KNOBS)
