@@ -181,7 +181,7 @@ class NeuronChapter(Chapter):
     def _draw_neuron(self, canvas: Canvas) -> None:
         top, left = STAGE.top + _WORLD + 24, STAGE.left
         canvas.line((left, top - 16), (STAGE.right, top - 16), FAINT)
-        shares = self.sensed[0] * self.layer.weights[:, 0]
+        shares = self.sensed[0] * self.layer.weights[:, 0] + 0.0  # no minus before a zero
         for number, name in enumerate(texts.LEARN_NEURON_INPUTS):
             y = top + 14 + 32 * number
             told = texts.LEARN_NEURON_PRODUCT.format(

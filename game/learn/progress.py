@@ -45,12 +45,10 @@ class Progress:
         """Return whether a chapter was opened before."""
         return isinstance(self._settings.learnt.get(key), dict)
 
-    def note(self, key: str, **values: int | bool) -> bool:
-        """Note a `guess`, a `page` or that a chapter is `done`; return whether that is anything new."""
+    def note(self, key: str, **values: int | bool) -> None:
+        """Note a `guess`, a `page` or that a chapter is `done`."""
         before = self._settings.learnt.get(key)
-        after = {**(before if isinstance(before, dict) else {}), **values}
-        self._settings.learnt[key] = after
-        return after != before
+        self._settings.learnt[key] = {**(before if isinstance(before, dict) else {}), **values}
 
     def _value(self, key: str, name: str) -> Any:
         chapter = self._settings.learnt.get(key)

@@ -52,7 +52,9 @@ class ChapterScene(FormScene):
         self._progress = Progress(context.settings)
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
         self.chapter = chapter_type(key)(context, self.form.manager)
-        self.page, self._function, self._told = self._progress.page(key), 0, ""
+        page = self._progress.page(key)
+        self.page = _TRY if page == _WHY else page  # a try from an earlier visit is gone
+        self._function, self._told = 0, ""
         tabs = (*_TABS, row_width(texts.LEARN_PAGES, TEXT), 26)
         self._tabs = self.form.add(Choice(self.form.manager, tabs, "", texts.LEARN_PAGES, self.page, self.turn_to))
         self._widgets: list[Widget] = []
@@ -122,6 +124,8 @@ class ChapterScene(FormScene):
         if self.chapter.changed:
             self.chapter.changed = False
             self._offer()
+        if self.page == _WHY and self.chapter.tried and not self._told:
+            self.turn_to(_WHY)  # what was begun on the page before has come to its end
         return self.form.update()
 
     # What can be pressed

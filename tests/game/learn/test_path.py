@@ -125,6 +125,19 @@ def test_a_chapter_is_done_once_it_was_tried_and_its_why_read(open_game: Open, c
     assert driver.saved()["learnt"]["neuron"]["done"] is True
 
 
+def test_a_try_that_ends_while_its_why_is_open_is_told_there(open_game: Open, context: Context):
+    settle(context)
+    driver = open_game(ChapterScene, "plane")
+    scene, progress = driver.top, Progress(driver.app.context.settings)
+    scene.turn_to(1)
+    driver.skip(50)
+    scene.turn_to(2)
+    assert not progress.done("plane")
+    driver.skip(270)
+    assert scene.chapter.tried
+    assert progress.done("plane")
+
+
 def test_damaged_progress_counts_as_nothing_done_and_the_path_goes_on(open_game: Open, context: Context):
     damaged = {"neuron": 3, "plane": {"guess": "two", "page": 99, "done": 1}, "downhill": {"guess": -1, "page": True}}
     settle(context, learnt=damaged, chapter="gone")
