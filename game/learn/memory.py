@@ -38,7 +38,7 @@ _WALL: Final = pygame.FRect(STAGE.left, STAGE.top + 26, STAGE.width, _ROWS * _CE
 _HALF: Final = (STAGE.width - 40) / 2
 _HIGHEST: Final = 9.0  # metres, of a cell's picture
 _PAID: Final = 20.0  # points beyond which a cell is lit as a landing or a crash
-_FADE: Final = 0.8  # light of a drawn cell that is left after a decision
+_FADE: Final = 0.5  # light of a drawn cell that is left after a decision
 
 
 class MemoryChapter(RunsChapter):
@@ -114,7 +114,8 @@ class MemoryChapter(RunsChapter):
                 self._pictured[cell] = moment
             self._come[cell] += 1
         self.light *= _FADE
-        self.light[np.minimum(memory.drawn // _EACH, len(self.light) - 1)] = 1.0
+        drawn = memory.drawn[: SMALL_RUN.batch_size]  # for the first of this decision's learning steps
+        self.light[np.minimum(drawn // _EACH, len(self.light) - 1)] = 1.0
 
     def finished(self) -> None:
         """Keep the result, to compare it with that of other memories."""
@@ -209,5 +210,5 @@ def _place(cell: int) -> tuple[float, float]:
 def _colour(canvas: Canvas, pay: float) -> Colour:
     """Return the colour of a cell, by the pay of its memory."""
     if abs(pay) > _PAID:
-        return mix(NIGHT1, canvas.palette.good if pay > 0 else canvas.palette.warn, 0.75)
+        return mix(NIGHT1, canvas.palette.good if pay > 0 else canvas.palette.warn, 0.55)
     return mix(NIGHT1, NET, 0.25 + 0.25 * min(max(pay / 5.0, -1.0), 1.0))

@@ -77,6 +77,7 @@ class MomentChapter(Chapter):
     """
 
     key = "moment"
+    answer = 2
     door = Route("watch")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

@@ -45,6 +45,7 @@ class OwnChapter(Chapter):
     """
 
     key = "own"
+    answer = 0
     door = Route("watch")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:

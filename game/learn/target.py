@@ -16,7 +16,7 @@ from ai.training.small_run import SMALL_RUN
 from game.core import texts
 from game.core.scene import Route
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, MUTE, NET, SMALL, TEXT
+from game.drawing.tokens import HUMAN, INK, LABEL, MUTE, NET, SMALL, TEXT
 from game.learn.chapter import STAGE, Code
 from game.learn.runs import RunsChapter, draw_axis, draw_curve, draw_landers
 from game.panels.q_values import signed
@@ -125,7 +125,7 @@ class TargetChapter(RunsChapter):
             draw_axis(canvas, chart, [(float(_height(np.array(tick))), word) for tick, word in _TICKS])
             bound = chart.bottom - _CHART * float(_height(np.array(BOUND)))
             canvas.line((chart.left, bound), (chart.right, bound), MUTE, 1.5)
-            canvas.text(texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}"), (chart.right, bound - 5), size=11.5,
+            canvas.text(texts.LEARN_TARGET_BOUND.format(bound=f"{BOUND:g}"), (chart.right, bound + 14), size=LABEL,
                         colour=MUTE, align="right", room=chart.width)  # fmt: skip
             if state is None:
                 continue
