@@ -43,7 +43,7 @@ class DaringChapter(RunsChapter):
     PLAN = Plan(heights=(5.0, 8.0))
 
     def __init__(self, context: Context, manager: PointsManager) -> None:
-        self.choice = 1
+        self.choice = self._flown = 1
         super().__init__(context, manager)
 
     def restart(self) -> None:
@@ -96,7 +96,8 @@ class DaringChapter(RunsChapter):
 
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
         """Draw both groups of landers, and below each how many of its latest flights landed."""
-        names = (texts.LEARN_DARING_NAMES[0], texts.LEARN_DARING_NAMES[1].format(share=DARING[self.choice]))
+        shown = self._flown if self.states else self.choice
+        names = (texts.LEARN_DARING_NAMES[0], texts.LEARN_DARING_NAMES[1].format(share=DARING[shown]))
         for run, (name, colour) in enumerate(zip(names, (NET, HUMAN), strict=True)):
             box = pygame.FRect(STAGE.left + run * (_HALF + _GAP), STAGE.top + 22, _HALF, 208)
             canvas.text(name, (box.left, STAGE.top + 12), colour=colour, room=_HALF)

@@ -47,7 +47,7 @@ class TargetChapter(RunsChapter):
     door = Route("train")
 
     def __init__(self, context: Context, manager: PointsManager) -> None:
-        self.choice = 0
+        self.choice = self._flown = 0
         super().__init__(context, manager)
 
     def restart(self) -> None:
@@ -114,7 +114,8 @@ class TargetChapter(RunsChapter):
     def draw(self, canvas: Canvas, alpha: float) -> None:  # noqa: ARG002
         """Draw both groups of landers, and below each what its network expects."""
         usual, some, always = texts.LEARN_TARGET_NAMES
-        names = (usual, some.format(every=f"{EVERY[self.choice]:,}") if self.choice else always)
+        shown = self._flown if self.states else self.choice
+        names = (usual, some.format(every=f"{EVERY[shown]:,}") if shown else always)
         for run, (name, colour) in enumerate(zip(names, (NET, HUMAN), strict=True)):
             box = pygame.FRect(STAGE.left + run * (_HALF + _GAP), STAGE.top + 22, _HALF, 168)
             canvas.text(name, (box.left, STAGE.top + 12), colour=colour, room=_HALF)
