@@ -29,13 +29,16 @@ def neighbour(boxes: Sequence[pygame.Rect], current: int, direction: Direction) 
             return max(box.top - here.bottom, here.top - box.bottom, 0)
         return max(box.left - here.right, here.left - box.right, 0)
 
+    def level(box: pygame.Rect) -> bool:  # rows that only touch are two
+        return box.top < here.bottom and here.top < box.bottom
+
     def beyond(box: pygame.Rect) -> bool:
         return box.left >= here.right if direction[0] > 0 else box.right <= here.left
 
     others = [index for index in range(len(boxes)) if index != current]
     forward = [index for index in others if ahead(boxes[index]) > 0]
     if direction[0]:
-        row = [index for index in forward if aside(boxes[index]) == 0]
+        row = [index for index in forward if level(boxes[index])]
         forward = row or [index for index in forward if beyond(boxes[index])]
     if forward:
         return min(forward, key=lambda index: ahead(boxes[index]) + 2 * aside(boxes[index]))

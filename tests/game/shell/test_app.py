@@ -58,7 +58,7 @@ class Probe(Scene):
 
 
 def test_menu_leads_to_settings_and_back_by_keyboard(game: Driver):
-    game.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
+    game.keys(*[pygame.K_DOWN] * 8, pygame.K_RETURN)
     assert game.top_name == "SettingsScene"
     game.key(pygame.K_ESCAPE)
     assert game.top_name == "MenuScene"
@@ -303,7 +303,7 @@ def test_pause_offers_retry_settings_and_the_way_out(open_game):
 
 
 def test_a_scene_that_is_left_for_good_is_in_memory_no_more(game: Driver):
-    game.keys(*[pygame.K_DOWN] * 7, pygame.K_RETURN)
+    game.keys(*[pygame.K_DOWN] * 8, pygame.K_RETURN)
     settings = weakref.ref(game.top)
     game.frames(20)
     gc.disable()
