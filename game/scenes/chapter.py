@@ -56,7 +56,7 @@ class ChapterScene(FormScene):
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
         self.chapter = chapter_type(key)(context, self.form.manager)
         page = self._progress.page(key)
-        self.page = _TRY if page == _WHY else page  # a try from an earlier visit is gone
+        self.page = _TRY if page >= _WHY else page  # a try from an earlier visit is gone, and its numbers in the code
         self._function, self._told = 0, ""
         tabs = (*_TABS, row_width(texts.LEARN_PAGES, TEXT), 26)
         self._tabs = self.form.add(Choice(self.form.manager, tabs, "", texts.LEARN_PAGES, self.page, self.turn_to))

@@ -17,7 +17,7 @@ from game.learn.chapter import Chapter
 from game.learn.downhill import DownhillChapter
 from game.learn.neuron import GOAL, HINT, NeuronChapter
 from game.learn.path import PATH, chapter_type
-from game.learn.pay import DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
+from game.learn.pay import ASKED, DECISIONS, FLIGHTS, PAYS, Flown, PayChapter, config_of
 from game.learn.plane import PlaneChapter
 from game.scenes.chapter import placed
 from game.ui.context import Context
@@ -130,6 +130,14 @@ def test_more_units_divide_more_of_the_plane(units: int, least: float, most: flo
         network.train_batch(points, targets, optimizer)
     right = float(((network.predict(points) > 0) == (targets > 0)).mean())
     assert least <= right <= most
+
+
+def test_a_neuron_without_a_middle_layer_stays_undecided():
+    points, targets = plane.examples(0)
+    network, optimizer = plane.network_of(0, 0), Adam(0.02)
+    for _ in range(plane.STEPS):
+        network.train_batch(points, targets, optimizer)
+    assert np.abs(network.predict(points)).max() < 0.2
 
 
 def test_the_plane_shows_what_the_trained_network_answers(made: Made):
@@ -308,7 +316,7 @@ def test_the_flights_after_a_run_are_those_of_its_network(made: Made, monkeypatc
         chapter.update()
     agent, env = chapter.trial.agent, chapter.trial.env
     assert agent.decisions >= 64 * 40
-    assert agent.config == config_of(PAYS["landing"])
+    assert agent.config == config_of(PAYS[ASKED])
     expected = agent.act(env.observe(), held=np.zeros(FLIGHTS, np.intp))
     chapter.trial.step()
     assert (chapter.trial.env.actions == expected).all()
