@@ -156,8 +156,8 @@ class ChapterScene(FormScene):
         left, _, width = _COLUMN
         top = self._below(self._end(self.chapter.words["code"]), _FUNCTION * len(codes))
         return [
-            TextButton(self.form.manager, (left, top + _FUNCTION * number, width, _FUNCTION), code.function.__qualname__,
-                       partial(self._show_function, number), size=SMALL, weight="code",
+            TextButton(self.form.manager, (left, top + _FUNCTION * number, width, _FUNCTION),
+                       code.function.__qualname__, partial(self._show_function, number), size=SMALL, weight="code",
                        colour=NET if number == self._function else MUTE)
             for number, code in enumerate(codes)
         ]  # fmt: skip

@@ -56,7 +56,8 @@ class LearnScene(ListScene[str]):
         return next((key for key in PATH if not self._progress.done(key)), FIRST)
 
     def _row(self, key: str) -> Row:
-        return texts.LEARN[key]["title"], texts.LEARN_MINUTES.format(count=PATH[key].minutes), texts.LEARN_STATES[self._state(key)]
+        minutes = texts.LEARN_MINUTES.format(count=PATH[key].minutes)
+        return texts.LEARN[key]["title"], minutes, texts.LEARN_STATES[self._state(key)]
 
     def _state(self, key: str) -> int:
         return 2 if self._progress.done(key) else 1 if self._progress.begun(key) else 0
