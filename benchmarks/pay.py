@@ -32,7 +32,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=3)
     seeds = parser.parse_args().seeds
-    print(f"{DECISIONS:,} decisions, then {FLIGHTS} flights: landed, crashed, flew away, stayed up; seconds, of engine")
+    print(f"{DECISIONS:,} decisions, then {FLIGHTS} flights: landed, crashed, flew away, no rest; seconds, engine")
     for pay in PAYS:
         for seed in range(seeds):
             each = flown(pay, seed)

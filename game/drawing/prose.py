@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
+from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.tokens import INK, SMALL, Colour
 
@@ -12,10 +14,19 @@ _LONGEST: Final = 4000  # characters: more than fit on a screen
 
 def wrapped(canvas: Canvas, text: str, size: float, width: float) -> list[str]:
     """Break a text between words into lines no wider than `width` points; a longer word has a line of its own."""
+    return _broken(text, width, lambda line: canvas.text_width(line, size=size))
+
+
+def line_count(text: str, size: float, width: float) -> int:
+    """Return the number of lines of a wrapped text, for layout before there is a canvas."""
+    return len(_broken(text, width, lambda line: typeface.width(line, size, "regular")))
+
+
+def _broken(text: str, width: float, measure: Callable[[str], float]) -> list[str]:
     lines = [""]
     for word in text[:_LONGEST].split():
         longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and canvas.text_width(longer, size=size) > width:
+        if lines[-1] and measure(longer) > width:
             lines.append(word)
         else:
             lines[-1] = longer

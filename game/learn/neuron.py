@@ -25,7 +25,7 @@ from game.ui.widgets import Slider, TextButton
 
 # What the neuron senses: indices of sin of the tilt, spin and sideways speed in an observation.
 SENSES: Final = (4, 6, 2)
-HINT: Final = (-4.0, -4.0, 2.0)  # weights that fly
+HINT: Final = (-4.0, 0.0, 2.0)  # weights that fly
 DECISION: Final = 4  # physics steps with one action, as a network flies
 GOAL: Final = 10.0  # seconds to stay upright and in sight
 _FIRES: Final = 0.5  # output beyond which a jet fires
@@ -33,6 +33,7 @@ _HEIGHT: Final = 12.0  # metres at which the main engine's rule holds it
 _SIGHT: Final = 12.0  # metres to either side
 _FALLEN: Final = np.radians(60.0)
 _LEANS: Final = np.radians((22.0, -30.0, 35.0, -15.0))  # of the flights, in turn
+_DRIFT: Final = 2.0  # m/s with which a flight begins, to the side it leans to: out of sight within GOAL if nothing acts
 _SHOVE: Final = (1.2, 0.8)  # m/s and rad/s that a push adds
 _REST: Final = 50  # updates between a flight and the next
 _WORLD: Final = STAGE.height - 164  # height of the picture of the flight
@@ -46,6 +47,7 @@ class NeuronChapter(Chapter):
         seconds: how long the present flight has been upright and in sight.
         sensed: what the neuron was given for its latest decision, (1, 3).
         output: what it answered, from -1 to 1.
+        end: how the present flight ended: "fell" over, or "drifted" out of sight; empty while it flies.
         best: the longest such time, with the weights of then.
 
     """
@@ -111,10 +113,10 @@ class NeuronChapter(Chapter):
     def _begin(self) -> None:
         lean = _LEANS[self._flights % len(_LEANS)]
         self._flights += 1
-        self.env.place(np.array([True]), np.array([[0.0, _HEIGHT, 0.0, 0.0, lean, 0.0]]))
+        self.env.place(np.array([True]), np.array([[0.0, _HEIGHT, -_DRIFT * np.sign(lean), 0.0, lean, 0.0]]))
         self._lander.begin()
         self._age = self._pushes = self._over = 0
-        self.seconds = 0.0
+        self.seconds, self.end = 0.0, ""
         self._decide()
 
     def _decide(self) -> None:
@@ -141,11 +143,12 @@ class NeuronChapter(Chapter):
 
     def _judge(self) -> None:
         self.seconds += DT
-        flying = self.env.outcome[0] == Outcome.FLYING and abs(self.env.position[0, 0]) < _SIGHT
+        in_sight = abs(self.env.position[0, 0]) < _SIGHT
+        fallen = self.env.outcome[0] != Outcome.FLYING or self.env.tilt[0] > _FALLEN
         if self.seconds > self.best[0] and any(self.weights):
             self.best = (self.seconds, self.weights)
-        if not flying or self.env.tilt[0] > _FALLEN:
-            self._over = _REST
+        if fallen or not in_sight:
+            self.end, self._over = ("fell" if fallen else "drifted"), _REST
             self.tried = self.tried or any(self.weights)
         self.tried = self.tried or self.best[0] >= GOAL
 
@@ -160,7 +163,7 @@ class NeuronChapter(Chapter):
     def code(self) -> Sequence[Code]:
         """Return the layer's sum, with the numbers of this decision."""
         inputs, weights = self.sensed[0], self.layer.weights[:, 0]
-        total = " ".join(f"{value:+.2f}·{weight:+.1f}" for value, weight in zip(inputs, weights, strict=True))
+        total = " ".join(f"{value:+.2f}×{weight:+.1f}" for value, weight in zip(inputs, weights, strict=True))
         sums = {"input_data.dot": total, "output += bias": f"{float(self.layer.bias[0]):+.1f}"}
         return [Code(FullyConnectedLayer.predict, "input_data.dot", sums)]
 
@@ -174,7 +177,7 @@ class NeuronChapter(Chapter):
             canvas.line((world.left, y), (world.right, y), LINE)
             canvas.line((x, world.top), (x, world.bottom), LINE)
             self._lander.draw(canvas, view, alpha)
-        told = texts.LEARN_NEURON_OVER if self._over else texts.LEARN_NEURON_SECONDS
+        told = texts.LEARN_NEURON_FLIGHT[self.end if self._over else "flies"]
         canvas.text(told.format(seconds=self.seconds), (STAGE.left + 4, STAGE.top + 18), colour=MUTE, tabular=True)
         self._draw_neuron(canvas)
 
@@ -195,5 +198,6 @@ class NeuronChapter(Chapter):
         canvas.text(total, (left + 446, top + 36), size=SMALL, tabular=True, room=STAGE.right - left - 446)
         canvas.text(texts.LEARN_NEURON_ACTIONS[self.steer], (left + 446, top + 60), size=TEXT,
                     colour=NET if self.steer else INK, room=STAGE.right - left - 446)  # fmt: skip
-        canvas.text(texts.LEARN_NEURON_RULE, (left + 446, top + 100), size=LABEL, colour=MUTE,
-                    room=STAGE.right - left - 446)  # fmt: skip
+        for line, rule in enumerate((texts.LEARN_NEURON_FIRES.format(output=_FIRES), texts.LEARN_NEURON_RULE)):
+            canvas.text(rule, (left + 446, top + 84 + 20 * line), size=LABEL, colour=MUTE,
+                        room=STAGE.right - left - 446)  # fmt: skip

@@ -40,6 +40,7 @@ PAYS: Final = {
     "haste": RewardWeights(time=-8.0, switch=-0.05, terminal=20.0),
     "fuel": RewardWeights(time=0.0, switch=-0.05, engine=-4.0, terminal=30.0),
 }
+ASKED: Final = "aloft"  # the pay that the question is about
 DECISIONS: Final = 24_000  # of single landers, after which it is looked at
 SPAWN: Final = "near"
 FLIGHTS: Final = 24
@@ -128,7 +129,7 @@ class PayChapter(Chapter):
     def restart(self) -> None:
         """Forget all runs."""
         self.close()
-        self.pay, self.tried, self.note = "landing", False, ""
+        self.pay, self.tried, self.note = ASKED, False, ""
         self.results: dict[str, Flown] = {}
         self._clear()
 

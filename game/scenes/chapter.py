@@ -13,7 +13,7 @@ from game.core.scene import Push, Replace, Route, Transition
 from game.core.source import Source, source_of
 from game.drawing.canvas import Canvas
 from game.drawing.paint_cache import PaintCache
-from game.drawing.prose import draw_wrapped
+from game.drawing.prose import draw_wrapped, line_count
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, MARGIN, MUTE, NET, SMALL, TEXT, VIEW_SIZE, Colour
 from game.input.controls import Command
@@ -32,7 +32,10 @@ _PREDICT, _TRY, _WHY, _CODE = range(len(PAGES))
 _COLUMN: Final = (MARGIN, 188.0, 344.0)  # left, first baseline and width of the text
 _TABS: Final = (MARGIN, 120)
 _BODY, _LEADING = SMALL + 1.5, 20.0
+_GAP: Final = 12.0  # points between the lead and the question
+_BELOW: Final = 20.0  # points between a text's last baseline and the buttons below it
 _ANSWER: Final = 38  # points from one answer to the next
+_FUNCTION: Final = 30  # points from one function's name to the next
 _NOTES: Final = 230.0  # width of what stands beside lines of code
 _FOOT: Final = 628
 _OPEN: Final = (190, 198, 214)  # an answer that was not given
@@ -53,7 +56,7 @@ class ChapterScene(FormScene):
         self._sky = NightSky(context.rng, ember=0.4, stars=60)
         self.chapter = chapter_type(key)(context, self.form.manager)
         page = self._progress.page(key)
-        self.page = _TRY if page == _WHY else page  # a try from an earlier visit is gone
+        self.page = _TRY if page >= _WHY else page  # a try from an earlier visit is gone, and its numbers in the code
         self._function, self._told = 0, ""
         tabs = (*_TABS, row_width(texts.LEARN_PAGES, TEXT), 26)
         self._tabs = self.form.add(Choice(self.form.manager, tabs, "", texts.LEARN_PAGES, self.page, self.turn_to))
@@ -140,7 +143,8 @@ class ChapterScene(FormScene):
         guess = self._progress.guess(self.key)
         answers = [answer for answer in texts.LEARN_ANSWERS[self.key] if answer]
         left, _, width = _COLUMN
-        top = STAGE.bottom - _ANSWER * len(answers)
+        end = self._end(self.chapter.words["lead"]) + _LEADING + _GAP
+        top = self._below(self._end(self.chapter.words["predict"], end, TEXT), _ANSWER * len(answers))
         return [
             TextButton(self.form.manager, (left, top + _ANSWER * number, width, _ANSWER), answer,
                        partial(self._guess, number), colour=HUMAN if number == guess else _OPEN)
@@ -150,13 +154,23 @@ class ChapterScene(FormScene):
     def _functions(self) -> list[Widget]:
         codes = self._code
         left, _, width = _COLUMN
-        top = STAGE.bottom - 30 * len(codes)
+        top = self._below(self._end(self.chapter.words["code"]), _FUNCTION * len(codes))
         return [
-            TextButton(self.form.manager, (left, top + 30 * number, width, 30), code.function.__qualname__,
-                       partial(self._show_function, number), size=SMALL, weight="code",
+            TextButton(self.form.manager, (left, top + _FUNCTION * number, width, _FUNCTION),
+                       code.function.__qualname__, partial(self._show_function, number), size=SMALL, weight="code",
                        colour=NET if number == self._function else MUTE)
             for number, code in enumerate(codes)
         ]  # fmt: skip
+
+    @staticmethod
+    def _end(text: str, first: float = _COLUMN[1], size: float = _BODY) -> float:
+        """Return the last baseline of a text in the column."""
+        return first + _LEADING * (line_count(text, size, _COLUMN[2]) - 1)
+
+    @staticmethod
+    def _below(baseline: float, height: float) -> float:
+        """Return the top of buttons that stand below a text, and above the foot of the page."""
+        return min(baseline + _BELOW, STAGE.bottom - height)
 
     def _foot(self) -> list[Widget]:
         manager, after = self.form.manager, following(self.key)
@@ -213,7 +227,7 @@ class ChapterScene(FormScene):
 
     def _draw_predict(self, canvas: Canvas) -> None:
         y = self._write(canvas, self.chapter.words["lead"], _COLUMN[1], MUTE)
-        self._write(canvas, self.chapter.words["predict"], y + 12, size=TEXT)
+        self._write(canvas, self.chapter.words["predict"], y + _GAP, size=TEXT)
 
     def _draw_try(self, canvas: Canvas) -> None:
         self._write(canvas, self.chapter.words["task"], _COLUMN[1])

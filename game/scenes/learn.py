@@ -28,6 +28,7 @@ _LAYOUT: Final = ListLayout(
     pitch=40,
     verbs=(_LEFT, 440),
     foot=608,
+    numbered=32.0,
 )
 
 
@@ -38,6 +39,11 @@ class LearnScene(ListScene[str]):
         super().__init__(context, texts.LEARN_TITLE, _LAYOUT)
         self._progress = Progress(context.settings)
         self._reload()
+
+    def enter(self) -> None:
+        """Read again what has been done; the arrows lead on from the chapter that was left."""
+        super().enter()
+        self.form.focus(self._list)
 
     def _reload(self) -> None:
         done = sum(map(self._progress.done, PATH))
@@ -50,15 +56,15 @@ class LearnScene(ListScene[str]):
         return next((key for key in PATH if not self._progress.done(key)), FIRST)
 
     def _row(self, key: str) -> Row:
-        number = list(PATH).index(key) + 1
-        state = 2 if self._progress.done(key) else 1 if self._progress.begun(key) else 0
-        title = texts.LEARN_ROW.format(number=number, title=texts.LEARN[key]["title"])
-        return title, texts.LEARN_MINUTES.format(count=PATH[key].minutes), texts.LEARN_STATES[state]
+        minutes = texts.LEARN_MINUTES.format(count=PATH[key].minutes)
+        return texts.LEARN[key]["title"], minutes, texts.LEARN_STATES[self._state(key)]
+
+    def _state(self, key: str) -> int:
+        return 2 if self._progress.done(key) else 1 if self._progress.begun(key) else 0
 
     def _make_verbs(self) -> list[Widget]:
         key = self.items[self._list.index]
-        begun = self._progress.begun(key) and not self._progress.done(key)
-        verb = texts.LEARN_CONTINUE if begun else texts.LEARN_BEGIN
+        verb = texts.LEARN_VERBS[self._state(key)]
         return self._buttons([(verb, partial(self._open, key))])
 
     def _press_row(self) -> Transition | None:

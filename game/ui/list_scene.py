@@ -41,6 +41,7 @@ class ListLayout:
         foot: top of the button that goes back.
         size: size of a row's first cell.
         rise: height of the headings above the list.
+        numbered: width of a column of the rows' numbers; 0 for none.
 
     """
 
@@ -52,6 +53,7 @@ class ListLayout:
     foot: float
     size: float = TEXT
     rise: float = 14.0
+    numbered: float = 0.0
 
 
 class ListScene(FormScene, ABC, Generic[Item]):
@@ -75,6 +77,7 @@ class ListScene(FormScene, ABC, Generic[Item]):
         self._list = self.form.add(Listing(
             manager, layout.box, [], on_choose=lambda _: self._choose_row(), on_press=lambda _: self._press_row(),
             empty=empty, columns=layout.columns, pitch=layout.pitch, size=layout.size,
+            numbered=layout.numbered,
         ))  # fmt: skip
         self._back_button = TextButton(manager, (MARGIN, layout.foot, 72, VERB_LINE), texts.BACK, on_back, size=_VERB)
         self.items: list[Item] = []

@@ -26,7 +26,8 @@ class Listing(Widget):
 
     `on_choose` is called with the number of each newly chosen row; `on_press` on Enter, a gamepad's A or a
     second click on it. At either end, the arrows lead to the next widget. `columns` gives the distance from the right
-    end to the right end of each cell after the first, in points.
+    end to the right end of each cell after the first, in points. With `numbered`, the rows' numbers from 1 stand in a
+    column of that width before the names.
     """
 
     def __init__(
@@ -42,10 +43,11 @@ class Listing(Widget):
         columns: Sequence[float] = (0.0,),
         pitch: float = 32,
         size: float = TEXT,
+        numbered: float = 0.0,
     ) -> None:
         super().__init__(manager, box, "")
         self._on_choose, self._on_press, self._empty = on_choose, on_press, empty
-        self._columns, self._pitch, self._size = columns, pitch, size
+        self._columns, self._pitch, self._size, self._numbered = columns, pitch, size, numbered
         self._pressed = -1
         self.first = 0
         self.set_rows(rows, index)
@@ -132,25 +134,28 @@ class Listing(Widget):
             canvas.text(self._empty, (box.left, self.baseline(self.first)), size=self._size, colour=MUTE)
         for number, row in enumerate(self.rows[self.first : self.first + self.room], self.first):
             top = box.top + (number - self.first) * self._pitch
-            self._paint_row(canvas, row, (box.left, top, self.right), chosen=number == self.index)
+            self._paint_row(canvas, row, (box.left, top, self.right), number)
         if len(self.rows) > self.room:
             self._paint_bar(canvas)
 
-    def _paint_row(self, canvas: Canvas, row: Row, place: tuple[float, float, float], *, chosen: bool) -> None:
+    def _paint_row(self, canvas: Canvas, row: Row, place: tuple[float, float, float], number: int) -> None:
         left, top, right = place
+        chosen, name = number == self.index, left + self._numbered
         baseline = top + 0.62 * self._pitch
         words, *cells = row
-        room = right - left
+        room = right - name
         before = math.inf
         for cell, column in zip(cells, self._columns, strict=False):
             end = right - column
             box = canvas.text(cell, (end, baseline), size=SMALL, colour=MUTE, align="right", tabular=True,
                               room=before - column - _BETWEEN)  # fmt: skip
             before = column
-            room = min(room, box.left - left - 24)
+            room = min(room, box.left - name - 24)
         colour = INK if chosen else mix(MUTE, INK, 0.35)
         words = shortened(canvas, words, self._size, room)
-        canvas.text(words, (left, baseline), size=self._size, colour=colour, room=room)
+        canvas.text(words, (name, baseline), size=self._size, colour=colour, room=room)
+        if self._numbered:
+            canvas.text(str(number + 1), (left, baseline), size=self._size, colour=colour, room=self._numbered - 6)
         canvas.line((left, top + self._pitch - 1), (right, top + self._pitch - 1), LINE, 1)
         if chosen:
             canvas.line((left - 7, top + 0.26 * self._pitch), (left - 7, top + 0.76 * self._pitch), NET, 2)
