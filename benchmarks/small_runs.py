@@ -1,11 +1,12 @@
 """What the path's chapters on the target network, the memory and daring claim, over several seeds.
 
-python -m benchmarks.small_runs [--seeds 10]      # some ten minutes of one core
+python -m benchmarks.small_runs [--seeds 10] [--chapters memory]    # some ten minutes of one core
 """
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 
 from ai.agent.config import Config
 from ai.training.small_run import SMALL_RUN, Plan, SmallRun, SmallState
@@ -22,26 +23,44 @@ def run(config: Config, seed: int, plan: Plan | None = None, decisions: int = DE
     return [small.advance() for _ in range(decisions)]
 
 
-def main() -> None:
-    """Print a line for each chapter and choice."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=10)
-    seeds = range(parser.parse_args().seeds)
+def target(seeds: Sequence[int]) -> None:
+    """Print how often values ran away, and how often landing was learned, for each interval of copies."""
     for every in EVERY:
         states = [run(SMALL_RUN.changed(target_update_interval=every), seed) for seed in seeds]
         beyond = sum(max(state.value for state in each) > BOUND for each in states)
         print(f"target copied every {every}: values beyond {BOUND:g} in {beyond}, {_landed(states)}", flush=True)
+
+
+def memory(seeds: Sequence[int]) -> None:
+    """Print for each memory and seed the share of tests that landed at yesterday's end, and the least of today."""
+    for kind, prioritised, keep in (("even", False, None), ("surprising", True, None), ("latest", False, LATEST)):
+        plan, config = MemoryChapter.PLAN._replace(keep=keep), SMALL_RUN.changed(prioritised=prioritised)
+        told = []
+        for seed in seeds:
+            shares = [state.passed or 0.0 for state in run(config, seed, plan, YESTERDAY + TODAY)[YESTERDAY - 1 :]]
+            told.append(f"{shares[0]:.2f} to {min(shares[1:]):.2f}")
+        print(f"memory {kind}: {', '.join(told)}", flush=True)
+
+
+def daring(seeds: Sequence[int]) -> None:
+    """Print how often landing was learned, for each share of random actions."""
     for share in DARING:
         config = SMALL_RUN.changed(n_step=5, reward_weights=PAY, epsilon_start=share, epsilon_end=share)
         states = [run(config, seed, Plan((5.0, 8.0))) for seed in seeds]
         print(f"{share:.0%} at random: {_landed(states)}", flush=True)
-    for kind, prioritised, keep in (("even", False, None), ("surprising", True, None), ("latest", False, LATEST)):
-        plan, config = MemoryChapter.PLAN._replace(keep=keep), SMALL_RUN.changed(prioritised=prioritised)
-        least = [
-            min(state.passed or 0.0 for state in run(config, seed, plan, YESTERDAY + TODAY)[YESTERDAY:])
-            for seed in seeds
-        ]
-        print(f"memory {kind}: least share of tests today {[round(share, 2) for share in least]}", flush=True)
+
+
+CHAPTERS = {"target": target, "memory": memory, "daring": daring}
+
+
+def main() -> None:
+    """Print a line for each chapter and choice."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--chapters", nargs="+", choices=CHAPTERS, default=list(CHAPTERS))
+    options = parser.parse_args()
+    for chapter in options.chapters:
+        CHAPTERS[chapter](range(options.seeds))
 
 
 def _landed(runs: list[list[SmallState]]) -> str:

@@ -154,8 +154,7 @@ class MemoryChapter(RunsChapter):
         state = self.states[-1][0] if self.states else None
         done = state.decisions if state else 0
         day = texts.LEARN_MEMORY_DAYS[done > YESTERDAY]
-        canvas.text(texts.LEARN_MEMORY_WALL.format(count=_EACH), (STAGE.left, STAGE.top + 14), size=SMALL, colour=MUTE,
-                    room=STAGE.width)  # fmt: skip
+        self._draw_legends(canvas)
         self._draw_wall(canvas)
         flown, tested = (state.flown, state.tested) if state else (None, None)
         top = _WALL.bottom + 34
@@ -163,13 +162,26 @@ class MemoryChapter(RunsChapter):
             ((day, flown, SMALL_RUN.num_envs), (texts.LEARN_MEMORY_TESTS, tested, TESTED))
         ):
             box = pygame.FRect(STAGE.left + side * (_HALF + 40), top, _HALF, 142)
-            canvas.text(name, (box.left, top - 6), size=TEXT, colour=(NET, INK)[side], room=_HALF)
+            canvas.text(name, (box.left, top - 6), size=TEXT, colour=(NET, INK)[side], room=_HALF * 0.72)
             draw_landers(canvas, box, each, self.last[0] if state and not side else None, len(self.states), count)
             share = (state.passed if side else state.landed) if state else None
             if share is not None:
                 told = texts.LEARN_RUNS_LANDED.format(share=share)
-                canvas.text(told, (box.right, box.top + 18), size=TEXT, align="right", tabular=True, room=_HALF)
+                canvas.text(told, (box.right, top - 6), size=SMALL, align="right", tabular=True, room=_HALF * 0.26)
         self.draw_status(canvas)
+
+    @staticmethod
+    def _draw_legends(canvas: Canvas) -> None:
+        """Say above the wall what its marks and colours mean."""
+        y = STAGE.top + 14
+        canvas.text(texts.LEARN_MEMORY_WALL, (STAGE.left, y), size=SMALL, colour=MUTE, room=STAGE.width * 0.58)
+        x = STAGE.right
+        for name, pay in (("net", 5.0), ("warn", -2 * _PAID), ("good", 2 * _PAID)):
+            told = texts.LEARN_MEMORY_CELLS[name]
+            x -= canvas.text_width(told, SMALL)
+            canvas.text(told, (x, y), size=SMALL, colour=MUTE)
+            canvas.fill(canvas.rect(x - 17, y - 10, 11, 11), _colour(canvas, pay))
+            x -= 34
 
     def _draw_wall(self, canvas: Canvas) -> None:
         """Draw the wall; rows are painted anew as memories come or go, and the light of what is drawn over them."""

@@ -69,7 +69,7 @@ class MomentChapter(Chapter):
 
     Attributes:
         agent: the network; None if it could not be read, and `problem` then says why.
-        guess: the player's, in points; `guessed` once it was set.
+        guess: the player's, in points.
         value: the network's value of the moment, in points.
         came, plain: pay since the moment, with and without the discount.
         judged: the moments that have been flown to their ends.
@@ -98,7 +98,6 @@ class MomentChapter(Chapter):
     def _freeze(self) -> None:
         """Fly to the moment, and stop there."""
         self.guess = self.came = self.plain = self.value = 0.0
-        self.guessed = False
         self.flying, self._steps = False, 0
         if self.agent is None:
             return
@@ -130,6 +129,12 @@ class MomentChapter(Chapter):
         """Whether the flight from this moment has ended."""
         return self.agent is not None and self.flying and self.env.outcome[0] != Outcome.FLYING
 
+    @property
+    def words(self) -> dict[str, str]:
+        """The chapter's texts; what to do becomes how to read the figures, once it flies."""
+        words = super().words
+        return {**words, "task": texts.LEARN_MOMENT_FLOWN} if self.flying else words
+
     def widgets(self) -> list[Widget]:
         """Return the slider for the guess, and what to press."""
         if self.agent is None:
@@ -143,7 +148,7 @@ class MomentChapter(Chapter):
 
     def set_guess(self, points: float) -> None:
         """Set the player's guess."""
-        self.guess, self.guessed = points, True
+        self.guess = points
 
     def go(self) -> None:
         """Let the network fly on."""
@@ -255,10 +260,8 @@ class MomentChapter(Chapter):
             x = self._x(tick)
             canvas.line((x, _LINE - 4), (x, _LINE + 4), MUTE if tick == 0 else FAINT)
             canvas.text(f"{tick:g}".replace("-", "−"), (x, _LINE + 22), size=LABEL, colour=MUTE, align="centre")
-        figures: list[tuple[str, str, Colour]] = []
-        if self.guessed or self.flying:
-            figures.append((texts.LEARN_MOMENT_GUESS, signed(self.guess), HUMAN))
-            canvas.marker("triangle_down", (self._x(self.guess), _LINE - 12), 11, HUMAN)
+        figures: list[tuple[str, str, Colour]] = [(texts.LEARN_MOMENT_GUESS, signed(self.guess), HUMAN)]
+        canvas.marker("triangle_down", (self._x(self.guess), _LINE - 12), 11, HUMAN)
         if self.flying:
             canvas.marker("triangle", (self._x(self.value), _LINE - 28), 11, NET)
             canvas.line((self._x(self.value), _LINE - 22), (self._x(self.value), _LINE), NET)

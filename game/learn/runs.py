@@ -132,7 +132,30 @@ class RunsChapter(Chapter):
             return
         key = "over" if self.over else "learning" if self.states else "starting" if self.running else "ready"
         told = texts.LEARN_RUNS[key].format(done=decisions, all=self.LENGTH)
-        canvas.text(told, (STAGE.left, STAGE.bottom), size=SMALL, colour=MUTE, tabular=True, room=STAGE.width)
+        canvas.text(told, (STAGE.left, STAGE.bottom), size=SMALL, colour=MUTE, tabular=True, room=STAGE.width * 0.4)
+        self._draw_legend(canvas)
+
+    def _draw_legend(self, canvas: Canvas) -> None:
+        """Say at the right of the lower edge what the marks under landers mean."""
+        x, y = STAGE.left + STAGE.width * 0.42, STAGE.bottom
+        told = texts.LEARN_RUNS_LEGEND
+        canvas.text(told, (x, y), size=SMALL, colour=MUTE, room=STAGE.width * 0.2)
+        x += canvas.text_width(told, SMALL) + 20
+        for name, outcome in (("landed", Outcome.LANDED), ("crashed", Outcome.CRASHED), ("lost", Outcome.TIMEOUT)):
+            _draw_end(canvas, (x, y - 4), outcome)
+            canvas.text(texts.LEARN_RUNS_ENDS[name], (x + 10, y), size=SMALL, colour=MUTE)
+            x += canvas.text_width(texts.LEARN_RUNS_ENDS[name], SMALL) + 34
+
+
+def _draw_end(canvas: Canvas, place: tuple[float, float], outcome: int) -> None:
+    """Draw the mark of a flight's end: a dot for a landing, a triangle for a crash, a dash for all others."""
+    x, y = place
+    if outcome == Outcome.LANDED:
+        canvas.dot(place, 2.5, canvas.palette.good)
+    elif outcome == Outcome.CRASHED:
+        canvas.marker("triangle", place, 6, canvas.palette.warn)
+    elif outcome:
+        canvas.line((x - 3, y), (x + 3, y), MUTE, 1.5)
 
 
 def draw_landers(
@@ -159,12 +182,7 @@ def draw_landers(
         return
     places = view.points(poses[:, :2]).tolist()
     for (x, _), outcome in zip(places, last.tolist(), strict=True):
-        if outcome == Outcome.LANDED:
-            canvas.dot((x, foot + 8), 2.5, canvas.palette.good)
-        elif outcome == Outcome.CRASHED:
-            canvas.marker("triangle", (x, foot + 8), 6, canvas.palette.warn)
-        elif outcome:
-            canvas.line((x - 3, foot + 8), (x + 3, foot + 8), MUTE, 1.5)
+        _draw_end(canvas, (x, foot + 8), outcome)
 
 
 def draw_curve(canvas: Canvas, box: pygame.FRect, heights: Doubles, colour: Colour, length: int) -> None:

@@ -157,6 +157,7 @@ def _height(points: Doubles) -> Doubles:
 
 
 def _figure(points: float) -> str:
-    if not math.isfinite(points) or abs(points) < 1000:
-        return signed(points).partition(".")[0]
-    return f"{points:+,.0f}".replace("-", "−")
+    if not math.isfinite(points):
+        return signed(points)
+    whole = round(points)
+    return f"{whole:+,}".replace("-", "−") if whole else "0"
