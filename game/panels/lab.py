@@ -107,12 +107,12 @@ def experiment_word(experiment: Experiment, description: KnobDescription) -> str
     if experiment.kind in ("times", "divided"):
         words = texts.LAB_TIMES if experiment.kind == "times" else texts.LAB_DIVIDED
         return words.format(factor=float(f"{experiment.amount:.2g}"))
-    value = figure(experiment.amount)
     if plain := texts.LAB_PLAIN.get(description.name):
         less = experiment.amount < (description.stops[0] + description.stops[-1]) / 2
-        return plain["low" if less else "high"].format(value=value)
+        return plain["low" if less else "high"]
     if description.kind == "slider" and experiment.amount == 0:
         return figure(False)
+    value = figure(experiment.amount)
     return value if description.kind != "slider" else texts.LAB_TO.format(value=value)
 
 
