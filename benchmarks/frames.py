@@ -41,6 +41,7 @@ import pygame
 from ai.digits.classifier import DigitClassifier
 from ai.digits.preprocessing import preprocess_strokes
 from ai.lander.missions import MISSIONS
+from ai.training.experiments import experiments
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.exhibits import EXHIBITS
@@ -56,6 +57,7 @@ from game.scenes.pause import PauseScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.physics_step import PhysicsStepScene
 from game.scenes.play import PlayScene
+from game.scenes.train import TrainScene
 from game.scenes.watch import COUNTS, WatchScene
 from game.scenes.why_not import WhyNotScene
 from game.shell.app import App
@@ -143,6 +145,7 @@ def rows() -> dict[str, Row]:
         "whynot, modern": Row(partial(_of_seven, WhyNotScene), (pygame.K_3, pygame.K_r)),
         "menu": Row(MenuScene),
         "train": Row(of_tour("TrainScene"), (pygame.K_RETURN,)),
+        "train, split": Row(_split),
         "digittraining": Row(of_tour("DigitTrainingScene"), (pygame.K_RETURN,)),
     }
 
@@ -160,6 +163,14 @@ def _of_seven(make: Callable[..., Scene], context: Context, name: str = "modern"
     """Make a scene about a seven and a shipped network."""
     strokes = [np.array([(100.0, 100.0), (400.0, 100.0), (200.0, 450.0)])]
     return make(context, DigitClassifier.load(context.models_dir / "digits" / name), preprocess_strokes(strokes))
+
+
+def _split(context: Context) -> Scene:
+    """Make Train with an experiment beside its run, from the first frame on."""
+    scene = TrainScene(context)
+    scene.laboratory.choose(experiments(scene.knobs.config, "learning_rate")[-1], "")
+    scene.laboratory.fly(None)
+    return scene
 
 
 def cost(row: Row, size: tuple[int, int], seen: set[type]) -> np.ndarray:

@@ -71,7 +71,7 @@ class Config(Knobs):
     fly_target: bool = knob(True, "Fly with the target network, which is steadier.", "target", live=True)
 
     epsilon_start: float = knob(1.0, "Initial ε: share of random actions.", "exploration", low=0.0, high=1.0)
-    epsilon_end: float = knob(0.05, "Final ε: share of random actions.",
+    epsilon_end: float = knob(0.05, "Share of random actions once ε has fallen.",
                               "exploration", low=0.0, high=1.0, live=True)
     epsilon_decay: float = knob(1.0, "Factor on ε after each episode; 1 leaves it to the next knob.",
                                 "exploration", low=0.9, high=1.0, live=True)

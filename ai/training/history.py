@@ -227,6 +227,10 @@ class History:
         self._length = len(kept)
         self._stride *= 2
 
+    def row_at(self, decisions: float) -> int:
+        """Return the number of the point nearest to a moment, the earlier of two; there must be one."""
+        return int(np.abs(self["decisions"] - decisions).argmin())
+
     def checkpoint_at(self, decisions: float) -> Checkpoint | None:
         """Return the last checkpoint up to that moment, or the first; None without any."""
         earlier = [checkpoint for checkpoint in self.checkpoints if checkpoint.decisions <= decisions]

@@ -34,7 +34,11 @@ class Flown(NamedTuple):
     @property
     def landed(self) -> float:
         """Share of the last hundred flights that landed; 0 before any has ended."""
-        return float(np.nan_to_num(self.history["success"][-1])) if len(self.history) else 0.0
+        return self.landed_at(-1)
+
+    def landed_at(self, row: int) -> float:
+        """Return that share at a row of the history."""
+        return float(np.nan_to_num(self.history["success"][row])) if len(self.history) else 0.0
 
     def landed_after(self) -> float:
         """Decisions of each lander until a hundred flights landed as `LANDS` asks; infinite if they never did."""
@@ -56,6 +60,11 @@ def verdict(healthy: Flown, other: Flown, *, failed: bool = False) -> Kind | Non
         return "never"
     in_time = other.landed_after() <= _LATER * needed
     return "as_well" if in_time and other.landed >= healthy.landed - _WORSE else "later"
+
+
+def judged_at(healthy: Flown, other: Flown) -> float:
+    """Return the decisions from which an experiment is judged; infinite while its twin does not land."""
+    return _GRACE * healthy.landed_after() * other.config.num_envs
 
 
 def _has_run_away(flown: Flown) -> bool:

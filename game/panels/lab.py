@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 from typing import Final, NamedTuple
@@ -11,7 +12,7 @@ import pygame
 from ai.agent.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from ai.training.sabotage import MEASURED
-from ai.training.verdict import KINDS, Flown, Kind, verdict
+from ai.training.verdict import KINDS, Flown, Kind, judged_at, verdict
 from game.core import texts
 from game.core.scene import Transition
 from game.drawing import typeface
@@ -48,6 +49,7 @@ class Laboratory:
     Attributes:
         came: what has come of the experiment; None while it is too early to say.
         so_far: how many flights both runs land at this moment.
+        too_early: why it is too early to say what has come of it.
         differs: the settings that differ, with both values.
 
     Args:
@@ -61,7 +63,7 @@ class Laboratory:
         self.split, self._start, self._leave = split, start, leave
         self.chosen: Chosen | None = None
         self.came: Kind | None = None
-        self.so_far, self.differs = texts.TRAIN_BEGINS, ""
+        self.so_far, self.too_early, self.differs = texts.TRAIN_BEGINS, texts.LAB_TOO_EARLY, ""
 
     @property
     def flies(self) -> bool:
@@ -87,6 +89,7 @@ class Laboratory:
         """Judge both runs by their curves; call it when there is news."""
         split, twin = self.split, self.split.twin
         self.differs = listed_differences(split.config, twin.config) if twin else ""
+        self.too_early = texts.LAB_TOO_EARLY
         if twin is None or not (len(split.history) and len(twin.history)):
             self.came, self.so_far = None, texts.TRAIN_BEGINS
             return
@@ -95,6 +98,8 @@ class Laboratory:
         self.so_far = texts.LAB_SO_FAR.format(
             count=int(twin.history["decisions"][-1]), other=100 * other.landed, landed=100 * healthy.landed
         )
+        if math.isfinite(judged := judged_at(healthy, other)):
+            self.too_early = texts.LAB_JUDGED_AT.format(count=math.ceil(judged))
 
 
 def experiment_word(experiment: Experiment, description: KnobDescription) -> str:
@@ -102,6 +107,9 @@ def experiment_word(experiment: Experiment, description: KnobDescription) -> str
     if experiment.kind in ("times", "divided"):
         words = texts.LAB_TIMES if experiment.kind == "times" else texts.LAB_DIVIDED
         return words.format(factor=float(f"{experiment.amount:.2g}"))
+    if plain := texts.LAB_PLAIN.get(description.name):
+        less = experiment.amount < (description.stops[0] + description.stops[-1]) / 2
+        return plain["low" if less else "high"]
     if description.kind == "slider" and experiment.amount == 0:
         return figure(False)
     value = figure(experiment.amount)
@@ -184,7 +192,7 @@ def _found(laboratory: Laboratory, chosen: Chosen) -> list[tuple[str, str]]:
     else:
         lines.append((texts.LAB_NOW, laboratory.so_far))
     if came is None:
-        return [*lines, (texts.LAB_CAME, texts.LAB_TOO_EARLY)]
+        return [*lines, (texts.LAB_CAME, laboratory.too_early)]
     told = texts.LAB_CAME_OF[came]
     if chosen.guess:
         told += " " + (texts.LAB_AS_GUESSED if chosen.guess == came else texts.LAB_NOT_AS_GUESSED)

@@ -6,6 +6,7 @@ run tells back, never what was asked for.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Final
 
@@ -28,8 +29,9 @@ from game.ui.widgets import Slider, TextButton
 
 _ROW: Final = pygame.Rect(40, 116, 780, 24)
 _SMALL_ROW: Final = pygame.Rect(40, 404, 780, 24)  # over the swarm, where the network is small
-_SLIDER: Final = 340  # width, with the link's name and its weight
-_NAME: Final = 156  # of that, for the name
+_SPLIT_ROW: Final = pygame.Rect(40, 154, 780, 24)  # over two swarms, whose names stand below them
+_SLIDER: Final = 200  # width, with the link's weight, but without its name
+_NAME: Final = 14.0  # points between the name and the track
 _FIGURE: Final = 52
 _GAP: Final = 20.0
 _LEAST: Final = 1.0  # weight that a slider reaches at least
@@ -45,13 +47,14 @@ class NetworkEditing:
     Attributes:
         picked: the unit or link that was chosen.
         past: whether an earlier moment is shown, which cannot be edited.
+        split: whether an experiment is beside the run.
 
     """
 
     def __init__(self, form: Form, view: NetworkView, lander_run: LanderRun) -> None:
         self._form, self._view, self._run = form, view, lander_run
         self.picked: Part | None = None
-        self.past = self._large = False
+        self.past = self.split = self._large = False
         self._network: NeuralNetwork | None = None
         self._words: list[Widget] = []
         self._slider: Slider | None = None
@@ -164,16 +167,21 @@ class NetworkEditing:
         for weight in edits.weights:
             pinned |= {(unit.stage, unit.unit) for unit in _units(Link(*weight))}
         self._view.pinned = frozenset(pinned)
-        shown = (self.enabled, self._large, self.picked, self._silent, edits.steps > 0, edits.holds, edits.way_back)
+        shown = (self.enabled, self._large, self.picked, self._silent, edits.steps > 0, edits.holds, edits.way_back,
+                 self.split)  # fmt: skip
         if shown != self._laid:
             self._laid = shown
             self._lay()
 
     # The words
 
+    @property
+    def _row(self) -> pygame.Rect:
+        return _ROW if self._large else _SPLIT_ROW if self.split else _SMALL_ROW
+
     def _lay(self) -> None:
         """Add the slider and the words that fit what is picked and what was edited."""
-        edits, row = self._run.edits, _ROW if self._large else _SMALL_ROW
+        edits, row = self._run.edits, self._row
         part = self.picked if self.enabled and self._large and not self._silent else None
         if part != self._of or part is None:  # a slider that is being dragged stays
             self._of, self._slider = part, None
@@ -206,12 +214,14 @@ class NetworkEditing:
         if not isinstance(self.picked, Link) or self._fixed or self._weight is None:
             return []
         most = self._most
-        box = (row.left, row.top, _SLIDER, row.height)
+        name = name_of(self._view, self.picked)
+        named = math.ceil(typeface.width(name, SMALL, "regular") + _NAME)
+        box = (row.left, row.top, named + _SLIDER, row.height)
         self._slider = Slider(
-            manager, box, name_of(self._view, self.picked), self._weight, (-most, most), self._want,
-            label_width=_NAME, figure_width=_FIGURE, figure=_figure, colour=HUMAN,
+            manager, box, name, self._weight, (-most, most), self._want, label_width=named, figure_width=_FIGURE,
+            figure=_figure, colour=HUMAN,
         )  # fmt: skip
-        return [self._slider, self._word(row.left + _SLIDER + _GAP, texts.EDIT_CUT, self._cut)]
+        return [self._slider, self._word(row.left + named + _SLIDER + _GAP, texts.EDIT_CUT, self._cut)]
 
     def _word(self, left: float, label: str, press: Callable[[], None]) -> TextButton:
         box = (left, _ROW.top, typeface.width(label, SMALL, "regular"), _ROW.height)
@@ -237,7 +247,7 @@ class NetworkEditing:
         """Draw the marks over the network, and the sentence beside the words."""
         if self._network is None:
             return
-        row = _ROW if self._large else _SMALL_ROW
+        row = self._row
         baseline = row.centery + 0.36 * SMALL
         if self._large:
             draw_marks(canvas, self._view, self._run.edits, self.picked)

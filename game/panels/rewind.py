@@ -23,6 +23,7 @@ from game.ui.widgets import TextButton
 from game.world.swarm import LearningSwarm
 
 _PLACES: Final = ((40.0, 420.0), (460.0, 46.0))  # baseline of the words: over the swarm, beside the large network
+_BESIDE: Final = (40.0, 170.0)  # over two swarms, whose names stand below them
 _TIMELINE: Final = (460, 88, 360, 28)  # beside the large network
 _APART: Final = 16.0  # points between the sentence and the word that leads back
 _MIDDLE: Final = (430.0, 250.0)
@@ -40,6 +41,7 @@ class Rewind:
         moment: the moment that is shown, in decisions; None for now.
         swarm: the landers of that moment.
         swarm_kept: whether they were kept.
+        split: whether another swarm is beside them.
         network_state: the network of that moment; None if none was kept.
 
     """
@@ -49,6 +51,7 @@ class Rewind:
         self.swarm = LearningSwarm(width)
         self._words: list[TextButton] = []
         self._large = False
+        self.split = False  # whether there are two swarms
         self.clear()
 
     def clear(self) -> None:
@@ -65,7 +68,7 @@ class Rewind:
         """Number of the point of the history that is nearest to the moment; the last one for now."""
         if self.moment is None:
             return -1
-        return int(np.abs(self._run.history["decisions"] - self.moment).argmin())
+        return self._run.history.row_at(self.moment)
 
     @property
     def share(self) -> float:
@@ -89,8 +92,7 @@ class Rewind:
         if swarm_state is not None:
             self.moment = swarm_state.decisions
         else:
-            known = history["decisions"]
-            self.moment = int(known[np.abs(known - decisions).argmin()])
+            self.moment = int(history["decisions"][history.row_at(decisions)])
         self.swarm_kept = swarm_state is not None
         self.swarm.clear()
         if swarm_state is not None:
@@ -161,11 +163,15 @@ class Rewind:
         words = texts.REWIND_AT_RUNNING if self._run.state is WorkerState.RUNNING else texts.REWIND_AT
         return words.format(seconds=float(seconds[self.row]), total=float(seconds[-1]))
 
+    @property
+    def _place(self) -> tuple[float, float]:
+        return _BESIDE if self.split and not self._large else _PLACES[self._large]
+
     def _lay(self) -> None:
         """Add or remove the word that leads back to now, and keep it beside the sentence."""
         words = []
         if self.moment is not None:
-            (left, baseline), height = _PLACES[self._large], 24
+            (left, baseline), height = self._place, 24
             left += typeface.width(self.words, SMALL, "regular") + _APART
             box = (left, baseline - 16, typeface.width(texts.REWIND_NOW, SMALL, "regular"), height)
             if self._words and self._words[0].box.topleft == (int(box[0]), int(box[1])):
@@ -182,7 +188,7 @@ class Rewind:
         """Draw the sentence, and say so where there are no landers to be shown."""
         if self.moment is None:
             return
-        left, baseline = _PLACES[self._large]
+        left, baseline = self._place
         if not self._large:
             right = self._words[0].box.right if self._words else left
             canvas.panel((24, baseline - 20, right - 24 + 16, 30), _COVER)

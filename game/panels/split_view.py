@@ -23,7 +23,7 @@ _TOP: Final = 146.0
 _HEIGHT: Final = round(_WIDTH * VIEW_SIZE[1] / VIEW_SIZE[0])
 _FLOOR: Final = 434.0
 _MARGIN: Final = 40.0, 22.0  # from the left of each half to its words
-_STEP: Final = (400.0, 98.0)  # where it is said that both are in step
+_STEP: Final = (400.0, 46.0)  # where it is said that both are in step
 _STEP_WIDTH: Final = 268.0
 _JUDGED: Final = 20  # frames after which the runs are judged anew
 _STYLE: Final = 1  # of the experiment's curves: see RUN_STYLES
@@ -38,11 +38,17 @@ class SplitView:
         self._pictures: list[Canvas] = []  # of both halves, each drawn anew in every second frame
         self._frame = 0
         self._moment: int | None = None
+        self._moments: tuple[int, int] | None = None  # that moment of both, after as many decisions of each lander
 
     @property
     def shown(self) -> bool:
         """Whether there is an experiment to show beside the run."""
         return self._split.twin is not None
+
+    @property
+    def name(self) -> str:
+        """Name of the run where it is one of several."""
+        return texts.SPLIT_HEALTHY if self.shown else texts.TRAIN_THIS
 
     @property
     def beside(self) -> Sequence[EarlierRun[History]]:
@@ -66,8 +72,10 @@ class SplitView:
         twin = self._split.twin
         if twin is None:
             return
-        for run, swarm in zip((self._split, twin), self.swarms, strict=True):
-            state = run.swarm_state if moment is None else run.swarms.nearest(moment)
+        share = twin.config.num_envs / self._split.config.num_envs
+        self._moments = None if moment is None else (moment, int(moment * share))
+        for run, swarm, then in zip((self._split, twin), self.swarms, self._moments or (None, None), strict=True):
+            state = run.swarm_state if then is None else run.swarms.nearest(then)
             if state is not None and state is not swarm.swarm_state:
                 if moment != self._moment:
                     swarm.clear()
@@ -102,7 +110,8 @@ class SplitView:
         y = _TOP + _HEIGHT + 20
         figure = ""
         if len(run.history):
-            figure = texts.SPLIT_LANDED.format(percent=100 * Flown(run.history, run.config).landed)
+            row = -1 if self._moments is None else run.history.row_at(self._moments[half])
+            figure = texts.SPLIT_LANDED.format(percent=100 * Flown(run.history, run.config).landed_at(row))
         taken = canvas.text(figure, (right, y), size=TEXT, align="right", tabular=True, colour=colour).width
         canvas.text(name, (left, y), size=TEXT, colour=colour, room=right - left - taken - 12)
         ended = run.state in (WorkerState.FAILED, WorkerState.ENDED)

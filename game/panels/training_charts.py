@@ -36,17 +36,17 @@ _TURNS: Final = 12  # frames in a round: in every second one, one chart reads th
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
-_LEGEND: Final = (40, 436, 416, 20)
+_LEGEND: Final = (40, 436, 480, 20)
 _DIMMED: Final = 0.68  # of the other runs' lines, while one is emphasised
-_ZOOM_RIGHT: Final = 820.0
-_AXES: Final = pygame.Rect(470, 436, 262, 20)  # by what the charts are measured, while runs are compared
+_ZOOM: Final = (768.0, 557.0)  # left and top: at the end of an axis
+_AXES: Final = pygame.Rect(534, 436, 262, 20)  # by what the charts are measured, while runs are compared
 BY_DECISIONS: Final = 1  # of the ways to measure the horizontal axis: see texts.TRAIN_AXES
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
     ("success", (40, 456, 360, 112), (0.0, 100.0), "{:.0f}"),
     ("mean_return", (436, 456, 360, 112), None, "{:.0f}"),
     ("loss", (40, 592, 172, 92), None, "{:.3g}"),
-    ("mean_q", (234, 592, 172, 92), None, "{:.1f}"),
+    ("mean_q", (234, 592, 172, 92), None, "{:.0f}"),
     ("epsilon", (428, 592, 172, 92), (0.0, 1.0), "{:.2f}"),
     ("stage", (622, 592, 174, 92), (0.0, 3.0), "{:.0f}"),
 )
@@ -97,13 +97,13 @@ class TrainingCharts:
             chart.read_x = texts.TRAIN_AXIS[axis].format
         self.charts.zoom.reset()
 
-    def look(self, history: History, beside: Sequence[EarlierRun[History]]) -> None:
-        """Read new points of the current run and of those beside it; call it once a frame."""
+    def look(self, history: History, beside: Sequence[EarlierRun[History]], name: str = texts.TRAIN_THIS) -> None:
+        """Read new points of the current run, by its name there, and of those beside it; call it once a frame."""
         self._turn = (self._turn + 1) % _TURNS
         number, odd = divmod(self._turn, 2)
         self._history = history
         self._mark()
-        runs = [EarlierRun(texts.TRAIN_THIS, history, 0), *beside]
+        runs = [EarlierRun(name, history, 0), *beside]
         shown = [(each.name, each.style) for each in runs if len(each.run)]
         if self._legend is not None:
             self._legend.names = shown
@@ -191,7 +191,7 @@ class TrainingCharts:
             axes = Choice(manager, _AXES, "", texts.TRAIN_AXES, self.axis, self.measure_by, size=SMALL, gap=14)
             found.append(axes)
         width = max(typeface.width(zoom_word(factor), SMALL, "regular") for factor in (1.0, 8.0))
-        box = (_ZOOM_RIGHT - width, _AXES.top, width, _AXES.height)
+        box = (*_ZOOM, width, _AXES.height)
         self._zoom_word = TextButton(manager, box, zoom_word(self.charts.zoom.factor), self._double, size=SMALL)
         return [*found, self._zoom_word]
 

@@ -1,18 +1,21 @@
-"""Base of the scene that trains landers, as far as experiments go: one flies beside a healthy twin, in split view."""
+"""Base of the scene that trains landers, as far as its runs go: begun, taught, saved, and an experiment beside."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Final
 
 import pygame
 
-from ai.agent.config import PRESETS
+from ai.agent.config import PRESETS, Config
 from ai.training.experiments import Experiment, differences
 from game.core import texts
+from game.core.names import LibraryError
 from game.core.scene import Push, Transition
+from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.panels.lab import Laboratory
 from game.panels.lab_knobs import LabKnobsPanel
 from game.panels.split_view import SplitView
@@ -51,6 +54,46 @@ class SplitTrainingScene(TrainingScene[SplitRun]):
             self.form, _KNOBS, PRESETS["modern"], 0, self.lander_run.change, self._begin,
             laboratory=self.laboratory, show_all=self._settings.all_knobs, on_show=self._remember_knobs,
         )  # fmt: skip
+
+    # The run
+
+    @property
+    def _learnt(self) -> bool:
+        return len(self.lander_run.history) > 0
+
+    def _begin(self, config: Config, seed: int) -> None:
+        self._start(config, seed)
+
+    def _go_on(self, folder: Path) -> None:
+        """Resume a saved run, with its own settings."""
+        self._start(Config(), 0, folder)
+
+    def _teach(self) -> None:
+        """Add the player's landings to the run's training as demonstrations, or start a run with them."""
+        folder = self.context.user_dir
+        if not count_demonstrations(folder):
+            self.context.note(texts.TRAIN_NO_LESSONS)
+            return
+        if not self.lander_run.alive:
+            self._begin(self.knobs.config, self.knobs.seed)
+        self.lander_run.teach(folder / FILE_NAME)
+
+    def _save(self) -> Transition | None:
+        if not self.lander_run.kept:
+            self.context.note(texts.TRAIN_NOTHING)
+            return None
+        name = texts.TRAIN_TAUGHT_NAME if self.lander_run.demonstrations else texts.TRAIN_NAME
+        return self._ask_name(name.format(preset=self.knobs.name))
+
+    def _save_as(self, name: str) -> str:
+        try:
+            if note := self.lander_run.save(name):
+                self.context.note(note)
+        except LibraryError as error:
+            return str(error)
+        return ""
+
+    # An experiment
 
     def _experiment(self, experiment: Experiment) -> Transition | None:
         """Fly an experiment beside a healthy twin; ask first if the player's run would end for it."""

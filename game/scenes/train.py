@@ -8,15 +8,12 @@ from typing import Final
 
 import pygame
 
-from ai.agent.config import Config
 from ai.training.checkpoints import agent_of
 from game.core import texts
-from game.core.names import LibraryError
 from game.core.scene import Pop, Transition, push
 from game.core.worker import WorkerState
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import LINE, NIGHT0, VIEW_SIZE
-from game.flight.demonstrations import FILE_NAME, count_demonstrations
 from game.input.controls import Command
 from game.lesson.door import LessonDoor
 from game.panels.advice import Advice
@@ -115,9 +112,10 @@ class TrainScene(SplitTrainingScene):
         if lander_run.alive:
             self.knobs.show_in_force(lander_run.in_force)
         still = self._settings.reduced_motion
+        self.rewind.split = self.inside.editing.split = self.split_view.shown
         self.rewind.show_in(self.inside, self.training_charts)
         beside = self.split_view.beside
-        self.training_charts.look(lander_run.history, beside)
+        self.training_charts.look(lander_run.history, beside, self.split_view.name)
         if bool(beside) is not self._compared and not self.inside.large:
             self._compared = bool(beside)
             self._lay_again()
@@ -160,17 +158,6 @@ class TrainScene(SplitTrainingScene):
 
     # The run
 
-    @property
-    def _learnt(self) -> bool:
-        return len(self.lander_run.history) > 0
-
-    def _begin(self, config: Config, seed: int) -> None:
-        self._start(config, seed)
-
-    def _go_on(self, folder: Path) -> None:
-        """Resume a saved run, with its own settings."""
-        self._start(Config(), 0, folder)
-
     def _clear(self) -> None:
         self.split_view.clear()
         self.swarm.clear()
@@ -182,31 +169,6 @@ class TrainScene(SplitTrainingScene):
 
     def _clear_advice(self) -> None:
         self._advice.clear()
-
-    def _teach(self) -> None:
-        """Add the player's landings to the run's training as demonstrations, or start a run with them."""
-        folder = self.context.user_dir
-        if not count_demonstrations(folder):
-            self.context.note(texts.TRAIN_NO_LESSONS)
-            return
-        if not self.lander_run.alive:
-            self._begin(self.knobs.config, self.knobs.seed)
-        self.lander_run.teach(folder / FILE_NAME)
-
-    def _save(self) -> Transition | None:
-        if not self.lander_run.kept:
-            self.context.note(texts.TRAIN_NOTHING)
-            return None
-        name = texts.TRAIN_TAUGHT_NAME if self.lander_run.demonstrations else texts.TRAIN_NAME
-        return self._ask_name(name.format(preset=self.knobs.name))
-
-    def _save_as(self, name: str) -> str:
-        try:
-            if note := self.lander_run.save(name):
-                self.context.note(note)
-        except LibraryError as error:
-            return str(error)
-        return ""
 
     def _open_runs(self) -> Transition:
         def go_on(folder: Path) -> Transition:

@@ -250,7 +250,7 @@ def test_the_lab_asks_for_a_guess_and_says_what_came(train: Driver, device: str)
     assert scene.knobs.view == "result"
     assert laboratory.chosen.guess == "never"
     assert scene.lander_run.twin.config == SMALL.changed(optimizer="sgd")
-    train.wait(lambda: len(scene.lander_run.twin.history) >= 2)
+    train.wait(lambda: len(scene.lander_run.twin.history) >= 2 and len(scene.lander_run.history) >= 2)
     train.frames(25)  # they are judged now and then
     assert laboratory.came is None
     assert laboratory.so_far != texts.TRAIN_BEGINS
@@ -282,3 +282,19 @@ def test_captions_follow_the_run(train: Driver) -> None:
     train.wait(lambda: scene.captions.shown)
     assert scene.captions.text("success") == texts.CHART_CAPTIONS["success"]["unknown"]
     assert scene.captions.text("stage") == texts.CHART_CAPTIONS["stage"]["same"]
+
+
+def test_an_earlier_moment_shows_both_swarms_of_it(train: Driver) -> None:
+    split(train)
+    scene, run = train.top, train.top.lander_run
+    train.wait(lambda: min(len(run.swarms.moments), len(run.twin.swarms.moments)) >= 3)
+    train.frames(2)
+    scene.rewind.seek(float(run.swarms.moments[0]))
+    train.frames(2)
+    assert scene.moment == run.swarms.moments[0]
+    shown = [swarm.swarm_state.decisions for swarm in scene.split_view.swarms]
+    assert shown == [run.swarms.moments[0], run.twin.swarms.nearest(scene.moment).decisions]
+    assert shown[1] < run.twin.swarm_state.decisions
+    train.press_on(texts.REWIND_NOW)
+    train.frames(2)
+    assert scene.split_view.swarms[1].swarm_state is run.twin.swarm_state
