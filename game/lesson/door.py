@@ -16,7 +16,6 @@ from game.training.digit_run import DigitRun
 from game.training.lander_run import LanderRun
 from game.world.swarm import LearningSwarm
 
-
 Run = TypeVar("Run", LanderRun, DigitRun)
 
 
