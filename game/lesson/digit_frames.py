@@ -38,6 +38,7 @@ class ImageFrame(Frame):
 
     def __init__(self, lesson: DigitLesson, digit: int, words: Sequence[str], functions: Sequence[str]) -> None:
         super().__init__(words[0], texts.LESSON_LABEL.format(digit=digit), words[1], functions)
+        self.begin = "images"
         self._image = lesson.image
         right = _SIDE * _PIXEL + 32
         self.label(texts.LESSON_LABEL.format(digit=digit), right, 24, size=TITLE)
@@ -72,6 +73,7 @@ class DigitFrame(Frame):
         columns: Sequence[tuple[int, Floats]],
     ) -> None:
         super().__init__(words[0], figure, words[1], functions)
+        self.begin = "targets"
         self._bars: list[tuple[pygame.FRect, bool]] = []
         self.heading(texts.LESSON_DIGIT_COLUMNS[0], 0, 14, 70)
         for each in range(10):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Final, Generic, TypeVar
 
 import pygame
 
@@ -16,6 +16,7 @@ from game.training.digit_run import DigitRun
 from game.training.lander_run import LanderRun
 from game.world.swarm import LearningSwarm
 
+_PATIENCE: Final = 30  # frames without an answer, after which the player is told that it is being made
 Run = TypeVar("Run", LanderRun, DigitRun)
 
 
@@ -26,6 +27,7 @@ class Door(Generic[Run]):
         self._run, self._note = run, note
         self._shown = run.lesson
         self._asked = False
+        self._waited = 0  # frames
 
     def _ask(self, explain: Callable[[Run], object]) -> None:
         """Ask the run for a lesson, unless it is over: say so then."""
@@ -33,13 +35,18 @@ class Door(Generic[Run]):
             self._note(texts.LESSON_NO_RUN)
             return
         self._shown, self._asked = self._run.lesson, True
-        self._note(texts.LESSON_ASKED)
+        self._waited = 0
         explain(self._run)
 
     def answer(self) -> Lesson | DigitLesson | None:
-        """Return the lesson that was asked for, once it has come; None before and afterwards."""
+        """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""
         lesson = self._run.lesson
-        if not self._asked or lesson is None or lesson is self._shown:
+        if not self._asked:
+            return None
+        if lesson is None or lesson is self._shown:
+            self._waited += 1
+            if self._waited == _PATIENCE:
+                self._note(texts.LESSON_ASKED)
             return None
         self._asked = False
         return lesson

@@ -32,7 +32,8 @@ class ErrorFrame(Frame):
     def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
         self._scale, self._lesson = lesson.config.reward_scale, lesson
         error = texts.LESSON_POINTS.format(points=points(lesson.error / self._scale))
-        super().__init__(words[0], error, words[1], functions)
+        super().__init__(words[0], error, f"{words[1]} {self._said()}".strip(), functions)
+        self.begin = "errors"
         self._cost: Cost = COSTS[lesson.config.cost]()
         largest = max(float(np.abs(lesson.batch_errors).max()), abs(lesson.error), 1e-6)
         delta = float(self._cost.options.get("delta", 0.0))
@@ -51,6 +52,11 @@ class ErrorFrame(Frame):
     def push_of(self, error: float) -> float:
         """Return the derivative of that cost by the value."""
         return float(self._cost.derivative(np.array([error]), np.array([0.0]))[0])
+
+    def _said(self) -> str:
+        """Return in words which way the value was wrong; nothing where it was right."""
+        error = self._lesson.error / self._scale
+        return texts.LESSON_TOO[error > 0].format(by=f"{abs(error):.2f}") if error else ""
 
     def _write_line(self) -> None:
         lesson, scale = self._lesson, self._scale

@@ -77,6 +77,7 @@ class Frame:
         figure: the one figure that stands for it in the strip.
         sentence: the field's term for what happens here, then plain words for it.
         functions: qualified names of the functions whose lines are shown beside it.
+        begin: variable that the first line lit among them sets; empty for any.
         labels: the texts of the picture.
         spots: parts that can be pointed at, besides labels that explain themselves.
 
@@ -84,6 +85,7 @@ class Frame:
 
     def __init__(self, name: str, figure: str, sentence: str, functions: Sequence[str]) -> None:
         self.name, self.figure, self.sentence, self.functions = name, figure, sentence, tuple(functions)
+        self.begin = ""
         self.labels: list[Label] = []
         self.spots: list[Spot] = []
         self.pointed: Spot | None = None

@@ -65,6 +65,7 @@ class MomentFrame(Frame):
         self._state = np.asarray(lesson.cell.state)
         units = in_units(self._state)
         super().__init__(words[0], sensed(float(units[1]), 1), words[1], functions)
+        self.begin = "transitions.state"
         self._action = int(lesson.cell.action)
         self.heading(texts.LESSON_INPUTS, _TABLE, 14, 100)
         self.label(texts.LESSON_IN_UNITS, _SENSED, 14, size=LABEL, colour=MUTE, align="right", room=110)
@@ -137,7 +138,9 @@ class HappenedFrame(Frame):
         scale = lesson.config.reward_scale
         pay = float(lesson.cell.reward) / scale
         super().__init__(words[0], texts.LESSON_POINTS.format(points=points(pay)), words[1], functions)
+        self.begin = "self._returns"
         self._bars: list[tuple[pygame.FRect, tuple[int, int, int]]] = []
+        self._keys: list[tuple[pygame.FRect, tuple[int, int, int]]] = []
         self._zero = self._BARS
         self.heading(texts.LESSON_PAY, self._LEFT, 14, 400)
         if lesson.flown is None:
@@ -150,6 +153,8 @@ class HappenedFrame(Frame):
         self.label(words_of, self._LEFT, bottom + 26, explanation=explanation, colour=MUTE, room=370)
         self.label(points(pay), self._SUM, bottom + 26, align="right", explanation=explanation, room=90)
         self._rule = bottom + 8
+        if lesson.flown is not None:
+            self._write_legend([name for name, paid in lesson.flown.parts.items() if paid.any()], bottom + 58)
         self._write_after(lesson)
 
     def _write_pay(self, lesson: Lesson) -> float:
@@ -186,6 +191,14 @@ class HappenedFrame(Frame):
             self.label(points(total), self._SUM, y, size=size, align="right", room=60, explanation=whole)
         return 40 + pitch * (len(flown.actions) - 1)
 
+    def _write_legend(self, names: Sequence[str], y: float) -> None:
+        """Write which colour is which part of the pay, on three columns."""
+        for place, name in enumerate(names):
+            x, baseline = 160.0 * (place % 3), y + 20 * (place // 3)
+            part, help_ = texts.REWARD_PARTS.get(name, (name, ""))
+            self._keys.append((pygame.FRect(x, baseline - 8, 8, 8), PART_COLOURS.get(name, MUTE)))
+            self.label(part, x + 14, baseline, size=LABEL, colour=MUTE, explanation=Explanation((help_,)), room=140)
+
     def _explain_return(self, lesson: Lesson) -> Explanation:
         flown, scale = lesson.flown, lesson.config.reward_scale
         rows: list[tuple[str, str]] = []
@@ -219,7 +232,7 @@ class HappenedFrame(Frame):
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the bars, with a line at nothing paid."""
-        for box, colour in self._bars:
+        for box, colour in self._bars + self._keys:
             canvas.fill(canvas.rect(*box), colour)
         if self._bars:
             canvas.line((self._zero, 24), (self._zero, self._rule - 2), FAINT)

@@ -22,7 +22,7 @@ from game.panels.network_view import NetworkView
 
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
 _MOST_NAMED: Final = 12  # inputs up to which their names stand beside them
-_UNNAMED: Final = (" " * 20,)  # keeps the room of a name free, for the legend below
+_UNNAMED: Final = (" " * 32,)  # keeps the room of a name free, for the legend below
 _REACH: Final = 5.0  # points from an edge within which it is pointed at
 
 

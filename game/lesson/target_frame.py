@@ -35,6 +35,7 @@ class TargetFrame(Frame):
         self._scale = lesson.config.reward_scale
         target = lesson.target / self._scale
         super().__init__(words[0], texts.LESSON_POINTS.format(points=points(target)), words[1], functions)
+        self.begin = "targets"
         self._lesson = lesson
         self._bars: list[tuple[pygame.FRect, float, bool]] = []
         self._write_sum(target)
