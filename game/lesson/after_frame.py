@@ -12,7 +12,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.pulls import Pulls
 from game.lesson.step import LearningStep
 
@@ -139,3 +139,14 @@ class AfterFrame(Frame):
         for box, towards in self._bars:
             canvas.fill(canvas.rect(*box), NET if towards else EMBER)
         canvas.line((0, _VALUE - 22), (PICTURE.width, _VALUE - 22), LINE)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the value before and after, and its target."""
+        low, y = min(self._ends), SMALL_PICTURE[1] / 2
+        span = max(max(self._ends) - low, 1e-9)
+        before, after, target = (5 + (SMALL_PICTURE[0] - 10) * (end - low) / span for end in self._ends)
+        canvas.line((0, y), (SMALL_PICTURE[0], y), LINE)
+        canvas.marker("ring", (target, y), 9, HUMAN)
+        canvas.line((before, y), (after, y), NET, 2)
+        canvas.dot((before, y), 2.5, FAINT)
+        canvas.dot((after, y), 3.5, NET)

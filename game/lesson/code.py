@@ -159,8 +159,8 @@ def shape_of(value: Value) -> str:
 
 
 def _note(values: Sequence[Value]) -> str:
-    """Write the shape or the number of the first of some values."""
-    note = shape_of(values[0]) or case_of(values[0])
+    """Write the first of some values: this case's number, or the shape of an array that has several for it."""
+    note = case_of(values[0]) if np.size(values[0].case) == 1 and values[0].case is not None else shape_of(values[0])
     return note if len(values) == 1 else f"{note} …"
 
 

@@ -17,7 +17,7 @@ from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, TITLE
 from game.lesson.after_frame import AfterFrame
 from game.lesson.figures import number, signed
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.part import BACKWARD, FORWARD, Part
@@ -55,9 +55,16 @@ class ImageFrame(Frame):
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the pixels."""
+        self._paint_image(canvas, canvas.rect(0, 0, _SIDE * _PIXEL, _SIDE * _PIXEL))
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the image small."""
+        wide, high = SMALL_PICTURE
+        self._paint_image(canvas, canvas.rect(wide - high, 0, high, high))
+
+    def _paint_image(self, canvas: Canvas, area: pygame.Rect) -> None:
         levels = np.clip(255 * self._image, 0, 255).astype(np.uint8)
         picture = pygame.surfarray.make_surface(np.repeat(levels.T[:, :, None], 3, axis=2))
-        area = canvas.rect(0, 0, _SIDE * _PIXEL, _SIDE * _PIXEL)
         canvas.surface.blit(pygame.transform.scale(picture, area.size), area)
 
 
@@ -98,6 +105,16 @@ class DigitFrame(Frame):
             canvas.line((0, 24 + _ROW * each), (PICTURE.width, 24 + _ROW * each), LINE)
         for box, chosen in self._bars:
             canvas.fill(canvas.rect(*box), NET if chosen else mix(FAINT, NET, 0.4))
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the bars of the last column upright, one for each digit."""
+        wide, high = SMALL_PICTURE
+        last = self._bars[-10:]
+        most = max(1e-9, *(box.width for box, _ in last))
+        for place, (box, chosen) in enumerate(last):
+            tall = max(high * box.width / most, 1)
+            bar = canvas.rect(wide * place / 10, high - tall, wide / 10 - 1, tall)
+            canvas.fill(bar, NET if chosen else mix(FAINT, NET, 0.4))
 
 
 def pixel_name(unit: int) -> str:

@@ -16,7 +16,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 
 Curve = Callable[[float], float]
 
@@ -154,3 +154,12 @@ class ErrorFrame(Frame):
             here = self._place(box, curve, self._lesson.error)
             canvas.line((here[0], base), here, EMBER, 1.5)
             canvas.dot(here, 4.5, INK)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the value and its target, each on its side."""
+        predicted, target = (self._ends[value] for value in self._values)
+        y, (left, right) = SMALL_PICTURE[1] / 2, (5.0, SMALL_PICTURE[0] - 5)
+        ends = (left, right) if predicted <= target else (right, left)
+        canvas.line((ends[0], y), (ends[1], y), EMBER, 2)
+        canvas.dot((ends[0], y), 4, NET)
+        canvas.marker("ring", (ends[1], y), 9, HUMAN)

@@ -17,7 +17,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, VIEW_SIZE
 from game.lesson.figures import number, points
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.panels.reward_bar import PART_COLOURS
 from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft
@@ -27,6 +27,7 @@ from game.world.landscape.pad import draw_pad
 
 _SHARE: Final = 0.31  # of the view's width that the little picture takes
 _WORLD: Final = (VIEW_SIZE[0] * _SHARE, VIEW_SIZE[1] * _SHARE)
+_SMALL_CRAFT: Final = 4.0  # points of a metre in the strip
 _TABLE: Final = 424.0  # left end of the table of inputs
 _ROW: Final = 30.0
 _MOON: Final = 5
@@ -97,6 +98,14 @@ class MomentFrame(Frame):
             y = 24 + _ROW * feature
             canvas.line((_TABLE, y), (_GIVEN, y), LINE)
 
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the lander, as it leans and with the engines it fires."""
+        pose = pose_of(self._state)
+        middle = (SMALL_PICTURE[0] / 2, SMALL_PICTURE[1] / 2)
+        zoom = _SMALL_CRAFT / POINTS_PER_METRE
+        corner = (pose[0] - middle[0] / _SMALL_CRAFT, pose[1] + middle[1] / _SMALL_CRAFT)
+        draw_craft(canvas, View(canvas.scale, corner, zoom), LANDER, pose, _thrust(self._action), 1.0, 0, 1.0)
+
 
 def draw_moment(canvas: Canvas, observation: Floats, action: int) -> None:
     """Draw the moon with one lander and its velocity into the top left corner."""
@@ -106,8 +115,7 @@ def draw_moment(canvas: Canvas, observation: Floats, action: int) -> None:
     canvas.surface.set_clip(pygame.Rect((0, 0), _pixels(canvas)))
     draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
     pose = pose_of(observation)
-    thrust = np.array([action >= 3, action % 3 == 2, action % 3 == 1], float)
-    draw_craft(canvas, view, LANDER, pose, thrust, 1.0, 0, 1.5)
+    draw_craft(canvas, view, LANDER, pose, _thrust(action), 1.0, 0, 1.5)
     x, y = view.points(pose[:2]).tolist()
     across, up = (in_units(observation)[2:4] * _ARROW).tolist()
     if math.hypot(across, up) > 2:
@@ -115,6 +123,11 @@ def draw_moment(canvas: Canvas, observation: Floats, action: int) -> None:
         canvas.line((x, y), tip, INK, 1.5)
         canvas.dot(tip, 2.5, INK)
     canvas.surface.set_clip(None)
+
+
+def _thrust(action: int) -> Doubles:
+    """Return how hard each engine fires for an action, (3,)."""
+    return np.array([action >= 3, action % 3 == 2, action % 3 == 1], float)
 
 
 def _pixels(canvas: Canvas) -> tuple[int, int]:
@@ -237,6 +250,13 @@ class HappenedFrame(Frame):
         if self._bars:
             canvas.line((self._zero, 24), (self._zero, self._rule - 2), FAINT)
         canvas.line((self._LEFT, self._rule), (self._SUM, self._rule), LINE)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the bars small."""
+        wide, high = SMALL_PICTURE[0] / (self._SUM - self._BARS - 64), SMALL_PICTURE[1] / (self._rule - 24)
+        for box, colour in self._bars:
+            place = ((box.left - self._BARS) * wide, (box.top - 24) * high)
+            canvas.fill(canvas.rect(*place, box.width * wide, max(box.height * high, 1)), colour)
 
 
 def said_action(action: int) -> str:
