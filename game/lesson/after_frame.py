@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
 import pygame
 
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.pulls import Pulls
 from game.lesson.step import LearningStep
 
@@ -47,6 +48,7 @@ class AfterFrame(Frame):
         super().__init__(words[0], figure, words[1], functions)
         self.step, self._values = step, (before, after, target)
         self.pulls = None if derivative is None else Pulls.of(step, derivative, values[1] - values[0])
+        self.begin = "values"
         self._bars: list[tuple[pygame.FRect, bool]] = []
         self._write_weights(names)
         self._write_value(telling)
@@ -84,6 +86,10 @@ class AfterFrame(Frame):
         sentence = telling[closer <= 0].format(
             before=write(before), after=write(after), target=write(target), by=number(abs(closer))
         )
+        if self.pulls is not None:
+            strongest = int(np.argmax(np.abs(self._pulled())))
+            name = texts.LESSON_PULL_PARTS[strongest][0].format(count=self.step.examples - 1)
+            sentence = f"{sentence} {texts.LESSON_STRONGEST.format(name=name)}"
         self.prose(sentence, 0, _VALUE, PICTURE.width, INK)
         low, high = min(self._values), max(self._values)
         around = max(0.1 * (high - low), 1e-9)
@@ -100,9 +106,7 @@ class AfterFrame(Frame):
         if self.pulls is None:
             self.label(texts.LESSON_NO_PULL, 0, y + 24, colour=MUTE, room=PICTURE.width)
             return
-        scale = self.step.scale
-        pulls = self.pulls
-        found = [pull / scale for pull in (pulls.own, pulls.others, pulls.earlier, pulls.bend)]
+        found = self._pulled()
         most = max(1e-12, *map(abs, found))
         for row, (pull, (word, help_)) in enumerate(zip(found, texts.LESSON_PULL_PARTS, strict=True)):
             baseline = y + 24 + 22 * row
@@ -114,6 +118,12 @@ class AfterFrame(Frame):
             middle = 560.0
             box = pygame.FRect(min(middle, middle + length), baseline - 8, max(abs(length), 1), 7)
             self._bars.append((box, pull * (self._values[2] - self._values[0]) >= 0))
+
+    def _pulled(self) -> list[float]:
+        """Return the pulls in points, in the order of their texts."""
+        pulls, scale = self.pulls, self.step.scale
+        assert pulls is not None
+        return [pull / scale for pull in (pulls.own, pulls.others, pulls.earlier, pulls.bend)]
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the line of values with an arrow from before to after, and the bars of the pulls."""
@@ -129,3 +139,14 @@ class AfterFrame(Frame):
         for box, towards in self._bars:
             canvas.fill(canvas.rect(*box), NET if towards else EMBER)
         canvas.line((0, _VALUE - 22), (PICTURE.width, _VALUE - 22), LINE)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the value before and after, and its target."""
+        low, y = min(self._ends), SMALL_PICTURE[1] / 2
+        span = max(max(self._ends) - low, 1e-9)
+        before, after, target = (5 + (SMALL_PICTURE[0] - 10) * (end - low) / span for end in self._ends)
+        canvas.line((0, y), (SMALL_PICTURE[0], y), LINE)
+        canvas.marker("ring", (target, y), 9, HUMAN)
+        canvas.line((before, y), (after, y), NET, 2)
+        canvas.dot((before, y), 2.5, FAINT)
+        canvas.dot((after, y), 3.5, NET)

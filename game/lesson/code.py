@@ -12,6 +12,7 @@ from ai.common.learning_step import Line, Value
 from game.charts.tooltip import TooltipRow, draw_tooltip
 from game.core import texts
 from game.core.source import Source, source_of
+from game.drawing import typeface
 from game.drawing.canvas import Canvas, Point
 from game.drawing.paint_cache import PaintCache
 from game.drawing.prose import draw_wrapped
@@ -27,14 +28,15 @@ _VALUES: Final = 308.0  # below the corner of the box
 _ROW: Final = 18.0
 _MOST: Final = 7  # values of a line that are shown
 _LISTED: Final = 12  # numbers of a value that are listed under the pointer
-_FEW: Final = 3  # numbers of an array that are written out
+_NAME, _SHAPE, _APART = 200.0, 110.0, 16.0  # points of a name and a shape at most, and between columns
+_FEW: Final = 4  # numbers of an array that are written out
 
 
 class CodeWalk:
     """Walk through the lines that ran for one frame.
 
     `functions` are those of the lesson by their qualified names. `fallback` is shown, with no line lit, where no line
-    was recorded.
+    was recorded. The walk begins at the first line that sets `begin`, a variable as it is recorded.
 
     Attributes:
         lines: the lines, in the order in which they ran.
@@ -48,11 +50,13 @@ class CodeWalk:
         lines: Sequence[Line],
         functions: Mapping[str, Callable[..., Any]],
         fallback: Callable[..., Any] | None = None,
+        begin: str = "",
     ) -> None:
         self.lines = tuple(lines)
-        # Begin where numbers are set, past the head of the function.
-        sets = (number for number, line in enumerate(self.lines[:-1]) if number and line.values)
-        self.index = next(sets, 0)
+        # Without such a line, begin where numbers are set, past the head of the function.
+        sets = [number for number, line in enumerate(self.lines[:-1]) if number and line.values]
+        named = (number for number in sets if begin in [value.name for value in self.lines[number].values])
+        self.index = next(named, next(iter(sets), 0))
         self.pointed: tuple[Value, Point] | None = None
         self._functions, self._fallback = functions, fallback
         self._cache = PaintCache()
@@ -109,34 +113,63 @@ class CodeWalk:
             draw_wrapped(sheet, texts.LESSON_NO_SOURCE, (0, _LISTING + 20), CODE.width, colour=MUTE, size=LABEL)
         else:
             box = (0, _LISTING, CODE.width, (_VALUES if self.lines else CODE.height) - _LISTING - 14)
-            draw_listing(sheet, box, source, line.number if line else None)
+            draw_listing(sheet, box, source, line.number if line else None, self._notes(source))
         if line:
             self._paint_values(sheet, line)
+
+    def _notes(self, source: Source) -> dict[int, str]:
+        """Return what the lines of this call have set so far, by their numbers: shapes, or numbers of this case."""
+        notes: dict[int, str] = {}
+        for line in reversed(self.lines[: self.index + 1]):
+            if not self.line or line.function != self.line.function:
+                continue
+            if line.number == source.lines[0][0]:
+                break  # the head of the call
+            if line.values:
+                notes.setdefault(line.number, _note(line.values))
+        return notes
 
     def _paint_values(self, sheet: Canvas, line: Line) -> None:
         """Write the name, the shape and the numbers of what the current line has set."""
         sheet.line((0, _VALUES - 8), (CODE.width, _VALUES - 8), LINE)
         words = texts.LESSON_SETS if line.values else texts.LESSON_SETS_NOTHING
         sheet.text(words, (0, _VALUES + 10), size=LABEL, colour=MUTE, room=CODE.width)
-        for row, value in enumerate(line.values[:_MOST]):
+        values = line.values[:_MOST]
+        names = min(max((typeface.width(each.name, LABEL, "code") for each in values), default=0.0), _NAME)
+        for row, value in enumerate(values):
             y = _VALUES + 12 + _ROW * (row + 1)
-            shape = " × ".join(map(str, value.shape)) if value.shape else texts.LESSON_NUMBER
-            sheet.text(value.name, (0, y), size=LABEL, weight="code", colour=INK, room=120)
-            sheet.text(shape, (128, y), size=LABEL, colour=MUTE, tabular=True, room=76)
+            sheet.text(value.name, (0, y), size=LABEL, weight="code", colour=INK, room=names)
+            left = names + _APART
+            if shape := shape_of(value):
+                left = sheet.text(shape, (left, y), size=LABEL, colour=MUTE, room=_SHAPE).right + _APART
+            room = CODE.width - left
+            fits = (case_of(value, few) for few in range(_FEW, 1, -1))
+            case = next((text for text in fits if typeface.width(text, LABEL, "code") <= room), case_of(value, 1))
             right = (CODE.width, y)
-            sheet.text(case_of(value), right, size=LABEL, weight="code", colour=NET, align="right", room=204)
+            sheet.text(case, right, size=LABEL, weight="code", colour=NET, align="right", room=room)
         more = len(line.values) - _MOST
         if more > 0:
             y = _VALUES + 12 + _ROW * (_MOST + 1)
             sheet.text(texts.LESSON_MORE.format(count=more), (0, y), size=LABEL, colour=MUTE, room=CODE.width)
 
 
-def case_of(value: Value) -> str:
+def shape_of(value: Value) -> str:
+    """Write the shape of an array: 256 × 9; nothing for a number."""
+    return " × ".join(map(str, value.shape))
+
+
+def _note(values: Sequence[Value]) -> str:
+    """Write the first of some values: this case's number, or the shape of an array that has several for it."""
+    note = case_of(values[0]) if np.size(values[0].case) == 1 and values[0].case is not None else shape_of(values[0])
+    return note if len(values) == 1 else f"{note} …"
+
+
+def case_of(value: Value, few: int = _FEW) -> str:
     """Write this case's numbers of a value, the first few of many."""
     if value.case is None:
         return ""
     if isinstance(value.case, bool | np.bool_):
         return str(bool(value.case))
     numbers = np.asarray(value.case).ravel()
-    shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:_FEW].tolist())
-    return shown if len(numbers) <= _FEW else f"{shown} ..."
+    shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:few].tolist())
+    return shown if len(numbers) <= few else f"{shown} …"

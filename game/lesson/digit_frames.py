@@ -17,7 +17,7 @@ from game.drawing.paint import mix
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, TITLE
 from game.lesson.after_frame import AfterFrame
 from game.lesson.figures import number, signed
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.part import BACKWARD, FORWARD, Part
@@ -38,6 +38,7 @@ class ImageFrame(Frame):
 
     def __init__(self, lesson: DigitLesson, digit: int, words: Sequence[str], functions: Sequence[str]) -> None:
         super().__init__(words[0], texts.LESSON_LABEL.format(digit=digit), words[1], functions)
+        self.begin = "images"
         self._image = lesson.image
         right = _SIDE * _PIXEL + 32
         self.label(texts.LESSON_LABEL.format(digit=digit), right, 24, size=TITLE)
@@ -54,9 +55,16 @@ class ImageFrame(Frame):
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the pixels."""
+        self._paint_image(canvas, canvas.rect(0, 0, _SIDE * _PIXEL, _SIDE * _PIXEL))
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the image small."""
+        wide, high = SMALL_PICTURE
+        self._paint_image(canvas, canvas.rect(wide - high, 0, high, high))
+
+    def _paint_image(self, canvas: Canvas, area: pygame.Rect) -> None:
         levels = np.clip(255 * self._image, 0, 255).astype(np.uint8)
         picture = pygame.surfarray.make_surface(np.repeat(levels.T[:, :, None], 3, axis=2))
-        area = canvas.rect(0, 0, _SIDE * _PIXEL, _SIDE * _PIXEL)
         canvas.surface.blit(pygame.transform.scale(picture, area.size), area)
 
 
@@ -72,6 +80,7 @@ class DigitFrame(Frame):
         columns: Sequence[tuple[int, Floats]],
     ) -> None:
         super().__init__(words[0], figure, words[1], functions)
+        self.begin = "targets"
         self._bars: list[tuple[pygame.FRect, bool]] = []
         self.heading(texts.LESSON_DIGIT_COLUMNS[0], 0, 14, 70)
         for each in range(10):
@@ -96,6 +105,16 @@ class DigitFrame(Frame):
             canvas.line((0, 24 + _ROW * each), (PICTURE.width, 24 + _ROW * each), LINE)
         for box, chosen in self._bars:
             canvas.fill(canvas.rect(*box), NET if chosen else mix(FAINT, NET, 0.4))
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the bars of the last column upright, one for each digit."""
+        wide, high = SMALL_PICTURE
+        last = self._bars[-10:]
+        most = max(1e-9, *(box.width for box, _ in last))
+        for place, (box, chosen) in enumerate(last):
+            tall = max(high * box.width / most, 1)
+            bar = canvas.rect(wide * place / 10, high - tall, wide / 10 - 1, tall)
+            canvas.fill(bar, NET if chosen else mix(FAINT, NET, 0.4))
 
 
 def pixel_name(unit: int) -> str:

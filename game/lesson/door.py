@@ -1,23 +1,61 @@
-"""Door from a training run to one of its lessons: which lander and which moment, and the answer when it comes."""
+"""Doors from a training run to one of its lessons: of which lander or image, and the answer when it comes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Final, Generic, TypeVar
 
 import pygame
 
+from ai.agent.lesson import Lesson
+from ai.digits.lesson import DigitLesson
 from ai.training.session import CAREFUL
 from game.core import texts
 from game.core.scene import Transition, push
+from game.training.digit_run import DigitRun
 from game.training.lander_run import LanderRun
 from game.world.swarm import LearningSwarm
 
+_PATIENCE: Final = 30  # frames without an answer, after which the player is told that it is being made
+Run = TypeVar("Run", LanderRun, DigitRun)
 
-class LessonDoor:
-    """Door from a run to its lessons. A click on a lander chooses it, a second one opens its lesson.
 
-    `swarm` returns the landers that are shown, and `moment` when that is, in decisions, or None for now; `note` shows a
-    message to the player.
+class Door(Generic[Run]):
+    """Door from a run to its lessons: one is asked for, and comes once; `note` shows a message to the player."""
+
+    def __init__(self, run: Run, note: Callable[[str], object]) -> None:
+        self._run, self._note = run, note
+        self._shown = run.lesson
+        self._asked = False
+        self._waited = 0  # frames
+
+    def _ask(self, explain: Callable[[Run], object]) -> None:
+        """Ask the run for a lesson, unless it is over: say so then."""
+        if not self._run.alive:
+            self._note(texts.LESSON_NO_RUN)
+            return
+        self._shown, self._asked = self._run.lesson, True
+        self._waited = 0
+        explain(self._run)
+
+    def answer(self) -> Lesson | DigitLesson | None:
+        """Return the lesson that was asked for, once it has come; None before and afterwards. Call it once a frame."""
+        lesson = self._run.lesson
+        if not self._asked:
+            return None
+        if lesson is None or lesson is self._shown:
+            self._waited += 1
+            if self._waited == _PATIENCE:
+                self._note(texts.LESSON_ASKED)
+            return None
+        self._asked = False
+        return lesson
+
+
+class LessonDoor(Door[LanderRun]):
+    """Door to a lander's lessons. A click on a lander chooses it, a second one opens its lesson.
+
+    `swarm` returns the landers that are shown, and `moment` when that is, in decisions, or None for now.
     """
 
     def __init__(
@@ -27,9 +65,8 @@ class LessonDoor:
         moment: Callable[[], int | None],
         note: Callable[[str], object],
     ) -> None:
-        self._run, self._swarm, self._moment, self._note = run, swarm, moment, note
-        self._shown = run.lesson
-        self._asked = False
+        super().__init__(run, note)
+        self._swarm, self._moment = swarm, moment
 
     def follow(self, event: pygame.event.Event) -> bool:
         """Take a click on the swarm, in points; return whether there was a lander."""
@@ -46,18 +83,38 @@ class LessonDoor:
 
     def open(self) -> None:
         """Ask for the lesson of the chosen lander, or of the one that explores least, at the moment that is shown."""
-        if not self._run.alive:
-            self._note(texts.LESSON_NO_RUN)
-            return
-        self._shown, self._asked = self._run.lesson, True
-        self._note(texts.LESSON_ASKED)
         chosen = self._swarm().chosen
-        self._run.explain(CAREFUL if chosen is None else chosen, self._moment())
+        self._ask(lambda run: run.explain(CAREFUL if chosen is None else chosen, self._moment()))
 
     def update(self) -> Transition | None:
         """Open the lesson once it has come."""
-        lesson = self._run.lesson
-        if not self._asked or lesson is None or lesson is self._shown:
-            return None
-        self._asked = False
-        return push("lesson", lesson)
+        lesson = self.answer()
+        return push("lesson", lesson) if lesson else None
+
+
+class ImageDoor(Door[DigitRun]):
+    """Door to the lessons of a digit run: the first image of its next batch, and from a lesson to the next image."""
+
+    def open(self) -> None:
+        """Ask for the lesson of the first image."""
+        self._ask(lambda run: run.explain(0))
+
+    def another(self, lesson: DigitLesson) -> None:
+        """Ask for the lesson of the image after that of a lesson; the first one comes after the last one.
+
+        It is of the batch that the run stands before: the next one, if the run went on since the lesson.
+        """
+        row = (lesson.step.row + 1) % len(lesson.labels)
+        self._ask(lambda run: run.explain(row))
+
+    def update(self) -> Transition | None:
+        """Open the lesson once it has come; the door goes with it."""
+        lesson = self.answer()
+        return push("lesson", lesson, self) if lesson else None
+
+    def next_lesson(self) -> DigitLesson | None:
+        """Return the lesson of another image once it has come; only while no other scene listens to the run."""
+        for note in self._run.poll():
+            self._note(note)
+        lesson = self.answer()
+        return lesson if isinstance(lesson, DigitLesson) else None

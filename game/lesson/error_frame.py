@@ -16,7 +16,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import EMBER, FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 
 Curve = Callable[[float], float]
 
@@ -32,7 +32,8 @@ class ErrorFrame(Frame):
     def __init__(self, lesson: Lesson, words: Sequence[str], functions: Sequence[str]) -> None:
         self._scale, self._lesson = lesson.config.reward_scale, lesson
         error = texts.LESSON_POINTS.format(points=points(lesson.error / self._scale))
-        super().__init__(words[0], error, words[1], functions)
+        super().__init__(words[0], error, f"{words[1]} {self._said()}".strip(), functions)
+        self.begin = "errors"
         self._cost: Cost = COSTS[lesson.config.cost]()
         largest = max(float(np.abs(lesson.batch_errors).max()), abs(lesson.error), 1e-6)
         delta = float(self._cost.options.get("delta", 0.0))
@@ -51,6 +52,11 @@ class ErrorFrame(Frame):
     def push_of(self, error: float) -> float:
         """Return the derivative of that cost by the value."""
         return float(self._cost.derivative(np.array([error]), np.array([0.0]))[0])
+
+    def _said(self) -> str:
+        """Return in words which way the value was wrong; nothing where it was right."""
+        error = self._lesson.error / self._scale
+        return texts.LESSON_TOO[error > 0].format(by=f"{abs(error):.2f}") if error else ""
 
     def _write_line(self) -> None:
         lesson, scale = self._lesson, self._scale
@@ -148,3 +154,12 @@ class ErrorFrame(Frame):
             here = self._place(box, curve, self._lesson.error)
             canvas.line((here[0], base), here, EMBER, 1.5)
             canvas.dot(here, 4.5, INK)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the value and its target, each on its side."""
+        predicted, target = (self._ends[value] for value in self._values)
+        y, (left, right) = SMALL_PICTURE[1] / 2, (5.0, SMALL_PICTURE[0] - 5)
+        ends = (left, right) if predicted <= target else (right, left)
+        canvas.line((ends[0], y), (ends[1], y), EMBER, 2)
+        canvas.dot((ends[0], y), 4, NET)
+        canvas.marker("ring", (ends[1], y), 9, HUMAN)

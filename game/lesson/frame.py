@@ -15,10 +15,11 @@ from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import FAINT, INK, LABEL, MUTE, SMALL, Colour
 
-__all__ = ["PICTURE", "WITHIN", "Explanation", "Frame", "Label", "Spot", "rows_of"]
+__all__ = ["PICTURE", "SMALL_PICTURE", "WITHIN", "Explanation", "Frame", "Label", "Spot", "rows_of"]
 
 PICTURE: Final = pygame.Rect(40, 216, 752, 440)  # of the current frame, in points
 WITHIN: Final = pygame.Rect(12, 160, 1256, 520)  # where explanations may stand
+SMALL_PICTURE: Final = (30.0, 26.0)  # width and height of the picture in the strip
 _LEADING: Final = 19.0
 _DIGITS: Final = 12.0  # points by which figures of one width may be wider than plain ones
 _AROUND: Final = 3.0  # points by which the pointer may miss a number
@@ -77,6 +78,7 @@ class Frame:
         figure: the one figure that stands for it in the strip.
         sentence: the field's term for what happens here, then plain words for it.
         functions: qualified names of the functions whose lines are shown beside it.
+        begin: variable that the first line lit among them sets; empty for any.
         labels: the texts of the picture.
         spots: parts that can be pointed at, besides labels that explain themselves.
 
@@ -84,6 +86,7 @@ class Frame:
 
     def __init__(self, name: str, figure: str, sentence: str, functions: Sequence[str]) -> None:
         self.name, self.figure, self.sentence, self.functions = name, figure, sentence, tuple(functions)
+        self.begin = ""
         self.labels: list[Label] = []
         self.spots: list[Spot] = []
         self.pointed: Spot | None = None
@@ -94,6 +97,9 @@ class Frame:
 
     def paint(self, canvas: Canvas) -> None:
         """Paint what never moves and is no label, onto a sheet of the picture's size."""
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the picture that stands for it in the strip, on a sheet of SMALL_PICTURE's size."""
 
     def draw_live(self, canvas: Canvas) -> None:
         """Draw what moves, or follows the pointer; in points of the view."""

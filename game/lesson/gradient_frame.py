@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -13,9 +14,9 @@ from ai.nn import OPTIMIZERS, Array
 from ai.nn.optimizers import Adam, Momentum
 from game.core import texts
 from game.drawing.canvas import Canvas
-from game.drawing.tokens import HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, SMALL
 from game.lesson.figures import number, signed
-from game.lesson.frame import PICTURE, Explanation
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation
 from game.lesson.network_frame import NetworkFrame
 from game.lesson.step import LearningStep, WeightPlace
 
@@ -133,6 +134,15 @@ class GradientFrame(NetworkFrame):
         canvas.line((chosen.left, 20), (chosen.right, 20), NET, 2)
         canvas.line((0, _BELOW - 18), (PICTURE.width, _BELOW - 18), LINE)
 
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint a slope, and the step down it."""
+        for start, end in pairwise([_on_slope(step / 12) for step in range(13)]):
+            canvas.line(start, end, MUTE, 1.5)
+        (x, y), (to, down) = _on_slope(0.12), _on_slope(0.3)
+        canvas.line((x, y), (to, down), NET, 2)
+        canvas.dot((x, y), 2, FAINT)
+        canvas.dot((to, down), 3, NET)
+
     def draw_live(self, canvas: Canvas) -> None:
         """Draw the network, with the picked weight in amber where its ends are shown."""
         super().draw_live(canvas)
@@ -147,6 +157,12 @@ class GradientFrame(NetworkFrame):
             (start,), (end,) = places
             ends = self.view.centres[self.weight.link][start], self.view.centres[self.weight.link + 1][end]
             canvas.line(*ends, HUMAN, 1.5)
+
+
+def _on_slope(share: float) -> tuple[float, float]:
+    """Return a place on the slope in the strip, from its top on the left, 0, to its right end, 1."""
+    wide, high = SMALL_PICTURE
+    return 3 + (wide - 6) * share, 3 + (high - 6) * (1 - (1 - share) ** 2)
 
 
 def _said(words: Sequence[str], **figures: str) -> tuple[str, str]:

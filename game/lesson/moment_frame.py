@@ -17,7 +17,7 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, VIEW_SIZE
 from game.lesson.figures import number, points
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot, rows_of
 from game.panels.reward_bar import PART_COLOURS
 from game.world.camera import HOME, POINTS_PER_METRE, View
 from game.world.craft import draw_craft
@@ -27,6 +27,7 @@ from game.world.landscape.pad import draw_pad
 
 _SHARE: Final = 0.31  # of the view's width that the little picture takes
 _WORLD: Final = (VIEW_SIZE[0] * _SHARE, VIEW_SIZE[1] * _SHARE)
+_SMALL_CRAFT: Final = 4.0  # points of a metre in the strip
 _TABLE: Final = 424.0  # left end of the table of inputs
 _ROW: Final = 30.0
 _MOON: Final = 5
@@ -65,6 +66,7 @@ class MomentFrame(Frame):
         self._state = np.asarray(lesson.cell.state)
         units = in_units(self._state)
         super().__init__(words[0], sensed(float(units[1]), 1), words[1], functions)
+        self.begin = "transitions.state"
         self._action = int(lesson.cell.action)
         self.heading(texts.LESSON_INPUTS, _TABLE, 14, 100)
         self.label(texts.LESSON_IN_UNITS, _SENSED, 14, size=LABEL, colour=MUTE, align="right", room=110)
@@ -96,6 +98,14 @@ class MomentFrame(Frame):
             y = 24 + _ROW * feature
             canvas.line((_TABLE, y), (_GIVEN, y), LINE)
 
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the lander, as it leans and with the engines it fires."""
+        pose = pose_of(self._state)
+        middle = (SMALL_PICTURE[0] / 2, SMALL_PICTURE[1] / 2)
+        zoom = _SMALL_CRAFT / POINTS_PER_METRE
+        corner = (pose[0] - middle[0] / _SMALL_CRAFT, pose[1] + middle[1] / _SMALL_CRAFT)
+        draw_craft(canvas, View(canvas.scale, corner, zoom), LANDER, pose, _thrust(self._action), 1.0, 0, 1.0)
+
 
 def draw_moment(canvas: Canvas, observation: Floats, action: int) -> None:
     """Draw the moon with one lander and its velocity into the top left corner."""
@@ -105,8 +115,7 @@ def draw_moment(canvas: Canvas, observation: Floats, action: int) -> None:
     canvas.surface.set_clip(pygame.Rect((0, 0), _pixels(canvas)))
     draw_pad(canvas, view, (0.0, PARAMS.pad_top), PARAMS.pad_width, 0.0)
     pose = pose_of(observation)
-    thrust = np.array([action >= 3, action % 3 == 2, action % 3 == 1], float)
-    draw_craft(canvas, view, LANDER, pose, thrust, 1.0, 0, 1.5)
+    draw_craft(canvas, view, LANDER, pose, _thrust(action), 1.0, 0, 1.5)
     x, y = view.points(pose[:2]).tolist()
     across, up = (in_units(observation)[2:4] * _ARROW).tolist()
     if math.hypot(across, up) > 2:
@@ -114,6 +123,11 @@ def draw_moment(canvas: Canvas, observation: Floats, action: int) -> None:
         canvas.line((x, y), tip, INK, 1.5)
         canvas.dot(tip, 2.5, INK)
     canvas.surface.set_clip(None)
+
+
+def _thrust(action: int) -> Doubles:
+    """Return how hard each engine fires for an action, (3,)."""
+    return np.array([action >= 3, action % 3 == 2, action % 3 == 1], float)
 
 
 def _pixels(canvas: Canvas) -> tuple[int, int]:
@@ -137,7 +151,9 @@ class HappenedFrame(Frame):
         scale = lesson.config.reward_scale
         pay = float(lesson.cell.reward) / scale
         super().__init__(words[0], texts.LESSON_POINTS.format(points=points(pay)), words[1], functions)
+        self.begin = "self._returns"
         self._bars: list[tuple[pygame.FRect, tuple[int, int, int]]] = []
+        self._keys: list[tuple[pygame.FRect, tuple[int, int, int]]] = []
         self._zero = self._BARS
         self.heading(texts.LESSON_PAY, self._LEFT, 14, 400)
         if lesson.flown is None:
@@ -150,6 +166,8 @@ class HappenedFrame(Frame):
         self.label(words_of, self._LEFT, bottom + 26, explanation=explanation, colour=MUTE, room=370)
         self.label(points(pay), self._SUM, bottom + 26, align="right", explanation=explanation, room=90)
         self._rule = bottom + 8
+        if lesson.flown is not None:
+            self._write_legend([name for name, paid in lesson.flown.parts.items() if paid.any()], bottom + 58)
         self._write_after(lesson)
 
     def _write_pay(self, lesson: Lesson) -> float:
@@ -186,6 +204,14 @@ class HappenedFrame(Frame):
             self.label(points(total), self._SUM, y, size=size, align="right", room=60, explanation=whole)
         return 40 + pitch * (len(flown.actions) - 1)
 
+    def _write_legend(self, names: Sequence[str], y: float) -> None:
+        """Write which colour is which part of the pay, on three columns."""
+        for place, name in enumerate(names):
+            x, baseline = 160.0 * (place % 3), y + 20 * (place // 3)
+            part, help_ = texts.REWARD_PARTS.get(name, (name, ""))
+            self._keys.append((pygame.FRect(x, baseline - 8, 8, 8), PART_COLOURS.get(name, MUTE)))
+            self.label(part, x + 14, baseline, size=LABEL, colour=MUTE, explanation=Explanation((help_,)), room=140)
+
     def _explain_return(self, lesson: Lesson) -> Explanation:
         flown, scale = lesson.flown, lesson.config.reward_scale
         rows: list[tuple[str, str]] = []
@@ -219,11 +245,18 @@ class HappenedFrame(Frame):
 
     def paint(self, canvas: Canvas) -> None:
         """Paint the bars, with a line at nothing paid."""
-        for box, colour in self._bars:
+        for box, colour in self._bars + self._keys:
             canvas.fill(canvas.rect(*box), colour)
         if self._bars:
             canvas.line((self._zero, 24), (self._zero, self._rule - 2), FAINT)
         canvas.line((self._LEFT, self._rule), (self._SUM, self._rule), LINE)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the bars small."""
+        wide, high = SMALL_PICTURE[0] / (self._SUM - self._BARS - 64), SMALL_PICTURE[1] / (self._rule - 24)
+        for box, colour in self._bars:
+            place = ((box.left - self._BARS) * wide, (box.top - 24) * high)
+            canvas.fill(canvas.rect(*place, box.width * wide, max(box.height * high, 1)), colour)
 
 
 def said_action(action: int) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise, product
 from typing import Final
 
 import numpy as np
@@ -13,16 +14,17 @@ from ai.nn import Array
 from game.charts.tooltip import TooltipRow
 from game.core import texts
 from game.drawing.canvas import Canvas, Point
-from game.drawing.tokens import INK
+from game.drawing.tokens import INK, LINE, MUTE, NET
 from game.lesson.figures import number, points, signed
-from game.lesson.frame import PICTURE, Explanation, Frame, Spot
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, Spot
 from game.lesson.step import LearningStep, WeightPlace
 from game.panels.network_plan import Show
 from game.panels.network_view import NetworkView
 
 _TERMS: Final = 6  # products of a unit's sum that are written out one by one; the others are summed
 _MOST_NAMED: Final = 12  # inputs up to which their names stand beside them
-_UNNAMED: Final = (" " * 20,)  # keeps the room of a name free, for the legend below
+_UNNAMED: Final = (" " * 32,)  # keeps the room of a name free, for the legend below
+_SMALL_NET: Final = ((3.0, 3), (15.0, 4), (27.0, 3))  # layers in the strip: where, and how many units
 _REACH: Final = 5.0  # points from an edge within which it is pointed at
 
 
@@ -69,6 +71,16 @@ class NetworkFrame(Frame):
         self.view.draw(canvas)
         if self._pointed_link:
             canvas.line(*self._pointed_link, INK, 1.5)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint a net of three layers, of which the values come out on the right."""
+        layers = [[(x, SMALL_PICTURE[1] * (row + 0.5) / count) for row in range(count)] for x, count in _SMALL_NET]
+        for left, right in pairwise(layers):
+            for start, end in product(left, right):
+                canvas.line(start, end, LINE)
+        for layer in layers:
+            for place in layer:
+                canvas.dot(place, 2, NET if layer is layers[-1] else MUTE)
 
     # What is pointed at
 

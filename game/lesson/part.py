@@ -30,4 +30,4 @@ class Part:
         """
         ran = [line for line in lines if frame.functions and line.function.endswith(frame.functions)]
         own = (function for name, function in functions.items() if frame.functions and name.endswith(frame.functions))
-        return cls(frame, CodeWalk(ran, functions, next(own, None)))
+        return cls(frame, CodeWalk(ran, functions, next(own, None), frame.begin))

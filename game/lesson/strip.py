@@ -1,4 +1,4 @@
-"""Film strip: a small card for each frame of a lesson, the current one lit."""
+"""Film strip: a small card for each frame of a lesson, with a figure and a little picture, the current one lit."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Final
 import pygame
 
 from game.drawing.canvas import Canvas, Point
+from game.drawing.paint_cache import PaintCache
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT
-from game.lesson.frame import Frame
+from game.lesson.frame import SMALL_PICTURE, Frame
 
 STRIP: Final = pygame.Rect(40, 62, 1200, 72)
 _GAP: Final = 10.0
@@ -20,6 +21,7 @@ class FilmStrip:
 
     def __init__(self, frames: Sequence[Frame]) -> None:
         self._frames = tuple(frames)
+        self._pictures = [PaintCache() for _ in frames]
 
     def box(self, number: int) -> pygame.FRect:
         """Return the box of a card, in points."""
@@ -41,6 +43,8 @@ class FilmStrip:
             x, room = box.left + 12, box.width - 24
             canvas.text(str(number + 1), (x, box.top + 22), size=LABEL, colour=NET if lit else MUTE)
             canvas.text(frame.name, (x + 16, box.top + 22), size=SMALL, colour=INK if lit else MUTE, room=room - 16)
-            canvas.text(
-                frame.figure, (x, box.top + 54), size=TEXT, colour=INK if lit else MUTE, tabular=True, room=room
-            )
+            wide, high = SMALL_PICTURE
+            corner = (box.right - 10 - wide, box.bottom - 12 - high)
+            self._pictures[number].draw(canvas, (*corner, wide, high), None, frame.paint_small)
+            colour = INK if lit else MUTE
+            canvas.text(frame.figure, (x, box.top + 54), size=TEXT, colour=colour, tabular=True, room=room - wide - 4)

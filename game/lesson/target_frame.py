@@ -15,9 +15,9 @@ from game.core import texts
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.paint import mix
-from game.drawing.tokens import FAINT, INK, LABEL, LINE, MUTE, NET, TITLE
+from game.drawing.tokens import FAINT, HUMAN, INK, LABEL, LINE, MUTE, NET, TITLE
 from game.lesson.figures import points
-from game.lesson.frame import PICTURE, Explanation, Frame, rows_of
+from game.lesson.frame import PICTURE, SMALL_PICTURE, Explanation, Frame, rows_of
 from game.lesson.moment_frame import said_action
 
 _SUM: Final = 34.0  # baseline of the sum
@@ -35,6 +35,7 @@ class TargetFrame(Frame):
         self._scale = lesson.config.reward_scale
         target = lesson.target / self._scale
         super().__init__(words[0], texts.LESSON_POINTS.format(points=points(target)), words[1], functions)
+        self.begin = "targets"
         self._lesson = lesson
         self._bars: list[tuple[pygame.FRect, float, bool]] = []
         self._write_sum(target)
@@ -124,3 +125,14 @@ class TargetFrame(Frame):
             canvas.bar(box, max(share, 0.02), NET if best else mix(FAINT, NET, 0.4))
             if best:
                 canvas.marker("triangle", (box.left - 10, box.centery), 7, NET)
+
+    def paint_small(self, canvas: Canvas) -> None:
+        """Paint the two parts of the target, what was paid and what is guessed, and the target itself."""
+        lesson = self._lesson
+        guessed = 0.0 if lesson.cell.terminal else lesson.discount * lesson.next_value
+        parts = (abs(float(lesson.cell.reward)), abs(guessed))
+        room, y = SMALL_PICTURE[0] - 12, SMALL_PICTURE[1] / 2
+        paid = room * parts[0] / max(sum(parts), 1e-9)
+        canvas.fill(canvas.rect(0, y - 3, paid, 6), MUTE)
+        canvas.fill(canvas.rect(paid + 1, y - 3, max(room - paid - 1, 0), 6), mix(FAINT, NET, 0.6))
+        canvas.marker("ring", (SMALL_PICTURE[0] - 5, y), 9, HUMAN)

@@ -34,7 +34,7 @@ def draw_listing(
     """Draw the source in a box, in points; `current` is the number of the lit line, which is kept in sight.
 
     `notes` are short words beside lines, by their numbers: shapes and numbers of the case at hand. They are drawn on
-    the right, in `notes_width` points.
+    the right, in `notes_width` points; with 0, at the right edge behind the ends of those lines that leave the room.
     """
     area, notes = pygame.FRect(box), notes or {}
     letter = typeface.digit_width(typeface.grown(LABEL), "code")
@@ -44,7 +44,8 @@ def draw_listing(
     top = area.top + leading * 1.4
     rows = [row for number, line in source.lines for row in _broken(number, line, max(room, 20))]
     most = int((area.bottom - top) // leading)
-    for place, (number, text, begins) in enumerate(_around(rows, current, most)):
+    shown = _around(rows, current, most)
+    for place, (number, text, begins) in enumerate(shown):
         y = top + (place + 0.8) * leading
         lit = number == current
         if lit:
@@ -53,8 +54,16 @@ def draw_listing(
         if begins:
             canvas.text(str(number), (area.left + _NUMBER - 8, y), size=LABEL, weight="code",
                         colour=NET if lit else FAINT, align="right")  # fmt: skip
-            if note := notes.get(number):
+            if notes_width and (note := notes.get(number)):
                 canvas.text(note, (area.right - notes_width, y), size=LABEL, colour=NET if lit else MUTE, tabular=True)
+        if (
+            not notes_width
+            and [row[0] for row in shown[place + 1 : place + 2]] != [number]
+            and (note := notes.get(number))
+        ):
+            left = area.right - 4 - typeface.width(note, LABEL, "regular")
+            if left > area.left + _NUMBER + len(text) * letter + _BETWEEN:
+                canvas.text(note, (left, y), size=LABEL, colour=NET if lit else MUTE)
         for part, colour, column in _coloured(text, lit):
             place_of = (area.left + _NUMBER + column * letter, y)
             canvas.text(part, place_of, size=LABEL, weight="code", colour=colour)

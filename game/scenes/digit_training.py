@@ -18,6 +18,7 @@ from game.drawing import typeface
 from game.drawing.canvas import Canvas
 from game.drawing.sky import NightSky
 from game.drawing.tokens import LABEL, LINE, MUTE, SMALL, TEXT
+from game.lesson.door import ImageDoor
 from game.panels.digit_charts import DigitCharts, draw_accuracy_legend
 from game.panels.knobs import KnobsPanel
 from game.panels.run_status import draw_run_status
@@ -70,6 +71,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self.digit_run.collection.hold()
         self._sky = NightSky(np.random.default_rng(12), ember=0.2, stars=40)
         self.charts = DigitCharts()
+        self.lessons = ImageDoor(self.digit_run, self.context.note)
         self._add_words()
         self.form.add(VirtualPointer(self.form.manager, self.charts.box, self.charts.follow))
         self.knobs = KnobsPanel(
@@ -116,7 +118,7 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
             self.charts.look(self.digit_run.curves, self.digit_run.earlier)
             self._name_words()
         self.charts.update(at_once=self._settings.reduced_motion)
-        return self._ask_or(self.form.update())
+        return self._ask_or(self.form.update()) or self.lessons.update()
 
     # The run
 
@@ -261,6 +263,9 @@ class DigitTrainingScene(TrainingScene[DigitRun]):
         self.dream_button = add(PANEL_LEFT, 624, texts.DIGIT_RUN_DREAM, self._dream)
         self.quiz_button = add(
             max(PANEL_LEFT + 120, self.dream_button.box.right + 18), 624, texts.DIGIT_RUN_QUIZ, self._quiz
+        )
+        self.why_button = add(
+            max(PANEL_LEFT + 214, self.quiz_button.box.right + 18), 624, texts.LESSON_WHY, self.lessons.open
         )
         self._name_words()
 

@@ -17,6 +17,7 @@ from game.input.controls import Command
 from game.lesson.agent_frames import agent_frames
 from game.lesson.code import CODE, CodeWalk
 from game.lesson.digit_frames import digit_frames
+from game.lesson.door import ImageDoor
 from game.lesson.frame import PICTURE, Frame
 from game.lesson.strip import STRIP, FilmStrip
 from game.ui.actions import Action, Table
@@ -33,19 +34,27 @@ _REACH: Final = STRIP.unionall([PICTURE, CODE])  # of the pointer that keys move
 class LessonScene(FormScene):
     """Lesson scene, of a learning step of the agent or of a digit network.
 
+    With the door to a digit network's run, the lessons of other images of the batch can be had.
+
     Attributes:
+        lesson: the learning step.
         parts: the frames with their code.
         current: number of the frame that is shown large.
 
     """
 
-    def __init__(self, context: Context, lesson: Lesson | DigitLesson) -> None:
+    def __init__(self, context: Context, lesson: Lesson | DigitLesson, door: ImageDoor | None = None) -> None:
         super().__init__(context)
+        self._door = door
+        self.current = 0
+        self._take(lesson)
+        self.pointer = self.form.add(VirtualPointer(self.form.manager, _REACH, self._point, hold=texts.LESSON_PRESS))
+
+    def _take(self, lesson: Lesson | DigitLesson) -> None:
+        """Take a lesson apart; the number of the frame that is shown stays."""
         self.lesson = lesson
         self.parts = agent_frames(lesson) if isinstance(lesson, Lesson) else digit_frames(lesson)
         self.strip = FilmStrip([part.frame for part in self.parts])
-        self.current = 0
-        self.pointer = self.form.add(VirtualPointer(self.form.manager, _REACH, self._point, hold=texts.LESSON_PRESS))
 
     @property
     def frame(self) -> Frame:
@@ -58,12 +67,14 @@ class LessonScene(FormScene):
         return self.parts[self.current].code
 
     def actions(self) -> Table:
-        """Go from frame to frame, and from line to line; point at numbers; go back."""
+        """Go from frame to frame, and from line to line; point at numbers; see another image; go back."""
         controls = self.context.controls
+        another = [Action(Command.RETRY, self._another, texts.LESSON_ANOTHER_IMAGE)] if self._door else []
         return [
             Hint(controls.arrows_aside, texts.LESSON_HINT_FRAME),
             Hint(controls.arrows, texts.LESSON_HINT_LINE),
             self.form.confirms(texts.LESSON_HINT_POINT),
+            *another,
             Action(Command.LEFT, lambda: self.go(-1)),
             Action(Command.RIGHT, lambda: self.go(1)),
             Action(Command.PREVIOUS, lambda: self.go(-1)),
@@ -73,6 +84,11 @@ class LessonScene(FormScene):
             Action(Command.DOWN, lambda: self.code.step(1)),
             self.form.goes_back(texts.HINT_BACK),
         ]
+
+    def _another(self) -> None:
+        """Ask for the lesson of the next image of the batch."""
+        if self._door and isinstance(self.lesson, DigitLesson):
+            self._door.another(self.lesson)
 
     def go(self, direction: int) -> None:
         """Go to the frame before or after."""
@@ -109,7 +125,9 @@ class LessonScene(FormScene):
                 self.context.sound.play("choose")
 
     def update(self) -> Transition | None:
-        """Let gradients flow."""
+        """Let gradients flow; take apart the lesson of another image once it has come."""
+        if self._door and (lesson := self._door.next_lesson()):
+            self._take(lesson)
         self.frame.update(self.context.settings.reduced_motion)
         return super().update()
 

@@ -10,11 +10,13 @@ from typing import Final
 from ai.digits.checkpoints import LAST_FILE, read_summary
 from ai.digits.config import DigitConfig
 from ai.digits.filters import FilterMoment
+from ai.digits.lesson import DigitLesson
 from ai.digits.session import (
     DigitPoint,
     DigitRunSaved,
     DigitRunStarted,
     DigitSettingChanged,
+    ExplainImage,
     Finish,
     RestoreBest,
     live_digits,
@@ -92,6 +94,7 @@ class DigitRun(TrainingRun):
         kept: whether there is a saved network.
         kept_epoch: epoch of the tested network, the best one, if that is not the last.
         earlier: the runs shown beside it, the latest first.
+        lesson: the latest lesson that was asked for; None before the first.
 
     """
 
@@ -106,6 +109,7 @@ class DigitRun(TrainingRun):
         self.confusion: Confusion | None = None
         self.test: float | None = None
         self.kept_epoch: int | None = None
+        self.lesson: DigitLesson | None = None
         self.earlier: list[EarlierRun[DigitCurves]] = []
         self.stopping = False
         self._saving: list[Path] = []  # folders it was asked to save to, without an answer yet
@@ -154,6 +158,7 @@ class DigitRun(TrainingRun):
         if self.curves.points:
             put_beside(self.earlier, self.name, self.curves)
         self.curves, self.confusion, self.test, self.kept_epoch = DigitCurves(), None, None, None
+        self.lesson = None
         self.config, self.seed, self.steps = config, seed, 0
         self.stopping = False
         self.runs += 1
@@ -172,6 +177,10 @@ class DigitRun(TrainingRun):
         """Revert the network to its best checkpoint."""
         if not self.stopping:
             self._send(RestoreBest())
+
+    def explain(self, row: int) -> None:
+        """Ask for the lesson of an image of the next batch; `poll` puts it in `lesson`."""
+        self._send(ExplainImage(row))
 
     def stop(self) -> None:
         """End the run, save its network and test it. A second call ends it without the test."""
@@ -211,6 +220,8 @@ class DigitRun(TrainingRun):
                     self.config = _turned(self.config, told)
                 case Confusion():
                     self.confusion = told
+                case DigitLesson():
+                    self.lesson = told
                 case DigitRunStarted(config, seed, _, steps):
                     self.config, self.seed, self.steps, self.begun = config, seed, steps, True
                 case DigitRunSaved():

@@ -1,0 +1,123 @@
+"""Into the lesson of an image from digit training, from there to another image of the batch, and back to the run."""
+
+from collections.abc import Callable
+
+import pygame
+import pytest
+
+from game.core import texts
+from game.core.worker import WorkerState
+from game.scenes.digit_training import DigitTrainingScene
+from game.scenes.lesson import LessonScene
+from game.ui.hints import HintRow
+from tests.support import inline_worker
+from tests.support.driver import Driver
+from tests.support.lessons import digit_lesson_of
+from tests.support.small import DIGITS
+
+
+@pytest.fixture
+def train(open_game: Callable[..., Driver], monkeypatch: pytest.MonkeyPatch) -> Driver:
+    """The screen, with a run within this process."""
+    inline_worker.install(monkeypatch.setattr)
+    driver = open_game(DigitTrainingScene)
+    driver.frames(2)
+    driver.top.knobs.set_config(DIGITS, 3)
+    return driver
+
+
+def start(driver: Driver) -> None:
+    """Start a run, and wait until it has learnt for a moment."""
+    driver.form.focus(driver.top.start_button)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: driver.top.digit_run.curves.points, seconds=90.0)
+
+
+def open_lesson(driver: Driver) -> None:
+    start(driver)
+    driver.form.focus(driver.top.why_button)
+    driver.key(pygame.K_RETURN)
+    driver.wait(lambda: isinstance(driver.top, LessonScene))
+    driver.frames(3)
+
+
+def test_a_word_opens_the_lesson_of_the_first_image_and_the_run_goes_on_afterwards(train: Driver) -> None:
+    scene = train.top
+    open_lesson(train)
+    lesson = train.top.lesson
+    assert lesson.step.row == 0
+    assert lesson.config == DIGITS
+    assert scene.digit_run.state is WorkerState.PAUSED
+    train.frames(10)
+    train.key(pygame.K_ESCAPE)
+    assert train.top is scene
+    train.wait(lambda: scene.digit_run.curves.points[-1].step > lesson.taken)
+    assert train.top is scene, "one lesson is opened once"
+
+
+def test_the_mouse_alone_opens_a_lesson_and_goes_to_another_image(train: Driver) -> None:
+    start(train)
+    train.click(train.top.why_button.box.center)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    train.frames(3)
+    canvas = train.app.canvas
+    (row,) = train.top.hint_rows(canvas)
+    assert isinstance(row, HintRow)
+    x, y = next(
+        (x, y)
+        for y in range(680, 716, 4)
+        for x in range(40, 1240, 6)
+        if (hint := row.at(canvas, (x, y))) and hint.meaning == texts.LESSON_ANOTHER_IMAGE
+    )
+    train.click((x, y))
+    train.wait(lambda: train.top.lesson.step.row == 1)
+
+
+@pytest.mark.parametrize("gamepad", [False, True])
+def test_another_image_of_the_same_batch_keeps_the_frame_and_the_last_is_followed_by_the_first(
+    train: Driver, gamepad: bool
+) -> None:
+    start(train)
+    train.key(pygame.K_RETURN)
+    train.wait(lambda: train.top.digit_run.state is WorkerState.PAUSED)
+    train.press_on(texts.LESSON_WHY)
+    train.wait(lambda: isinstance(train.top, LessonScene))
+    train.frames(3)
+    first = train.top.lesson
+    train.keys(*[pygame.K_RIGHT] * 3)
+    for row in range(1, DIGITS.batch_size + 1):
+        if gamepad:
+            train.button(pygame.CONTROLLER_BUTTON_X)
+        else:
+            train.key(pygame.K_r)
+        train.wait(lambda row=row: train.top.lesson.step.row == row % DIGITS.batch_size)
+        lesson = train.top.lesson
+        assert train.top.current == 3
+        assert lesson.taken == first.taken, "a paused run stays where it is"
+        assert (lesson.labels == first.labels).all(), "and so does its batch"
+        assert train.top.parts[0].frame.figure == texts.LESSON_LABEL.format(digit=lesson.labels[lesson.step.row])
+    assert (train.top.lesson.image == first.image).all()
+
+
+def test_without_a_run_a_note_says_what_to_do(train: Driver) -> None:
+    train.press_on(texts.LESSON_WHY)
+    train.frames(2)
+    assert isinstance(train.top, DigitTrainingScene)
+    assert train.said == texts.LESSON_NO_RUN
+
+
+def test_a_run_that_has_ended_leaves_the_lesson_as_it_is(train: Driver) -> None:
+    scene = train.top
+    open_lesson(train)
+    lesson = train.top.lesson
+    scene.digit_run.close()
+    train.key(pygame.K_r)
+    train.frames(5)
+    assert train.top.lesson is lesson
+    assert train.said == texts.LESSON_NO_RUN
+
+
+def test_a_lesson_without_a_run_offers_no_other_image(open_game: Callable[..., Driver]) -> None:
+    driver = open_game(LessonScene, digit_lesson_of("classic"))
+    driver.frames(2)
+    assert texts.LESSON_ANOTHER_IMAGE not in [hint.meaning for hint in driver.top.hints]
