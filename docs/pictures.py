@@ -24,12 +24,17 @@ import numpy as np
 import pygame
 from PIL import Image
 
+from ai.agent.config import PRESETS
 from ai.lander.missions import MISSIONS
+from ai.training.explanations import Explanations
+from ai.training.loop import Training
 from game.core.scene import Scene
 from game.core.settings import Settings
 from game.play.challenge import FlownMission
 from game.scenes import scene_of
+from game.scenes.chapter import ChapterScene
 from game.scenes.digits import DigitsScene
+from game.scenes.lesson import LessonScene
 from game.scenes.menu import MenuScene
 from game.scenes.physics import PhysicsScene
 from game.scenes.play import PlayScene
@@ -39,12 +44,28 @@ from game.shell.app import App
 from game.ui.context import Context
 
 IMAGES = Path(__file__).resolve().parent / "images"
+EIGHT_UNITS = {5: pygame.K_n, 30: pygame.K_RIGHT, 60: pygame.K_RIGHT, 90: pygame.K_RIGHT}  # of chapter 2, tried
+
+
+def lesson(context: Context) -> LessonScene:
+    """Open a lesson of a run that has begun to learn."""
+    training = Training(PRESETS["modern"], 0, evaluate_every=0)
+    explanations = Explanations(training)
+    training.on_step = lambda result: explanations.follow(training.env.actions, result)  # type: ignore[attr-defined]
+    for _ in range(300):
+        training.advance()
+    return LessonScene(context, explanations.explain(slot=0))
+
+
 # Name, scene, and what is pressed at which frame until the picture is taken.
 PICTURES: tuple[tuple[str, Callable[[Context], Scene], dict[int, int], int], ...] = (
     ("menu", MenuScene, {}, 200),
     ("cockpit", partial(PlayScene, seed=12), {5: pygame.K_UP, 40: pygame.K_RIGHT, 80: pygame.K_UP}, 89),
     ("watch", partial(WatchScene, count=64, seed=3), {}, 260),
+    ("map", partial(WatchScene, seed=4), {30: pygame.K_m}, 110),
+    ("learn", partial(ChapterScene, key="plane"), EIGHT_UNITS, 700),
     ("train", TrainScene, {5: pygame.K_RETURN}, 30),
+    ("lesson", lesson, {5: pygame.K_RIGHT}, 60),
     ("digits", DigitsScene, {}, 150),
     ("physics", partial(PhysicsScene, exhibit="heap", now=time.process_time), {60: pygame.K_c}, 400),
     (
