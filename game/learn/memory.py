@@ -178,7 +178,7 @@ class MemoryChapter(RunsChapter):
         x = STAGE.right
         for name, pay in (("net", 5.0), ("warn", -2 * _PAID), ("good", 2 * _PAID)):
             told = texts.LEARN_MEMORY_CELLS[name]
-            x -= canvas.text_width(told, SMALL)
+            x -= canvas.text_width(told, size=SMALL)
             canvas.text(told, (x, y), size=SMALL, colour=MUTE)
             canvas.fill(canvas.rect(x - 17, y - 10, 11, 11), _colour(canvas, pay))
             x -= 34

@@ -140,11 +140,11 @@ class RunsChapter(Chapter):
         x, y = STAGE.left + STAGE.width * 0.42, STAGE.bottom
         told = texts.LEARN_RUNS_LEGEND
         canvas.text(told, (x, y), size=SMALL, colour=MUTE, room=STAGE.width * 0.2)
-        x += canvas.text_width(told, SMALL) + 20
+        x += canvas.text_width(told, size=SMALL) + 20
         for name, outcome in (("landed", Outcome.LANDED), ("crashed", Outcome.CRASHED), ("lost", Outcome.TIMEOUT)):
             _draw_end(canvas, (x, y - 4), outcome)
             canvas.text(texts.LEARN_RUNS_ENDS[name], (x + 10, y), size=SMALL, colour=MUTE)
-            x += canvas.text_width(texts.LEARN_RUNS_ENDS[name], SMALL) + 34
+            x += canvas.text_width(texts.LEARN_RUNS_ENDS[name], size=SMALL) + 34
 
 
 def _draw_end(canvas: Canvas, place: tuple[float, float], outcome: int) -> None:
