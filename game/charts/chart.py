@@ -88,6 +88,23 @@ class Chart:
         return pygame.FRect(box.x, box.y + _HEADER, box.width - _GUTTER, box.height - _HEADER - _FOOT)
 
     @property
+    def header(self) -> pygame.FRect:
+        """Box of the name and the latest value, in points."""
+        return pygame.FRect(self.box.x, self.box.y, self.plot.width, _HEADER - 4)
+
+    @property
+    def gutter(self) -> pygame.FRect:
+        """Box of the numbers of the scale, in points."""
+        plot = self.plot
+        return pygame.FRect(plot.right + _MARGIN, plot.top - 8, _GUTTER - _MARGIN, plot.height + 8 + _FOOT)
+
+    @property
+    def latest(self) -> str:
+        """The latest value of the current run, as it is written; a dash before any."""
+        value = self.runs[0].last() if self.runs else None
+        return "–" if value is None else self.read(value)
+
+    @property
     def limits(self) -> Limits:
         """Lowest and highest value of the vertical axis once its easing ends."""
         return self._goal

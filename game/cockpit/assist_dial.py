@@ -67,6 +67,7 @@ class AssistDial:
         reach = self._shown * (right - left)
         if reach >= 1:
             canvas.pill((left, _LINE - 1, reach, 2), NET)
+        canvas.explain(_HOLD, texts.EXPLAIN_DIAL)
         handle = (left + reach, _LINE)
         canvas.dot(handle, 5 + self._dragged, HUMAN if stick is FlownBy.PERSON else INK)
 

@@ -99,7 +99,9 @@ class CopilotPanel:
         self._draw_why(canvas, left, top + _WHY + 26)
         if pads:
             self._draw_pads(canvas, pads)
-        hud.draw_share(canvas, left, top + _WHY + 104 + lower, _WIDTH, share)
+        y = top + _WHY + 104 + lower
+        hud.draw_share(canvas, left, y, _WIDTH, share)
+        canvas.explain((left, y - 14, _WIDTH, 30), texts.EXPLAIN_SHARE)
 
     def _draw_why(self, canvas: Canvas, left: float, top: float) -> None:
         """Draw whose action is flown; the latest override stays for a moment, marked as past."""
@@ -107,12 +109,14 @@ class CopilotPanel:
         if self._override not in (None, self.why):
             title = texts.COPILOT_PANEL_BEFORE.format(title=title)
         canvas.text(title, (left, top), colour=NET if self._override else INK, room=_WIDTH)
+        canvas.explain((left, top - 16, _WIDTH, 62), texts.EXPLAIN_COPILOT_WHY)
         for number, line in enumerate(lines):
             canvas.text(line, (left, top + 22 + 18 * number), size=SMALL, colour=MUTE, room=_WIDTH)
 
     def _draw_pads(self, canvas: Canvas, pads: Sequence[float]) -> None:
         left, top, surest = PANEL.left + _LEFT, PANEL.top + _PADS, max(pads)
         canvas.text(texts.COPILOT_PANEL_MEANT, (left, top - 20), size=LABEL, colour=MUTE, weight="medium", room=_WIDTH)
+        canvas.explain((left, top - 34, _WIDTH, 92), texts.EXPLAIN_COPILOT_MEANT)
         for number, (name, chance) in enumerate(zip(self._names, pads, strict=True)):
             y, likeliest = top + 22 * number, chance == surest
             canvas.text(name, (left, y + 4), size=SMALL, colour=INK if likeliest else MUTE)

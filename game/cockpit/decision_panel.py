@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import partial
+from functools import cache, partial
 from typing import Final
 
 import numpy as np
@@ -54,8 +54,13 @@ def _draw_inputs(canvas: Canvas, inputs: list[float], left: float, top: float, w
         canvas.text(name, (left, y), size=LABEL, colour=MUTE, room=90)
         figure = f"{value:.2f}".replace("-", "−")
         canvas.text(figure, (left + width, y), size=LABEL, colour=MUTE, align="right", tabular=True)
-        what = texts.EXPLAIN_INPUTS[number].format(unit=1 / OBSERVATION_SCALE[number])
-        canvas.explain((left, y - 13, width, _PITCH), what, partial(_sensed, inputs, number))
+        canvas.explain((left, y - 13, width, _PITCH), _what(number), partial(_sensed, inputs, number))
+
+
+@cache
+def _what(number: int) -> str:
+    """Say what an input is, and its unit."""
+    return texts.EXPLAIN_INPUTS[number].format(unit=1 / OBSERVATION_SCALE[number])
 
 
 def _sensed(inputs: list[float], number: int) -> str:

@@ -33,18 +33,22 @@ _MOUSE: Final = (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN)
 class Explained:
     """Tooltips of one scene: pass it every event before the scene's own, `update` it, and draw it last.
 
+    Where the arrows fly (`flies`), only the key that began goes on to the next area.
+
     Attributes:
         stepping: whether areas are explained one after the other, without a mouse.
 
     """
 
-    def __init__(self) -> None:
-        self.stepping = False
+    def __init__(self, flies: bool = False) -> None:
+        self.stepping, self._flies = False, flies
         self._number = self._rest = 0
         self._ready = False  # whether the mouse has rested for long enough
 
     def action(self) -> Action:
         """Return the action that explains the first area; to be the last of a table, as F1 can be bound otherwise."""
+        if self._flies:  # a gamepad's button has another use there, and the hints are few
+            return Action(pygame.K_F1, self._begin)
         return Action(pygame.K_F1, self._begin, texts.HINT_EXPLAIN, gamepad=Command.CHOICES)
 
     def handle_event(self, event: pygame.event.Event) -> bool:
@@ -56,9 +60,9 @@ class Explained:
         command = translate(event)
         if not self.stepping:
             return False
-        if command in _AFTER or self.action().answers(event):
+        if self.action().answers(event) or (command in _AFTER and not self._flies):
             self._number += 1
-        elif command in _BEFORE:
+        elif command in _BEFORE and not self._flies:
             self._number -= 1
         elif command in _LEAVE:
             self.stepping = False

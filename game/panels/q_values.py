@@ -94,6 +94,7 @@ def draw_q_values(canvas: Canvas, values: QValues, left: float, top: float, widt
         x, y = track[0] + values.fraction(values.allowed) * track[1], top + _FIRST
         canvas.line((x, y - 9), (x, y + 5 * _ROW + 9), MUTE)
         canvas.marker("triangle_down", (x, y - 11), 6, INK, 0.8)
+        canvas.explain((x - 8, y - 18, 16, 14), texts.EXPLAIN_COPILOT_ALLOWED)
 
 
 def draw_actions(canvas: Canvas, flown: int, left: float, top: float) -> None:

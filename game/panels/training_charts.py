@@ -201,6 +201,17 @@ class TrainingCharts:
     def draw(self, canvas: Canvas) -> None:
         """Draw the charts."""
         self.charts.draw(canvas)
+        for (name, *_), chart in zip(_CHARTS, self.charts.charts, strict=True):
+            canvas.explain(chart.header, texts.EXPLAIN_CHARTS[name], partial(_latest, chart))
+            canvas.explain(chart.gutter, texts.EXPLAIN_AXES[self.axis], partial(_scale, name))
+
+
+def _scale(name: str) -> str:
+    return texts.EXPLAIN_AXIS_LOG if name == "loss" else ""
+
+
+def _latest(chart: Chart) -> str:
+    return texts.EXPLAIN_CHART_NOW.format(value=chart.latest)
 
 
 def zoom_word(factor: float) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from game.audio.flight_sounds import FlightSound
 from game.cockpit import hud
 from game.cockpit.cockpit import Cockpit
+from game.cockpit.readouts_explained import explain_readouts
 from game.core.pace import SlowMotion
 from game.drawing.canvas import Canvas
 from game.flight.credit import Credit
@@ -204,5 +205,6 @@ class FlownFlight:
         self.cockpit.draw_top(canvas)
         captions.draw_title(canvas, flight, self.challenge, network, self.hands, self.credit.notice)
         hud.draw_readouts(canvas, self._readouts)
+        explain_readouts(canvas, flight.env)
         if self.waiting and not (self.challenge and not self.challenge.opening):
             captions.draw_opening(canvas, self._context.controls, self.challenge, self.path_preview.asks)

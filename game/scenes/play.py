@@ -17,6 +17,7 @@ from game.flight.logbook import Records
 from game.flight.skill import Skill
 from game.input.controls import Command, translate
 from game.input.mouse import MouseStick
+from game.panels.explained import Explained
 from game.play import captions
 from game.play.challenge import Challenge, Duel
 from game.play.ending import FlightEnding
@@ -52,6 +53,7 @@ class PlayScene(Scene):
         super().__init__(context)
         self.challenge = Duel(rival, rival_name) if rival else challenge
         self._mouse = MouseStick()
+        self.explained = Explained(flies=True)
         self._away = 0  # steps since the window was left; 0 while it is in use
         self._controls, self._settings, self._sound = context.controls, context.settings, context.sound
         self._load_network()
@@ -81,7 +83,9 @@ class PlayScene(Scene):
         self._begin(self.flight.recording.seed)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle handover, retry, pause and the dial."""
+        """Handle explanations, handover, retry, pause and the dial."""
+        if self.explained.handle_event(event):
+            return None
         if event.type in (pygame.WINDOWFOCUSLOST, pygame.WINDOWFOCUSGAINED):
             self._away = int(event.type == pygame.WINDOWFOCUSLOST)
         if self.flown.cockpit.take(event):
@@ -95,10 +99,11 @@ class PlayScene(Scene):
 
     def actions(self) -> Table:
         """What each key does at this moment: those of the card, once it is seen, and those of the flight."""
+        explain = self.explained.action()
         if self.ending.shown == 0:
-            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry)]
+            return [*self._flight_actions(), Action(Command.CONFIRM, self.ending.hurry), explain]
         space = [Action(pygame.K_SPACE, self._go_on)] if self.ending.shown >= 1 else []
-        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space]
+        return [*self._card_actions(), *self._flight_actions(), Action(Command.CONFIRM, self._go_on), *space, explain]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hints of the flight, and those of the card."""
@@ -129,6 +134,7 @@ class PlayScene(Scene):
     def update(self) -> Transition | None:
         """Advance by 1/60 s: fly a step, unless the craft waits or slowed time makes none due."""
         self.flown.breathe()
+        self.explained.update()
         self._away += self._away > 0
         if self._away > _AWAY_STEPS and not self.flight.over:
             return self._pause()
@@ -153,6 +159,8 @@ class PlayScene(Scene):
         self.ending.draw(canvas, self.flown.ghost, self._settings.show_hints)
         for row in of_card:
             row.draw(canvas)
+        if not self._mouse.holds:  # a mouse that flies asks for nothing
+            self.explained.draw(canvas)
 
     # The flight
 

@@ -18,6 +18,7 @@ from game.input.controls import Command
 from game.lesson.door import LessonDoor
 from game.panels.advice import Advice
 from game.panels.chart_captions import ChartCaptions
+from game.panels.explained import Explained
 from game.panels.network_panel import NetworkPanel
 from game.panels.rewind import Rewind
 from game.panels.run_status import draw_run_status
@@ -61,6 +62,7 @@ class TrainScene(SplitTrainingScene):
         self.swarm = LearningSwarm(DISPLAY_WIDTH / VIEW_SIZE[0])
         self.training_charts = TrainingCharts()
         self.captions = ChartCaptions()
+        self.explained = Explained()
         self._beside: list[Widget] = []  # the widgets that are not in the panel
         self._add_controls()
         self.inside = NetworkPanel(self.form, self._look_closer, self.lander_run)
@@ -76,7 +78,9 @@ class TrainScene(SplitTrainingScene):
             self._question = self._dialogs.ask_what_becomes_of(left)
 
     def handle_event(self, event: pygame.event.Event) -> Transition | None:
-        """Handle start, pause, step, knobs and the large network."""
+        """Handle explanations, start, pause, step, knobs and the large network."""
+        if self.explained.handle_event(event):
+            return None
         if not self.inside.large:
             self.training_charts.charts.follow(event)
         self.inside.follow(event)
@@ -94,11 +98,12 @@ class TrainScene(SplitTrainingScene):
             *super().actions(),
             Action(Command.SLOWER, lambda: self._turn_pace(-1)),
             Action(Command.FASTER, lambda: self._turn_pace(1)),
+            *([] if self.inside.large else [self.explained.action()]),
         ]
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hint beside the title, which the network covers when it is large."""
-        return [] if self.inside.large else [HintRow(self.hints[-1:], (_TITLE.right - 16, 46), from_right=True)]
+        return [] if self.inside.large else [HintRow(self.hints[-2:], (_TITLE.right - 16, 46), from_right=True)]
 
     def _turn_pace(self, direction: int) -> None:
         self._pace_choice.shift(direction)
@@ -120,6 +125,7 @@ class TrainScene(SplitTrainingScene):
             self._compared = bool(beside)
             self._lay_again()
         self.swarm.update(still)
+        self.explained.update()
         self.split_view.update(still, self.moment)
         self.inside.update(still)
         # Tasks that take a millisecond or two take turns, one per frame.
@@ -204,6 +210,11 @@ class TrainScene(SplitTrainingScene):
 
     # The picture
 
+    def draw(self, canvas: Canvas, alpha: float) -> None:
+        """Draw the display, the panel beside it and, over both, an explanation."""
+        super().draw(canvas, alpha)
+        self.explained.draw(canvas)
+
     def _add_controls(self) -> None:
         left, top = _CONTROLS.topleft
         self.start_button = self.form.add(self._word(left, top, 60, texts.TRAIN_START, self._toggle))
@@ -242,6 +253,7 @@ class TrainScene(SplitTrainingScene):
         self._lay_beside(self.inside.large)
 
     def _look_closer(self) -> None:
+        self.explained.stepping = False
         self._lay_beside(large=not self.inside.large)
         self.training_charts.charts.hover(None)
 
@@ -292,4 +304,7 @@ class TrainScene(SplitTrainingScene):
             canvas.panel(box, _COVER)
         status = lander_status(self.lander_run, self.moment, self.rewind.row)
         draw_run_status(canvas, (LEFT, 46), texts.TRAIN_TITLE, *status, drop=76, room=_TITLE.width - 32)
+        if self.lander_run.measured:
+            canvas.explain((LEFT - 4, 54, _TITLE.width - 32, 20), texts.EXPLAIN_TRAINED)
+            canvas.explain((LEFT - 4, 84, _TITLE.width - 32, 48), texts.EXPLAIN_TRAINED_LANDED)
         self.draw_hints(canvas)

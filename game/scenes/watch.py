@@ -166,10 +166,11 @@ class WatchScene(FormScene):
         above = self.hand.used(canvas.pointer)  # then it is drawn over the panel
         if not above:
             self.hand.draw(canvas)
-        draw_decision(canvas, self.decision)
+        decision = self.decision
+        draw_decision(canvas, decision)
         if above:
             self.hand.draw(canvas)
-        self._draw_words(canvas)
+        self._draw_words(canvas, int(decision.action[0]))
         self.explained.draw(canvas)
 
     # What flies
@@ -286,7 +287,7 @@ class WatchScene(FormScene):
 
     # The words
 
-    def _draw_words(self, canvas: Canvas) -> None:
+    def _draw_words(self, canvas: Canvas, flown: int) -> None:
         count, world = COUNTS[self._count], self.world
         hud.draw_corner(canvas, texts.WATCH_TITLE, texts.WATCH_LANDERS.format(count=count))
         canvas.explain((MARGIN - 4, 24, 120, 42), texts.EXPLAIN_WATCH)
@@ -295,7 +296,7 @@ class WatchScene(FormScene):
         draw_landings(canvas, (MARGIN, 118), self.swarm.landed, self.swarm.lost)
         hud.draw_readouts(canvas, hud.flight_readouts(self.swarm.env, self.shown)[:4], _READOUTS)
         explain_readouts(canvas, self.swarm.env, self.shown, _READOUTS)
-        draw_legend(canvas, world.policy_map, int(self.decision.action[0]))
+        draw_legend(canvas, world.policy_map, flown)
         self._draw_notice(canvas)
         rows = (self._model_choice, self._count_choice, self._speed_choice, self._map_choice)
         for row, what in zip(rows, texts.EXPLAIN_CHOICES, strict=True):

@@ -64,8 +64,11 @@ def answering(table: Table, event: pygame.event.Event) -> Action | None:
 
 def hints_of(table: Table, controls: Controls) -> list[Hint]:
     """Return the hints of a table, for the device in use."""
-    told = (entry.told(controls) if isinstance(entry, Action) else entry for entry in table)
-    return [hint for hint in told if hint.meaning]
+    return [
+        entry.told(controls) if isinstance(entry, Action) else entry
+        for entry in table
+        if (entry.hint if isinstance(entry, Action) else entry.meaning)
+    ]
 
 
 def digit_actions(run: Callable[[int], Transition | None]) -> Iterable[Action]:

@@ -17,6 +17,7 @@ from game.input.controls import Controls, Held
 
 _GAPS: Final = 8.0, 24.0  # points from a key to its meaning, and from there to the next key
 _LINE: Final = 18.0  # points above its baseline in which a hint can be clicked
+_BESIDE: Final = 6.0  # and on either side of it
 
 
 class Hint(NamedTuple):
@@ -47,18 +48,12 @@ class HintRow:
     def width(self, canvas: Canvas) -> float:
         """Return the width of the row, in points."""
         _, widths = self._fitted(canvas)
-        return sum(widths) + (len(widths) - 1) * _GAPS[1]
+        return _length(widths)
 
     def boxes(self, canvas: Canvas) -> list[pygame.FRect]:
         """Return the box, in points, in which each hint can be clicked."""
         _, widths = self._fitted(canvas)
-        x, y = self.position
-        x -= self.width(canvas) if self.from_right else 0.0
-        boxes = []
-        for width in widths:
-            boxes.append(pygame.FRect(x - 6, y - _LINE, width + 12, 1.6 * _LINE))
-            x += width + _GAPS[1]
-        return boxes
+        return self._boxes(widths)
 
     def at(self, canvas: Canvas, point: Point) -> Hint | None:
         """Return the hint that a click at a point runs, if any."""
@@ -67,15 +62,21 @@ class HintRow:
 
     def draw(self, canvas: Canvas) -> None:
         """Write the hints; the one below the mouse stands out if it can be clicked."""
-        size, widths = self._fitted(canvas)
-        x, y = self.position
-        x -= self.width(canvas) if self.from_right else 0.0
-        for hint, width, box in zip(self.hints, widths, self.boxes(canvas), strict=True):
+        size, widths = self._fitted(canvas)  # once: measuring words costs as much as writing them
+        for hint, width, box in zip(self.hints, widths, self._boxes(widths), strict=True):
             pointed = hint.run and canvas.pointer is not None and box.collidepoint(canvas.pointer)
+            x, y = box.x + _BESIDE, self.position[1]
             canvas.text(hint.key, (x, y), size=size, colour=INK, weight="medium")
-            end = x + width
-            canvas.text(hint.meaning, (end, y), size=size, colour=INK if pointed else MUTE, align="right")
-            x = end + _GAPS[1]
+            canvas.text(hint.meaning, (x + width, y), size=size, colour=INK if pointed else MUTE, align="right")
+
+    def _boxes(self, widths: Sequence[float]) -> list[pygame.FRect]:
+        x, y = self.position
+        x -= _length(widths) if self.from_right else 0.0
+        boxes = []
+        for width in widths:
+            boxes.append(pygame.FRect(x - _BESIDE, y - _LINE, width + 2 * _BESIDE, 1.6 * _LINE))
+            x += width + _GAPS[1]
+        return boxes
 
     def _fitted(self, canvas: Canvas) -> tuple[float, list[float]]:
         """Return the size at which the hints fit, and each one's width at that size."""
@@ -83,7 +84,7 @@ class HintRow:
         if self.room < math.inf:
             gaps = len(widths) * _GAPS[0] + (len(widths) - 1) * _GAPS[1]  # gaps do not shrink
             for _ in range(2):  # text that is made larger does not shrink in proportion
-                wide = sum(widths) + (len(widths) - 1) * _GAPS[1]
+                wide = _length(widths)
                 if wide <= self.room:
                     break
                 size *= min(1.0, (self.room - gaps) / max(wide - gaps, 1.0))
@@ -95,6 +96,10 @@ class HintRow:
             canvas.text_width(key, size=size, weight="medium") + _GAPS[0] + canvas.text_width(meaning, size=size)
             for key, meaning, _ in self.hints
         ]
+
+
+def _length(widths: Sequence[float]) -> float:
+    return sum(widths) + (len(widths) - 1) * _GAPS[1]
 
 
 def flight_hints(controls: Controls) -> list[Hint]:
