@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ai.digits.contrast import SQUARE, Contrast, InkChange
-from ai.digits.preprocessing import SIDE
+from ai.digits.preprocessing import SIDE, Image
 from game.core import texts
 from game.digits.patch_sums import figure
 from game.digits.pictures import SIGNED, Numbers, mosaic, picture, tiling
@@ -34,6 +34,7 @@ class Shown:
 
     Attributes:
         asked, answer: the two digits.
+        ink: rows and columns of the digit's ink, first and last of each.
         take, put: the ink to take away and to put that brings the asked digit nearest; None if none does.
         there, missing: (28, 28) in -1 to 1, of ink that is there and that is not, what it says for the asked digit.
         units: (n,) in -1 to 1, what each unit says for it.
@@ -44,6 +45,7 @@ class Shown:
 
     asked: int
     answer: int
+    ink: tuple[tuple[int, int], tuple[int, int]]
     take: InkChange | None
     put: InkChange | None
     there: Numbers
@@ -58,8 +60,16 @@ def shown(contrast: Contrast, asked: int) -> Shown:
     between = [each[..., asked] - each[..., contrast.answer] for each in (contrast.taken, contrast.put)]
     taken, put = (np.nan_to_num(each) for each in between)
     scale = max(float(np.abs(taken).max()), float(np.abs(put).max()), 1e-9)
-    return Shown(asked, contrast.answer, contrast.best(asked, 0), contrast.best(asked, 1), _clear(-taken / scale),
-                 _clear(put / scale), *_units(contrast, asked), contrast.done)  # fmt: skip
+    return Shown(asked, contrast.answer, _inked(contrast.image), contrast.best(asked, 0), contrast.best(asked, 1),
+                 _clear(-taken / scale), _clear(put / scale), *_units(contrast, asked), contrast.done)  # fmt: skip
+
+
+def _inked(image: Image) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Return the first and last row with ink, and the first and last column; those of the whole picture without ink."""
+    rows, columns = (np.flatnonzero(image.any(axis=axis)) for axis in (1, 0))
+    if not len(rows):
+        return (0, SIDE - 1), (0, SIDE - 1)
+    return (int(rows[0]), int(rows[-1])), (int(columns[0]), int(columns[-1]))
 
 
 def _clear(parts: npt.NDArray[np.floating[Any]]) -> Numbers:
@@ -91,16 +101,18 @@ def sentences(seen: Shown) -> list[str]:
     words = texts.WHY_NOT_TAKE, texts.WHY_NOT_PUT
     return [
         none.format(asked=seen.asked) if change is None else said.format(
-            asked=seen.asked, where=texts.WHY_NOT_PLACES[_region(change)], before=figure(change.before),
+            asked=seen.asked, where=texts.WHY_NOT_PLACES[_region(change, seen.ink)], before=figure(change.before),
             after=figure(change.after))
         for change, said, none in zip((seen.take, seen.put), words, nothing, strict=True)
     ]  # fmt: skip
 
 
-def _region(change: InkChange) -> int:
-    """Return the ninth of the digit's box, row by row, in which a change lies."""
-    margin, third = 4, 20 / 3  # ink lies in the 20 pixels in the middle
-    row, column = (min(max(int((at - margin) / third), 0), 2) for at in (change.row, change.column))
+def _region(change: InkChange, ink: tuple[tuple[int, int], tuple[int, int]]) -> int:
+    """Return the ninth of the box around the ink, row by row, in which a change lies, or the one nearest to it."""
+    row, column = (
+        min(max(3 * (at - first) // (last - first + 1), 0), 2)
+        for at, (first, last) in zip((change.row, change.column), ink, strict=True)
+    )
     return 3 * row + column
 
 
@@ -134,9 +146,10 @@ def _paint(sheet: Canvas, seen: Shown) -> None:
     y = _SAID
     colours: tuple[Colour, ...] = (sheet.palette.warn, NET)
     for words, colour in zip(sentences(seen), colours, strict=False):
-        if seen.measured and seen.asked != seen.answer:
+        indent = 16 if seen.measured and seen.asked != seen.answer else 0
+        if indent:
             sheet.rounded((0, y - 8, 8, 8), 2, colour)
-        y = draw_wrapped(sheet, words, (16, y), _WIDTH - 16, size=SMALL, leading=_LEADING, most=4) + 6
+        y = draw_wrapped(sheet, words, (indent, y), _WIDTH - indent, size=SMALL, leading=_LEADING, most=4) + 6
     if seen.asked != seen.answer:
         _paint_maps(sheet, seen)
         _paint_units(sheet, seen)

@@ -121,8 +121,9 @@ class PatchPictures:
                 self._weights_of, anew = walk.channel, self._filters_of(walk.channel)
             self._filters.show_tiles(channel, names["filters"].format(count=count, number=channel + 1), anew)
         if self._given_maps:
-            name = names["maps" if self._gives else "units"]
-            self._given_maps.show_tiles(channel, name.format(count=count, number=channel + 1))
+            last = walk.number == len(walk.stages) - 1
+            name = names["maps" if self._gives else "scores" if last else "units"]
+            self._given_maps.show_tiles(channel, name.format(count=count, number=channel + 1, digit=channel))
 
     def draw(self, canvas: Canvas) -> None:
         """Draw what the unit sees of the digit; the pickers are drawn by their form."""

@@ -100,12 +100,14 @@ class StepView:
                 _arrow(canvas, *self._reach(view, axis), MUTE)
         chosen = pair.axes[pair.chosen]
         start, end = self._reach(view, chosen)
+        if not STAGE.collidepoint(start):  # the middle of a long face, such as the ground's: show it where they meet
+            start, end = self._reach(view, chosen, self._middle(pair))
         _arrow(canvas, start, end, NET, 2)
         canvas.text(str(pair.chosen + 1), (end[0] + 8, end[1] + 4), size=SMALL, colour=NET)
 
     @staticmethod
-    def _reach(view: View, axis: Axis) -> tuple[Point, Point]:
-        x, y = view.points(axis.start).tolist()
+    def _reach(view: View, axis: Axis, place: Array | None = None) -> tuple[Point, Point]:
+        x, y = view.points(axis.start if place is None else place).tolist()
         right, up = axis.direction.tolist()
         return (x, y), (x + _NORMAL * right, y - _NORMAL * up)
 

@@ -13,6 +13,7 @@ from game.core.scene import Transition, push
 from game.digits.answer import LEFT, DigitRow, best_two, percent
 from game.digits.contrast_view import LEFT as SAID_LEFT
 from game.digits.contrast_view import ContrastView, Shown, shown
+from game.digits.patch_sums import figure
 from game.digits.pictures import picture
 from game.drawing import typeface
 from game.drawing.canvas import Canvas
@@ -118,6 +119,8 @@ class WhyNotScene(FormScene):
         answer, probability = int(self.probabilities.argmax()), float(self.probabilities.max())
         canvas.text(str(answer), (LEFT - 6, 200), size=124, weight="extralight", colour=INK)
         words = texts.WHY_NOT_READS.format(digit=answer, percent=percent(probability))
+        if self.contrast:
+            words += texts.WHY_NOT_SCORE.format(score=figure(float(self.contrast.scores[answer])))
         canvas.text(words, (LEFT, 232), size=TEXT, colour=MUTE, tabular=True)
         canvas.marker("triangle", (LEFT - 16, self._rows[self.asked].box.centery), 8, HUMAN)
 
