@@ -54,7 +54,9 @@ class Explained:
     def handle_event(self, event: pygame.event.Event) -> bool:
         """Go on to another area, or end; false for an event that is the scene's."""
         if event.type in _MOUSE:
-            self._rest = (_REST - _AGAIN if self._ready else 0) if event.type == pygame.MOUSEMOTION else 0
+            moves = event.type == pygame.MOUSEMOTION
+            drags = moves and any(getattr(event, "buttons", ()))  # what is dragged must not be covered
+            self._rest = _REST - _AGAIN if self._ready and moves and not drags else 0
             self.stepping = self._ready = False
             return False
         command = translate(event)

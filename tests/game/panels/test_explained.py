@@ -10,6 +10,8 @@ from ai.lander.environment import ACTION_NAMES
 from game.core import texts
 from game.drawing.canvas import Canvas
 from game.panels.q_values import QValues, value_words
+from game.panels.training_charts import TrainingCharts
+from game.scenes.play import PlayScene
 from game.scenes.watch import WatchScene
 from tests.support.driver import Driver
 
@@ -136,3 +138,31 @@ def test_a_value_says_how_far_below_the_best_it_lies():
     assert words[3].endswith(texts.EXPLAIN_VALUE_FLOWN)
     damaged = QValues((np.nan, *[0.0] * 5), flown=0)
     assert value_words(damaged, 1) == texts.EXPLAIN_VALUE_NONE.format(name=names[1])
+
+
+def test_play_explains_its_read_outs_by_the_key_alone_while_the_arrows_fly(open_game: Open, written: list[str]):
+    driver = open_game(PlayScene, seed=4)
+    driver.frames(5)
+    assert set(texts.EXPLAIN_READOUTS) <= areas(driver).keys()
+    driver.key(pygame.K_F1)
+    areas_of_play = [area.what for area in driver.app.canvas.explained]
+    assert shows(driver, written, areas_of_play[0])
+    driver.key(pygame.K_RIGHT)
+    assert shows(driver, written, areas_of_play[0])
+    driver.key(pygame.K_F1)
+    assert shows(driver, written, areas_of_play[1])
+    driver.key(pygame.K_ESCAPE)
+    assert isinstance(driver.top, PlayScene)
+    assert not shows(driver, written, areas_of_play[1])
+
+
+def test_charts_of_training_explain_their_names_and_scales(written: list[str]):
+    canvas = Canvas(pygame.Surface((1280, 720)))
+    charts = TrainingCharts()
+    charts.draw(canvas)
+    told = [area.what for area in canvas.explained]
+    assert set(texts.EXPLAIN_CHARTS.values()) <= set(told)
+    assert told.count(texts.EXPLAIN_AXES[0]) == len(charts.charts.charts)
+    assert texts.EXPLAIN_CHART_NOW.format(value="–") in {area.now() for area in canvas.explained}
+    for area in canvas.explained:  # an explanation and the cursor of a chart do not meet
+        assert all(chart.x_at(area.box.center) is None for chart in charts.charts.charts)
