@@ -1,5 +1,6 @@
 """From patch to answer, and why not another digit: by keys, by mouse and by gamepad."""
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
@@ -14,6 +15,7 @@ from game.core import source, texts
 from game.core.assets import MODELS_DIR
 from game.digits import patch_code
 from game.digits.answer import DigitRow
+from game.digits.contrast_view import sentences
 from game.digits.map_pickers import MapPicker, TilesPicker
 from game.digits.patch_code import code_of
 from game.digits.patch_sums import figure
@@ -287,6 +289,26 @@ def test_what_is_said_of_ink_is_true(why_not: Driver, modern, monkeypatch):
         before = network.predict(modern.shaped(top.image))[0]
         assert after[7] > before[7]
         assert f"{figure(float(before[7]))} to {figure(float(after[7]))}" in said
+
+
+def test_places_are_named_within_the_ink(why_not: Driver):
+    why_not.key(pygame.K_7)
+    seen = measured(why_not).seen
+    for row, place in ((12, 1), (18, 4), (25, 7), (2, 1)):  # the last lies above the ink, nearest to its top
+        at = dataclasses.replace(seen, ink=((10, 27), (5, 22)), take=dataclasses.replace(seen.take, row=row, column=13))
+        assert texts.WHY_NOT_PLACES[place] in sentences(at)[0]
+    (top, bottom), (left, right) = seen.ink
+    image = why_not.top.image
+    assert image[top].any()
+    assert image[bottom].any()
+    assert image[top : bottom + 1, left : right + 1].sum() == image.sum()
+
+
+def test_the_score_of_the_answer_stands_beside_it(why_not: Driver, modern, monkeypatch):
+    top, words = measured(why_not), words_written(monkeypatch)
+    why_not.frames(1)
+    score = float(modern.network.predict(modern.shaped(top.image))[0][9])
+    assert any(each.endswith(texts.WHY_NOT_SCORE.format(score=figure(score))) for each in words)
 
 
 def test_its_own_answer_is_not_asked_about(why_not: Driver, monkeypatch):
