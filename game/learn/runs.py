@@ -141,7 +141,11 @@ class RunsChapter(Chapter):
         told = texts.LEARN_RUNS_LEGEND
         canvas.text(told, (x, y), size=SMALL, colour=MUTE, room=STAGE.width * 0.2)
         x += canvas.text_width(told, size=SMALL) + 20
-        for name, outcome in (("landed", Outcome.LANDED), ("crashed", Outcome.CRASHED), ("lost", Outcome.TIMEOUT)):
+        for name, outcome in (
+            ("landed", Outcome.LANDED),
+            ("crashed", Outcome.CRASHED),
+            ("lost", Outcome.OUT_OF_BOUNDS),
+        ):
             _draw_end(canvas, (x, y - 4), outcome)
             canvas.text(texts.LEARN_RUNS_ENDS[name], (x + 10, y), size=SMALL, colour=MUTE)
             x += canvas.text_width(texts.LEARN_RUNS_ENDS[name], size=SMALL) + 34
