@@ -29,14 +29,14 @@ _ROW: Final = 18.0
 _MOST: Final = 7  # values of a line that are shown
 _LISTED: Final = 12  # numbers of a value that are listed under the pointer
 _NAME, _SHAPE, _APART = 200.0, 110.0, 16.0  # points of a name and a shape at most, and between columns
-_FEW: Final = 4  # numbers of an array that are written out
+_FEW: Final = 6  # numbers of an array that are written out
 
 
 class CodeWalk:
     """Walk through the lines that ran for one frame.
 
     `functions` are those of the lesson by their qualified names. `fallback` is shown, with no line lit, where no line
-    was recorded. The walk begins at the first line that sets `begin`, a variable as it is recorded.
+    was recorded. The walk begins at the last line that sets `begin`, a variable as it is recorded.
 
     Attributes:
         lines: the lines, in the order in which they ran.
@@ -55,7 +55,7 @@ class CodeWalk:
         self.lines = tuple(lines)
         # Without such a line, begin where numbers are set, past the head of the function.
         sets = [number for number, line in enumerate(self.lines[:-1]) if number and line.values]
-        named = (number for number in sets if begin in [value.name for value in self.lines[number].values])
+        named = (number for number in reversed(sets) if begin in [value.name for value in self.lines[number].values])
         self.index = next(named, next(iter(sets), 0))
         self.pointed: tuple[Value, Point] | None = None
         self._functions, self._fallback = functions, fallback

@@ -17,7 +17,7 @@ from game.training.lander_run import LanderRun
 from game.world.swarm import LearningSwarm
 
 _PATIENCE: Final = 30  # frames without an answer, after which the player is told that it is being made
-Run = TypeVar("Run", LanderRun, DigitRun)
+Run = TypeVar("Run", bound=LanderRun | DigitRun)
 
 
 class Door(Generic[Run]):

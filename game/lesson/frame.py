@@ -78,7 +78,7 @@ class Frame:
         figure: the one figure that stands for it in the strip.
         sentence: the field's term for what happens here, then plain words for it.
         functions: qualified names of the functions whose lines are shown beside it.
-        begin: variable that the first line lit among them sets; empty for any.
+        begin: variable that the line sets which is lit at first; empty for any.
         labels: the texts of the picture.
         spots: parts that can be pointed at, besides labels that explain themselves.
 

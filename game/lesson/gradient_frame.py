@@ -136,7 +136,7 @@ class GradientFrame(NetworkFrame):
 
     def paint_small(self, canvas: Canvas) -> None:
         """Paint a slope, and the step down it."""
-        for start, end in pairwise([_on_slope(step / 12) for step in range(13)]):
+        for start, end in pairwise([_on_slope(step / 6) for step in range(7)]):
             canvas.line(start, end, MUTE, 1.5)
         (x, y), (to, down) = _on_slope(0.12), _on_slope(0.3)
         canvas.line((x, y), (to, down), NET, 2)

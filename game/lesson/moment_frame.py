@@ -27,7 +27,7 @@ from game.world.landscape.pad import draw_pad
 
 _SHARE: Final = 0.31  # of the view's width that the little picture takes
 _WORLD: Final = (VIEW_SIZE[0] * _SHARE, VIEW_SIZE[1] * _SHARE)
-_SMALL_CRAFT: Final = 4.0  # points of a metre in the strip
+_SMALL_CRAFT: Final = 12.0  # points of a metre in the strip
 _TABLE: Final = 424.0  # left end of the table of inputs
 _ROW: Final = 30.0
 _MOON: Final = 5
@@ -66,7 +66,7 @@ class MomentFrame(Frame):
         self._state = np.asarray(lesson.cell.state)
         units = in_units(self._state)
         super().__init__(words[0], sensed(float(units[1]), 1), words[1], functions)
-        self.begin = "transitions.state"
+        self.begin = "rows"
         self._action = int(lesson.cell.action)
         self.heading(texts.LESSON_INPUTS, _TABLE, 14, 100)
         self.label(texts.LESSON_IN_UNITS, _SENSED, 14, size=LABEL, colour=MUTE, align="right", room=110)
@@ -101,10 +101,11 @@ class MomentFrame(Frame):
     def paint_small(self, canvas: Canvas) -> None:
         """Paint the lander, as it leans and with the engines it fires."""
         pose = pose_of(self._state)
-        middle = (SMALL_PICTURE[0] / 2, SMALL_PICTURE[1] / 2)
-        zoom = _SMALL_CRAFT / POINTS_PER_METRE
-        corner = (pose[0] - middle[0] / _SMALL_CRAFT, pose[1] + middle[1] / _SMALL_CRAFT)
-        draw_craft(canvas, View(canvas.scale, corner, zoom), LANDER, pose, _thrust(self._action), 1.0, 0, 1.0)
+        across, down = (
+            (whole - small) / (2 * _SMALL_CRAFT) for whole, small in zip(VIEW_SIZE, SMALL_PICTURE, strict=True)
+        )
+        view = View(canvas.scale, (pose[0] + across, pose[1] - down), _SMALL_CRAFT / POINTS_PER_METRE)
+        draw_craft(canvas, view, LANDER, pose, _thrust(self._action), 1.0, 0, 1.0)
 
 
 def draw_moment(canvas: Canvas, observation: Floats, action: int) -> None:

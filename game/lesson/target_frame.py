@@ -74,7 +74,9 @@ class TargetFrame(Frame):
             self.label(text, x, _SUM, size=TITLE, explanation=explanation, colour=INK if word else MUTE)
             if word:
                 self.label(word, x, _WORDS, size=LABEL, colour=MUTE, explanation=explanation)
-            x += width + (18.0 if word else 14.0)
+            x += width + (
+                25.0 if word else 14.0
+            )  # figures of one width are wider than the plain ones that are measured
 
     def _write_values(self) -> None:
         lesson = self._lesson

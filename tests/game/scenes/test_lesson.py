@@ -1,6 +1,8 @@
 """A lesson on the screen: seven frames by keys, mouse and gamepad, whose numbers are those of the learning step."""
 
 from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pygame
@@ -11,9 +13,11 @@ from ai.common.decision import in_points
 from ai.nn.costs import COSTS
 from game.core import texts
 from game.core.source import source_of
+from game.drawing.canvas import Canvas
 from game.lesson.code import CODE
 from game.lesson.error_frame import ErrorFrame
 from game.lesson.figures import number, points
+from game.lesson.frame import SMALL_PICTURE
 from game.lesson.gradient_frame import GradientFrame
 from game.lesson.moment_frame import in_units, sensed
 from game.scenes.lesson import LessonScene
@@ -148,6 +152,59 @@ def test_the_numbers_of_a_line_are_listed_under_the_mouse(driver: Driver, lesson
     assert number(lesson.derivative) in words
     driver.key(pygame.K_DOWN)
     assert code.pointed is None
+
+
+def test_the_line_that_does_it_is_lit_at_first_with_this_cases_numbers_beside_the_lines(driver: Driver, lesson: Lesson):
+    sets = {0: "rows", 2: "self._returns", 3: "targets", 4: "errors", 6: "values"}
+    for frame, name in sets.items():
+        code = driver.top.parts[frame].code
+        assert name in [value.name for value in code.line.values]
+        assert "_start" not in dict(code.source.lines)[code.line.number], "the sum itself, not its empty beginning"
+    words = shown(driver, 3)
+    assert words.count(number(lesson.target)) == 2, "beside the line, and below"
+    assert number(lesson.discount) in words
+
+
+def test_shapes_and_numbers_below_the_listing_never_touch(driver: Driver, monkeypatch: pytest.MonkeyPatch):
+    drawn: list[tuple[str, pygame.FRect, int]] = []
+    text = Canvas.text
+
+    def listen(self: Canvas, words: str, *arguments: Any, **options: Any) -> pygame.FRect:
+        box = text(self, words, *arguments, **options)
+        if self is not driver.app.canvas and box.top > 300:  # on the sheet of the code, below the listing
+            drawn.append((words, pygame.FRect(box), id(self)))
+        return box
+
+    monkeypatch.setattr(Canvas, "text", listen)
+    for frame in range(FRAMES):
+        driver.top.show(frame)
+        for _ in range(12):
+            drawn.clear()
+            driver.key(pygame.K_DOWN)
+            driver.frames(1)
+            names = [value.name for value in driver.top.code.line.values]
+            for name, box, sheet in [each for each in drawn if each[0] in names]:
+                row = sorted((other for _, other, its in drawn if its == sheet and abs(other.bottom - box.bottom) < 4),
+                             key=lambda each: each.left)  # fmt: skip
+                assert all(one.right <= two.left for one, two in pairwise(row)), name
+
+
+def test_every_part_of_the_pay_has_its_name_beside_its_colour(driver: Driver, lesson: Lesson):
+    words = shown(driver, 2)
+    assert lesson.flown is not None
+    for name, paid in lesson.flown.parts.items():
+        assert (texts.REWARD_PARTS[name][0] in words) == bool(paid.any())
+
+
+def test_every_card_has_a_picture_that_is_painted_once(driver: Driver, monkeypatch: pytest.MonkeyPatch):
+    for part in driver.top.parts:
+        sheet = driver.app.canvas.sheet(*SMALL_PICTURE)
+        before = pygame.image.tobytes(sheet.surface, "RGBA")
+        part.frame.paint_small(sheet)
+        assert pygame.image.tobytes(sheet.surface, "RGBA") != before
+        monkeypatch.setattr(part.frame, "paint_small", lambda _: pytest.fail("painted again"))
+    driver.top.show(2)
+    driver.frames(3)
 
 
 # The numbers are the lesson's
