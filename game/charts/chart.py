@@ -302,7 +302,8 @@ class Chart:
                 rows.append(TooltipRow(run.series.name, self.read(point[1]), run.series.colour, run.series.dash))
         if self.pointed:
             tick = self._tick_at(across)
-            below = (self.box.x, plot.top - 6, self.box.width, self.box.bottom - plot.top + 6)  # the label and the figure
+            # Below the label and the figure.
+            below = (self.box.x, plot.top - 6, self.box.width, self.box.bottom - plot.top + 6)
             draw_tooltip(canvas, (across, plot.top), below, [self.read_x(x), *([tick.text] if tick else [])], rows)
 
     def _tick_at(self, across: float) -> Tick | None:
