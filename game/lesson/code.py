@@ -161,7 +161,7 @@ def shape_of(value: Value) -> str:
 def _note(values: Sequence[Value]) -> str:
     """Write the first of some values: this case's number, or the shape of an array that has several for it."""
     note = case_of(values[0]) if np.size(values[0].case) == 1 and values[0].case is not None else shape_of(values[0])
-    return note if len(values) == 1 else f"{note} …"
+    return note if len(values) == 1 else f"{note} ..."
 
 
 def case_of(value: Value, few: int = _FEW) -> str:
@@ -172,4 +172,4 @@ def case_of(value: Value, few: int = _FEW) -> str:
         return str(bool(value.case))
     numbers = np.asarray(value.case).ravel()
     shown = " ".join(str(each) if isinstance(each, int) else number(each) for each in numbers[:few].tolist())
-    return shown if len(numbers) <= few else f"{shown} …"
+    return shown if len(numbers) <= few else f"{shown} ..."
