@@ -30,10 +30,10 @@ from game.ui.widgets import Slider, TextButton
 _ROW: Final = pygame.Rect(40, 116, 780, 24)
 _SMALL_ROW: Final = pygame.Rect(40, 404, 780, 24)  # over the swarm, where the network is small
 _SPLIT_ROW: Final = pygame.Rect(40, 154, 780, 24)  # over two swarms, whose names stand below them
-_SLIDER: Final = 200  # width, with the link's weight, but without its name
+_SLIDER: Final = 170  # width, with the link's weight, but without its name
 _NAME: Final = 14.0  # points between the name and the track
 _FIGURE: Final = 52
-_GAP: Final = 20.0
+_GAP: Final = 14.0
 _LEAST: Final = 1.0  # weight that a slider reaches at least
 _REACH: Final = 2.0  # times the largest weight of the layer that it reaches
 _PULL: Final = 160.0  # points that a link is pulled up for the largest weight

@@ -36,10 +36,10 @@ _TURNS: Final = 12  # frames in a round: in every second one, one chart reads th
 _TOGETHER: Final = 0.5  # seconds within which changed knobs share one mark: a preset changes many
 _FEW: Final = 3  # of them that are named
 _SHORTEST: Final = (10.0, 1_000.0, 100.0)  # seconds, decisions, percent that the axis spans at least
-_LEGEND: Final = (40, 436, 480, 20)
+_LEGEND: Final = (40, 436, 384, 20)
 _DIMMED: Final = 0.68  # of the other runs' lines, while one is emphasised
-_ZOOM: Final = (768.0, 557.0)  # left and top: at the end of an axis
-_AXES: Final = pygame.Rect(534, 436, 262, 20)  # by what the charts are measured, while runs are compared
+_ZOOM_RIGHT: Final = 820.0
+_AXES: Final = pygame.Rect(436, 436, 262, 20)  # by what the charts are measured, while runs are compared
 BY_DECISIONS: Final = 1  # of the ways to measure the horizontal axis: see texts.TRAIN_AXES
 _STEPPED: Final = ("epsilon", "stage")  # curves without noise
 _CHARTS: Final = (
@@ -191,7 +191,7 @@ class TrainingCharts:
             axes = Choice(manager, _AXES, "", texts.TRAIN_AXES, self.axis, self.measure_by, size=SMALL, gap=14)
             found.append(axes)
         width = max(typeface.width(zoom_word(factor), SMALL, "regular") for factor in (1.0, 8.0))
-        box = (*_ZOOM, width, _AXES.height)
+        box = (_ZOOM_RIGHT - width, _AXES.top, width, _AXES.height)
         self._zoom_word = TextButton(manager, box, zoom_word(self.charts.zoom.factor), self._double, size=SMALL)
         return [*found, self._zoom_word]
 
