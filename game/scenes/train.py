@@ -103,7 +103,7 @@ class TrainScene(SplitTrainingScene):
 
     def hint_rows(self, canvas: Canvas) -> list[HintRow]:
         """Return the hint beside the title, which the network covers when it is large."""
-        return [] if self.inside.large else [HintRow(self.hints[-1:], (_TITLE.right - 16, 46), from_right=True)]
+        return [] if self.inside.large else [HintRow(self.hints[:1], (_TITLE.right - 16, 46), from_right=True)]
 
     def _turn_pace(self, direction: int) -> None:
         self._pace_choice.shift(direction)
