@@ -20,10 +20,10 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import INK, LABEL, LINE, MUTE, NET, SMALL, TEXT, TITLE
 from game.input.controls import Command
-from game.ui.actions import Action, Table, digit_actions
+from game.ui.actions import Action, Table, one_of_ten
 from game.ui.context import Context
 from game.ui.form_scene import FOOT, FormScene
-from game.ui.hints import Hint, HintRow
+from game.ui.hints import HintRow
 from game.ui.widget import PointsManager, Widget
 from game.ui.widgets import Choice, Slider, TextButton
 
@@ -110,13 +110,8 @@ class DreamScene(FormScene):
 
     def actions(self) -> Table:
         """Choose a digit by its key, or the next one; restart; go back."""
-        word = self.context.controls.word
-        by_gamepad = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}"
         return [
-            Hint(by_gamepad if self.context.controls.gamepad_in_use else "0 – 9", texts.HINT_DIGIT),
-            *digit_actions(self.choose),
-            Action(Command.NEXT, lambda: self.choose((self.digit + 1) % _DIGITS)),
-            Action(Command.PREVIOUS, lambda: self.choose((self.digit - 1) % _DIGITS)),
+            *one_of_ten(self.context.controls, self.choose, lambda: self.digit),
             Action(Command.RETRY, self.restart, texts.DREAM_AGAIN.lower()),
             self.form.goes_back(texts.HINT_BACK),
         ]

@@ -22,10 +22,10 @@ from game.drawing.prose import draw_wrapped
 from game.drawing.sky import NightSky
 from game.drawing.tokens import HUMAN, INK, LINE, MUTE, SMALL, TEXT, TITLE
 from game.input.controls import Command
-from game.ui.actions import Action, Table, digit_actions
+from game.ui.actions import Action, Table, one_of_ten
 from game.ui.context import Context
 from game.ui.form_scene import FOOT, FormScene
-from game.ui.hints import Hint, HintRow
+from game.ui.hints import HintRow
 from game.ui.widgets import TextButton
 
 if TYPE_CHECKING:
@@ -69,13 +69,8 @@ class WhyNotScene(FormScene):
 
     def actions(self) -> Table:
         """Ask about a digit by its key, or the next one; change the ink; go back."""
-        word = self.context.controls.word
-        by_gamepad = f"{word(Command.PREVIOUS)} {word(Command.NEXT)}"
         return [
-            Hint(by_gamepad if self.context.controls.gamepad_in_use else "0 – 9", texts.HINT_DIGIT),
-            *digit_actions(self.ask),
-            Action(Command.NEXT, lambda: self.ask((self.asked + 1) % _DIGITS)),
-            Action(Command.PREVIOUS, lambda: self.ask((self.asked - 1) % _DIGITS)),
+            *one_of_ten(self.context.controls, self.ask, lambda: self.asked),
             Action(Command.RETRY, self._restore, texts.WHY_NOT_UNDO.lower()),
             self.form.goes_back(texts.HINT_BACK),
         ]

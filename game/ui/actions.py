@@ -8,6 +8,7 @@ from functools import partial
 
 import pygame
 
+from game.core import texts
 from game.core.scene import Transition
 from game.input.controls import Command, Controls, key_name, translate
 from game.ui.hints import Hint
@@ -74,3 +75,16 @@ def hints_of(table: Table, controls: Controls) -> list[Hint]:
 def digit_actions(run: Callable[[int], Transition | None]) -> Iterable[Action]:
     """Return an action for the key of each digit."""
     return [Action(pygame.K_0 + digit, partial(run, digit)) for digit in range(10)]
+
+
+def one_of_ten(
+    controls: Controls, choose: Callable[[int], Transition | None], chosen: Callable[[], int]
+) -> Iterable[Action | Hint]:
+    """Return what chooses one of ten digits: its key, or the next or previous one; `chosen` is the present one."""
+    by_gamepad = f"{controls.word(Command.PREVIOUS)} {controls.word(Command.NEXT)}"
+    return [
+        Hint(by_gamepad if controls.gamepad_in_use else "0 – 9", texts.HINT_DIGIT),
+        *digit_actions(choose),
+        Action(Command.NEXT, lambda: choose((chosen() + 1) % 10)),
+        Action(Command.PREVIOUS, lambda: choose((chosen() - 1) % 10)),
+    ]

@@ -19,6 +19,7 @@ from ai.lander.pilots import ScriptedPilot
 from game.core.scene import Scene
 from game.core.settings import Settings, SettingsFile
 from game.drawing import typeface
+from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.scenes import scene_of
 from game.scenes.menu import MenuScene
@@ -39,6 +40,20 @@ def usual_text_size() -> Iterator[None]:
 @pytest.fixture
 def context(tmp_path: Path) -> Context:
     return Context(tmp_path / "user", Settings(), rng=np.random.default_rng(1))
+
+
+@pytest.fixture
+def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """All texts that are written from now on."""
+    strings: list[str] = []
+    text = Canvas.text
+
+    def note(self: Canvas, string: str, *args: object, **words: object) -> pygame.FRect:
+        strings.append(string)
+        return text(self, string, *args, **words)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Canvas, "text", note)
+    return strings
 
 
 @pytest.fixture

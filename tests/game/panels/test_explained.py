@@ -25,19 +25,6 @@ def watching(open_game: Open) -> Driver:
     return driver
 
 
-@pytest.fixture
-def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    strings: list[str] = []
-    text = Canvas.text
-
-    def note(self: Canvas, string: str, *args: object, **words: object) -> pygame.FRect:
-        strings.append(string)
-        return text(self, string, *args, **words)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(Canvas, "text", note)
-    return strings
-
-
 def shows(driver: Driver, written: list[str], sentence: str) -> bool:
     """Whether a sentence is on the screen, however it is broken into lines."""
     written.clear()

@@ -8,7 +8,6 @@ import pytest
 
 from ai.lander.environment import PARAMS, Outcome
 from game.core import texts
-from game.drawing.canvas import Canvas
 from game.flight import networks
 from game.flight.replay import ReplayedFlight
 from game.play.captions import BELOW_OPENING
@@ -25,19 +24,6 @@ REST = (0.0, PARAMS.pad_top + PARAMS.stand + 0.3, 0.0, 0.0, 0.0, 0.0)
 def game(open_game: Open, monkeypatch: pytest.MonkeyPatch) -> Driver:
     monkeypatch.setattr(networks, "chosen", lambda *_: networks.Network("none", None))
     return open_game(PlayScene, seed=3)
-
-
-@pytest.fixture
-def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    strings: list[str] = []
-    text = Canvas.text
-
-    def note(self: Canvas, string: str, *args: object, **words: object) -> pygame.FRect:
-        strings.append(string)
-        return text(self, string, *args, **words)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(Canvas, "text", note)
-    return strings
 
 
 def scene(driver: Driver) -> PlayScene:
