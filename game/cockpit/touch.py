@@ -19,6 +19,7 @@ from game.core import texts
 from game.drawing.canvas import Align, Canvas, Point
 from game.drawing.tokens import HUMAN, INK, NIGHT0, SMALL, VIEW_SIZE
 from game.input.controls import Command, Controls, translate
+from game.ui.held_directions import HeldDirections
 from game.ui.hints import Hint
 from game.ui.widget import PointsManager, Widget
 from game.world.camera import View
@@ -32,12 +33,9 @@ _ARROW: Final = 12.0  # points between the ring and the arrow
 _PER_SPEED: Final = 22.0  # points of the arrow for each m/s
 _REACH: Final = 16.0  # points from a knob within which it is taken
 _PACE: Final = (0.05, math.radians(1.0), 0.05)  # metres, radians and m/s in an update, while an arrow is held
-_DEAD: Final = 0.2
-_WAYS: Final = {Command.LEFT: (-1, 0), Command.RIGHT: (1, 0), Command.UP: (0, 1), Command.DOWN: (0, -1)}
 _TURNS: Final = {pygame.K_q: 1, pygame.K_e: -1}
 _SHOULDERS: Final = {Command.PREVIOUS: 1, Command.NEXT: -1}
 _SKY: Final = pygame.Rect(40, 100, VIEW_SIZE[0] - 80, 510)  # where the focus on it is seen
-_STICK: Final = (pygame.CONTROLLER_AXIS_LEFTX, pygame.CONTROLLER_AXIS_LEFTY)
 
 
 class Touched(Protocol):
@@ -84,8 +82,7 @@ class Hand(Widget):
         self._lander, self._clear, self._size = lander, clear, size
         self.part, self.dragging = PLACE, False
         self._grip: Point = (0.0, 0.0)  # from the mouse to what it holds, in points
-        self._arrows: dict[int, Command] = {}
-        self._stick = [0.0, 0.0]
+        self._held = HeldDirections()
 
     # Where it is, in points
 
@@ -229,10 +226,8 @@ class Hand(Widget):
             return False
         code = getattr(event, "key", getattr(event, "button", None))
         if event.type in (pygame.KEYUP, pygame.CONTROLLERBUTTONUP):
-            return self._arrows.pop(code or 0, None) is not None
-        if event.type == pygame.CONTROLLERAXISMOTION and event.axis in _STICK:
-            share = event.value / 32767
-            self._stick[_STICK.index(event.axis)] = share if abs(share) > _DEAD else 0.0
+            return self._held.release(code)
+        if self._held.tilt(event):
             return True
         if event.type == pygame.WINDOWFOCUSLOST:  # releases will not be reported now
             self._let_go()
@@ -241,8 +236,8 @@ class Hand(Widget):
 
     def _obey(self, event: pygame.event.Event, code: int | None) -> bool:
         command, by_pad = translate(event), event.type == pygame.CONTROLLERBUTTONDOWN
-        if code is not None and command in _WAYS:
-            self._arrows[code] = command
+        if self._held.press(code, command):
+            pass
         elif command is Command.CONFIRM:
             self._next_part()
         elif by_pad and command in _SHOULDERS:
@@ -260,8 +255,7 @@ class Hand(Widget):
 
     def _let_go(self) -> None:
         self.typing = self.dragging = False
-        self._arrows.clear()
-        self._stick = [0.0, 0.0]
+        self._held.clear()
 
     def ease(self, at_once: bool) -> None:
         """Change what is held by as much as the arrows, held down, do in 1/60 s."""
@@ -270,8 +264,8 @@ class Hand(Widget):
             self._let_go()
         if not self.typing:
             return
-        way = np.array([self._stick[0], -self._stick[1]])
-        way += np.sum([_WAYS[command] for command in self._arrows.values()] or [(0, 0)], axis=0)
+        held = self._held.stick + (self._held.arrows or (0, 0))
+        way = np.array([held.x, -held.y])  # up is up in the world
         if not way.any():
             return
         env, slot, pace = self._lander.env, self._lander.shown, _PACE[self.part]

@@ -11,12 +11,10 @@ from game.core import texts
 from game.drawing.canvas import Canvas
 from game.drawing.tokens import HUMAN, NIGHT0
 from game.input.controls import Command, Controls, presses_main, translate
+from game.ui.held_directions import DIRECTIONS, HeldDirections
 from game.ui.hints import Hint
 from game.ui.widget import PointsManager, Widget
 
-_DEAD: Final = 0.2  # dead zone of a stick, as a share of its range
-_WAYS: Final = {Command.LEFT: (-1, 0), Command.RIGHT: (1, 0), Command.UP: (0, -1), Command.DOWN: (0, 1)}
-_STICK: Final = (pygame.CONTROLLER_AXIS_LEFTX, pygame.CONTROLLER_AXIS_LEFTY)
 _EDGE: Final = 2.0
 _NOWHERE: Final = (-1.0, -1.0)
 
@@ -50,8 +48,7 @@ class VirtualPointer(Widget):
         super().__init__(manager, box, texts.POINTER)
         self._hear, self._hold, self._leave, self._pace = tell, hold, leave, pace
         self.place = pygame.Vector2(self.box.center)
-        self._arrows: dict[int, Command] = {}
-        self._stick = [0.0, 0.0]
+        self._held = HeldDirections()
         self._pressed_by: int | None = None  # the key or gamepad button that holds the mouse button down
 
     def press(self) -> None:
@@ -76,13 +73,11 @@ class VirtualPointer(Widget):
             return False
         code = getattr(event, "key", getattr(event, "button", None))
         if event.type in (pygame.KEYUP, pygame.CONTROLLERBUTTONUP):
-            self._arrows.pop(code or 0, None)
+            self._held.release(code)
             if code == self._pressed_by:
                 self._lift()
             return True
-        if event.type == pygame.CONTROLLERAXISMOTION and event.axis in _STICK:
-            share = event.value / 32767
-            self._stick[_STICK.index(event.axis)] = share if abs(share) > _DEAD else 0.0
+        if self._held.tilt(event):
             return True
         if event.type == pygame.WINDOWFOCUSLOST:  # releases will not be reported now
             self._lay_aside()
@@ -96,8 +91,8 @@ class VirtualPointer(Widget):
         if code is not None and command is Command.CONFIRM:
             self._tell(pygame.MOUSEBUTTONDOWN)
             self._pressed_by = code
-        elif code is not None and command in _WAYS:
-            self._arrows[code] = command
+        elif self._held.press(code, command):
+            pass
         elif command in (Command.BACK, Command.PAUSE, Command.UNPLUGGED):
             self._lay_aside()
         else:
@@ -111,11 +106,9 @@ class VirtualPointer(Widget):
             self._lay_aside()
         if not self.typing:
             return
-        way = pygame.Vector2(self._stick)
-        if self._arrows:
-            way = pygame.Vector2(sum((pygame.Vector2(_WAYS[command]) for command in self._arrows.values()), way * 0))
-            if way:
-                way.normalize_ip()
+        way, arrows = self._held.stick, self._held.arrows
+        if arrows is not None:
+            way = arrows.normalize() if arrows else arrows
         if not way:
             return
         box = self.box.inflate(-2 * _EDGE, -2 * _EDGE)
@@ -126,8 +119,7 @@ class VirtualPointer(Widget):
 
     def _lay_aside(self) -> None:
         self.typing = False
-        self._arrows.clear()
-        self._stick = [0.0, 0.0]
+        self._held.clear()
         self._lift()
         self._hear(pygame.Event(pygame.MOUSEMOTION, pos=_NOWHERE, rel=(0, 0), buttons=(0, 0, 0)))
 
@@ -146,5 +138,5 @@ class VirtualPointer(Widget):
             x, y = self.place
             canvas.dot((x, y), 9, NIGHT0, 0.6)  # visible on bright ink, too
             canvas.marker("ring", (x, y), 14, HUMAN)
-            for across, down in _WAYS.values():
+            for across, down in DIRECTIONS.values():
                 canvas.line((x + 9 * across, y + 9 * down), (x + 15 * across, y + 15 * down), HUMAN, 1.5)
