@@ -110,7 +110,8 @@ def _memory(moment: _Moment, slot: int) -> tuple[MemoryCell, Flown]:
     for each in decided:
         result = each.result
         reward = result.reward[mine] * np.float32(config.reward_scale)
-        with Recorder([NStep.add]) as recorder:
+        # Only what the last decision sums up is shown.
+        with Recorder([NStep.add] if each is decided[-1] else ()) as recorder:
             cells, _ = n_step.add(each.observation[mine], each.actions[mine], reward, result.observation[mine],
                                   result.terminated[mine], result.ended[mine])  # fmt: skip
     results = [each.result for each in decided]
