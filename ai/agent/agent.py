@@ -67,6 +67,7 @@ class DeepQAgent:
         loss: mean absolute temporal-difference error of the last `learn`, in scaled reward.
         mean_q: mean value of the next states it learned from, in the same unit.
         held: whether `learn` does nothing, while its network is edited by hand.
+        folder: where it was read from; None for an agent that was not.
 
     """
 
@@ -95,6 +96,7 @@ class DeepQAgent:
         self.decisions = self.train_count = 0
         self.loss = self.mean_q = 0.0
         self.held = False
+        self.folder: Path | None = None
         self._n_step = NStep(self.config.n_step, self.config.discount)
         self._episodes = Episodes()
 
@@ -303,5 +305,5 @@ class DeepQAgent:
         saved = read_agent(folder, env=env)
         agent = cls(saved.num_features, saved.num_actions, saved.config, rng, optimizer=saved.optimizer)
         agent.online, agent.target, agent.normalizer = saved.online, saved.target, saved.normalizer
-        agent.decisions, agent.train_count = saved.decisions, saved.train_count
+        agent.decisions, agent.train_count, agent.folder = saved.decisions, saved.train_count, Path(folder)
         return agent

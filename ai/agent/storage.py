@@ -28,7 +28,10 @@ VERSION: Final = 1
 AGENT_FILE: Final = "config.json"
 OPTIMIZER_FILE: Final = "optimizer.npz"
 LAST: Final = "last"  # folder within a run's: the agent to resume from
-_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), {"online": NETWORK, "target": NETWORK})
+GUARDIAN: Final = "guardian"  # folder within an agent's: its safety critic, in `ai.copilot.critic`
+CRITIC_KIND: Final = FolderKind("tranquility safety critic", (), {"network": NETWORK})
+_PARTS: Final = {"online": NETWORK, "target": NETWORK, GUARDIAN: CRITIC_KIND}
+_ALONE: Final = FolderKind(FORMAT, (OPTIMIZER_FILE,), _PARTS)
 KIND: Final = FolderKind(FORMAT, (OPTIMIZER_FILE, "training.json", "history.npz"), {**_ALONE.folders, LAST: _ALONE})
 _SLACK: Final = 1 << 16  # bytes of an archive beside its numbers
 

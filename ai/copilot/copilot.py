@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from functools import cached_property
-from typing import Any, Final, Protocol
+from typing import Any, Final, Literal, Protocol
 
 import numpy as np
 
@@ -13,12 +13,15 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.copilot.critic import SafetyCritic, critic_beside
 from ai.copilot.intent import Intent, in_question
 from ai.lander.environment import NUM_ACTIONS
 from ai.lander.pilots import COAST
 
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
+RISK: Final = 0.02  # chance to be lost that a guardian with a critic accepts, at an assist of one half
+HAND_BACK: Final = 0.25  # share of that risk at which a guardian that has stepped in gives the stick back
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
@@ -33,7 +36,7 @@ class Mode(StrEnum):
     """Condition on which the co-pilot steps in."""
 
     TOLERANCE = "tolerance"  # where the pilot's action is not nearly as good as the best
-    GUARDIAN = "guardian"  # only where its own is better for every pad, by a margin
+    GUARDIAN = "guardian"  # only where the network might soon no longer save the flight
 
 
 class ActionSource(IntEnum):
@@ -62,6 +65,18 @@ class SharedDecision:
     assist: float  # how much the co-pilot helped, 0 to 1
     mode: Mode  # and when it stepped in
     reward_scale: float  # size of one point of reward in the unit of `values`
+    chances: Floats | None = None  # (n, 6) to be saved after each action, for the best pad that may be meant
+    required: float = 0.0  # chance that the dial asks for; 0 without a critic
+
+    @property
+    def chance(self) -> Floats | None:
+        """Chance to be saved after the pilot's own action, (n,); None without a critic."""
+        return None if self.chances is None else self.chances[np.arange(len(self.pilot)), self.pilot]
+
+    @property
+    def flown_chance(self) -> Floats | None:
+        """Chance to be saved after the action that is flown, (n,); None without a critic."""
+        return None if self.chances is None else self.chances[np.arange(len(self.action)), self.action]
 
     @cached_property
     def points(self) -> Floats:
@@ -88,6 +103,12 @@ def guardian_margin(assist: Any) -> Any:
         return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
 
 
+def required_chance(assist: Any) -> Any:
+    """Return the chance to be saved below which a guardian with a critic steps in, for assist (n,), 0 to 1."""
+    with np.errstate(divide="ignore"):
+        return np.maximum(0.0, 1.0 - RISK * (1.0 - np.asarray(assist)) / assist)
+
+
 class CoPilot:
     """Shared control between a pilot and an agent (Reddy, Dragan and Levine 2018).
 
@@ -95,8 +116,13 @@ class CoPilot:
     A pilot who asks for nothing has their hands off the stick: then the co-pilot flies, whatever the assist.
 
     In tolerance mode an action is feasible if its value above the worst is at least `assist` times that of the
-    best. In guardian mode (after McMahan et al. 2024) every action is, unless the co-pilot's own is worth more on
-    the way to every pad by a margin, which falls from infinity at assist 0 to 0 at assist 1.
+    best. In guardian mode every action is after which the agent can still save the flight: with a chance, by its
+    safety `critic`, of at least `required_chance(assist)`; here hands off the stick ask for nothing, and get it. Once
+    the guardian has stepped in, it gives the stick back when that is a little safer than it had to be.
+
+    Without a critic, a guardian (after McMahan et al. 2024) lets every action pass unless the co-pilot's own is worth
+    more on the way to every pad by a margin, which falls from infinity at assist 0 to 0 at assist 1. The critic is the
+    one beside the agent's files unless another is given; `critic_problem` says why there is none.
 
     Of several pads, only those count that may still be meant, by what the pilot has done so far
     (`ai.copilot.intent`); with `infers_intent` off, all do. Hands off, the co-pilot flies to the likeliest. So it
@@ -113,6 +139,7 @@ class CoPilot:
         *,
         reward_scale: float | None = None,
         infers_intent: bool = True,
+        critic: SafetyCritic | Literal["beside"] | None = "beside",
     ) -> None:
         self.agent = agent
         self.assist = assist
@@ -121,6 +148,8 @@ class CoPilot:
         self.reward_scale = config.reward_scale if reward_scale is None else reward_scale
         self.infers_intent = infers_intent
         self._intent = Intent(self.reward_scale)
+        self.critic, self.critic_problem = critic_beside(agent) if critic == "beside" else (critic, "")
+        self._saving: Bools = np.zeros(0, dtype=bool)  # slots in which the guardian has stepped in
 
     @property
     def assist(self) -> float:
@@ -136,17 +165,19 @@ class CoPilot:
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
         self._intent.forget(mask)
+        self._saving[slice(None) if mask is None else mask] = False
 
-    def share(self, observation: Floats, pilot_action: Any) -> tuple[Ints, Bools]:
+    def share(self, observation: Floats, pilot_action: Any, surroundings: Floats | None = None) -> tuple[Ints, Bools]:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
 
         `observation` is (n, 9), or (n, pads, 9) relative to each pad that may be meant; `pilot_action` is (n,)
-        of 0 to 5. Raises ValueError for others.
+        of 0 to 5. `surroundings` (n, k), or (n, pads, k), are those of `LanderEnv.surroundings`, if they are known.
+        Raises ValueError for others.
         """
-        decision = self.decide(observation, pilot_action)
+        decision = self.decide(observation, pilot_action, surroundings)
         return decision.action, decision.overridden
 
-    def decide(self, observation: Floats, pilot_action: Any) -> SharedDecision:
+    def decide(self, observation: Floats, pilot_action: Any, surroundings: Floats | None = None) -> SharedDecision:
         """Decide as `share` does, and return all that explains it; raises as `share` does."""
         observation = np.atleast_2d(observation)
         if observation.ndim == 2:
@@ -159,6 +190,8 @@ class CoPilot:
             raise ValueError(f"actions run from 0 to {NUM_ACTIONS - 1}, not {pilot.min()} to {pilot.max()}")
         values = self.agent.q_values(observation.reshape(-1, features)).reshape(slots, pads, NUM_ACTIONS)
         likely, meant = self._read(values, pilot, np.abs(observation[:, :, 0]))
+        if self.mode is Mode.GUARDIAN and self.critic is not None:
+            return self._save(observation, surroundings, values, meant, likely, pilot)
         assist = np.where(pilot == COAST, 1.0, self.assist)
         weigh = self._guard if self.mode is Mode.GUARDIAN else self._tolerate
         best, feasible = weigh(meant, pilot, assist)
@@ -182,6 +215,49 @@ class CoPilot:
         open_ = in_question(likely) & (pilot != COAST)[:, None]
         pad = np.where(open_, np.arange(pads), likeliest)
         return likely, values[np.arange(slots)[:, None], pad]
+
+    def _save(
+        self,
+        observation: Floats,
+        surroundings: Floats | None,
+        values: Floats,
+        meant: Floats,
+        likely: Doubles,
+        pilot: Ints,
+    ) -> SharedDecision:
+        """Let the pilot fly while the chance to be saved is what the dial asks for; else change as little as restores it.
+
+        Of several pads that may be meant, one on which the flight can be saved is enough.
+        """
+        assert self.critic is not None
+        slots, pads, features = observation.shape
+        rows = np.arange(slots)
+        if self._saving.shape != (slots,):
+            self._saving = np.zeros(slots, dtype=bool)
+        chances = self.critic.chances(observation.reshape(-1, features)).reshape(slots, pads, NUM_ACTIONS)
+        open_ = in_question(likely)
+        chances = np.where(open_[:, :, None], chances, -1.0)
+        required = required_chance(self.assist)
+        # The likeliest of the pads that can still be reached, else the one that is nearest to it.
+        within = chances.max(axis=2)
+        pad = np.where(within >= required, 1.0 + likely, within).argmax(axis=1)
+        best = values[rows, pad].argmax(axis=1)
+        chance = chances.max(axis=1)
+        candidates = np.stack(
+            [pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best]
+        )
+        asked = np.where(self._saving, 1.0 - HAND_BACK * (1.0 - required), required)
+        enough = chance[rows, candidates] >= asked
+        none = ~enough.any(axis=0)
+        enough[:, none] = (chance[rows, candidates] == chance[rows, candidates].max(axis=0))[:, none]
+        source = enough.argmax(axis=0)
+        source[~np.isfinite(chance).all(axis=1)] = ActionSource.PILOT
+        action = candidates[source, rows]
+        self._saving = source != ActionSource.PILOT
+        feasible = chance >= asked[:, None]
+        feasible[rows, action] = True
+        return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,
+                              self.assist, self.mode, self.reward_scale, chance, float(required))  # fmt: skip
 
     def _tolerate(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
         """Return the co-pilot's action (n,) and the feasible ones (n, 6): those as good as `assist` (n,) asks for."""

@@ -1,0 +1,145 @@
+"""Safety critic: how likely a network still lands if it takes the stick after one more action of the pilot's."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.agent.storage import CRITIC_KIND, GUARDIAN
+from ai.common.environment import Floats
+from ai.lander.rules import NUM_ACTIONS
+from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
+from ai.nn.files import inside, read_json
+from ai.nn.folder import CONFIG
+from ai.nn.schema import check_header, read_as
+
+VERSION: Final = 1
+NETWORK: Final = "network"
+
+
+class Reliability(NamedTuple):
+    """Row of a reliability table: of so many moments never learned from, what was said and what came of them."""
+
+    said: float  # mean chance that the critic gave
+    saved: float  # share that the network landed
+    moments: int
+
+
+@dataclass(frozen=True)
+class CriticFacts:
+    """What is known of a safety critic beside its network.
+
+    Attributes:
+        agent: fingerprint of the agent whose landings it foretells, from `fingerprint`.
+        slope, offset: chance = logistic(slope · output + offset), fitted on moments it did not learn from.
+        moments: how many it learned from.
+        reliability: rows of moments that neither it nor slope and offset were fitted to.
+
+    """
+
+    agent: str
+    slope: float = 1.0
+    offset: float = 0.0
+    moments: int = 0
+    reliability: tuple[Reliability, ...] = field(default=())
+
+
+class SafetyCritic:
+    """Safety critic: a network with one output for each action, and what turns those into chances.
+
+    A person flies until the chance to be saved is too small; so it is asked about what they want to do next, not
+    about what the agent would do (compare Srinivasan et al. 2020, Learning to be safe, whose critic also outlives
+    the policy that it was learnt with).
+    """
+
+    def __init__(self, network: NeuralNetwork, facts: CriticFacts) -> None:
+        self.network, self.facts = network, facts
+
+    def chances(self, observation: Floats, surroundings: Floats | None = None) -> Floats:
+        """Return the chance, 0 to 1, to land for each action, (n, 6), for observations (n, 9).
+
+        It is the chance that the agent lands if that action is flown for one decision of 1/15 s and the agent has the
+        stick from then on. NaN where the observation is not finite.
+        """
+        output = self.network.predict(np.atleast_2d(observation))
+        return logistic(np.float32(self.facts.slope) * output + np.float32(self.facts.offset))
+
+    def save(self, folder: str | Path) -> None:
+        """Write the critic to a folder, whole or not at all; raises as `DeepQAgent.save` does."""
+        with atomic_folder(folder, CRITIC_KIND) as temporary:
+            self.network.save(temporary / NETWORK)
+            described = {"format": CRITIC_KIND.format, "version": VERSION, **asdict(self.facts)}
+            (temporary / CONFIG).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+
+    @classmethod
+    def load(cls, folder: str | Path) -> SafetyCritic:
+        """Read what `save` wrote; raises ModelFormatError, which names what is wrong."""
+        folder = Path(folder)
+        recover_folder(folder)
+        try:
+            file = read_as(_CriticFile, check_header(read_json(inside(folder, CONFIG)), CRITIC_KIND.format, (VERSION,)))
+            network = NeuralNetwork.load(inside(folder, NETWORK))
+            rows = tuple(Reliability(*row) for row in file.reliability)
+            critic = cls(network, CriticFacts(file.agent, file.slope, file.offset, file.moments, rows))
+            if critic.chances(np.zeros((1, 9), np.float32)).shape != (1, NUM_ACTIONS):
+                raise ValueError(f"the network has not {NUM_ACTIONS} outputs")
+        except OSError as error:
+            raise ModelFormatError(folder, [error.strerror or str(error)]) from error
+        except ModelFormatError:
+            raise
+        except ValueError as error:
+            raise ModelFormatError(folder, [str(error)]) from error
+        return critic
+
+
+@dataclass(frozen=True)
+class _CriticFile:
+    format: str
+    version: int
+    agent: str
+    slope: float
+    offset: float
+    moments: int
+    reliability: tuple[tuple[float, float, int], ...]
+
+
+def logistic(output: Floats) -> Floats:
+    """Return 1 / (1 + e^-output), without overflow."""
+    chance: Floats = 0.5 * (1.0 + np.tanh(0.5 * output))
+    return chance
+
+
+def fingerprint(agent: DeepQAgent) -> str:
+    """Return a text that is different for agents that would fly differently."""
+    return sha256(np.ascontiguousarray(agent.network.values).tobytes()).hexdigest()[:16]
+
+
+_found: WeakKeyDictionary[DeepQAgent, tuple[SafetyCritic | None, str]] = WeakKeyDictionary()
+
+
+def critic_beside(agent: Any) -> tuple[SafetyCritic | None, str]:
+    """Return the critic in the agent's own folder, and why there is none; empty if there is one. Read once."""
+    if not isinstance(agent, DeepQAgent) or agent.folder is None:
+        return None, "it has no folder"
+    if agent not in _found:
+        _found[agent] = _read_beside(agent, agent.folder / GUARDIAN)
+    return _found[agent]
+
+
+def _read_beside(agent: DeepQAgent, folder: Path) -> tuple[SafetyCritic | None, str]:
+    if not folder.is_dir():
+        return None, "none was made"
+    try:
+        critic = SafetyCritic.load(folder)
+    except ModelFormatError as error:
+        return None, error.problems[0] if error.problems else str(error)
+    if critic.facts.agent != fingerprint(agent):
+        return None, "it was made for another network"
+    return critic, ""
