@@ -1,0 +1,136 @@
+"""Clumsy hands: pilots with faults drawn anew for every flight, to learn to save and to be measured with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.lander.pilots import GAINS, Gains, LaggyPilot, NoisyPilot, Pilot, ScriptedPilot, SensorPilot
+
+_LATEST: Final = 11  # decisions that hands can be late
+_STEERS: Final = 3  # action = 3 * main + steer
+
+
+@dataclass(frozen=True)
+class Faults:
+    """Faults of a pair of hands; each is one number, or one for every slot (n,). Chances are per decision."""
+
+    late: ArrayLike = 0  # decisions of 1/15 s
+    sticky: ArrayLike = 0.0  # chance that the last action is held on
+    one_key: ArrayLike = False  # whether main engine and jets are never pressed together
+    thrust: ArrayLike = 0.0  # chance that the main engine fires, whatever was meant
+    freeze: ArrayLike = 0.0  # chance to do nothing new for one to three seconds
+    inverted: ArrayLike = False  # whether left and right are confused
+    flip: ArrayLike = 0.0  # chance that the main engine does the opposite of what was meant
+    change: ArrayLike = 0.0  # chance that the steering is another
+
+
+class ClumsyHands:
+    """Pilot that passes on the wishes of another with faults; row k of every call is the same flight."""
+
+    def __init__(self, pilot: Pilot, slots: int, rng: np.random.Generator, faults: Faults) -> None:
+        def each(fault: ArrayLike, kind: Any) -> NDArray[Any]:
+            return np.broadcast_to(np.asarray(fault, dtype=kind), slots)
+
+        self.pilot, self.rng, self.slots = pilot, rng, slots
+        self.late = each(np.minimum(faults.late, _LATEST), np.intp)
+        self.one_key, self.inverted = each(faults.one_key, bool), each(faults.inverted, bool)
+        self.sticky, self.thrust, self.freeze, self.flip, self.change = (
+            each(fault, float) for fault in (faults.sticky, faults.thrust, faults.freeze, faults.flip, faults.change)
+        )
+        self._wishes: Ints = np.zeros((_LATEST + 1, slots), dtype=np.intp)
+        self._asked = 0
+        self._last: Ints = np.zeros(slots, dtype=np.intp)
+        self._frozen: Ints = np.zeros(slots, dtype=np.intp)  # decisions for which each does nothing new
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9)."""
+        rng, slots = self.rng, self.slots
+        self._wishes[self._asked % len(self._wishes)] = self.pilot.act(observation, held=held)
+        late = np.minimum(self.late, self._asked)
+        main, steer = np.divmod(self._wishes[(self._asked - late) % len(self._wishes), np.arange(slots)], _STEERS)
+        self._asked += 1
+        slips = rng.random((6, slots))
+        main = np.where(slips[0] < self.flip, 1 - main, main)
+        steer = np.where(slips[1] < self.change, (steer + rng.integers(1, _STEERS, slots)) % _STEERS, steer)
+        main = np.where(slips[2] < self.thrust, 1, main)
+        steer = np.where(self.inverted & (steer > 0), _STEERS - steer, steer)
+        both = self.one_key & (main > 0) & (steer > 0)
+        main, steer = np.where(both & (slips[3] < 0.5), 0, main), np.where(both & (slips[3] >= 0.5), 0, steer)
+        begins = (self._frozen == 0) & (slips[4] < self.freeze)
+        self._frozen = np.where(begins, rng.integers(15, 45, slots), np.maximum(self._frozen - 1, 0))
+        held_on = (slips[5] < self.sticky) | (self._frozen > 0)
+        self._last = np.where(held_on, self._last, _STEERS * main + steer)
+        return self._last
+
+
+def drawn_gains(slots: int, rng: np.random.Generator, spread: float) -> Gains:
+    """Return gains of a scripted controller, drawn anew for every slot: each off by up to a factor of e^spread."""
+    return Gains(*(gain * np.exp(rng.uniform(-spread, spread, slots)) for gain in vars(GAINS).values()))
+
+
+class OneOrOther:
+    """Pilot that in some slots, `first` (n,), is one pilot and in the rest another."""
+
+    def __init__(self, first: Bools, pilot: Pilot, other: Pilot) -> None:
+        self.first, self.pilot, self.other = first, pilot, other
+
+    def act(self, observation: Floats, *, held: Ints | None = None) -> Ints:
+        """Actions (n,) for observations (n, 9)."""
+        one, other = self.pilot.act(observation, held=held), self.other.act(observation, held=held)
+        return np.where(self.first, one, other)
+
+
+def any_hands(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:
+    """Return hands with faults of all kinds, mixed anew in every slot: what a critic learns from."""
+
+    def sometimes(chance: float, fault: ArrayLike) -> Doubles:
+        return np.where(rng.random(slots) < chance, fault, 0.0)
+
+    faults = Faults(
+        late=sometimes(0.4, rng.integers(0, 9, slots)),
+        sticky=sometimes(0.35, rng.uniform(0.0, 0.9, slots)),
+        one_key=rng.random(slots) < 0.2,
+        thrust=sometimes(0.2, rng.uniform(0.0, 0.5, slots)),
+        freeze=sometimes(0.25, rng.uniform(0.0, 0.06, slots)),
+        inverted=rng.random(slots) < 0.08,
+        flip=sometimes(0.3, rng.uniform(0.0, 0.4, slots)),
+        change=sometimes(0.3, rng.uniform(0.0, 0.5, slots)),
+    )
+    pilot = OneOrOther(rng.random(slots) < 0.35, good, ScriptedPilot(drawn_gains(slots, rng, 0.7)))
+    return ClumsyHands(pilot, slots, rng, faults)
+
+
+MakePilot = Callable[[int, np.random.Generator, Pilot], Pilot]
+
+
+def _scripted(**faults: Any) -> MakePilot:
+    """Make hands with faults around a scripted controller with gains of its own in every flight."""
+
+    def make(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:  # noqa: ARG001
+        drawn = {name: fault(slots, rng) if callable(fault) else fault for name, fault in faults.items()}
+        return ClumsyHands(ScriptedPilot(drawn_gains(slots, rng, 0.3)), slots, rng, Faults(**drawn))
+
+    return make
+
+
+# Families of pilots that the rule was chosen with.
+FAMILIES: Final[dict[str, MakePilot]] = {
+    "good": lambda slots, rng, good: good,  # noqa: ARG005
+    "gains drawn anew": lambda slots, rng, good: ScriptedPilot(drawn_gains(slots, rng, 0.6)),  # noqa: ARG005
+    "late": _scripted(late=lambda slots, rng: rng.integers(4, 7, slots)),
+    "sticky keys": _scripted(sticky=0.75),
+    "one key": _scripted(one_key=True),
+    "too much thrust": _scripted(thrust=0.25),
+    "freezing": _scripted(freeze=0.03),
+    "inverted": _scripted(inverted=True),
+    "laggy": lambda slots, rng, good: LaggyPilot(good, rng),  # noqa: ARG005
+    "noisy": lambda slots, rng, good: NoisyPilot(good, rng),  # noqa: ARG005
+    "noisier": lambda slots, rng, good: NoisyPilot(good, rng, chance=0.3),  # noqa: ARG005
+    "sensor": lambda slots, rng, good: SensorPilot(),  # noqa: ARG005
+}
