@@ -114,6 +114,12 @@ class Craft:
         return self.conditions.shift(self.time)[1]
 
     @property
+    def pad_acceleration(self) -> Doubles:
+        """Acceleration of the pads to the right, m/s², (n,)."""
+        acceleration: Doubles = -((2 * np.pi / self.conditions.swing_period) ** 2) * self.pad_shift
+        return acceleration
+
+    @property
     def fired(self) -> Ints:
         """Actions (n,) that take effect: those for which there is fuel and the engines work."""
         if not self.conditions.fails:

@@ -37,7 +37,7 @@ from ai.lander.rules import (
     Outcome,
     engines_switched,
 )
-from ai.lander.sensing import sensed
+from ai.lander.sensing import sensed, surroundings
 from ai.lander.spawns import SPAWNS, Curriculum
 from engine import DT
 
@@ -233,6 +233,13 @@ class LanderEnv(Craft):
     def observe_pads(self) -> Floats:
         """Return every lander's observation of each pad, (n, pads, 9)."""
         return np.stack([self.observe(pad) for pad in range(len(self.ground.pads))], axis=1)
+
+    def surroundings(self, pad: Any = None) -> Floats:
+        """Return what is around every lander (n, k) that `observe` leaves out, for the target or another `pad`.
+
+        `ai.lander.sensing.SURROUNDINGS` names the k numbers.
+        """
+        return surroundings(self, self.limits, self.target if pad is None else np.asarray(pad))
 
     def snapshot(self) -> dict[str, Any]:
         """Return everything a flight depends on but its random streams, to be put back by `restore`."""
