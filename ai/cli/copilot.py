@@ -1,4 +1,4 @@
-"""The command that measures the co-pilot. Nothing heavy is imported until it runs."""
+"""The commands of the co-pilot: train a guardian, measure it. Nothing heavy is imported until one runs."""
 
 from __future__ import annotations
 
@@ -8,16 +8,35 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ai.cli.command_line import EPISODES, REFUSED, SEEDS, fail, folder, out_of_range, reason
+from ai.cli.command_line import (
+    EPISODES,
+    REFUSED,
+    SEEDS,
+    exit_code,
+    fail,
+    folder,
+    out_of_range,
+    reason,
+    stoppable,
+)
 
 if TYPE_CHECKING:
+    from ai.agent.agent import DeepQAgent
     from ai.copilot.measurement import AssistedFlights
 
+ROUNDS: Final = 32
+ROUNDS_ALLOWED: Final = (4, 1000)
 MODEL: Final = Path(__file__).parents[2] / "models" / "lander" / "modern"
 
 
 def add_commands(commands: Any) -> None:
-    """Add `copilot-table` to a parser's sub-commands."""
+    """Add `train-guardian` and `copilot-table` to a parser's sub-commands."""
+    guardian = commands.add_parser("train-guardian", help="train the safety critic of a lander's network")
+    guardian.add_argument("--model", type=folder, default=MODEL, metavar="DIR",
+                          help="the network, which gets its guardian in a folder within (default: modern)")  # fmt: skip
+    guardian.add_argument("--rounds", type=int, default=ROUNDS, help=f"rounds of flights (default: {ROUNDS})")
+    guardian.add_argument("--seed", type=int, default=0)
+    guardian.set_defaults(run=_train_guardian)
     table = commands.add_parser("copilot-table", help="measure how much the co-pilot helps good and bad pilots")
     table.add_argument("--model", type=folder, default=MODEL, metavar="DIR", help="the co-pilot (default: modern)")
     table.add_argument("--episodes", type=int, default=1000, help="flights for each row (default: 1000)")
@@ -32,22 +51,60 @@ def add_commands(commands: Any) -> None:
     table.set_defaults(run=_table)
 
 
+def _train_guardian(arguments: argparse.Namespace) -> int:
+    import numpy as np
+    from tqdm import tqdm
+
+    from ai.agent.storage import GUARDIAN
+    from ai.copilot.critic_training import CriticTraining
+
+    if problem := out_of_range(arguments, rounds=ROUNDS_ALLOWED, seed=SEEDS):
+        return fail(problem)
+    try:
+        training = CriticTraining(_lander(arguments.model), np.random.default_rng(arguments.seed), arguments.rounds)
+        with (
+            stoppable() as stop,
+            tqdm(total=arguments.rounds, desc="training", unit="round", disable=None) as bar,
+        ):
+            for progress in training.run():
+                bar.update(progress.round - bar.n)
+                bar.set_postfix_str(f"{progress.moments:,} moments, {progress.right:.1%} right", refresh=False)
+                if stop:
+                    return exit_code(stop)
+        training.critic.save(arguments.model / GUARDIAN)
+    except REFUSED as error:
+        return fail(reason(error))
+    facts = training.critic.facts
+    print(f"kept in {arguments.model / GUARDIAN}, learnt from {facts.moments:,} moments; of moments not learnt from")
+    print(f"{'chance it gave':>16}{'saved':>9}{'moments':>10}")
+    for row in facts.reliability:
+        print(f"{row.said:16.1%}{row.saved:9.1%}{row.moments:10,}")
+    return 0
+
+
+def _lander(model: Path) -> DeepQAgent:
+    """Read the agent of a folder; raises ValueError for one that does not fly the lander, and as `DeepQAgent.load`."""
+    from ai.agent.agent import DeepQAgent
+    from ai.agent.config import LANDER
+
+    agent = DeepQAgent.load(model)
+    if agent.config.env != LANDER:
+        raise ValueError(f"the co-pilot flies the lander; this network is for {agent.config.env}")
+    return agent
+
+
 def _table(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
-    from ai.agent.agent import DeepQAgent
-    from ai.agent.config import LANDER
     from ai.copilot.measurement import INTENT_PILOTS, ONE_PAD, PILOTS, THREE_PADS, one_pad, three_pads
     from ai.lander.pilots import Pilot, ScriptedPilot
 
     if problem := out_of_range(arguments, episodes=EPISODES, seed=SEEDS):
         return fail(problem)
     try:
-        agent = DeepQAgent.load(arguments.model)
+        agent = _lander(arguments.model)
     except REFUSED as error:
         return fail(reason(error))
-    if agent.config.env != LANDER:
-        return fail(f"the co-pilot flies the lander; this network is for {agent.config.env}")
     good: Pilot = ScriptedPilot() if arguments.good == "scripted" else agent
     tables: dict[str, list[AssistedFlights]] = {"one_pad": [], "three_pads": []}
     rows = len(PILOTS) * len(ONE_PAD) + 1 + len(INTENT_PILOTS) * len(THREE_PADS)
@@ -68,14 +125,15 @@ def _table(arguments: argparse.Namespace) -> int:
 
 def _show(title: str, rows: list[AssistedFlights], own: bool = False) -> None:
     print(
-        f"\n{title}\n{'pilot':10}{'help':25}{'success':>8}{'crash':>8}{'gone':>8}{'time out':>9}{'return':>8}"
-        f"{'overridden':>12}{'own pad':>9}"[: None if own else -9]
+        f"\n{title}\n{'pilot':18}{'help':25}{'success':>8}{'95% interval':>16}{'crash':>8}{'gone':>8}{'time out':>9}"
+        f"{'return':>8}{'overridden':>12}{'own pad':>9}"[: None if own else -9]
     )
     for row in rows:
         help_ = row.mode if row.assist == 0.0 else f"{row.mode} {row.assist:.1f}"
+        low, high = row.success_interval
         line = (
-            f"{row.pilot:10}{help_:25}{row.success:8.1%}{row.crash:8.1%}{row.out_of_bounds:8.1%}"
-            f"{row.time_out:9.1%}{row.mean_return:8.1f}{row.overridden:12.1%}"
+            f"{row.pilot:18}{help_:25}{row.success:8.1%}{f'{low:.1%} to {high:.1%}':>16}{row.crash:8.1%}"
+            f"{row.out_of_bounds:8.1%}{row.time_out:9.1%}{row.mean_return:8.1f}{row.overridden:12.1%}"
         )
         print(line + (f"{row.own_pad:9.1%}" if own else ""))
     sys.stdout.flush()

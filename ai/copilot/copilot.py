@@ -21,6 +21,7 @@ from ai.lander.pilots import COAST
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
 RISK: Final = 0.02  # chance to be lost that a guardian with a critic accepts, at an assist of one half
+SUREST: Final = 0.998  # chance that no dial's guardian asks for more than, after however many rescues
 HAND_BACK: Final = 0.25  # share of that risk at which a guardian that has stepped in gives the stick back
 _STEERS: Final = 3  # action = 3 * main + steer
 
@@ -66,7 +67,7 @@ class SharedDecision:
     mode: Mode  # and when it stepped in
     reward_scale: float  # size of one point of reward in the unit of `values`
     chances: Floats | None = None  # (n, 6) to be saved after each action, for the best pad that may be meant
-    required: float = 0.0  # chance that the dial asks for; 0 without a critic
+    required: Doubles | None = None  # (n,) chance that the dial asks for by now; None without a critic
 
     @property
     def chance(self) -> Floats | None:
@@ -150,6 +151,7 @@ class CoPilot:
         self._intent = Intent(self.reward_scale)
         self.critic, self.critic_problem = critic_beside(agent) if critic == "beside" else (critic, "")
         self._saving: Bools = np.zeros(0, dtype=bool)  # slots in which the guardian has stepped in
+        self._rescues: Ints = np.zeros(0, dtype=np.intp)  # how often it did, in each
 
     @property
     def assist(self) -> float:
@@ -165,7 +167,8 @@ class CoPilot:
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
         self._intent.forget(mask)
-        self._saving[slice(None) if mask is None else mask] = False
+        for memory in (self._saving, self._rescues):
+            memory[slice(None) if mask is None else mask] = 0
 
     def share(self, observation: Floats, pilot_action: Any, surroundings: Floats | None = None) -> tuple[Ints, Bools]:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
@@ -225,7 +228,7 @@ class CoPilot:
         likely: Doubles,
         pilot: Ints,
     ) -> SharedDecision:
-        """Let the pilot fly while the chance to be saved is what the dial asks for; else change as little as restores it.
+        """Let the pilot fly while the chance to be saved is what the dial asks for; else do the least that restores it.
 
         Of several pads that may be meant, one on which the flight can be saved is enough.
         """
@@ -233,14 +236,18 @@ class CoPilot:
         slots, pads, features = observation.shape
         rows = np.arange(slots)
         if self._saving.shape != (slots,):
-            self._saving = np.zeros(slots, dtype=bool)
-        chances = self.critic.chances(observation.reshape(-1, features)).reshape(slots, pads, NUM_ACTIONS)
+            self._saving, self._rescues = np.zeros(slots, dtype=bool), np.zeros(slots, dtype=np.intp)
+        if surroundings is not None:
+            surroundings = surroundings.reshape(slots * pads, -1)
+        chances = self.critic.chances(observation.reshape(-1, features), surroundings)
+        chances = chances.reshape(slots, pads, NUM_ACTIONS)
         open_ = in_question(likely)
         chances = np.where(open_[:, :, None], chances, -1.0)
-        required = required_chance(self.assist)
+        risk = (1.0 - required_chance(self.assist)) * 0.5**self._rescues
+        required = np.minimum(1.0 - risk, np.maximum(SUREST, required_chance(self.assist)))
         # The likeliest of the pads that can still be reached, else the one that is nearest to it.
         within = chances.max(axis=2)
-        pad = np.where(within >= required, 1.0 + likely, within).argmax(axis=1)
+        pad = np.where(within >= required[:, None], 1.0 + likely, within).argmax(axis=1)
         best = values[rows, pad].argmax(axis=1)
         chance = chances.max(axis=1)
         candidates = np.stack(
@@ -253,11 +260,13 @@ class CoPilot:
         source = enough.argmax(axis=0)
         source[~np.isfinite(chance).all(axis=1)] = ActionSource.PILOT
         action = candidates[source, rows]
-        self._saving = source != ActionSource.PILOT
+        saving = source != ActionSource.PILOT
+        self._rescues += saving & ~self._saving
+        self._saving = saving
         feasible = chance >= asked[:, None]
         feasible[rows, action] = True
         return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,
-                              self.assist, self.mode, self.reward_scale, chance, float(required))  # fmt: skip
+                              self.assist, self.mode, self.reward_scale, chance, asked)  # fmt: skip
 
     def _tolerate(self, values: Floats, pilot: Ints, assist: Floats) -> tuple[Ints, Bools]:
         """Return the co-pilot's action (n,) and the feasible ones (n, 6): those as good as `assist` (n,) asks for."""

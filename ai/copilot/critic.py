@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ai.agent.agent import DeepQAgent
 from ai.agent.storage import CRITIC_KIND, GUARDIAN
+from ai.common.decision import Real
 from ai.common.environment import Floats
+from ai.lander.environment import LanderEnv
 from ai.lander.rules import NUM_ACTIONS
+from ai.lander.sensing import SURROUNDINGS
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
-from ai.nn.files import inside, read_json
+from ai.nn.files import brief, inside, read_json
 from ai.nn.folder import CONFIG
 from ai.nn.schema import check_header, read_as
 
@@ -38,6 +43,7 @@ class CriticFacts:
 
     Attributes:
         agent: fingerprint of the agent whose landings it foretells, from `fingerprint`.
+        inputs: names of `ai.lander.sensing.SURROUNDINGS` that its network takes after an observation.
         slope, offset: chance = logistic(slope · output + offset), fitted on moments it did not learn from.
         moments: how many it learned from.
         reliability: rows of moments that neither it nor slope and offset were fitted to.
@@ -45,6 +51,7 @@ class CriticFacts:
     """
 
     agent: str
+    inputs: tuple[str, ...] = ()
     slope: float = 1.0
     offset: float = 0.0
     moments: int = 0
@@ -61,14 +68,19 @@ class SafetyCritic:
 
     def __init__(self, network: NeuralNetwork, facts: CriticFacts) -> None:
         self.network, self.facts = network, facts
+        self._columns = [SURROUNDINGS.index(name) for name in facts.inputs]
 
     def chances(self, observation: Floats, surroundings: Floats | None = None) -> Floats:
         """Return the chance, 0 to 1, to land for each action, (n, 6), for observations (n, 9).
 
         It is the chance that the agent lands if that action is flown for one decision of 1/15 s and the agent has the
-        stick from then on. NaN where the observation is not finite.
+        stick from then on. `surroundings` (n, k) are those of `LanderEnv.surroundings`; by default, those of a flight
+        that has just begun on the moon. NaN where the observation is not finite.
         """
-        output = self.network.predict(np.atleast_2d(observation))
+        observation = np.atleast_2d(observation)
+        if surroundings is None:
+            surroundings = np.broadcast_to(usual_surroundings(), (len(observation), len(SURROUNDINGS)))
+        output = self.network.predict(np.concatenate([observation, surroundings[:, self._columns]], axis=1))
         return logistic(np.float32(self.facts.slope) * output + np.float32(self.facts.offset))
 
     def save(self, folder: str | Path) -> None:
@@ -86,8 +98,10 @@ class SafetyCritic:
         try:
             file = read_as(_CriticFile, check_header(read_json(inside(folder, CONFIG)), CRITIC_KIND.format, (VERSION,)))
             network = NeuralNetwork.load(inside(folder, NETWORK))
+            if unknown := set(file.inputs) - set(SURROUNDINGS):
+                raise ValueError(f"it takes {brief(sorted(unknown)[0])}, which nothing measures")
             rows = tuple(Reliability(*row) for row in file.reliability)
-            critic = cls(network, CriticFacts(file.agent, file.slope, file.offset, file.moments, rows))
+            critic = cls(network, CriticFacts(file.agent, file.inputs, file.slope, file.offset, file.moments, rows))
             if critic.chances(np.zeros((1, 9), np.float32)).shape != (1, NUM_ACTIONS):
                 raise ValueError(f"the network has not {NUM_ACTIONS} outputs")
         except OSError as error:
@@ -104,15 +118,25 @@ class _CriticFile:
     format: str
     version: int
     agent: str
+    inputs: tuple[str, ...]
     slope: float
     offset: float
     moments: int
     reliability: tuple[tuple[float, float, int], ...]
 
 
-def logistic(output: Floats) -> Floats:
+@cache
+def usual_surroundings() -> Floats:
+    """Return the surroundings (k,) of a flight that has just begun on the moon."""
+    env = LanderEnv(1, 0)
+    env.reset()
+    surroundings: Floats = env.surroundings()[0]
+    return surroundings
+
+
+def logistic(output: NDArray[Real]) -> NDArray[Real]:
     """Return 1 / (1 + e^-output), without overflow."""
-    chance: Floats = 0.5 * (1.0 + np.tanh(0.5 * output))
+    chance: NDArray[Real] = 0.5 * (1.0 + np.tanh(0.5 * output))
     return chance
 
 

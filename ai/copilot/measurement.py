@@ -2,45 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, fields, replace
+from math import sqrt
 from typing import Any, Final
 
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.common.environment import Doubles
+from ai.common.environment import Doubles, Floats
 from ai.copilot.copilot import CoPilot, Mode
+from ai.copilot.hands import FAMILIES, UNSEEN, MakePilot
+from ai.copilot.oracle import Oracle
 from ai.lander.environment import LanderEnv, Outcome
 from ai.lander.ground import Ground, hilly
-from ai.lander.pilots import LaggyPilot, NoisyPilot, NoPilot, Pilot, SensorPilot
+from ai.lander.pilots import NoPilot, Pilot
 
-MakePilot = Callable[[Pilot, np.random.Generator], Pilot]
-
-PILOTS: Final[dict[str, MakePilot]] = {
-    "full": lambda good, _: good,
-    "laggy": LaggyPilot,
-    "noisy": NoisyPilot,
-    "noisier": lambda good, rng: NoisyPilot(good, rng, chance=0.3),
-    "sensor": lambda *_: SensorPilot(),
-    "none": lambda *_: NoPilot(),
-}
-INTENT_PILOTS: Final = ("full", "laggy", "noisy", "noisier")  # pilots that have a pad in mind
+PILOTS: Final[dict[str, MakePilot]] = {**FAMILIES, **UNSEEN, "none": lambda slots, rng, good: NoPilot()}  # noqa: ARG005
+INTENT_PILOTS: Final = ("good", "laggy", "noisy", "noisier")  # pilots that have a pad in mind
 GROUNDS: Final = 5  # different hills for the flights with a hidden intent
 ALONE: Final = "alone"
 COPILOT: Final = "co-pilot"  # the pilot of the row in which the network flies alone
 OPEN: Final = "guardian, all pads open"  # the same rule, with nothing read into what the pilot does
+ORACLE: Final = "oracle"  # the limit: it flies ahead in the exact simulation
+VALUES: Final = "guardian by values"  # without a critic
+ORACLE_FLIGHTS: Final = 60  # of a row: each takes as long as a hundred others
 
 Help = tuple[str, float]  # alone, or how the co-pilot helps; and how much
 ONE_PAD: Final[tuple[Help, ...]] = (
     (ALONE, 0.0),
-    *((Mode.TOLERANCE, assist) for assist in (0.2, 0.4, 0.6, 0.8, 1.0)),
+    (Mode.TOLERANCE, 0.4),
     *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6)),
+    (VALUES, 0.4),
+    (ORACLE, 0.0),
 )
 THREE_PADS: Final[tuple[Help, ...]] = (
     (ALONE, 0.0),
     (Mode.TOLERANCE, 0.4),
     *((Mode.GUARDIAN, assist) for assist in (0.2, 0.4, 0.6, 0.8)),
+    (VALUES, 0.4),
     (OPEN, 0.4),
 )
 
@@ -61,9 +61,21 @@ class AssistedFlights:
     overridden: float  # share of the decisions in which something else was flown than the pilot asked for
     own_pad: float  # share of the flights that ended on the pad the pilot had in mind
 
+    @property
+    def success_interval(self) -> tuple[float, float]:
+        """Confidence interval of 95% of the success (Wilson 1927)."""
+        return wilson(self.success, self.episodes)
+
     def to_json(self) -> dict[str, Any]:
         """Return the values as JSON can hold them."""
-        return asdict(self)
+        return asdict(self) | {"success_interval": self.success_interval}
+
+
+def wilson(share: float, count: int, z: float = 1.96) -> tuple[float, float]:
+    """Return the interval of a share that was found in `count` trials; `z` standard deviations to each side."""
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count)) / (1 + z * z / count)
+    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 @dataclass(frozen=True)
@@ -74,17 +86,21 @@ class AssistedPilot:
     pilot: Pilot
     mode: str = ALONE
     assist: float = 0.0
-    copilot: CoPilot | None = None
+    copilot: CoPilot | Oracle | None = None
 
 
 def one_pad(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> Iterator[AssistedFlights]:
     """Fly every pilot of the table with every help to a single pad; yield the rows as they are done.
 
-    `agent` is the co-pilot, `good` the pilot that the imperfect ones are made of. All fly from the same starts,
-    and with the same mishaps, which follow from `seed`.
+    `agent` is the co-pilot, `good` the pilot that some of the imperfect ones are made of. All fly from the same
+    starts, and with the same mishaps, which follow from `seed`; the oracle's flights are fewer.
     """
     for name in PILOTS:
-        yield from _measure(_assisted_pilots(agent, good, [name], ONE_PAD, seed), episodes, seed)
+        fast = [help_ for help_ in ONE_PAD if help_[0] != ORACLE]
+        yield from _measure(_assisted_pilots(agent, good, [name], fast, episodes, seed), episodes, seed)
+        if len(fast) < len(ONE_PAD):
+            few = min(episodes, ORACLE_FLIGHTS)
+            yield from _measure(_assisted_pilots(agent, good, [name], [(ORACLE, 0.0)], few, seed), few, seed)
     yield from _measure([AssistedPilot(COPILOT, agent)], episodes, seed)
 
 
@@ -96,25 +112,33 @@ def three_pads(agent: DeepQAgent, good: Pilot, episodes: int, seed: int = 0) -> 
     parts = []
     for ground in range(GROUNDS):
         rng = np.random.default_rng([seed, ground])
-        start = int(rng.integers(2**31))
-        assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, start)
-        parts.append(_measure(assisted, max(1, round(episodes / GROUNDS)), start, hilly(rng)))
+        start, each = int(rng.integers(2**31)), max(1, round(episodes / GROUNDS))
+        assisted = _assisted_pilots(agent, good, INTENT_PILOTS, THREE_PADS, each, start)
+        parts.append(_measure(assisted, each, start, hilly(rng)))
     yield from (_mean(rows) for rows in zip(*parts, strict=True))
 
 
 def _assisted_pilots(
-    agent: DeepQAgent, good: Pilot, names: Sequence[str], helps: Sequence[Help], seed: int
+    agent: DeepQAgent, good: Pilot, names: Sequence[str], helps: Sequence[Help], episodes: int, seed: int
 ) -> list[AssistedPilot]:
-    assisted = []
-    for name in names:
-        for mode, assist in helps:
-            copilot = None
-            if mode != ALONE:
-                copilot = CoPilot(agent, assist, Mode.GUARDIAN if mode == OPEN else mode, infers_intent=mode != OPEN)
-            assisted.append(
-                AssistedPilot(name, PILOTS[name](good, np.random.default_rng(seed)), str(mode), assist, copilot)
-            )
-    return assisted
+    return [
+        AssistedPilot(name, PILOTS[name](episodes, np.random.default_rng(seed), good), str(mode), assist,
+                      _help(agent, mode, assist))
+        for name in names
+        for mode, assist in helps
+    ]  # fmt: skip
+
+
+def _help(agent: DeepQAgent, mode: str, assist: float) -> CoPilot | Oracle | None:
+    if mode == ALONE:
+        return None
+    if mode == ORACLE:
+        return Oracle(agent)
+    guardian = mode in (OPEN, VALUES)
+    copilot = CoPilot(agent, assist, Mode.GUARDIAN if guardian else mode, infers_intent=mode != OPEN)
+    if mode == VALUES:
+        copilot.critic = None
+    return copilot
 
 
 def _measure(
@@ -145,16 +169,26 @@ def _fly(env: LanderEnv, assisted: Sequence[AssistedPilot]) -> tuple[Doubles, Do
     returns, overridden, decisions = np.zeros((3, env.num_envs))
     episodes = env.num_envs // len(assisted)
     while (flying := env.outcome == Outcome.FLYING).any():
-        seen, wished, actions = env.observe_pads(), env.observe(), env.actions.copy()
+        seen, wished, around, actions = env.observe_pads(), env.observe(), _around(env), env.actions.copy()
         for row, each in enumerate(assisted):
             mine = slice(row * episodes, (row + 1) * episodes)
             if flying[mine].any():
                 asked = each.pilot.act(wished[mine], held=env.actions[mine])
-                actions[mine] = asked if each.copilot is None else each.copilot.share(seen[mine], asked)[0]
+                if isinstance(each.copilot, Oracle):
+                    actions[mine] = each.copilot.share(env, asked)
+                elif each.copilot is not None:
+                    actions[mine] = each.copilot.share(seen[mine], asked, around[mine])[0]
+                else:
+                    actions[mine] = asked
                 overridden[mine] += flying[mine] & (actions[mine] != asked)
         decisions += flying
         returns += env.step(actions).reward
     return returns, overridden, decisions
+
+
+def _around(env: LanderEnv) -> Floats:
+    """Return the surroundings of every slot and pad, (n, pads, k)."""
+    return np.stack([env.surroundings(pad) for pad in range(len(env.ground.pads))], axis=1)
 
 
 def _mean(rows: Sequence[AssistedFlights]) -> AssistedFlights:

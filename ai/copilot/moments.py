@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from typing import Final
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ai.agent.agent import DeepQAgent
 from ai.common.environment import Bools, Doubles, Floats, Ints
-from ai.copilot.hands import any_hands
-from ai.lander.environment import LIMITS, NUM_ACTIONS, PARAMS, LanderEnv, Outcome
+from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Outcome
 from ai.lander.ground import Ground, Pad, hilly
 from ai.lander.pilots import Pilot
 
@@ -19,7 +19,6 @@ SPAWN: Final = "wide"  # starts a little beyond those that are flown
 _SLOTS: Final = 2048  # landers that the network flies at once
 # A lander that stands still on both feet for so many steps would stand for half a second, too.
 _RESTED: Final = replace(LIMITS, rest_steps=8)
-_DECISION: Final = 4  # physics steps
 
 Share = Callable[[LanderEnv, Ints], Ints]  # actions to fly, given what the hands ask for
 
@@ -40,32 +39,52 @@ class Moments:
     def __len__(self) -> int:
         return len(self.action)
 
+    @property
+    def parts(self) -> tuple[NDArray[Any], ...]:
+        """All arrays, in the order in which they are named."""
+        return tuple(getattr(self, each.name) for each in fields(self)[1:])
+
     def take(self, rows: Ints | Bools) -> Moments:
         """Return some of the moments."""
-        return Moments(self.ground, *(part[rows] for part in list(vars(self).values())[1:]))
+        return Moments(self.ground, *(part[rows] for part in self.parts))
+
+
+def present(env: LanderEnv, asked: Ints, which: Bools) -> Moments:
+    """Return the present moment of the slots of `which` (n,) of an environment, where `asked` (n,) is asked for."""
+    start = np.column_stack([env.position, env.velocity, env.angle, env.angular_velocity])
+    parts: tuple[NDArray[Any], ...] = (
+        env.target,
+        start,
+        env.steps,
+        env.observe(),
+        env.surroundings(),
+        asked,
+        np.arange(env.num_envs),
+    )
+    return Moments(env.ground, *(part[which] for part in parts))
 
 
 def flown(env: LanderEnv, hands: Pilot, share: Share | None = None) -> Moments:
-    """Fly every slot of a fresh `env` with `hands` to its end; return every moment before the first touch.
+    """Fly every slot of a fresh `env` with `hands` to its end; return every moment.
 
     `share` turns what the hands ask for into what is flown; by default, that is the same.
     """
-    parts: list[tuple[Doubles, ...]] = []
-    whole = np.arange(env.num_envs)
+    moments = []
     while (flying := env.outcome == Outcome.FLYING).any():
-        observation, surroundings, steps = env.observe(), env.surroundings(), env.steps.copy()
-        start = np.column_stack([env.position, env.velocity, env.angle, env.angular_velocity])
-        asked = hands.act(observation, held=env.actions)
+        asked = hands.act(env.observe(), held=env.actions)
+        moments.append(present(env, asked, flying))
         env.fly(asked if share is None else share(env, asked))
-        kept = flying & (env.impact[:, 0] == 0)
-        parts.append(
-            tuple(part[kept] for part in (env.target, start, steps, observation, surroundings, asked, whole))
-        )
-    return Moments(env.ground, *(np.concatenate(part) for part in zip(*parts, strict=True)))
+    return joined(moments)
 
 
-def saved(agent: DeepQAgent, moments: Moments, action: Ints) -> Bools:
-    """Return whether the agent lands, (m,), after `action` (m,) has been flown for one decision at each moment.
+def joined(moments: Sequence[Moments]) -> Moments:
+    """Return moments over the same ground as one."""
+    parts = zip(*(some.parts for some in moments), strict=True)
+    return Moments(moments[0].ground, *(np.concatenate(part) for part in parts))
+
+
+def saved(agent: DeepQAgent, moments: Moments, action: Ints, decisions: int = 1) -> Bools:
+    """Return whether the agent lands, (m,), after `action` (m,) has been flown for some decisions at each moment.
 
     Landers that have ended give their slots to the next, so that few fly beside many that lie.
     """
@@ -75,9 +94,11 @@ def saved(agent: DeepQAgent, moments: Moments, action: Ints) -> Bools:
     env = LanderEnv(slots, 0, ground=moments.ground, limits=_RESTED)
     row, following = np.arange(slots), slots  # whose moment each slot flies, and the next one
     _begin(env, np.ones(slots, dtype=bool), moments, row)
-    actions, live = action[row], np.ones(slots, dtype=bool)
+    live = np.ones(slots, dtype=bool)
+    waits = np.full(slots, decisions)  # decisions until the agent takes the stick
     while live.any():
-        env.fly(actions)
+        env.fly(np.where(waits > 0, action[row], agent.act(env.observe(), held=env.actions)))
+        waits -= 1
         ended = np.flatnonzero(live & (env.outcome != Outcome.FLYING))
         landed[row[ended]] = env.outcome[ended] == Outcome.LANDED
         begin = ended[: count - following]
@@ -86,8 +107,7 @@ def saved(agent: DeepQAgent, moments: Moments, action: Ints) -> Bools:
         following += len(begin)
         if len(begin):
             _begin(env, np.isin(np.arange(slots), begin), moments, row)
-        actions = agent.act(env.observe(), held=env.actions)
-        actions[begin] = action[row[begin]]
+            waits[begin] = decisions
     return landed
 
 

@@ -80,7 +80,7 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
     numbers[:, 3] = params.main_thrust / params.mass
     if conditions.pushes:
         soon = (conditions.impulse(time + _SOON) - conditions.impulse(time)) / _SOON
-        for column, push in enumerate((conditions.push(time), soon, conditions.wind), start=4):
+        for column, push in enumerate((conditions.push(time), soon, np.asarray(conditions.wind)), start=4):
             numbers[:, column] = push / params.mass
     numbers[:, 7] = 1.0
     numbers[:, 8] = numbers[:, 10] = _AHEAD

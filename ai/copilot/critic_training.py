@@ -1,0 +1,215 @@
+"""Training of a safety critic: rounds of moments near the edge of what can be saved, and a calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from ai.agent.agent import DeepQAgent
+from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.copilot.copilot import CoPilot, Mode
+from ai.copilot.critic import CriticFacts, Reliability, SafetyCritic, fingerprint, logistic
+from ai.copilot.hands import any_hands
+from ai.copilot.moments import Moments, flown, moon, saved
+from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_ACTIONS, LanderEnv
+from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR, SURROUNDINGS_SCALE
+from ai.nn import OPTIMIZERS, ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
+
+INPUTS: Final = ("time left", "pad width")  # of the surroundings, on the moon
+_HIDDEN: Final = (128, 128, 128)
+_FLIGHTS: Final = 384  # of clumsy hands in a round
+_PER_ROUND: Final = 8000  # moments that are kept of those
+_FIRST: Final = 3  # rounds of any moments, before there is a critic to say which are in doubt
+_BATCH: Final = 512
+_RATE: Final = 2e-3
+_ASKED: Final = 0.6  # share of moments in which the action asked for is flown, and not a random one
+_ALONE: Final = 0.15  # share of flights without help
+_HURRIED: Final = 0.2  # share of moments that are moved to the last seconds of a flight
+_TIME: Final = SURROUNDINGS.index("time left")
+_LEAST_SAVED: Final = 0.3  # share of any moments that the agent must still save, to be worth a critic
+_CALIBRATED, _TESTED = 2, 3  # rounds of moments as they come: for slope and offset, and for the table
+_EDGES: Final = (0.0, 0.01, 0.1, 0.5, 0.9, 0.97, 0.99, 0.998, 1.0)  # of the reliability table
+
+MakeEnv = Callable[[int, np.random.Generator], LanderEnv]
+
+
+@dataclass
+class Lessons:
+    """What a critic learns from: inputs (m, k), the action flown (m,), and whether the flight was saved (m,)."""
+
+    inputs: Floats
+    action: Ints
+    saved: Bools
+
+    def __len__(self) -> int:
+        return len(self.action)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Progress of training a critic; `critic` is the latest."""
+
+    round: int
+    rounds: int
+    moments: int
+    right: float  # share of right guesses among the moments of the round, most of them in doubt
+    critic: SafetyCritic
+
+
+@dataclass
+class CriticTraining:
+    """Training of a safety critic for `agent`; iterate over `run` to its end, then take `critic`.
+
+    The critic flies beside clumsy hands as it will later, at all settings of the dial, so that it learns from the
+    moments that it will be asked about (Ross, Gordon and Bagnell 2011, DAgger).
+    """
+
+    agent: DeepQAgent
+    rng: np.random.Generator
+    rounds: int = 32
+    make_env: MakeEnv = moon
+    inputs: tuple[str, ...] = INPUTS
+    lessons: list[Lessons] = field(default_factory=list)
+    critic: SafetyCritic = field(init=False)
+
+    def run(self) -> Iterator[Progress]:
+        """Train round by round; the last round's critic is calibrated.
+
+        Raises ValueError for an agent that hardly ever lands, as nobody can be handed over to it.
+        """
+        for number in range(1, self.rounds + 1):
+            critic = None if number <= _FIRST else self.critic
+            lessons = self.gather(critic)
+            right = 0.5 if critic is None else self._right(critic, lessons)
+            self.lessons.append(lessons)
+            if number == _FIRST and np.mean([some.saved.mean() for some in self.lessons]) < _LEAST_SAVED:
+                raise ValueError("this network lands too seldom to be anybody's guardian; train it for longer first")
+            if number >= _FIRST and (number % 4 == _FIRST % 4 or number == self.rounds):
+                self.critic = self.fit(4000 if number < self.rounds else 10_000)
+            elif number < _FIRST:
+                continue
+            yield Progress(number, self.rounds, sum(map(len, self.lessons)), right, self.critic)
+        self.critic = self.calibrated(self.critic)
+
+    def gather(self, critic: SafetyCritic | None, *, plain: bool = False) -> Lessons:
+        """Fly a round of clumsy hands, and find out of which moments the agent would have saved them.
+
+        With a `critic`, it guards most of the flights, and moments in doubt come more often; `plain` takes them as
+        they come.
+        """
+        env = self.make_env(_FLIGHTS, self.rng)
+        share = None if critic is None else self._guarded(critic)
+        moments = flown(env, any_hands(env.num_envs, self.rng, self.agent), share)
+        weight = np.ones(len(moments))
+        if critic is not None and not plain:
+            chance = critic.chances(moments.observation, moments.surroundings)
+            asked = chance[np.arange(len(moments)), moments.action]
+            weight = np.sqrt(asked * (1.0 - asked)) + 0.01
+        size = min(_PER_ROUND, len(moments))
+        moments = moments.take(self.rng.choice(len(moments), size, replace=False, p=weight / weight.sum()))
+        if not plain:
+            self._hurry(moments, env)
+        action = np.where(
+            self.rng.random(size) < (1.0 if plain else _ASKED),
+            moments.action,
+            self.rng.integers(0, NUM_ACTIONS, size),
+        )
+        return Lessons(self._inputs(moments), action, saved(self.agent, moments, action))
+
+    def _guarded(self, critic: SafetyCritic) -> Callable[[LanderEnv, Ints], Ints]:
+        """Return a guardian with its dial somewhere, and some flights without it."""
+        copilot = CoPilot(self.agent, self.rng.uniform(0.15, 0.75), Mode.GUARDIAN, critic=critic)
+        alone = self.rng.random(_FLIGHTS) < _ALONE
+
+        def share(env: LanderEnv, asked: Ints) -> Ints:
+            return np.where(alone, asked, copilot.share(env.observe(), asked, env.surroundings())[0])
+
+        return share
+
+    def _hurry(self, moments: Moments, env: LanderEnv) -> None:
+        """Move some moments to the last seconds of their flights."""
+        hurried = self.rng.random(len(moments)) < _HURRIED
+        left = self.rng.uniform(0.5, 15.0, len(moments))
+        steps = np.maximum(moments.steps, ((env.limits.time - left) * 60).astype(np.intp))
+        moments.steps = np.where(hurried, steps, moments.steps)
+        moments.surroundings[:, _TIME] = (
+            np.minimum(20.0, env.limits.time - moments.steps / 60) * SURROUNDINGS_SCALE[_TIME]
+        )
+
+    def _inputs(self, moments: Moments) -> Floats:
+        columns = [SURROUNDINGS.index(name) for name in self.inputs]
+        return np.concatenate([moments.observation, moments.surroundings[:, columns]], axis=1)
+
+    def fit(self, steps: int) -> SafetyCritic:
+        """Return a critic learnt from all lessons so far by logistic regression on the action flown; half mirrored."""
+        inputs = np.concatenate([some.inputs for some in self.lessons])
+        action = np.concatenate([some.action for some in self.lessons])
+        landed = np.concatenate([some.saved for some in self.lessons]).astype(np.float32)
+        network, optimizer = self._network(), OPTIMIZERS["adam"](_RATE)
+        rows = np.arange(_BATCH)
+        for step in range(steps):
+            some = self.rng.integers(0, len(action), _BATCH)
+            seen, flown_, mirrored = inputs[some], action[some], _BATCH // 2
+            seen[:mirrored], flown_[:mirrored] = self._mirror(seen[:mirrored]), MIRROR_ACTIONS[flown_[:mirrored]]
+            optimizer.learning_rate = _RATE * (1.0 - step / steps) + 1e-5
+            output = network.forward_propagate(seen)
+            error = np.zeros_like(output)
+            error[rows, flown_] = (logistic(output[rows, flown_]) - landed[some]) / _BATCH
+            network.backward_propagate(error)
+            optimizer.step(network.values, network.gradients, cost=0.0)
+        return SafetyCritic(network, CriticFacts(fingerprint(self.agent), self.inputs, moments=len(action)))
+
+    def _mirror(self, inputs: Floats) -> Floats:
+        columns = [SURROUNDINGS.index(name) for name in self.inputs]
+        nine = inputs[:, MIRROR_FEATURES] * MIRROR_SIGNS
+        return np.concatenate([nine, inputs[:, len(nine[0]) :] * SURROUNDINGS_MIRROR[columns]], axis=1)
+
+    def _network(self) -> NeuralNetwork:
+        network = NeuralNetwork(*CostFunctions.use_mse(), rng=self.rng)
+        width = 9 + len(self.inputs)
+        for hidden in _HIDDEN:
+            network.add_layer(FullyConnectedLayer(width, hidden)).add_layer(
+                ActivationLayer(*ActivationFunctions.use_relu())
+            )
+            width = hidden
+        return network.add_layer(FullyConnectedLayer(width, NUM_ACTIONS))
+
+    def calibrated(self, critic: SafetyCritic) -> SafetyCritic:
+        """Return the critic with slope and offset fitted to moments as they come, and a table of others."""
+        fitted, tested = (self._plain(critic, rounds) for rounds in (_CALIBRATED, _TESTED))
+        slope, offset = _platt(*fitted)
+        output, landed = tested
+        chance = logistic(slope * output + offset)
+        bins = np.digitize(chance, _EDGES[1:-1])
+        rows = (
+            Reliability(float(chance[bins == k].mean()), float(landed[bins == k].mean()), int((bins == k).sum()))
+            for k in np.unique(bins)
+        )
+        facts = replace(critic.facts, slope=slope, offset=offset, reliability=tuple(rows))
+        return SafetyCritic(critic.network, facts)
+
+    def _plain(self, critic: SafetyCritic, rounds: int) -> tuple[Doubles, Bools]:
+        """Return the critic's outputs for actions asked for at moments as they come, and whether each was saved."""
+        parts = [self.gather(critic, plain=True) for _ in range(rounds)]
+        outputs = [critic.network.predict(part.inputs)[np.arange(len(part)), part.action] for part in parts]
+        return np.concatenate(outputs).astype(float), np.concatenate([part.saved for part in parts])
+
+    @staticmethod
+    def _right(critic: SafetyCritic, lessons: Lessons) -> float:
+        output = critic.network.predict(lessons.inputs)[np.arange(len(lessons)), lessons.action]
+        return float(((output > 0) == lessons.saved).mean())
+
+
+def _platt(output: Doubles, landed: Bools) -> tuple[float, float]:
+    """Return slope and offset by which outputs (m,) best foretell landings (m,) (Platt 1999), by Newton's method."""
+    inputs = np.column_stack([output, np.ones(len(output))])
+    weights = np.array([1.0, 0.0])
+    for _ in range(25):
+        chance = logistic(inputs @ weights)
+        slope = inputs.T @ (chance - landed) + 1e-3 * (weights - (1.0, 0.0))
+        curve = (inputs * (chance * (1 - chance))[:, None]).T @ inputs + 1e-3 * np.eye(2)
+        weights -= np.clip(np.linalg.solve(curve, slope), -0.5, 0.5)
+    return float(weights[0]), float(weights[1])
