@@ -14,15 +14,13 @@ from ai.agent.config import Config
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.copilot.critic import SafetyCritic, critic_beside
+from ai.copilot.guardian import Guardian
 from ai.copilot.intent import Intent, in_question
 from ai.lander.environment import NUM_ACTIONS
 from ai.lander.pilots import COAST
 
 # Points of reward by which the guardian's action must be better than the pilot's, at an assist of one half.
 GUARDIAN_MARGIN: Final = 3.0
-RISK: Final = 0.02  # chance to be lost that a guardian with a critic accepts, at an assist of one half
-SUREST: Final = 0.998  # chance that no dial's guardian asks for more than, after however many rescues
-HAND_BACK: Final = 0.25  # share of that risk at which a guardian that has stepped in gives the stick back
 _STEERS: Final = 3  # action = 3 * main + steer
 
 
@@ -104,12 +102,6 @@ def guardian_margin(assist: Any) -> Any:
         return GUARDIAN_MARGIN * (1.0 - np.asarray(assist)) / assist
 
 
-def required_chance(assist: Any) -> Any:
-    """Return the chance to be saved below which a guardian with a critic steps in, for assist (n,), 0 to 1."""
-    with np.errstate(divide="ignore"):
-        return np.maximum(0.0, 1.0 - RISK * (1.0 - np.asarray(assist)) / assist)
-
-
 class CoPilot:
     """Shared control between a pilot and an agent (Reddy, Dragan and Levine 2018).
 
@@ -150,8 +142,7 @@ class CoPilot:
         self.infers_intent = infers_intent
         self._intent = Intent(self.reward_scale)
         self.critic, self.critic_problem = critic_beside(agent) if critic == "beside" else (critic, "")
-        self._saving: Bools = np.zeros(0, dtype=bool)  # slots in which the guardian has stepped in
-        self._rescues: Ints = np.zeros(0, dtype=np.intp)  # how often it did, in each
+        self.guardian = Guardian()
 
     @property
     def assist(self) -> float:
@@ -167,8 +158,7 @@ class CoPilot:
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
         self._intent.forget(mask)
-        for memory in (self._saving, self._rescues):
-            memory[slice(None) if mask is None else mask] = 0
+        self.guardian.forget(mask)
 
     def share(self, observation: Floats, pilot_action: Any, surroundings: Floats | None = None) -> tuple[Ints, Bools]:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
@@ -235,16 +225,13 @@ class CoPilot:
         assert self.critic is not None
         slots, pads, features = observation.shape
         rows = np.arange(slots)
-        if self._saving.shape != (slots,):
-            self._saving, self._rescues = np.zeros(slots, dtype=bool), np.zeros(slots, dtype=np.intp)
         if surroundings is not None:
             surroundings = surroundings.reshape(slots * pads, -1)
         chances = self.critic.chances(observation.reshape(-1, features), surroundings)
         chances = chances.reshape(slots, pads, NUM_ACTIONS)
         open_ = in_question(likely)
         chances = np.where(open_[:, :, None], chances, -1.0)
-        risk = (1.0 - required_chance(self.assist)) * 0.5**self._rescues
-        required = np.minimum(1.0 - risk, np.maximum(SUREST, required_chance(self.assist)))
+        required = self.guardian.required(self.assist, slots)
         # The likeliest of the pads that can still be reached, else the one that is nearest to it.
         within = chances.max(axis=2)
         pad = np.where(within >= required[:, None], 1.0 + likely, within).argmax(axis=1)
@@ -253,16 +240,8 @@ class CoPilot:
         candidates = np.stack(
             [pilot, pilot - pilot % _STEERS + best % _STEERS, best - best % _STEERS + pilot % _STEERS, best]
         )
-        asked = np.where(self._saving, 1.0 - HAND_BACK * (1.0 - required), required)
-        enough = chance[rows, candidates] >= asked
-        none = ~enough.any(axis=0)
-        enough[:, none] = (chance[rows, candidates] == chance[rows, candidates].max(axis=0))[:, none]
-        source = enough.argmax(axis=0)
-        source[~np.isfinite(chance).all(axis=1)] = ActionSource.PILOT
+        source, asked = self.guardian.choose(chance, candidates, required)
         action = candidates[source, rows]
-        saving = source != ActionSource.PILOT
-        self._rescues += saving & ~self._saving
-        self._saving = saving
         feasible = chance >= asked[:, None]
         feasible[rows, action] = True
         return SharedDecision(observation, action, pilot, best, source, values, meant, feasible, likely,

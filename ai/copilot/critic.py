@@ -18,8 +18,8 @@ from ai.agent.storage import CRITIC_KIND, GUARDIAN
 from ai.common.decision import Real
 from ai.common.environment import Floats
 from ai.lander.environment import LanderEnv
-from ai.lander.rules import NUM_ACTIONS
-from ai.lander.sensing import SURROUNDINGS
+from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_ACTIONS, NUM_FEATURES
+from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.files import brief, inside, read_json
 from ai.nn.folder import CONFIG
@@ -80,8 +80,21 @@ class SafetyCritic:
         observation = np.atleast_2d(observation)
         if surroundings is None:
             surroundings = np.broadcast_to(usual_surroundings(), (len(observation), len(SURROUNDINGS)))
-        output = self.network.predict(np.concatenate([observation, surroundings[:, self._columns]], axis=1))
+        output = self.outputs(np.concatenate([observation, surroundings[:, self._columns]], axis=1))
         return logistic(np.float32(self.facts.slope) * output + np.float32(self.facts.offset))
+
+    def outputs(self, inputs: Floats) -> Floats:
+        """Return the network's outputs (n, 6) for inputs (n, 9 + k): means of each moment and its mirror image.
+
+        Left and right are alike; two opinions are steadier than one.
+        """
+        both = self.network.predict(np.concatenate([inputs, self.mirror(inputs)]))
+        return np.asarray((both[: len(inputs)] + both[len(inputs) :, MIRROR_ACTIONS]) / 2, np.float32)
+
+    def mirror(self, inputs: Floats) -> Floats:
+        """Return inputs (n, 9 + k) with left and right swapped."""
+        nine = inputs[:, MIRROR_FEATURES] * MIRROR_SIGNS
+        return np.concatenate([nine, inputs[:, NUM_FEATURES:] * SURROUNDINGS_MIRROR[self._columns]], axis=1)
 
     def save(self, folder: str | Path) -> None:
         """Write the critic to a folder, whole or not at all; raises as `DeepQAgent.save` does."""

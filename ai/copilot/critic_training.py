@@ -14,8 +14,8 @@ from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.critic import CriticFacts, Reliability, SafetyCritic, fingerprint, logistic
 from ai.copilot.hands import any_hands
 from ai.copilot.moments import Moments, flown, moon, saved
-from ai.lander.environment import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_ACTIONS, LanderEnv
-from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR, SURROUNDINGS_SCALE
+from ai.lander.environment import MIRROR_ACTIONS, NUM_ACTIONS, LanderEnv
+from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_SCALE
 from ai.nn import OPTIMIZERS, ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
 
 INPUTS: Final = ("time left", "pad width")  # of the surroundings, on the moon
@@ -149,23 +149,19 @@ class CriticTraining:
         action = np.concatenate([some.action for some in self.lessons])
         landed = np.concatenate([some.saved for some in self.lessons]).astype(np.float32)
         network, optimizer = self._network(), OPTIMIZERS["adam"](_RATE)
+        critic = SafetyCritic(network, CriticFacts(fingerprint(self.agent), self.inputs, moments=len(action)))
         rows = np.arange(_BATCH)
         for step in range(steps):
             some = self.rng.integers(0, len(action), _BATCH)
             seen, flown_, mirrored = inputs[some], action[some], _BATCH // 2
-            seen[:mirrored], flown_[:mirrored] = self._mirror(seen[:mirrored]), MIRROR_ACTIONS[flown_[:mirrored]]
+            seen[:mirrored], flown_[:mirrored] = critic.mirror(seen[:mirrored]), MIRROR_ACTIONS[flown_[:mirrored]]
             optimizer.learning_rate = _RATE * (1.0 - step / steps) + 1e-5
             output = network.forward_propagate(seen)
             error = np.zeros_like(output)
             error[rows, flown_] = (logistic(output[rows, flown_]) - landed[some]) / _BATCH
             network.backward_propagate(error)
             optimizer.step(network.values, network.gradients, cost=0.0)
-        return SafetyCritic(network, CriticFacts(fingerprint(self.agent), self.inputs, moments=len(action)))
-
-    def _mirror(self, inputs: Floats) -> Floats:
-        columns = [SURROUNDINGS.index(name) for name in self.inputs]
-        nine = inputs[:, MIRROR_FEATURES] * MIRROR_SIGNS
-        return np.concatenate([nine, inputs[:, len(nine[0]) :] * SURROUNDINGS_MIRROR[columns]], axis=1)
+        return critic
 
     def _network(self) -> NeuralNetwork:
         network = NeuralNetwork(*CostFunctions.use_mse(), rng=self.rng)
@@ -194,12 +190,12 @@ class CriticTraining:
     def _plain(self, critic: SafetyCritic, rounds: int) -> tuple[Doubles, Bools]:
         """Return the critic's outputs for actions asked for at moments as they come, and whether each was saved."""
         parts = [self.gather(critic, plain=True) for _ in range(rounds)]
-        outputs = [critic.network.predict(part.inputs)[np.arange(len(part)), part.action] for part in parts]
+        outputs = [critic.outputs(part.inputs)[np.arange(len(part)), part.action] for part in parts]
         return np.concatenate(outputs).astype(float), np.concatenate([part.saved for part in parts])
 
     @staticmethod
     def _right(critic: SafetyCritic, lessons: Lessons) -> float:
-        output = critic.network.predict(lessons.inputs)[np.arange(len(lessons)), lessons.action]
+        output = critic.outputs(lessons.inputs)[np.arange(len(lessons)), lessons.action]
         return float(((output > 0) == lessons.saved).mean())
 
 

@@ -25,6 +25,7 @@ class Faults:
     sticky: ArrayLike = 0.0  # chance that the last action is held on
     one_key: ArrayLike = False  # whether main engine and jets are never pressed together
     thrust: ArrayLike = 0.0  # chance that the main engine fires, whatever was meant
+    timid: ArrayLike = 0.0  # chance that it does not, whatever was meant
     freeze: ArrayLike = 0.0  # chance to do nothing new for one to three seconds
     inverted: ArrayLike = False  # whether left and right are confused
     flip: ArrayLike = 0.0  # chance that the main engine does the opposite of what was meant
@@ -41,9 +42,8 @@ class ClumsyHands:
         self.pilot, self.rng, self.slots = pilot, rng, slots
         self.late = each(np.minimum(faults.late, _LATEST), np.intp)
         self.one_key, self.inverted = each(faults.one_key, bool), each(faults.inverted, bool)
-        self.sticky, self.thrust, self.freeze, self.flip, self.change = (
-            each(fault, float) for fault in (faults.sticky, faults.thrust, faults.freeze, faults.flip, faults.change)
-        )
+        self.sticky, self.thrust, self.timid = (each(f, float) for f in (faults.sticky, faults.thrust, faults.timid))
+        self.freeze, self.flip, self.change = (each(f, float) for f in (faults.freeze, faults.flip, faults.change))
         self._wishes: Ints = np.zeros((_LATEST + 1, slots), dtype=np.intp)
         self._asked = 0
         self._last: Ints = np.zeros(slots, dtype=np.intp)
@@ -56,10 +56,11 @@ class ClumsyHands:
         late = np.minimum(self.late, self._asked)
         main, steer = np.divmod(self._wishes[(self._asked - late) % len(self._wishes), np.arange(slots)], _STEERS)
         self._asked += 1
-        slips = rng.random((6, slots))
+        slips = rng.random((7, slots))
         main = np.where(slips[0] < self.flip, 1 - main, main)
         steer = np.where(slips[1] < self.change, (steer + rng.integers(1, _STEERS, slots)) % _STEERS, steer)
         main = np.where(slips[2] < self.thrust, 1, main)
+        main = np.where(slips[6] < self.timid, 0, main)
         steer = np.where(self.inverted & (steer > 0), _STEERS - steer, steer)
         both = self.one_key & (main > 0) & (steer > 0)
         main, steer = np.where(both & (slips[3] < 0.5), 0, main), np.where(both & (slips[3] >= 0.5), 0, steer)
@@ -98,8 +99,9 @@ def any_hands(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:
         sticky=sometimes(0.35, rng.uniform(0.0, 0.9, slots)),
         one_key=rng.random(slots) < 0.2,
         thrust=sometimes(0.2, rng.uniform(0.0, 0.5, slots)),
+        timid=sometimes(0.2, rng.choice([0.3, 0.6, 1.0], slots)),
         freeze=sometimes(0.25, rng.uniform(0.0, 0.06, slots)),
-        inverted=rng.random(slots) < 0.08,
+        inverted=rng.random(slots) < 0.12,
         flip=sometimes(0.3, rng.uniform(0.0, 0.4, slots)),
         change=sometimes(0.3, rng.uniform(0.0, 0.5, slots)),
     )

@@ -14,11 +14,14 @@ from ai.common.environment import Bools, Doubles, Floats, Ints
 from ai.lander.environment import LIMITS, PARAMS, LanderEnv, Outcome
 from ai.lander.ground import Ground, Pad, hilly
 from ai.lander.pilots import Pilot
+from engine import DT
 
 SPAWN: Final = "wide"  # starts a little beyond those that are flown
 _SLOTS: Final = 2048  # landers that the network flies at once
-# A lander that stands still on both feet for so many steps would stand for half a second, too.
-_RESTED: Final = replace(LIMITS, rest_steps=8)
+# A lander that stands still on both feet for some steps goes on standing: the rest of the time that a landing takes is
+# not flown, but taken off.
+_STANDS: Final = 8
+_RESTED: Final = replace(LIMITS, rest_steps=_STANDS, time=LIMITS.time - (LIMITS.rest_steps - _STANDS) * DT)
 
 Share = Callable[[LanderEnv, Ints], Ints]  # actions to fly, given what the hands ask for
 

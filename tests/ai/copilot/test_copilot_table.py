@@ -8,7 +8,7 @@ from ai.agent.agent import DeepQAgent
 from ai.cli.copilot import MODEL
 from ai.copilot import measurement as copilot_table
 from ai.copilot.copilot import Mode
-from ai.copilot.measurement import ALONE, OPEN, one_pad, three_pads
+from ai.copilot.measurement import ALONE, OPEN, ORACLE, VALUES, one_pad, three_pads, wilson
 
 
 @pytest.fixture(scope="module")
@@ -22,37 +22,49 @@ def few(monkeypatch):
     monkeypatch.setattr(copilot_table, "PILOTS", {name: copilot_table.PILOTS[name] for name in ("laggy", "none")})
     monkeypatch.setattr(copilot_table, "INTENT_PILOTS", ("laggy",))
     monkeypatch.setattr(copilot_table, "GROUNDS", 1)
-    monkeypatch.setattr(copilot_table, "ONE_PAD", ((ALONE, 0.0), (Mode.TOLERANCE, 0.6), (Mode.GUARDIAN, 0.4)))
+    monkeypatch.setattr(copilot_table, "ORACLE_FLIGHTS", 3)
+    monkeypatch.setattr(
+        copilot_table,
+        "ONE_PAD",
+        ((ALONE, 0.0), (Mode.TOLERANCE, 0.6), (Mode.GUARDIAN, 0.4), (VALUES, 0.4), (ORACLE, 0.0)),
+    )
     monkeypatch.setattr(copilot_table, "THREE_PADS", ((ALONE, 0.0), (Mode.GUARDIAN, 0.4), (OPEN, 0.4)))
 
 
 def test_the_co_pilot_helps_on_one_pad(agent, few):
     rows = list(one_pad(agent, agent, 40))
+    modes = ["alone", "tolerance", "guardian", VALUES, ORACLE]
     assert [(row.pilot, row.mode) for row in rows] == [
-        ("laggy", "alone"),
-        ("laggy", "tolerance"),
-        ("laggy", "guardian"),
-        ("none", "alone"),
-        ("none", "tolerance"),
-        ("none", "guardian"),
+        *(("laggy", mode) for mode in modes),
+        *(("none", mode) for mode in modes),
         ("co-pilot", "alone"),
     ]
+    assert [row.episodes for row in rows] == [40, 40, 40, 40, 3, 40, 40, 40, 40, 3, 40]
     for row in rows:
         assert row.success + row.crash + row.out_of_bounds + row.time_out == pytest.approx(1.0)
         assert row.own_pad == row.success
         assert (row.overridden == 0) == (row.mode == "alone")
-    laggy, tolerant, guarded, nobody, *flown, network = rows
-    assert min(tolerant.success, guarded.success) > laggy.success + 0.45
+        low, high = row.success_interval
+        assert 0.0 <= low <= row.success <= high <= 1.0
+    laggy, tolerant, guarded, valued, limit, nobody, *helped, network = rows
+    assert min(tolerant.success, guarded.success, limit.success) > laggy.success + 0.45
+    assert limit.overridden < guarded.overridden < valued.overridden
     assert nobody.success == 0.0
-    assert {row.success for row in flown} == {network.success}  # hands off, the network flies
+    assert min(row.success for row in helped) > 0.6
     assert network.success > 0.95
 
 
 def test_the_co_pilot_brings_a_pilot_to_the_pad_they_have_in_mind(agent, few):
     alone, guarded, all_open = three_pads(agent, agent, 40)
     assert guarded.own_pad > alone.own_pad + 0.3
-    assert all_open.own_pad > alone.own_pad
+    assert all_open.success > alone.success
     assert guarded.own_pad <= guarded.success
+
+
+def test_an_interval_holds_the_share_and_shrinks_with_the_number_of_trials():
+    assert wilson(0.0, 20) == pytest.approx((0.0, 0.1611), abs=1e-4)
+    assert wilson(1.0, 20) == pytest.approx((0.8389, 1.0), abs=1e-4)
+    assert wilson(0.5, 100) == pytest.approx((0.4038, 0.5962), abs=1e-4)
 
 
 def test_the_command_prints_both_tables_which_follow_from_the_seed(few, monkeypatch, capsys):
@@ -62,7 +74,7 @@ def test_the_command_prints_both_tables_which_follow_from_the_seed(few, monkeypa
         assert main.main(["copilot-table", "--episodes", "2", "--json"]) == 0
         told.append(json.loads(capsys.readouterr().out))
     assert told[0] == told[1]
-    assert [len(told[0]["one_pad"]), len(told[0]["three_pads"])] == [4, 3]
+    assert [len(told[0]["one_pad"]), len(told[0]["three_pads"])] == [6, 3]
     assert np.isfinite([row["mean_return"] for row in told[0]["one_pad"]]).all()
     assert main.main(["copilot-table", "--episodes", "2"]) == 0
     assert "own pad" in capsys.readouterr().out

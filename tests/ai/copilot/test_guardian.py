@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ai.copilot.copilot import HAND_BACK, SUREST, ActionSource, CoPilot, Mode, required_chance
+from ai.copilot.copilot import ActionSource, CoPilot, Mode
+from ai.copilot.guardian import HAND_BACK, SUREST, required_chance
 
 DIAL = 0.4
 REQUIRED = float(required_chance(DIAL))
