@@ -13,6 +13,7 @@ from ai.agent.agent import DeepQAgent
 from ai.agent.config import Config
 from ai.common.decision import in_points
 from ai.common.environment import Bools, Doubles, Floats, Ints
+from ai.copilot.clock import FlightClock
 from ai.copilot.critic import SafetyCritic, critic_beside
 from ai.copilot.guardian import Guardian
 from ai.copilot.intent import Intent, in_question
@@ -142,7 +143,7 @@ class CoPilot:
         self.infers_intent = infers_intent
         self._intent = Intent(self.reward_scale)
         self.critic, self.critic_problem = critic_beside(agent) if critic == "beside" else (critic, "")
-        self.guardian = Guardian()
+        self.guardian, self._clock = Guardian(), FlightClock()
 
     @property
     def assist(self) -> float:
@@ -159,6 +160,7 @@ class CoPilot:
         """Begin a new flight in the slots of `mask` (n,), or in all, with no idea which pad is meant."""
         self._intent.forget(mask)
         self.guardian.forget(mask)
+        self._clock.forget(mask)
 
     def share(self, observation: Floats, pilot_action: Any, surroundings: Floats | None = None) -> tuple[Ints, Bools]:
         """Return the actions to fly (n,), and where they are not the pilot's, (n,).
@@ -225,9 +227,10 @@ class CoPilot:
         assert self.critic is not None
         slots, pads, features = observation.shape
         rows = np.arange(slots)
-        if surroundings is not None:
-            surroundings = surroundings.reshape(slots * pads, -1)
-        chances = self.critic.chances(observation.reshape(-1, features), surroundings)
+        if surroundings is None:
+            surroundings, new = self._clock.read(observation)
+            self.guardian.forget(new)
+        chances = self.critic.chances(observation.reshape(-1, features), surroundings.reshape(slots * pads, -1))
         chances = chances.reshape(slots, pads, NUM_ACTIONS)
         open_ = in_question(likely)
         chances = np.where(open_[:, :, None], chances, -1.0)

@@ -19,7 +19,7 @@ from ai.common.decision import Real
 from ai.common.environment import Floats
 from ai.lander.environment import LanderEnv
 from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_ACTIONS, NUM_FEATURES
-from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_MIRROR
+from ai.lander.sensing import AROUND, AROUND_ORDER, AROUND_SIGNS, SURROUNDINGS, TERRAIN
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.files import brief, inside, read_json
 from ai.nn.folder import CONFIG
@@ -43,7 +43,7 @@ class CriticFacts:
 
     Attributes:
         agent: fingerprint of the agent whose landings it foretells, from `fingerprint`.
-        inputs: names of `ai.lander.sensing.SURROUNDINGS` that its network takes after an observation.
+        inputs: names of `ai.lander.sensing.AROUND` that its network takes after an observation.
         slope, offset: chance = logistic(slope · output + offset), fitted on moments it did not learn from.
         moments: how many it learned from.
         reliability: rows of moments that neither it nor slope and offset were fitted to.
@@ -68,18 +68,23 @@ class SafetyCritic:
 
     def __init__(self, network: NeuralNetwork, facts: CriticFacts) -> None:
         self.network, self.facts = network, facts
-        self._columns = [SURROUNDINGS.index(name) for name in facts.inputs]
+        self._columns = [AROUND.index(name) for name in facts.inputs]
+        self._order = [facts.inputs.index(AROUND[AROUND_ORDER[column]]) for column in self._columns]
 
     def chances(self, observation: Floats, surroundings: Floats | None = None) -> Floats:
         """Return the chance, 0 to 1, to land for each action, (n, 6), for observations (n, 9).
 
         It is the chance that the agent lands if that action is flown for one decision of 1/15 s and the agent has the
-        stick from then on. `surroundings` (n, k) are those of `LanderEnv.surroundings`; by default, those of a flight
-        that has just begun on the moon. NaN where the observation is not finite.
+        stick from then on. `surroundings` (n, k) are those of `LanderEnv.around` or, over a plain, of
+        `LanderEnv.surroundings`; by default, those of a flight that has just begun on the moon. NaN where the
+        observation is not finite.
         """
         observation = np.atleast_2d(observation)
         if surroundings is None:
-            surroundings = np.broadcast_to(usual_surroundings(), (len(observation), len(SURROUNDINGS)))
+            surroundings = np.broadcast_to(usual_surroundings(), (len(observation), len(AROUND)))
+        elif surroundings.shape[1] == len(SURROUNDINGS):
+            plain = np.broadcast_to(usual_surroundings()[len(SURROUNDINGS) :], (len(observation), len(TERRAIN)))
+            surroundings = np.concatenate([surroundings, plain], axis=1)
         output = self.outputs(np.concatenate([observation, surroundings[:, self._columns]], axis=1))
         return logistic(np.float32(self.facts.slope) * output + np.float32(self.facts.offset))
 
@@ -94,7 +99,7 @@ class SafetyCritic:
     def mirror(self, inputs: Floats) -> Floats:
         """Return inputs (n, 9 + k) with left and right swapped."""
         nine = inputs[:, MIRROR_FEATURES] * MIRROR_SIGNS
-        return np.concatenate([nine, inputs[:, NUM_FEATURES:] * SURROUNDINGS_MIRROR[self._columns]], axis=1)
+        return np.concatenate([nine, (inputs[:, NUM_FEATURES:] * AROUND_SIGNS[self._columns])[:, self._order]], axis=1)
 
     def save(self, folder: str | Path) -> None:
         """Write the critic to a folder, whole or not at all; raises as `DeepQAgent.save` does."""
@@ -111,7 +116,7 @@ class SafetyCritic:
         try:
             file = read_as(_CriticFile, check_header(read_json(inside(folder, CONFIG)), CRITIC_KIND.format, (VERSION,)))
             network = NeuralNetwork.load(inside(folder, NETWORK))
-            if unknown := set(file.inputs) - set(SURROUNDINGS):
+            if unknown := set(file.inputs) - set(AROUND):
                 raise ValueError(f"it takes {brief(sorted(unknown)[0])}, which nothing measures")
             rows = tuple(Reliability(*row) for row in file.reliability)
             critic = cls(network, CriticFacts(file.agent, file.inputs, file.slope, file.offset, file.moments, rows))
@@ -142,9 +147,9 @@ class _CriticFile:
 def usual_surroundings() -> Floats:
     """Return the surroundings (k,) of a flight that has just begun on the moon."""
     env = LanderEnv(1, 0)
-    env.reset()
-    surroundings: Floats = env.surroundings()[0]
-    return surroundings
+    env.place(np.ones(1, dtype=bool), np.array([[20.0, 15.0, 0.0, 0.0, 0.0, 0.0]]))  # the plain below
+    around: Floats = env.around()[0]
+    return around
 
 
 def logistic(output: NDArray[Real]) -> NDArray[Real]:

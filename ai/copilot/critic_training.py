@@ -15,10 +15,10 @@ from ai.copilot.critic import CriticFacts, Reliability, SafetyCritic, fingerprin
 from ai.copilot.hands import any_hands
 from ai.copilot.moments import Moments, flown, moon, saved
 from ai.lander.environment import MIRROR_ACTIONS, NUM_ACTIONS, LanderEnv
-from ai.lander.sensing import SURROUNDINGS, SURROUNDINGS_SCALE
+from ai.lander.sensing import AROUND, SURROUNDINGS, SURROUNDINGS_SCALE, TERRAIN
 from ai.nn import OPTIMIZERS, ActivationFunctions, ActivationLayer, CostFunctions, FullyConnectedLayer, NeuralNetwork
 
-INPUTS: Final = ("time left", "pad width")  # of the surroundings, on the moon
+INPUTS: Final = ("time left", "pad width", *TERRAIN)  # of what is around a lander on the moon
 _HIDDEN: Final = (128, 128, 128)
 _FLIGHTS: Final = 384  # of clumsy hands in a round
 _PER_ROUND: Final = 8000  # moments that are kept of those
@@ -30,7 +30,8 @@ _ALONE: Final = 0.15  # share of flights without help
 _HURRIED: Final = 0.2  # share of moments that are moved to the last seconds of a flight
 _TIME: Final = SURROUNDINGS.index("time left")
 _LEAST_SAVED: Final = 0.3  # share of any moments that the agent must still save, to be worth a critic
-_CALIBRATED, _TESTED = 2, 3  # rounds of moments as they come: for slope and offset, and for the table
+_PLAIN: Final = 2000  # moments of a round that takes them as they come
+_CALIBRATED, _TESTED = 8, 8  # such rounds: for slope and offset, and for the table
 _EDGES: Final = (0.0, 0.01, 0.1, 0.5, 0.9, 0.97, 0.99, 0.998, 1.0)  # of the reliability table
 
 MakeEnv = Callable[[int, np.random.Generator], LanderEnv]
@@ -108,7 +109,7 @@ class CriticTraining:
             chance = critic.chances(moments.observation, moments.surroundings)
             asked = chance[np.arange(len(moments)), moments.action]
             weight = np.sqrt(asked * (1.0 - asked)) + 0.01
-        size = min(_PER_ROUND, len(moments))
+        size = min(_PER_ROUND if not plain else _PLAIN, len(moments))
         moments = moments.take(self.rng.choice(len(moments), size, replace=False, p=weight / weight.sum()))
         if not plain:
             self._hurry(moments, env)
@@ -125,7 +126,7 @@ class CriticTraining:
         alone = self.rng.random(_FLIGHTS) < _ALONE
 
         def share(env: LanderEnv, asked: Ints) -> Ints:
-            return np.where(alone, asked, copilot.share(env.observe(), asked, env.surroundings())[0])
+            return np.where(alone, asked, copilot.share(env.observe(), asked, env.around())[0])
 
         return share
 
@@ -140,7 +141,7 @@ class CriticTraining:
         )
 
     def _inputs(self, moments: Moments) -> Floats:
-        columns = [SURROUNDINGS.index(name) for name in self.inputs]
+        columns = [AROUND.index(name) for name in self.inputs]
         return np.concatenate([moments.observation, moments.surroundings[:, columns]], axis=1)
 
     def fit(self, steps: int) -> SafetyCritic:

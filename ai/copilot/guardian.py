@@ -8,10 +8,10 @@ import numpy as np
 
 from ai.common.environment import Bools, Doubles, Floats, Ints
 
-RISK: Final = 0.02  # chance to be lost that it accepts, at an assist of one half
-SUREST: Final = 0.999  # chance that it asks for at the most, after however many rescues
+RISK: Final = 0.02 / 3  # chance to be lost that it accepts, at an assist of one half
+SUREST: Final = 0.9995  # chance that it asks for at the most, after however many rescues
 HAND_BACK: Final = 0.5  # share of the risk at which it may give the stick back
-PATIENCE: Final = 3  # decisions, for each rescue so far, for which the pilot's actions must have been safe before that
+PATIENCE: Final = 0.1  # decisions for which the pilot's actions must have been safe before that: this · rescues²
 _LONGEST: Final = 60  # decisions
 
 
@@ -41,7 +41,8 @@ class Guardian:
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all."""
         for memory in (self.saving, self.rescues, self._safe_for):
-            memory[slice(None) if mask is None else mask] = 0
+            if memory.size:
+                memory[slice(None) if mask is None else mask] = 0
 
     def required(self, assist: float, slots: int) -> Doubles:
         """Return the chance below which it steps in by now, (n,), with the dial at `assist`."""
@@ -64,7 +65,7 @@ class Guardian:
         enough = offered >= asked
         known = np.isfinite(chance).all(axis=1)
         self._safe_for = np.where(enough[0], self._safe_for + 1, 0)
-        enough[0] &= ~self.saving | (self._safe_for > np.minimum(PATIENCE * self.rescues, _LONGEST))
+        enough[0] &= ~self.saving | (self._safe_for > np.minimum(PATIENCE * self.rescues**2, _LONGEST))
         none = ~enough[1:].any(axis=0)
         enough[1:, none] = (offered[1:] == offered[1:].max(axis=0))[:, none]
         chosen = np.where(known, enough.argmax(axis=0), 0)

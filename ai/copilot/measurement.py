@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from ai.agent.agent import DeepQAgent
-from ai.common.environment import Doubles, Floats
+from ai.common.environment import Doubles
 from ai.copilot.copilot import CoPilot, Mode
 from ai.copilot.hands import FAMILIES, UNSEEN, MakePilot
 from ai.copilot.oracle import Oracle
@@ -169,7 +169,7 @@ def _fly(env: LanderEnv, assisted: Sequence[AssistedPilot]) -> tuple[Doubles, Do
     returns, overridden, decisions = np.zeros((3, env.num_envs))
     episodes = env.num_envs // len(assisted)
     while (flying := env.outcome == Outcome.FLYING).any():
-        seen, wished, around, actions = env.observe_pads(), env.observe(), _around(env), env.actions.copy()
+        seen, wished, around, actions = env.observe_pads(), env.observe(), env.around_pads(), env.actions.copy()
         for row, each in enumerate(assisted):
             mine = slice(row * episodes, (row + 1) * episodes)
             if flying[mine].any():
@@ -184,11 +184,6 @@ def _fly(env: LanderEnv, assisted: Sequence[AssistedPilot]) -> tuple[Doubles, Do
         decisions += flying
         returns += env.step(actions).reward
     return returns, overridden, decisions
-
-
-def _around(env: LanderEnv) -> Floats:
-    """Return the surroundings of every slot and pad, (n, pads, k)."""
-    return np.stack([env.surroundings(pad) for pad in range(len(env.ground.pads))], axis=1)
 
 
 def _mean(rows: Sequence[AssistedFlights]) -> AssistedFlights:

@@ -60,7 +60,7 @@ def present(env: LanderEnv, asked: Ints, which: Bools) -> Moments:
         start,
         env.steps,
         env.observe(),
-        env.surroundings(),
+        env.around(),
         asked,
         np.arange(env.num_envs),
     )
@@ -124,10 +124,10 @@ def _begin(env: LanderEnv, mask: Bools, moments: Moments, row: Ints) -> None:
 def moon(slots: int, rng: np.random.Generator) -> LanderEnv:
     """Return landers on the moon, ready to fly: over a plain with a pad of some width, or among hills."""
     kind = rng.random()
-    if kind < 0.3:
+    if kind < 0.45:
         ground = hilly(rng)
     else:
-        width = PARAMS.pad_width if kind < 0.7 else float(rng.uniform(3.2, 8.0))
+        width = PARAMS.pad_width if kind < 0.75 else float(rng.uniform(3.2, 8.0))
         ground = Ground((Pad(0.0, PARAMS.pad_top, width),))
     env = LanderEnv(slots, rng, SPAWN, ground=ground)
     env.target = rng.integers(len(ground.pads), size=slots)

@@ -37,7 +37,7 @@ from ai.lander.rules import (
     Outcome,
     engines_switched,
 )
-from ai.lander.sensing import sensed, surroundings
+from ai.lander.sensing import sensed, surroundings, terrain
 from ai.lander.spawns import SPAWNS, Curriculum
 from engine import DT
 
@@ -240,6 +240,15 @@ class LanderEnv(Craft):
         `ai.lander.sensing.SURROUNDINGS` names the k numbers.
         """
         return surroundings(self, self.limits, self.target if pad is None else np.asarray(pad))
+
+    def around(self, pad: Any = None) -> Floats:
+        """Return the surroundings and the ground beside every lander, (n, k): `ai.lander.sensing.AROUND` names them."""
+        pad = self.target if pad is None else np.asarray(pad)
+        return np.concatenate([self.surroundings(pad), terrain(self, pad)], axis=1)
+
+    def around_pads(self) -> Floats:
+        """Return what is around every lander on its way to each pad, (n, pads, k)."""
+        return np.stack([self.around(pad) for pad in range(len(self.ground.pads))], axis=1)
 
     def snapshot(self) -> dict[str, Any]:
         """Return everything a flight depends on but its random streams, to be put back by `restore`."""

@@ -37,6 +37,14 @@ SURROUNDINGS_MIRROR: Final = np.array(
     [-1 if "wind" in name or name in ("pad velocity", "pad acceleration") else 1 for name in SURROUNDINGS],
     dtype=np.float32,
 )
+# The ground's height at places beside a lander, above the pad's top in metres times the factor below.
+_BESIDE: Final = (-5.0, -2.5, 0.0, 2.5, 5.0)  # metres
+_HEIGHT: Final = 0.3
+TERRAIN: Final = ("ground far left", "ground left", "ground below", "ground right", "ground far right")
+AROUND: Final = (*SURROUNDINGS, *TERRAIN)
+# Swaps left and right: multiply what is around by the signs, and take its columns in this order.
+AROUND_SIGNS: Final = np.concatenate([SURROUNDINGS_MIRROR, np.ones(len(TERRAIN), np.float32)])
+AROUND_ORDER: Final = np.array([*range(len(SURROUNDINGS)), *reversed(range(len(SURROUNDINGS), len(AROUND)))])
 _LONG, _AHEAD, _SOON = 20.0, 8.0, 2.0  # seconds: what is farther off than the first two is shown as they are
 
 
@@ -96,3 +104,10 @@ def surroundings(craft: Craft, limits: Limits, pad: Any) -> Floats:
     numbers[:, 14] = limits.touch_speed
     numbers *= SURROUNDINGS_SCALE
     return numbers.astype(np.float32)
+
+
+def terrain(craft: Craft, pad: Any) -> Floats:
+    """Return the ground's height beside each lander, (n, 5): `TERRAIN` names the places. Pads count where they rest."""
+    heights = craft.ground.height_near(craft.position[:, :1] + np.array(_BESIDE))
+    above = heights - np.reshape(craft.ground.middles[pad, 1], (-1, 1))
+    return (_HEIGHT * above).astype(np.float32)
