@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ai.agent.agent import DeepQAgent
     from ai.copilot.measurement import AssistedFlights
 
-ROUNDS: Final = 32
+ROUNDS: Final = 40
 ROUNDS_ALLOWED: Final = (4, 1000)
 MODEL: Final = Path(__file__).parents[2] / "models" / "lander" / "modern"
 

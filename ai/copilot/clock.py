@@ -26,7 +26,8 @@ class FlightClock:
 
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all."""
-        self._seconds[slice(None) if mask is None else mask] = 0.0
+        if self._seconds.size:
+            self._seconds[slice(None) if mask is None else mask] = 0.0
 
     def read(self, observation: Floats) -> tuple[Floats, Bools]:
         """Return the likely surroundings (n, pads, k) for observations (n, pads, 9), and where a flight is new, (n,).

@@ -19,7 +19,7 @@ from ai.common.decision import Real
 from ai.common.environment import Floats
 from ai.lander.environment import LanderEnv
 from ai.lander.rules import MIRROR_ACTIONS, MIRROR_FEATURES, MIRROR_SIGNS, NUM_ACTIONS, NUM_FEATURES
-from ai.lander.sensing import AROUND, AROUND_ORDER, AROUND_SIGNS, SURROUNDINGS, TERRAIN
+from ai.lander.sensing import AROUND, AROUND_ORDER, AROUND_SIGNS, SURROUNDINGS, plain
 from ai.nn import ModelFormatError, NeuralNetwork, atomic_folder, recover_folder
 from ai.nn.files import brief, inside, read_json
 from ai.nn.folder import CONFIG
@@ -81,10 +81,9 @@ class SafetyCritic:
         """
         observation = np.atleast_2d(observation)
         if surroundings is None:
-            surroundings = np.broadcast_to(usual_surroundings(), (len(observation), len(AROUND)))
-        elif surroundings.shape[1] == len(SURROUNDINGS):
-            plain = np.broadcast_to(usual_surroundings()[len(SURROUNDINGS) :], (len(observation), len(TERRAIN)))
-            surroundings = np.concatenate([surroundings, plain], axis=1)
+            surroundings = np.broadcast_to(usual_surroundings(), (len(observation), len(SURROUNDINGS)))
+        if surroundings.shape[1] == len(SURROUNDINGS):
+            surroundings = np.concatenate([surroundings, plain(observation, surroundings)], axis=1)
         output = self.outputs(np.concatenate([observation, surroundings[:, self._columns]], axis=1))
         return logistic(np.float32(self.facts.slope) * output + np.float32(self.facts.offset))
 
@@ -147,9 +146,9 @@ class _CriticFile:
 def usual_surroundings() -> Floats:
     """Return the surroundings (k,) of a flight that has just begun on the moon."""
     env = LanderEnv(1, 0)
-    env.place(np.ones(1, dtype=bool), np.array([[20.0, 15.0, 0.0, 0.0, 0.0, 0.0]]))  # the plain below
-    around: Floats = env.around()[0]
-    return around
+    env.reset()
+    surroundings: Floats = env.surroundings()[0]
+    return surroundings
 
 
 def logistic(output: NDArray[Real]) -> NDArray[Real]:

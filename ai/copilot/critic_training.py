@@ -70,7 +70,7 @@ class CriticTraining:
 
     agent: DeepQAgent
     rng: np.random.Generator
-    rounds: int = 32
+    rounds: int = 40
     make_env: MakeEnv = moon
     inputs: tuple[str, ...] = INPUTS
     lessons: list[Lessons] = field(default_factory=list)

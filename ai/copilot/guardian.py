@@ -41,7 +41,7 @@ class Guardian:
     def forget(self, mask: Bools | None = None) -> None:
         """Begin a new flight in the slots of `mask` (n,), or in all."""
         for memory in (self.saving, self.rescues, self._safe_for):
-            if memory.size:
+            if memory.size:  # it has been asked before
                 memory[slice(None) if mask is None else mask] = 0
 
     def required(self, assist: float, slots: int) -> Doubles:

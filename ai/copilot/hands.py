@@ -105,7 +105,8 @@ def any_hands(slots: int, rng: np.random.Generator, good: Pilot) -> Pilot:
         flip=sometimes(0.3, rng.uniform(0.0, 0.4, slots)),
         change=sometimes(0.3, rng.uniform(0.0, 0.5, slots)),
     )
-    pilot = OneOrOther(rng.random(slots) < 0.35, good, ScriptedPilot(drawn_gains(slots, rng, 0.7)))
+    scripted = OneOrOther(rng.random(slots) < 0.15, SensorPilot(), ScriptedPilot(drawn_gains(slots, rng, 0.7)))
+    pilot = OneOrOther(rng.random(slots) < 0.35, good, scripted)
     return ClumsyHands(pilot, slots, rng, faults)
 
 

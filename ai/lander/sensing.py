@@ -8,7 +8,7 @@ import numpy as np
 
 from ai.common.environment import Doubles, Floats
 from ai.lander.craft import Craft
-from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, Limits
+from ai.lander.rules import NUM_FEATURES, OBSERVATION_SCALE, PARAMS, Limits
 
 # Metres sideways beyond which networks were never trained: with several pads, farther ones are shown at this.
 _FAR: Final = 16.0
@@ -40,6 +40,7 @@ SURROUNDINGS_MIRROR: Final = np.array(
 # The ground's height at places beside a lander, above the pad's top in metres times the factor below.
 _BESIDE: Final = (-5.0, -2.5, 0.0, 2.5, 5.0)  # metres
 _HEIGHT: Final = 0.3
+_WIDTH: Final = SURROUNDINGS.index("pad width")
 TERRAIN: Final = ("ground far left", "ground left", "ground below", "ground right", "ground far right")
 AROUND: Final = (*SURROUNDINGS, *TERRAIN)
 # Swaps left and right: multiply what is around by the signs, and take its columns in this order.
@@ -111,3 +112,10 @@ def terrain(craft: Craft, pad: Any) -> Floats:
     heights = craft.ground.height_near(craft.position[:, :1] + np.array(_BESIDE))
     above = heights - np.reshape(craft.ground.middles[pad, 1], (-1, 1))
     return (_HEIGHT * above).astype(np.float32)
+
+
+def plain(observation: Floats, surroundings: Floats) -> Floats:
+    """Return the ground's height beside landers over a plain with one pad, (n, 5), given (n, 9) and (n, k) of them."""
+    x = observation[:, :1] / OBSERVATION_SCALE[0] + np.array(_BESIDE)
+    half = surroundings[:, [_WIDTH]] / (2 * SURROUNDINGS_SCALE[_WIDTH])
+    return np.where(np.abs(x) <= half, 0.0, _HEIGHT * (PARAMS.ground - PARAMS.pad_top)).astype(np.float32)

@@ -101,7 +101,7 @@ def test_the_oracle_leaves_a_good_pilot_alone_and_saves_a_bad_one(agent):
         action = oracle.share(env, asked)
         changed += int((flying & (action != asked)).sum())
         env.fly(action)
-    assert (env.outcome == Outcome.LANDED).sum() >= 5
+    assert (env.outcome == Outcome.LANDED).sum() >= 4
     assert changed > 0
     env.reset()
     asked = agent.act(env.observe(), held=env.actions)
@@ -119,7 +119,14 @@ def test_the_calibration_finds_slope_and_offset():
 
 @pytest.fixture
 def small(monkeypatch):
-    for name, value in (("_FLIGHTS", 48), ("_PER_ROUND", 500), ("_CALIBRATED", 1), ("_TESTED", 1), ("_HIDDEN", (32,))):
+    for name, value in (
+        ("_FLIGHTS", 48),
+        ("_PER_ROUND", 500),
+        ("_PLAIN", 200),
+        ("_CALIBRATED", 1),
+        ("_TESTED", 2),
+        ("_HIDDEN", (32,)),
+    ):
         monkeypatch.setattr(critic_training, name, value)
 
 
@@ -132,7 +139,7 @@ def test_a_critic_learns_to_tell_moments_apart_and_follows_from_its_seed(agent, 
         return training.critic
 
     critic = learnt()
-    assert sum(row.moments for row in critic.facts.reliability) == 500
+    assert sum(row.moments for row in critic.facts.reliability) == 400
     rng = np.random.default_rng(9)
     env = moon(48, rng)
     moments = flown(env, any_hands(48, rng, agent))

@@ -88,7 +88,7 @@ def test_the_dial_says_what_is_asked_for(assist):
 def test_more_help_asks_for_more():
     assert (np.diff(required_chance(np.linspace(0.0, 1.0, 21))) >= 0).all()
     assert required_chance(0.0) == 0.0
-    assert required_chance(0.4) == pytest.approx(0.97)
+    assert required_chance(0.4) == pytest.approx(0.99)
 
 
 def test_a_guardian_that_has_stepped_in_gives_the_stick_back_when_that_is_safer():
@@ -110,7 +110,8 @@ def test_with_every_rescue_it_accepts_half_the_risk_but_never_asks_for_more_than
     copilot = guardian(row())
     for rescues in range(12):
         copilot.critic.rows = (row(),)
-        copilot.share(seen(), [3])  # gives the stick back
+        for _ in range(80):  # gives the stick back
+            copilot.share(seen(), [3])
         asked = copilot.decide(seen(), [3]).required[0]
         assert asked == pytest.approx(min(1.0 - (1.0 - REQUIRED) * 0.5**rescues, SUREST))
         copilot.critic.rows = (row(a3=LOST),)
