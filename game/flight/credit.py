@@ -13,7 +13,7 @@ from game.core import texts
 from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.handicap import OWN
-from game.flight.outcomes import landing_score
+from ai.flights.score import landing_score
 
 
 class CreditRules(Protocol):

@@ -7,7 +7,7 @@ from typing import Final
 
 from game.core.lock import held
 from game.flight.flight import Flight, StickHolder
-from game.flight.outcomes import landing_score
+from ai.flights.score import landing_score
 
 FILE_NAME: Final = "demonstrations.json"
 _LEAST_STEPS: Final = 60  # flown by hand to the end, to count as a takeover

@@ -22,7 +22,7 @@ from game.core.trash import Trash
 from game.flight import flight_file
 from game.flight.flight import Flight
 from game.flight.flight_file import Entry, Record
-from game.flight.outcomes import landing_score
+from ai.flights.score import landing_score
 
 FOLDER: Final = "flights"
 LOGBOOK: Final = "logbook.jsonl"

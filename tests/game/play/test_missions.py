@@ -19,7 +19,8 @@ from game.flight.difficulty import Difficulty
 from game.flight.flight import Flight, StickHolder
 from game.flight.flight_file import Record
 from game.flight.logbook import Records
-from game.flight.outcomes import OutcomeCard, flight_figures, landing_score
+from ai.flights.score import landing_score
+from game.flight.outcomes import OutcomeCard, flight_figures
 from game.flight.replay import FlightReplay, ReplayedFlight
 from game.play.challenge import FlownMission
 from game.scenes.logbook import LogbookScene
