@@ -28,7 +28,7 @@ GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.charts", "game.flight", "game.training",
     "game.world", "game.panels", "game.lesson", "game.cockpit", "game.exhibits", "game.digits", "game.play",
     "game.learn",
-    "game.export", "game.shell", "game.scenes", "game.start", "game.cli",
+    "game.export", "game.shell", "game.scenes", "game.start", "game.verify", "game.cli",
 )  # fmt: skip
 # These only describe what is handed to them from above, for the type checker.
 DESCRIBED_FROM_ABOVE = {"game.core.scene"}
