@@ -22,7 +22,8 @@ LATE = {
 EXTRA = {"ai.gym.lander": {"gymnasium"}}
 # The floors inside `ai` and `game`, from the bottom up: a package imports from itself and from those before it.
 AI_FLOORS = (
-    "ai.nn", "ai.common", "ai.lander", "ai.flights", "ai.agent", "ai.training", "ai.copilot", "ai.digits", "ai.gym", "ai.cli",
+    "ai.nn", "ai.common", "ai.lander", "ai.flights", "ai.agent", "ai.training", "ai.copilot", "ai.digits", "ai.gym",
+    "ai.cli",
 )  # fmt: skip
 GAME_FLOORS = (
     "game.core", "game.input", "game.audio", "game.drawing", "game.ui", "game.charts", "game.flight", "game.training",

@@ -11,7 +11,19 @@ from typing import Final
 
 from ai.flights.range_coder import Bit, Decoder, Encoder
 
-_AGES: Final = (0, 2, 3, 4, 5, 7, 9, 13, 17, 25, 41)  # steps since a key's last change, from which it is another context
+_AGES: Final = (
+    0,
+    2,
+    3,
+    4,
+    5,
+    7,
+    9,
+    13,
+    17,
+    25,
+    41,
+)  # steps since a key's change that begin another context
 _LONG: Final = _AGES[-1]
 _AGE_OF: Final = tuple(sum(steps >= age for age in _AGES) - 1 for steps in range(_LONG + 1))
 _GRIDS: Final = (1, 4)  # steps from one decision to the next: a person's, and a network's

@@ -89,12 +89,11 @@ def fly_again(recordings: Sequence[Recording]) -> list[Earned]:
     actions = np.zeros((lengths.max(), len(recordings)), dtype=np.intp)
     for slot, each in enumerate(recordings):
         actions[: lengths[slot], slot] = each.actions
-    found = {int(slot): earned(env, like.mission, int(slot)) for slot in np.flatnonzero(lengths == 0)}
+    found = {slot: earned(env, like.mission, slot) for slot in np.flatnonzero(lengths == 0).tolist()}
     gravity = dict(like.gravity)
     for step, row in enumerate(actions):
         if step in gravity:
             env.gravity = gravity[step] * env.params.gravity
         env.fly(row)
-        for slot in np.flatnonzero(lengths == step + 1):
-            found[int(slot)] = earned(env, like.mission, int(slot))
+        found |= {slot: earned(env, like.mission, slot) for slot in np.flatnonzero(lengths == step + 1).tolist()}
     return [found[slot] for slot in range(len(recordings))]

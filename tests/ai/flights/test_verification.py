@@ -22,9 +22,7 @@ def flown(seed, pads=1, mission="", gravity=()):
             env.gravity = dict(gravity)[len(actions)] * env.params.gravity
         actions += pilot.act(env.observe()).tolist()
         env.fly(np.array(actions[-1:]))
-    recording = Recording(
-        seed, "random", pads, actions, [StickHolder.HUMAN] * len(actions), mission, list(gravity)
-    )
+    recording = Recording(seed, "random", pads, actions, [StickHolder.HUMAN] * len(actions), mission, list(gravity))
     real = earned(env, mission)
     return SharedFlight(recording, Claim(real.outcome, real.points, real.end), mission), real
 
@@ -74,7 +72,10 @@ def test_a_record_that_stops_before_the_end_has_earned_nothing():
     half = replace(recording, actions=recording.actions[:60])
     none = replace(recording, actions=[])
     real = [fly_again([each])[0] for each in (half, none)]
-    assert [(each.outcome, each.points, each.steps) for each in real] == [(Outcome.FLYING, 0, 60), (Outcome.FLYING, 0, 0)]
+    assert [(each.outcome, each.points, each.steps) for each in real] == [
+        (Outcome.FLYING, 0, 60),
+        (Outcome.FLYING, 0, 0),
+    ]
 
 
 def test_what_is_recorded_after_the_end_is_not_flown():

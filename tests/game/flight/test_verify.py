@@ -58,7 +58,9 @@ def test_an_end_elsewhere_than_claimed_is_said_to_be_wrong(tmp_path, capsys, rec
     assert "it ends elsewhere than it claims" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("content", [b"", b"hello", b"\xff\xfe\x00", b"{", b'{"format": "tranquility flight"}', b"tranq-0"])
+@pytest.mark.parametrize(
+    "content", [b"", b"hello", b"\xff\xfe\x00", b"{", b'{"format": "tranquility flight"}', b"tranq-0"]
+)
 def test_what_is_no_flight_is_refused_in_a_sentence(tmp_path, capsys, content):
     file = tmp_path / "strange.txt"
     file.write_bytes(content)
