@@ -29,12 +29,12 @@ _LAYOUT: Final = ListLayout(
     columns=(112.0, 0.0),
     headings=texts.DAYS_COLUMNS,
     pitch=32,
-    verbs=(_LEFT, 486),
+    verbs=(_LEFT, 504),
     foot=608,
 )
 _SHOWN: Final = 60  # days in the list
 _WEEKS: Final = 5
-_CALENDAR: Final = (_LEFT + 10.0, 318.0)  # middle of its first day
+_CALENDAR: Final = (_LEFT + 10.0, 340.0)  # middle of its first day
 _CELL: Final = (34.0, 26.0)
 _DAY: Final = timedelta(days=1)
 
@@ -122,7 +122,9 @@ class DaysScene(ListScene[date]):
         if self.chosen is None:
             return
         canvas.text(self._name(self.chosen), (_LEFT, 190), size=TITLE + 6, weight="light")
-        y = draw_wrapped(canvas, texts.DAYS_ASKS, (_LEFT, 224), _WIDTH, size=TEXT, leading=22)
+        attempt = self._attempt(self.chosen)
+        told = attempt.line if attempt else texts.DAYS_ASKS if self.chosen == self._today else texts.DAYS_MISSED_LINE
+        y = draw_wrapped(canvas, told, (_LEFT, 224), _WIDTH, size=TEXT, leading=22)
         if self._beside_ghost:
             draw_wrapped(canvas, texts.DAYS_BESIDE, (_LEFT, y + 4), _WIDTH, size=SMALL, colour=MUTE, leading=19)
         self._draw_calendar(canvas)
